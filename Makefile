@@ -1,0 +1,21 @@
+SHELL := /bin/bash
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test bench package
+
+help: ## this list
+	@grep -hE '^[a-z]+:.*## ' $(firstword $(MAKEFILE_LIST)) | sed -E 's/^([a-z]+):.*## /make \1\t/' | expand -t 16
+
+setup: ## install what is missing (QGIS too, on Debian) and prepare build/
+	@tools/setup.sh
+
+demo: setup ## a sample survey with known truth through the whole chain, into build/demo/
+	@tools/demo.sh
+
+test: setup ## core tests without QGIS, then the plugin in QGIS, then real qgis_process calls
+	@tools/test.sh
+
+bench: setup ## seconds per stage and peak memory on 5 and 20 million points
+	@tools/bench.sh
+
+package: ## the zip for QGIS's plugin manager, into dist/
+	@tools/package.sh
