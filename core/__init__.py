@@ -1,0 +1,1 @@
+"""Lanewright without QGIS: numpy, roads and nothing of the desktop."""

@@ -1,0 +1,1 @@
+"""Curves fitted to points: line, circle, ellipse, clothoid, polynomial, B-spline."""

@@ -1,0 +1,1 @@
+"""Where the road is: profiles, curbs, edges, surface."""

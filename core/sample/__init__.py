@@ -1,0 +1,1 @@
+"""A made survey with known truth, for the demo and the tests."""

@@ -1,0 +1,53 @@
+"""The fields of every layer, in one place: names of at most 10 characters, spelled out in the alias."""
+
+from .features import Field
+
+ROAD = Field("road", int, "Road")
+PASS = Field("pass", int, "Pass")
+SIDE = Field("side", str, "Side (left/right)")
+STATUS = Field("status", str, "Status")
+STATION = Field("station_m", float, "Station (m)")
+OFFSET = Field("offset_m", float, "Offset, left positive (m)")
+HEIGHT = Field("height_m", float, "Height (m)")
+PART = Field("part", str, "Part (bottom/top)")
+AGREE = Field("agree_cm", float, "Agreement of the two methods (cm)")
+LENGTH = Field("length_m", float, "Length (m)")
+WIDTH = Field("width_m", float, "Width (m)")
+RADIUS = Field("radius_m", float, "Radius (m)")
+RMSE = Field("rmse_m", float, "RMSE of the fit (m)")
+
+# station_m of a line is where it starts, end_m where it ends, along the road
+END = Field("end_m", float, "End station (m)")
+
+CURB_POINTS = [ROAD, PASS, SIDE, STATUS, STATION, OFFSET, HEIGHT, PART,
+               Field("chain", int, "Chain along the road"), Field("residual_m", float, "Residual (m)"),
+               Field("support", int, "Supporting points")]
+ROAD_EDGES = [ROAD, PASS, SIDE, STATUS, STATION, END, HEIGHT, PART, AGREE, LENGTH, RMSE,
+              Field("chain", int, "Chain along the road")]
+ROAD_SURFACE = [ROAD, STATUS, STATION, END, Field("area_m2", float, "Area (m²)"), Field("points", int, "Road points")]
+MARKINGS = [ROAD, Field("cluster", int, "Cluster"), Field("class", str, "Class"), Field("use", str, "Use (keep/other)"),
+            STATION, OFFSET, LENGTH, WIDTH, Field("elongation", float, "Elongation"),
+            Field("scan_m", float, "Scanning distance (m)"), Field("area_m2", float, "Area (m²)"),
+            Field("points", int, "Points"), Field("contrast", float, "Contrast to asphalt (σ)")]
+MARKING_LINES = [ROAD, Field("line", int, "Line"), Field("kind", str, "Kind (edge/lane/centre)"),
+                 Field("pattern", str, "Pattern"), STATUS, Field("curve", str, "Curve"), RADIUS, RMSE,
+                 STATION, END, OFFSET, LENGTH, WIDTH, Field("params", str, "Fitted function (JSON)")]
+DRIVING_LINES = [ROAD, Field("lane", int, "Lane"), Field("kind", str, "Kind"), Field("pattern", str, "Pattern"),
+                 Field("direction", int, "Direction (1 along, -1 against the road)"),
+                 Field("source", str, "Source (pair/offset)"), STATUS, Field("curve", str, "Curve"), RADIUS, RMSE,
+                 STATION, END, OFFSET, LENGTH, WIDTH, Field("params", str, "Fitted function (JSON)")]
+CURVE_ELEMENTS = [ROAD, Field("lane", int, "Lane"), STATION, END, Field("turn", str, "Turn (left/right)"),
+                  Field("radius_m", float, "R (m)"), Field("radius_ft", float, "R (ft)"),
+                  Field("delta_deg", float, "Δ (°)"), Field("degree_ft", float, "D (° per 100 ft)"),
+                  Field("degree_m", float, "D (° per 100 m)"),
+                  Field("length_m", float, "L (m)"), Field("length_ft", float, "L (ft)"),
+                  Field("tangent_m", float, "T (m)"), Field("tangent_ft", float, "T (ft)"),
+                  Field("middle_m", float, "M (m)"), Field("middle_ft", float, "M (ft)"),
+                  Field("chord_m", float, "LC (m)"), Field("chord_ft", float, "LC (ft)"),
+                  Field("ext_m", float, "E (m)"), Field("ext_ft", float, "E (ft)"),
+                  Field("pc_x", float, "PC x"), Field("pc_y", float, "PC y"), Field("pt_x", float, "PT x"),
+                  Field("pt_y", float, "PT y"), Field("pi_x", float, "PI x"), Field("pi_y", float, "PI y"),
+                  Field("rmse_m", float, "RMSE of the arc (m)"),
+                  Field("speed_kmh", int, "Highest design speed allowed (km/h)"), Field("code", str, "Design code check")]
+TRAJECTORY = [Field("time", float, "Time (s)"), Field("roll", float, "Roll (°)"), Field("pitch", float, "Pitch (°)"),
+              Field("heading", float, "Heading (°, clockwise from grid north)"), PASS, ROAD, STATION]

@@ -1,0 +1,1 @@
+"""What was measured: point clouds, trajectory, passes, the road frame, the section store."""

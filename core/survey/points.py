@@ -1,0 +1,68 @@
+"""The compact record in which a point travels through the work, and its metric view."""
+
+import numpy as np
+
+UNIT = 1e-4  # m: coordinates are kept as integers of 0.1 mm, exact for every LAS scale in use
+
+# Coordinates are local (map minus the frame's origin); s and d are the road's
+# station and offset. `source` is point_source_id, kept so that a written cloud
+# can be traced back; `returns` is return number + 16 * number of returns.
+SURVEY_POINT = np.dtype([
+    ("time", "f8"), ("x", "i4"), ("y", "i4"), ("z", "i4"), ("s", "i4"), ("d", "i4"),
+    ("intensity", "u2"), ("source", "u2"), ("pass_number", "u2"), ("scanner", "u1"), ("returns", "u1"),
+])
+
+# `half_width` is in millimetres; `corrected` is NaN where intensity was not corrected;
+# `cluster` is 0 before clustering.
+ROAD_POINT = np.dtype(SURVEY_POINT.descr + [("corrected", "f4"), ("half_width", "u2"), ("cluster", "i4")])
+
+
+def to_units(metres):
+    """(N,) metres to (N,) int32 of 0.1 mm."""
+    return np.rint(np.asarray(metres) / UNIT).astype(np.int32)
+
+
+class Points:
+    """A metric view over a structured array of points; columns are computed on access.
+
+    Attributes: x, y, z, s, d, half_width (metres, float64), time (seconds), and the raw
+    columns intensity, corrected, source, pass_number, scanner, returns, cluster.
+    """
+
+    METRIC = {"x", "y", "z", "s", "d"}
+
+    def __init__(self, records):
+        self.records = records
+
+    def __len__(self):
+        return len(self.records)
+
+    def __getattr__(self, name):
+        if name.startswith("_") or name == "records":
+            raise AttributeError(name)
+        if name in self.METRIC:
+            return self.records[name] * UNIT
+        if name == "half_width":
+            return self.records["half_width"] * 1e-3
+        if name in (self.records.dtype.names or ()):
+            return self.records[name]
+        raise AttributeError(f"points have no column {name!r}")
+
+    def __getitem__(self, which):
+        """The points of a mask, slice or index array."""
+        return Points(self.records[which])
+
+    @property
+    def value(self):
+        """(N,) float32: corrected intensity where there is one, raw intensity elsewhere."""
+        corrected = self.records["corrected"]
+        return np.where(np.isnan(corrected), self.records["intensity"].astype(np.float32), corrected)
+
+
+def canonical_order(records):
+    """Indices that sort records by time, then place: the same whatever order files came in."""
+    order = np.argsort(records["time"], kind="stable")
+    ties = np.diff(records["time"][order]) == 0
+    if ties.any():
+        order = np.lexsort((records["intensity"], records["z"], records["y"], records["x"], records["time"]))
+    return order

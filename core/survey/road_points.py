@@ -1,0 +1,62 @@
+"""The points of the road surface, as they pass from stage to stage."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .points import ROAD_POINT, Points
+from .section_store import SectionStore
+
+
+@dataclass
+class RoadPoints:
+    """Road points in their sections, with what a later stage must know of them.
+
+    `origin` (3 integers, map coordinates) is what was subtracted from x, y, z.
+    `has_corrected` and `has_cluster` say whether those columns carry anything.
+    """
+
+    store: SectionStore
+    origin: np.ndarray
+    crs: str = ""
+    has_corrected: bool = False
+    has_cluster: bool = False
+
+    @classmethod
+    def empty_like(cls, other=None, origin=None, crs=""):
+        """A new, empty set; with `other` given, its origin, CRS and columns."""
+        if other is not None:
+            return cls(SectionStore(ROAD_POINT), other.origin, other.crs, other.has_corrected, other.has_cluster)
+        return cls(SectionStore(ROAD_POINT), np.asarray(origin, float), crs)
+
+    def __len__(self):
+        return self.store.count
+
+    def roads(self):
+        return self.store.roads()
+
+    def sections(self, road):
+        return self.store.sections(road)
+
+    def section(self, road, number):
+        """Points of one section, in canonical order."""
+        return Points(self.store.section(road, number))
+
+    def window(self, road, start, end):
+        """Points with start <= station < end."""
+        return self.store.window(road, start, end)
+
+    def all_sections(self):
+        """(road, section number) of every section that has points, in order."""
+        return [(road, number) for road in self.roads() for number in self.sections(road)]
+
+    def all_points(self):
+        """Every point, road by road and section by section (for sets known to be small: paint)."""
+        parts = [self.store.section(road, number) for road, number in self.all_sections()]
+        return Points(np.concatenate(parts) if parts else np.empty(0, ROAD_POINT))
+
+    def point_roads(self):
+        """(N,) road number of each of `all_points()`."""
+        counts = [(road, len(self.store.section(road, number))) for road, number in self.all_sections()]
+        return np.repeat([road for road, _ in counts], [count for _, count in counts]).astype(np.int64) \
+            if counts else np.empty(0, np.int64)
