@@ -1,0 +1,154 @@
+"""Things that stand on the street and hide what lies behind: cars, trees, poles."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .scene import LABEL
+
+
+@dataclass(frozen=True)
+class Body:
+    """A convex body: points p with normals @ p <= limits, in its own frame (x ahead, y left, z up)."""
+
+    normals: np.ndarray
+    limits: np.ndarray
+    brightness: float
+    transparency: float = 0.0  # share of the pulses that give no return (glass)
+
+
+@dataclass(frozen=True)
+class Car:
+    """A parked car at x, y, z (the road below its middle), seen from `reach` at most."""
+
+    x: float
+    y: float
+    z: float
+    heading: float
+    bodies: tuple
+    reach: float = 2.6
+    top: float = 1.6
+    label: int = LABEL["car"]
+
+    def hits(self, origin, direction, rng):
+        """Distance, cosine of incidence and brightness per ray; inf where it passes.
+
+        `rng` decides only which pulses are lost in glass.
+        """
+        cos, sin = np.cos(self.heading), np.sin(self.heading)
+        turn = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
+        o = turn @ (origin - np.array([[self.x], [self.y], [self.z]]))
+        v = turn @ direction
+        distance = np.full(v.shape[1], np.inf)
+        cosine, brightness = np.zeros(v.shape[1]), np.zeros(v.shape[1])
+        for body in self.bodies:
+            t, c = _enter(body, o, v)
+            if body.transparency:
+                c = np.where(rng.random(len(t)) < body.transparency, 0.0, c)
+            first = t < distance
+            distance[first], cosine[first], brightness[first] = t[first], c[first], body.brightness
+        return distance, cosine, brightness
+
+
+def _enter(body, o, v):
+    """Where rays enter a convex body: the last of the planes met from outside."""
+    toward = body.normals @ v
+    room = body.limits[:, None] - body.normals @ o
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = room / toward
+    incoming, outgoing = toward < 0, toward > 0
+    enter = np.where(incoming, t, -np.inf)
+    plane = np.argmax(enter, axis=0)
+    each = np.arange(v.shape[1])
+    start = enter[plane, each]
+    leave = np.where(outgoing, t, np.inf).min(axis=0)
+    outside = ((~incoming) & (~outgoing) & (room < 0)).any(axis=0)
+    hit = (start > 0) & (start <= leave) & ~outside
+    return np.where(hit, start, np.inf), np.where(hit, -toward[plane, each], 0.0)
+
+
+def _body(faces, brightness, transparency=0.0):
+    """A Body from rows (nx, ny, nz, point x, y, z on the face)."""
+    faces = np.array(faces, dtype=float)
+    normals = faces[:, :3] / np.linalg.norm(faces[:, :3], axis=1, keepdims=True)
+    return Body(normals, np.sum(normals * faces[:, 3:], axis=1), brightness, transparency)
+
+
+def car_bodies(length, width, height, brightness):
+    """Bodywork with rounded corners, a cabin with raked screens, four wheels."""
+    a, b, waist, floor = length / 2, width / 2, 0.58 * height, 0.19
+    shell = [(1, 0, 0, a, 0, 0), (-1, 0, 0, -a, 0, 0), (0, 1, 0, 0, b, 0), (0, -1, 0, 0, -b, 0),
+             (0, 0, 1, 0, 0, waist), (0, 0, -1, 0, 0, floor)]
+    for nx, ny in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
+        shell += [(nx, ny, 0, nx * (a - 0.22), ny * b, 0), (2 * nx, ny, 0, nx * (a - 0.06), ny * (b - 0.28), 0)]
+    for nx, ny in ((1, 0), (-1, 0), (0, 1), (0, -1)):
+        rounding = 0.12 if nx else 0.07
+        shell.append((nx, ny, 1, nx * a, ny * b, waist - rounding))
+    cabin = [(0.9, 0, 0.7, 0.16 * length, 0, waist), (-0.9, 0, 0.45, -0.42 * length, 0, waist),
+             (0, 1, 0.35, 0, b - 0.05, waist), (0, -1, 0.35, 0, 0.05 - b, waist),
+             (0, 0, -1, 0, 0, waist - 0.02), (0, 0, 1, 0, 0, height - 0.03)]
+    roof = [*cabin[:4], (0, 0, -1, 0, 0, height - 0.04), (0, 0, 1, 0, 0, height)]
+    bodies = [_body(shell, brightness), _body(cabin, 0.12, 0.6), _body(roof, brightness)]
+    for x in (0.30 * length, -0.31 * length):
+        for y in (b - 0.22, 0.22 - b):
+            wheel = [(0, 1, 0, x, y + 0.2, 0), (0, -1, 0, x, y - 0.2, 0)]
+            for angle in np.arange(8) * np.pi / 4:
+                nx, nz = np.cos(angle), np.sin(angle)
+                wheel.append((nx, 0, nz, x + 0.31 * nx, y, 0.31 + 0.31 * nz))
+            bodies.append(_body(wheel, 0.05))
+    return tuple(bodies)
+
+
+@dataclass(frozen=True)
+class Post:
+    """An upright cylinder from the ground to `top` (a height like z): a pole, a trunk."""
+
+    x: float
+    y: float
+    top: float
+    radius: float
+    label: int
+    brightness: float
+
+    @property
+    def reach(self):
+        return self.radius
+
+    def hits(self, origin, direction, rng):
+        dx, dy = origin[0] - self.x, origin[1] - self.y
+        square = direction[0] ** 2 + direction[1] ** 2
+        half = dx * direction[0] + dy * direction[1]
+        inside = half**2 - square * (dx**2 + dy**2 - self.radius**2)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            t = (-half - np.sqrt(inside)) / square
+        hit = (inside > 0) & (t > 0) & (origin[2] + t * direction[2] <= self.top)
+        # Across the post the surface turns away; along it the ray meets it at its elevation.
+        cosine = np.sqrt(np.maximum(inside, 0.0)) / self.radius
+        return np.where(hit, t, np.inf), np.where(hit, cosine, 0.0), np.full(len(t), self.brightness)
+
+
+@dataclass(frozen=True)
+class Crown:
+    """The leaves of a tree: an ellipsoid in which a pulse meets a leaf after a random way."""
+
+    x: float
+    y: float
+    z: float
+    reach: float
+    half_height: float
+    top: float
+    free_way: float = 0.8  # m, mean way of a pulse between leaves
+    label: int = LABEL["tree"]
+    brightness: float = 0.34
+
+    def hits(self, origin, direction, rng):
+        scale = np.array([[1 / self.reach], [1 / self.reach], [1 / self.half_height]])
+        o = (origin - np.array([[self.x], [self.y], [self.z]])) * scale
+        v = direction * scale
+        square, half = (v * v).sum(0), (o * v).sum(0)
+        inside = half**2 - square * ((o * o).sum(0) - 1.0)
+        root = np.sqrt(np.maximum(inside, 0.0))
+        enter, leave = (-half - root) / square, (-half + root) / square
+        t = np.maximum(enter, 0.0) + rng.exponential(self.free_way, len(square))
+        hit = (inside > 0) & (t < leave)
+        return np.where(hit, t, np.inf), np.where(hit, rng.uniform(0.3, 1.0, len(t)), 0.0), np.full(len(t), self.brightness)

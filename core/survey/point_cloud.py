@@ -1,0 +1,117 @@
+"""Point cloud files: what their headers say, and their points in blocks."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import RoadExtractionError
+
+BLOCK = 500_000  # points decoded at a time
+SUFFIXES = (".las", ".laz")
+
+
+@dataclass(frozen=True)
+class CloudFile:
+    """What the header of one LAS/LAZ/COPC file says.
+
+    `minimum` and `maximum` are (3,) map coordinates; `crs` is WKT or "";
+    `adjusted_time` tells whether gps_time is adjusted standard GPS time
+    (global encoding bit 0) or seconds of the GPS week.
+    """
+
+    path: str
+    version: str
+    point_format: int
+    count: int
+    minimum: tuple
+    maximum: tuple
+    scales: tuple
+    crs: str
+    has_time: bool
+    has_channel: bool
+    adjusted_time: bool
+
+
+def open_cloud(path):
+    """Open a LAS/LAZ/COPC file for reading with laspy, or say in one sentence why it cannot be read."""
+    import laspy
+
+    path = str(path)
+    if not Path(path).exists():
+        raise RoadExtractionError(f"There is no file {path}. Check the path of the point cloud.")
+    if not path.lower().endswith(SUFFIXES):
+        raise RoadExtractionError(f"{path} is not a LAS or LAZ file. Lanewright reads .las, .laz and .copc.laz; convert other formats first.")
+    try:
+        return laspy.open(path)
+    except Exception as problem:  # laspy and its backends raise many kinds for a damaged file
+        raise RoadExtractionError(f"{path} cannot be read as a LAS/LAZ file ({problem}). It may be damaged or cut off; copy or export it again.") from problem
+
+
+def read_header(path):
+    """The CloudFile of a path.
+
+    Raises
+    ------
+    RoadExtractionError
+        If the file is missing, is not LAS/LAZ, or cannot be read.
+    """
+    with open_cloud(path) as reader:
+        header = reader.header
+        names = set(header.point_format.dimension_names)
+        return CloudFile(
+            str(path), str(header.version), header.point_format.id, int(header.point_count),
+            tuple(map(float, header.mins)), tuple(map(float, header.maxs)), tuple(map(float, header.scales)),
+            _crs_of(header), "gps_time" in names, "scanner_channel" in names,
+            bool(header.global_encoding.gps_time_type.value))
+
+
+def _crs_of(header):
+    """WKT of the file's CRS from WKT or GeoKeys records; "" where there is none or it cannot be understood."""
+    try:
+        crs = header.parse_crs()
+    except Exception:  # an unreadable CRS record counts as no CRS: the user is then asked for one
+        return ""
+    return "" if crs is None else crs.to_wkt()
+
+
+def read_blocks(path, size=BLOCK):
+    """Yield laspy point records of a file, `size` at a time.
+
+    Raises
+    ------
+    RoadExtractionError
+        If the file ends early or is damaged.
+    """
+    with open_cloud(path) as reader:
+        promised, read = reader.header.point_count, 0
+        try:
+            for points in reader.chunk_iterator(size):
+                read += len(points)
+                yield points
+        except RoadExtractionError:
+            raise
+        except Exception as problem:
+            raise RoadExtractionError(
+                f"{path} is damaged: its header promises {promised} points, {read} could be read ({problem}). "
+                "Copy or export the file again.") from problem
+        if read < promised:
+            raise RoadExtractionError(
+                f"{path} is cut off: its header promises {promised} points, {read} are there. Copy or export the file again.")
+
+
+def read_headers(paths):
+    """CloudFile of every path, in the order given; a path given twice is read once.
+
+    Raises
+    ------
+    RoadExtractionError
+        If there is no file, all files are empty, or the files disagree about their CRS.
+    """
+    unique = list(dict.fromkeys(str(Path(path)) for path in paths))
+    if not unique:
+        raise RoadExtractionError("No point cloud was given. Choose one or more LAS, LAZ or COPC files.")
+    files = [read_header(path) for path in unique]
+    if not sum(file.count for file in files):
+        raise RoadExtractionError(f"{'The file' if len(files) == 1 else 'The files'} {', '.join(unique[:3])} hold no points. Check the export of the survey.")
+    return files

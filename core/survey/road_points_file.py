@@ -1,0 +1,137 @@
+"""Road points as a LAZ file: what a later stage must know travels in extra fields."""
+
+import os
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import RoadExtractionError
+from ..progress import Progress
+from .point_cloud import BLOCK, open_cloud, read_blocks
+from .points import ROAD_POINT, UNIT
+from .road_points import RoadPoints
+from .section_store import SectionStore
+
+ROAD_CLASS = 11  # ASPRS: road surface
+SCALE = UNIT
+
+# Stations and offsets are stored as integers of 0.1 mm, so that what is read
+# back is to the bit what was passed on in memory.
+EXTRA = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", None), ("scanner", "uint8", "Scanner", None),
+         ("station_m", "int32", "Station along the road", UNIT), ("offset_m", "int32", "Offset, left positive", UNIT),
+         ("half_width", "uint16", "Half width of the road", 1e-3)]
+CORRECTED = ("intensity_corrected", "float32", "Intensity, range corrected", None)
+CLUSTER = ("cluster", "int32", "Cluster of paint", None)
+NEEDED = ("road", "pass", "station_m", "offset_m", "half_width")
+
+
+def write_road_points(road_points, path, progress=Progress()):
+    """Write road points as LAS 1.4 class 11 in road order; the file appears whole or not at all.
+
+    `path` ends in .laz or .las.
+    """
+    import laspy
+
+    header = _header(road_points)
+    path = str(path)
+    suffix = ".las" if path.lower().endswith(".las") else ".laz"
+    unfinished = f"{path}.unfinished{suffix}"
+    sections = road_points.all_sections()
+    try:
+        with laspy.open(unfinished, mode="w", header=header, do_compress=suffix == ".laz") as writer:
+            for k, (road, number) in enumerate(sections):
+                writer.write_points(_record(road_points, road, number, header))
+                progress.at((k + 1) / len(sections))
+        os.replace(unfinished, path)
+    finally:
+        Path(unfinished).unlink(missing_ok=True)
+
+
+def _header(road_points):
+    import laspy
+
+    header = laspy.LasHeader(point_format=6, version="1.4")
+    header.scales = np.full(3, SCALE)
+    header.offsets = np.asarray(road_points.origin, float)
+    # The time values are handed on as they came
+    header.global_encoding.gps_time_type = laspy.header.GpsTimeType.STANDARD
+    header.generating_software = "Lanewright"
+    extra = EXTRA + ([CORRECTED] if road_points.has_corrected else []) + ([CLUSTER] if road_points.has_cluster else [])
+    header.add_extra_dims([
+        laspy.ExtraBytesParams(name=name, type=kind, description=text,
+                               **({} if scale is None else dict(scales=np.array([scale]), offsets=np.array([0.0]))))
+        for name, kind, text, scale in extra])
+    if road_points.crs:
+        from .crs import parse_crs
+
+        header.add_crs(parse_crs(road_points.crs))
+    return header
+
+
+def _record(road_points, road, number, header):
+    import laspy
+
+    records = road_points.store.section(road, number)
+    out = laspy.ScaleAwarePointRecord.zeros(len(records), header=header)
+    out.array["X"], out.array["Y"], out.array["Z"] = records["x"], records["y"], records["z"]
+    out["gps_time"] = records["time"]
+    out["intensity"] = records["intensity"]
+    out["point_source_id"] = records["source"]
+    out["return_number"], out["number_of_returns"] = records["returns"] & 15, records["returns"] >> 4
+    out["classification"] = np.full(len(records), ROAD_CLASS, np.uint8)
+    out.array["road"], out.array["pass"] = road, records["pass_number"]
+    out.array["scanner"] = records["scanner"]
+    out.array["station_m"], out.array["offset_m"] = records["s"], records["d"]
+    out.array["half_width"] = records["half_width"]
+    if road_points.has_corrected:
+        out.array["intensity_corrected"] = records["corrected"]
+    if road_points.has_cluster:
+        out.array["cluster"] = records["cluster"]
+    return out
+
+
+def read_road_points(path, progress=Progress()):
+    """RoadPoints from a LAZ file that Lanewright wrote.
+
+    Raises
+    ------
+    RoadExtractionError
+        If the file lacks the extra fields of road points.
+    """
+    with open_cloud(path) as reader:
+        header = reader.header
+        names = set(header.point_format.dimension_names)
+        missing = [name for name in NEEDED if name not in names]
+        if missing:
+            raise RoadExtractionError(
+                f"{path} lacks the extra field(s) {', '.join(missing)} that tell where on the road a point lies. "
+                "Give it the road points written by “Extract road surface” or a stage after it.")
+        origin, scales, total = np.asarray(header.offsets, float), np.asarray(header.scales), header.point_count
+        crs = header.parse_crs()
+    has_corrected, has_cluster = "intensity_corrected" in names, "cluster" in names
+    store = SectionStore(ROAD_POINT)
+    done = 0
+    for block in read_blocks(path, BLOCK):
+        records = np.zeros(len(block), ROAD_POINT)
+        # another program may have rewritten the file with its own scale
+        for axis, (name, scale) in enumerate(zip("xyz", scales)):
+            raw = np.asarray(block[name.upper()])
+            records[name] = raw if abs(scale - SCALE) < 1e-12 else np.rint(raw * (scale / SCALE))
+        records["time"] = block["gps_time"]
+        records["intensity"], records["source"] = block["intensity"], block["point_source_id"]
+        records["returns"] = np.asarray(block["return_number"]) | (np.asarray(block["number_of_returns"]) << 4)
+        records["pass_number"] = block["pass"]
+        records["scanner"] = block["scanner"] if "scanner" in names else 0
+        records["s"] = np.rint(np.asarray(block["station_m"], float) / UNIT)
+        records["d"] = np.rint(np.asarray(block["offset_m"], float) / UNIT)
+        records["half_width"] = np.rint(np.asarray(block["half_width"], float) / 1e-3)
+        records["corrected"] = block["intensity_corrected"] if has_corrected else np.nan
+        records["cluster"] = block["cluster"] if has_cluster else 0
+        roads = np.asarray(block["road"])
+        for road in np.unique(roads):
+            store.append(int(road), records[roads == road])
+        done += len(block)
+        progress.at(done / max(total, 1))
+    if not store.count:
+        raise RoadExtractionError(f"{path} holds no points. Run the stage that made it again with other settings.")
+    return RoadPoints(store, origin, "" if crs is None else crs.to_wkt(), has_corrected, has_cluster)

@@ -1,0 +1,334 @@
+"""A survey opened for work: its points read once and placed in the road frame."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..errors import RoadExtractionError
+from ..progress import Progress
+from .crs import check_projected
+from .point_cloud import BLOCK, read_blocks, read_headers
+from .points import SURVEY_POINT, UNIT, Points, to_units
+from .road_frame import CORRIDOR, build_frame
+from .scanners import ScannerCensus
+from .section_store import MEMORY_LIMIT, SECTION_LENGTH, SectionStore
+from .time_systems import align_time
+
+NEAR_TRACK = 1.5       # m either side of the vehicle's own track: road, not sidewalk
+DEFAULT_HEIGHT = 2.6   # m, sensor above road, where nothing lies on the track
+ABOVE, BELOW = 3.5, 4.0  # m about the road kept: vehicles that hide a curb above, ditches below
+CLOCK_SLACK = 1.0      # s that a cloud may begin before or end after the trajectory
+
+
+@dataclass(frozen=True)
+class SurveySettings:
+    """How a survey is read.
+
+    corridor : m either side of the road's reference line
+    scanner_field : "automatic", "scanner_channel" or "point_source_id"
+    time : how the trajectory counts time: automatic, gps, adjusted, week or day
+    crs : WKT for clouds that carry none
+    """
+
+    corridor: float = CORRIDOR
+    scanner_field: str = "automatic"
+    time: str = "automatic"
+    crs: str = ""
+    section_length: float = SECTION_LENGTH
+    memory_limit: int = MEMORY_LIMIT
+    block: int = BLOCK
+
+    def __post_init__(self):
+        if not 5.0 <= self.corridor <= 100.0:
+            raise RoadExtractionError(f"The corridor is {self.corridor} m; it must be between 5 and 100 m either side of the trajectory.")
+
+
+@dataclass
+class Survey:
+    """Points in their sections, the road frame, and what was found out on the way.
+
+    `sensor_height` is metres from the trajectory down to the road, one value per pass.
+    """
+
+    files: list
+    frame: object
+    store: SectionStore
+    crs: str
+    sensor_height: dict
+    scanner_field: str
+    scanners: list
+    has_intensity: bool
+    has_time: bool
+    counts: dict = field(default_factory=dict)
+    _lut: np.ndarray = None
+
+    def window(self, road, start, end):
+        """Points of a road with start <= station < end, scanners numbered from 0."""
+        return self._with_scanner(self.store.window(road, start, end).records)
+
+    def section(self, road, number):
+        """Points of one section."""
+        return self._with_scanner(self.store.section(road, number))
+
+    def _with_scanner(self, records):
+        records = records.copy()
+        if self.scanner_field is None:
+            records["scanner"] = 0
+        elif self.scanner_field == "point_source_id":
+            records["scanner"] = np.searchsorted(self.scanners, records["source"])
+        else:
+            records["scanner"] = np.searchsorted(self.scanners, records["scanner"])
+        return Points(records)
+
+    def road_height(self, road, s):
+        """(N,) local z of the road under the vehicle's track at stations of a road: a prior, good to decimetres."""
+        heights = [self.sensor_height[p.number] for p in self.frame.passes_of(road)]
+        return self.frame.track_height(road, s) - float(np.mean(heights))
+
+
+def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress()):
+    """Read point clouds once and place every point in the road frame.
+
+    Parameters
+    ----------
+    paths : LAS, LAZ or COPC files in any order
+    trajectory : Trajectory in the clouds' CRS (any time system)
+
+    Raises
+    ------
+    RoadExtractionError
+        If a file cannot be read, the CRS is geographic or not in metres, or the
+        trajectory does not overlap the cloud in space or time.
+    """
+    files = read_headers(paths)
+    crs = check_projected(files, settings.crs, trajectory.crs)
+    trajectory, time_note, has_time = _match_clocks(files, trajectory, settings, progress)
+    if time_note:
+        progress.say(time_note)
+    frame = build_frame(trajectory)
+    frame.crs = crs
+    frame.has_time = has_time
+    for note in frame.notes:
+        progress.say(note)
+    _check_extent(files, frame)
+    store = SectionStore(SURVEY_POINT, settings.section_length, settings.memory_limit)
+    reader = _Reader(frame, store, settings, has_time)
+    total, done = sum(file.count for file in files), 0
+    for file in files:
+        for block in read_blocks(file.path, settings.block):
+            reader.take(block, file)
+            done += len(block)
+            progress.at(done / total)
+    reader.finish()
+    if not store.count:
+        raise RoadExtractionError(_no_overlap(files, frame, reader))
+    scanner_field, scanners = reader.census.choose(settings.scanner_field)
+    heights = _sensor_heights(frame, store)
+    survey = Survey(files, frame, store, crs, heights, scanner_field, scanners,
+                    reader.brightest > 0, has_time,
+                    dict(read=total, kept=store.count, outside=total - store.count))
+    progress.say(f"{total:,} points read from {len(files)} file(s), {store.count:,} near the road kept; "
+                 f"{len(frame.roads)} road(s), {len(frame.passes)} pass(es), {len(scanners)} scanner(s); "
+                 f"sensor {np.mean(list(heights.values())):.2f} m above the road.")
+    return survey
+
+
+class _Reader:
+    """Places blocks of points; the coarse height limits come from the first points on the track."""
+
+    def __init__(self, frame, store, settings, has_time):
+        self.frame, self.store, self.settings, self.has_time = frame, store, settings, has_time
+        self.census = ScannerCensus()
+        self.brightest = 0
+        self.drop = None          # metres from track to road, rough
+        self.waiting = []         # (road, records) until it is known
+        self.samples = []
+        self.unplaced_time = 0
+        self.starts = np.array([p.time[0] for p in frame.passes])
+        self.ends = np.array([p.time[-1] for p in frame.passes])
+
+    def take(self, block, file):
+        x, y, z = (np.asarray(block[c], float) for c in ("x", "y", "z"))
+        names = block.point_format.dimension_names
+        good = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
+        if "withheld" in names:
+            good &= np.asarray(block["withheld"]) == 0
+        lx, ly, lz = self.frame.to_local(x, y, z)
+        # Absurd coordinates would overflow the 0.1 mm integers
+        good &= (np.abs(lx) < 2e5) & (np.abs(ly) < 2e5) & (np.abs(lz) < 2e4)
+        intensity = np.asarray(block["intensity"])
+        self.brightest = max(self.brightest, int(intensity.max(initial=0)))
+        source = np.asarray(block["point_source_id"])
+        time = np.asarray(block["gps_time"], float) if "gps_time" in names else np.zeros(len(x))
+        channel = np.asarray(block["scanner_channel"]) if "scanner_channel" in names else np.zeros(len(x), np.uint8)
+        if len(x):
+            self.census.add("point_source_id", source, time)
+            if "scanner_channel" in names:
+                self.census.add("scanner_channel", channel, time)
+        pass_number, road, s, d = self._place(lx, ly, time, good)
+        for number in np.unique(road[road >= 0]):
+            m = np.flatnonzero(road == number)
+            records = np.empty(len(m), SURVEY_POINT)
+            records["time"] = time[m]
+            records["x"], records["y"], records["z"] = to_units(lx[m]), to_units(ly[m]), to_units(lz[m])
+            records["s"], records["d"] = to_units(s[m]), to_units(d[m])
+            records["intensity"], records["source"] = intensity[m], source[m]
+            records["pass_number"], records["scanner"] = pass_number[m], channel[m]
+            records["returns"] = np.asarray(block["return_number"])[m] | (np.asarray(block["number_of_returns"])[m] << 4)
+            self._keep(int(number), records)
+
+    def _place(self, x, y, time, good):
+        """Pass, road, station and offset of local places; road -1 where there is none."""
+        count = len(x)
+        pass_number, road = np.zeros(count, np.uint16), np.full(count, -1)
+        s, d = np.full(count, np.nan), np.full(count, np.nan)
+        if not self.has_time:
+            rows = np.flatnonzero(good)
+            road[rows], s[rows], d[rows] = self.frame.locate_nearest(x[rows], y[rows], self.settings.corridor)
+            for p in self.frame.passes[::-1]:
+                pass_number[road == p.road] = p.number
+            return pass_number, road, s, d
+        owner = self._owner(time)
+        self.unplaced_time += int(np.count_nonzero(good & (owner < 0)))
+        for p in self.frame.passes:
+            rows = np.flatnonzero(good & (owner == p.number))
+            if not len(rows):
+                continue
+            line = self.frame.road(p.road)
+            # far points are dropped before the exact foot is sought
+            px, py, _ = p.position(time[rows])
+            reach = 2.0 * self.settings.corridor
+            rows = rows[np.hypot(x[rows] - px, y[rows] - py) < reach]
+            s0 = p.station_at(time[rows])
+            px, py, _ = p.position(time[rows])
+            h = line.heading(s0)
+            s0 = s0 + (x[rows] - px) * np.cos(h) + (y[rows] - py) * np.sin(h)
+            s[rows], d[rows] = line.locate(x[rows], y[rows], s0, self.settings.corridor)
+            found = rows[np.isfinite(s[rows])]
+            road[found], pass_number[found] = p.road, p.number
+        return pass_number, road, s, d
+
+    def _owner(self, time):
+        """Pass that drove at each time: within it, or within a second of its ends; -1 where none did."""
+        k = np.clip(np.searchsorted(self.starts, time + CLOCK_SLACK, side="right") - 1, 0, None)
+        # between two passes that follow on each other the earlier one ends where the later begins
+        k = np.where((k > 0) & (time < self.starts[k]) & (time <= self.ends[np.maximum(k - 1, 0)]), k - 1, k)
+        inside = (time >= self.starts[k] - CLOCK_SLACK) & (time <= self.ends[k] + CLOCK_SLACK)
+        return np.where(inside, k, -1)
+
+    def _keep(self, road, records):
+        if self.drop is None:
+            self.waiting.append((road, records))
+            self._sample(road, records)
+            if sum(map(len, self.samples)) > 20000:
+                self._settle()
+            return
+        self._store(road, records)
+
+    def _sample(self, road, records):
+        s, d = records["s"] * UNIT, records["d"] * UNIT
+        for p in self.frame.passes_of(road):
+            m = (records["pass_number"] == p.number)
+            track_d, track_z = p.at_station(s[m])
+            near = np.abs(d[m] - track_d) < NEAR_TRACK
+            self.samples.append((track_z - records["z"][m] * UNIT)[near][::7])
+
+    def _settle(self):
+        drops = np.concatenate(self.samples) if self.samples else np.empty(0)
+        self.drop = float(np.median(drops)) if len(drops) > 50 else DEFAULT_HEIGHT
+        waiting, self.waiting, self.samples = self.waiting, [], []
+        for road, records in waiting:
+            self._store(road, records)
+
+    def _store(self, road, records):
+        ground = self.frame.track_height(road, records["s"] * UNIT) - self.drop
+        h = records["z"] * UNIT - ground
+        self.store.append(road, records[(h > -BELOW) & (h < ABOVE)])
+
+    def finish(self):
+        if self.drop is None:
+            self._settle()
+
+
+def _sensor_heights(frame, store):
+    """Metres from track to road per pass: the median over points on the vehicle's own track."""
+    drops = {p.number: [] for p in frame.passes}
+    for road in store.roads():
+        for number in store.sections(road):
+            points = Points(store.section(road, number))
+            s, d, z = points.s, points.d, points.z
+            for p in frame.passes_of(road):
+                m = points.pass_number == p.number
+                if m.any():
+                    track_d, track_z = p.at_station(s[m])
+                    drops[p.number].append((track_z - z[m])[np.abs(d[m] - track_d) < NEAR_TRACK][::5])
+    found = {}
+    for number, parts in drops.items():
+        values = np.concatenate(parts) if parts else np.empty(0)
+        found[number] = float(np.median(values)) if len(values) > 50 else np.nan
+    known = [h for h in found.values() if np.isfinite(h)]
+    usual = float(np.median(known)) if known else DEFAULT_HEIGHT
+    return {number: h if np.isfinite(h) else usual for number, h in found.items()}
+
+
+def _match_clocks(files, trajectory, settings, progress):
+    """The trajectory in the cloud's time system, a note for the user, and whether time can be used."""
+    if not trajectory.has_time:
+        return trajectory, "The trajectory has no time; each point is placed at the nearest foot on it.", False
+    if not all(file.has_time for file in files):
+        return trajectory, "The point cloud has no gps_time; each point is placed at the nearest foot on the trajectory.", False
+    span = _time_span(files)
+    if span is None:
+        return trajectory, "All gps_time values are equal; each point is placed at the nearest foot on the trajectory.", False
+    offset, note = align_time(trajectory.time, span, settings.time, files[0].adjusted_time)
+    return trajectory.shifted(offset) if offset else trajectory, note, True
+
+
+def _time_span(files):
+    """(first, last) gps_time seen in samples of every file, or None where it stands still.
+
+    Whole files are not read for it: blocks at the start of each file, and the
+    last block, give the span to within the overlap test's needs.
+    """
+    from .point_cloud import open_cloud
+
+    first, last = np.inf, -np.inf
+    for file in files:
+        if not file.count:
+            continue
+        with open_cloud(file.path) as reader:
+            starts = np.unique(np.linspace(0, max(file.count - 1000, 0), 5).astype(int))
+            for start in starts:
+                try:
+                    reader.seek(int(start))
+                    time = np.asarray(reader.read_points(1000)["gps_time"], float)
+                except Exception as problem:
+                    raise RoadExtractionError(
+                        f"{file.path} is damaged: its header promises {file.count} points, but those from "
+                        f"{start} on cannot be read ({problem}). Copy or export the file again.") from problem
+                time = time[np.isfinite(time)]
+                if len(time):
+                    first, last = min(first, time.min()), max(last, time.max())
+    return (first, last) if last > first else None
+
+
+def _check_extent(files, frame):
+    low = np.min([file.minimum for file in files if file.count], axis=0)
+    high = np.max([file.maximum for file in files if file.count], axis=0)
+    x = np.concatenate([p.x for p in frame.passes]) + frame.origin[0]
+    y = np.concatenate([p.y for p in frame.passes]) + frame.origin[1]
+    reach = CORRIDOR
+    if not ((x > low[0] - reach) & (x < high[0] + reach) & (y > low[1] - reach) & (y < high[1] + reach)).any():
+        raise RoadExtractionError(
+            f"The trajectory does not run through the point cloud. The cloud covers x {low[0]:.1f} to {high[0]:.1f}, "
+            f"y {low[1]:.1f} to {high[1]:.1f}; the trajectory runs over x {x.min():.1f} to {x.max():.1f}, "
+            f"y {y.min():.1f} to {y.max():.1f}. Check that both belong to one survey and use one CRS.")
+
+
+def _no_overlap(files, frame, reader):
+    if reader.unplaced_time:
+        times = f"{reader.starts.min():.1f} s to {reader.ends.max():.1f} s"
+        return (f"No point was measured while the trajectory was driven: {reader.unplaced_time} points lie outside "
+                f"its time, {times}. Set the trajectory's time system, or check that both belong to one survey.")
+    return (f"No point lies within {reader.settings.corridor:.0f} m of the trajectory and near its height. Check that "
+            "cloud and trajectory belong to one survey and use one CRS.")
