@@ -1,0 +1,189 @@
+"""What all algorithms share: how they are declared, guarded, run and how they fail.
+
+An algorithm says its name, adds its parameters with the helpers below and
+implements `run(call, progress)`; `call` (call.py) hands it the values.
+"""
+
+from qgis.core import (
+    Qgis,
+    QgsProcessing,
+    QgsProcessingAlgorithm,
+    QgsProcessingException,
+    QgsProcessingParameterCrs,
+    QgsProcessingParameterFeatureSink,
+    QgsProcessingParameterFeatureSource,
+    QgsProcessingParameterFile,
+    QgsProcessingParameterFileDestination,
+    QgsProcessingParameterMultipleLayers,
+    QgsProcessingParameterRasterDestination,
+    QgsProcessingParameterRasterLayer,
+)
+
+from ..core.errors import Cancelled, RoadExtractionError
+from .call import Call
+from .dependencies import missing_packages
+from .progress import FeedbackProgress
+from .texts import tr
+from .trajectory_source import accept_trajectory_file
+
+# fileFilter is enforced and case-sensitive, and `extension=` accepts one suffix only
+CLOUD_FILTER = "Point clouds (*.las *.laz *.LAS *.LAZ);;All files (*.*)"
+LAZ_FILTER = "LAZ (*.laz);;LAS (*.las)"
+HTML_FILTER = "HTML (*.html)"
+
+SOURCES = {
+    "PointZ": QgsProcessing.SourceType.TypeVectorPoint,
+    "LineStringZ": QgsProcessing.SourceType.TypeVectorLine,
+    "PolygonZ": QgsProcessing.SourceType.TypeVectorPolygon,
+    "None": QgsProcessing.SourceType.TypeVector,
+    "any": QgsProcessing.SourceType.TypeVector,
+}
+
+
+def with_help(parameter, text, advanced=False):
+    """The parameter with its explanation, and moved to the dialog's advanced part if so wished."""
+    parameter.setHelp(text)
+    if advanced:
+        parameter.setFlags(parameter.flags() | Qgis.ProcessingParameterFlag.Advanced)
+    return parameter
+
+
+class LanewrightAlgorithm(QgsProcessingAlgorithm):
+    """Base of every algorithm; subclasses set the five texts below and write `run`."""
+
+    ID = TITLE = ROOM = SUMMARY = ""
+    TAGS = ()
+    HELP = ""
+    TRAJECTORIES = ("TRAJECTORY",)  # inputs that may also be a file only the core can read
+
+    # -- what QGIS asks ---------------------------------------------------------------------
+
+    def createInstance(self):
+        return type(self)()
+
+    def name(self):
+        return self.ID
+
+    def displayName(self):
+        return tr(self.TITLE)
+
+    def group(self):
+        return tr(self.ROOM)
+
+    def groupId(self):
+        return self.ROOM.lower().replace(" ", "")
+
+    def shortDescription(self):
+        return tr(self.SUMMARY)
+
+    def tags(self):
+        return [tr(tag) for tag in self.TAGS] + ["mls", "lidar", "road"]
+
+    def shortHelpString(self):
+        """The summary and every parameter's own help: written once, on the parameter."""
+        lines = [f"<p>{tr(self.SUMMARY)}</p>"] + [f"<p>{tr(part)}</p>" for part in self.HELP.split("\n\n") if part]
+        told = [p for p in self.parameterDefinitions() if p.help()]
+        lines += [f"<p><b>{p.description()}</b><br>{p.help()}</p>" for p in told]
+        return "\n".join(lines)
+
+    def canExecute(self):
+        missing = missing_packages()
+        return (not missing, missing)
+
+    def checkParameterValues(self, parameters, context):
+        return super().checkParameterValues(accept_trajectory_file(self, parameters, context), context)
+
+    def processAlgorithm(self, parameters, context, feedback):
+        # canExecute is asked by the desktop only
+        missing = missing_packages()
+        if missing:
+            raise QgsProcessingException(missing)
+        call = Call(self, parameters, context, feedback)
+        try:
+            call.check_destinations()
+            results = self.run(call, FeedbackProgress(feedback))
+            return call.finish(results or {})
+        except RoadExtractionError as error:
+            raise QgsProcessingException(str(error)) from None
+        except Cancelled:
+            raise QgsProcessingException(tr("Cancelled")) from None
+        except OSError as error:
+            if error.strerror is None:
+                raise
+            raise QgsProcessingException(f"{error.strerror}: {error.filename or tr('while writing')}") from error
+        except MemoryError as error:
+            raise QgsProcessingException(
+                tr("Not enough memory for this step; close other programs or process fewer files at once.")
+            ) from error
+        finally:
+            call.discard_unfinished()
+
+    def run(self, call, progress):
+        """Do the work; returns further results (numbers) by output name."""
+        raise NotImplementedError
+
+    # -- how subclasses declare -----------------------------------------------------------------
+
+    def add(self, parameter, text="", advanced=False):
+        self.addParameter(with_help(parameter, text, advanced))
+
+    def add_survey(self, trajectory_optional=False):
+        """Point clouds, trajectory and the CRS for clouds that carry none."""
+        self.add(
+            QgsProcessingParameterMultipleLayers("POINT_CLOUDS", tr("Point clouds"), QgsProcessing.SourceType.TypeFile),
+            tr("LAS, LAZ or COPC files of one survey. Files may overlap and come in any order."),
+        )
+        self.add_trajectory(trajectory_optional)
+        self.add_crs()
+
+    def add_trajectory(self, optional=False):
+        self.add(
+            QgsProcessingParameterFeatureSource(
+                "TRAJECTORY", tr("Trajectory"), [QgsProcessing.SourceType.TypeVector], optional=optional
+            ),
+            tr(
+                "Where the vehicle drove: a point or line layer with heights, a table with columns time, x, y, z, or "
+                "the path of a CSV, TXT or SBET file. Made with Import trajectory it needs no further care."
+            ),
+        )
+
+    def add_crs(self):
+        self.add(
+            QgsProcessingParameterCrs("CRS", tr("CRS of the point clouds"), optional=True),
+            tr("Only for point clouds that carry no CRS of their own; it is written into everything made from them."),
+            advanced=True,
+        )
+
+    def add_cloud(self, name, label, text, optional=False):
+        self.add(QgsProcessingParameterFile(name, label, fileFilter=CLOUD_FILTER, optional=optional), text)
+
+    def add_layer(self, name, label, text, geometry="any", optional=False):
+        self.add(QgsProcessingParameterFeatureSource(name, label, [SOURCES[geometry]], optional=optional), text)
+
+    def add_layer_raster(self, name, label, text, optional=False):
+        self.add(QgsProcessingParameterRasterLayer(name, label, optional=optional), text)
+
+    def add_knobs(self, knobs, only=None):
+        """The parameters of a core Settings class, with the defaults the core gives them."""
+        for knob in knobs:
+            if only is None or knob.name in only:
+                self.addParameter(knob.parameter())
+
+    def add_sink(self, name, label, text="", geometry="any", optional=False, by_default=True, fields=()):
+        """A vector output; the help lists its fields."""
+        listed = "; ".join(f"<i>{field.name}</i> {tr(field.alias)}" for field in fields)
+        text = " ".join(part for part in (text, tr("Fields: {fields}.").format(fields=listed) if fields else "") if part)
+        self.add(QgsProcessingParameterFeatureSink(name, label, SOURCES[geometry], None, optional, by_default), text)
+
+    def add_laz(self, name, label, text="", optional=False, by_default=True):
+        self.add(QgsProcessingParameterFileDestination(name, label, LAZ_FILTER, None, optional, by_default), text)
+
+    def add_raster(self, name, label, text="", optional=False, by_default=True):
+        self.add(QgsProcessingParameterRasterDestination(name, label, None, optional, by_default), text)
+
+    def add_report(self, name="REPORT", label=None, optional=True, by_default=True):
+        label = label or tr("Report")
+        self.add(
+            QgsProcessingParameterFileDestination(name, label, HTML_FILTER, None, optional, by_default),
+            tr("A page with the numbers of every step and a picture."),
+        )

@@ -1,0 +1,183 @@
+"""One run of an algorithm: the values the user gave, and the results on their way out."""
+
+from pathlib import Path
+
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsProcessingException,
+    QgsProcessingOutputLayerDefinition,
+    QgsProcessingParameterFileDestination,
+    QgsProcessingParameterRasterDestination,
+)
+
+from ..core.errors import RoadExtractionError
+from .destinations import UnfinishedFiles, check_writable, destination_path
+from .knobs import settings_class
+from .layers import WKB_TYPES, crs_text, qgis_fields, read_features, write_features
+from .styling import style_on_load
+from .texts import tr
+from .trajectory_source import read_trajectory_source, trajectory_path
+
+FILES = (QgsProcessingParameterFileDestination, QgsProcessingParameterRasterDestination)
+
+
+class Call:
+    """Reads parameters into what the core takes, and writes what the core gave."""
+
+    def __init__(self, algorithm, parameters, context, feedback):
+        self.algorithm, self.parameters = algorithm, parameters
+        self.context, self.feedback = context, feedback
+        self._files = UnfinishedFiles()
+        self._results = {}
+        self._layers = []
+
+    def label(self, name):
+        return self.algorithm.parameterDefinition(name).description()
+
+    # -- in ---------------------------------------------------------------------------------
+
+    def point_clouds(self):
+        """Paths of the clouds, each proven to be there."""
+        paths = self.algorithm.parameterAsFileList(self.parameters, "POINT_CLOUDS", self.context)
+        return [existing_file(path, self.label("POINT_CLOUDS")) for path in paths]
+
+    def cloud(self, name):
+        """The path of one point cloud; "" where the optional parameter is empty."""
+        path = self.algorithm.parameterAsFile(self.parameters, name, self.context)
+        return existing_file(path, self.label(name)) if path else ""
+
+    def crs(self, name="CRS"):
+        """WKT, or "" where none was chosen."""
+        return crs_text(self.algorithm.parameterAsCrs(self.parameters, name, self.context))
+
+    def trajectory(self, name="TRAJECTORY"):
+        """The trajectory as the core takes it, from a layer, a table or a file."""
+        path = trajectory_path(self.parameters.get(name))
+        if path is not None:
+            from ..core.survey.trajectory_file import read_trajectory
+
+            return read_trajectory(existing_file(str(path), self.label(name)))
+        source = self._source(name)
+        return None if source is None else read_trajectory_source(source, self.label(name))
+
+    def raster(self, name):
+        """The file of a raster input."""
+        layer = self.algorithm.parameterAsRasterLayer(self.parameters, name, self.context)
+        if layer is None:
+            raise QgsProcessingException(self.algorithm.invalidRasterError(self.parameters, name))
+        return existing_file(layer.source(), self.label(name))
+
+    def features(self, name, schema, geometry_type):
+        """A vector input as Features; None where the optional parameter is empty."""
+        source = self._source(name)
+        return None if source is None else read_features(source, schema, geometry_type, self.label(name))
+
+    def _source(self, name):
+        if self.parameters.get(name) in (None, ""):
+            return None
+        source = self.algorithm.parameterAsSource(self.parameters, name, self.context)
+        if source is None:
+            raise QgsProcessingException(self.algorithm.invalidSourceError(self.parameters, name))
+        return source
+
+    def knob(self, knob):
+        return knob.value(self.algorithm, self.parameters, self.context)
+
+    def settings(self, knobs, path=None, **more):
+        """The core Settings object that these knobs turn; one not in the dialog keeps its default."""
+        path = path or knobs[0].settings
+        shown = [k for k in knobs if k.settings == path and self.algorithm.parameterDefinition(k.name) is not None]
+        return settings_class(path)(**{k.field: self.knob(k) for k in shown}, **more)
+
+    def number(self, name):
+        return self.algorithm.parameterAsDouble(self.parameters, name, self.context)
+
+    def whole(self, name):
+        return self.algorithm.parameterAsInt(self.parameters, name, self.context)
+
+    def flag(self, name):
+        return self.algorithm.parameterAsBool(self.parameters, name, self.context)
+
+    def choice(self, name):
+        return self.algorithm.parameterAsEnumString(self.parameters, name, self.context)
+
+    def wants(self, name):
+        """Whether an optional output was asked for."""
+        return bool(self._destination(name))
+
+    # -- out --------------------------------------------------------------------------------
+
+    def check_destinations(self):
+        """Prove every output writable before the work, so that a read-only disk is told now."""
+        for definition in self.algorithm.destinationParameterDefinitions():
+            path = destination_path(self._destination(definition.name()))
+            if path is not None:
+                check_writable(path, definition.description())
+
+    def _destination(self, name):
+        value = self.parameters.get(name)
+        if isinstance(value, QgsProcessingOutputLayerDefinition):
+            value = value.sink.valueAsString(self.context.expressionContext())[0]
+        elif value is not None and not isinstance(value, str):
+            value = str(value)
+        return value
+
+    def new_file(self, name):
+        """A temporary path for a file or raster output; "" where it is not wanted."""
+        definition = self.algorithm.parameterDefinition(name)
+        if not self.wants(name):
+            return ""
+        if isinstance(definition, QgsProcessingParameterRasterDestination):
+            path = self.algorithm.parameterAsOutputLayer(self.parameters, name, self.context)
+        else:
+            path = self.algorithm.parameterAsFileOutput(self.parameters, name, self.context)
+        self._results[name] = path
+        return self._files.begin(path)
+
+    def text(self, name, text):
+        """Write a text result (a report) where it is wanted."""
+        if self.wants(name):
+            Path(self.new_file(name)).write_text(text, encoding="utf-8")
+
+    def layer(self, name, features):
+        """Remember a vector result; it is written in `finish`, when nothing can fail any more."""
+        if self.wants(name):
+            self._layers.append((name, features))
+
+    def finish(self, numbers):
+        """Name the files, write the layers, and return the dictionary QGIS wants."""
+        self._files.commit()
+        for name, features in self._layers:
+            self._results[name] = self._write(name, features)
+        for name, dest in self._results.items():
+            style_on_load(name, dest, self.label(name), self.context)
+        return {**self._results, **numbers}
+
+    def _write(self, name, features):
+        fields = qgis_fields(features.schema)
+        crs = QgsCoordinateReferenceSystem.fromWkt(features.crs) if features.crs else QgsCoordinateReferenceSystem()
+        sink, dest = self.algorithm.parameterAsSink(
+            self.parameters, name, self.context, fields, WKB_TYPES[features.geometry_type], crs
+        )
+        if sink is None:
+            raise QgsProcessingException(self.algorithm.invalidSinkError(self.parameters, name))
+        write_features(sink, features, fields)
+        # The file is complete only once the sink is gone
+        del sink
+        return dest
+
+    def discard_unfinished(self):
+        self._files.discard()
+
+
+def existing_file(path, label):
+    """The path, or one sentence on why it cannot be used."""
+    if "://" in path or "|" in path:
+        raise RoadExtractionError(
+            tr("{label} names {path}, which is not a file. Choose the LAS or LAZ file itself.").format(label=label, path=path)
+        )
+    if not Path(path).is_file():
+        raise RoadExtractionError(
+            tr("{label}: there is no file {path}. Check the name and the folder.").format(label=label, path=path)
+        )
+    return path

@@ -1,0 +1,29 @@
+"""Every algorithm, in the order of the work."""
+
+from .driving.driving_lines import DrivingLines
+from .markings.cluster_markings import ClusterMarkings
+from .markings.correct_intensity import CorrectIntensity
+from .markings.extract_markings import ExtractMarkings
+from .markings.fit_marking_lines import FitMarkingLines
+from .markings.intensity_image import IntensityImage
+from .markings.remove_outliers import RemoveOutliers
+from .road.detect_boundaries import DetectBoundaries
+from .road.detect_curbs import DetectCurbs
+from .road.extract_road_surface import ExtractRoadSurface
+from .road.fit_road_edges import FitRoadEdges
+from .survey.import_trajectory import ImportTrajectory
+
+ALGORITHMS = (
+    ImportTrajectory,
+    DetectCurbs,
+    FitRoadEdges,
+    DetectBoundaries,
+    ExtractRoadSurface,
+    CorrectIntensity,
+    IntensityImage,
+    ExtractMarkings,
+    RemoveOutliers,
+    ClusterMarkings,
+    FitMarkingLines,
+    DrivingLines,
+)

@@ -1,0 +1,65 @@
+"""Driving lines and their curve elements."""
+
+from ...core.schemas import CURVE_ELEMENTS, DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES
+from ..algorithm import LanewrightAlgorithm
+from ..knobs import Knob
+from ..survey_input import frame_of, road_points_of
+from ..texts import tr
+
+DRIVING = "driving.lines:DrivingSettings"
+
+DRIVING_KNOBS = (
+    Knob(
+        "LANE_WIDTH", DRIVING, "lane_width", tr("Usual lane width (m)"),
+        tr("Where only the outer lines are painted, the number of lanes follows from their distance and this width. "
+           "Wider makes fewer lanes."),
+        minimum=2.0, maximum=6.0,
+    ),
+    Knob(
+        "LINE_DISTANCE", DRIVING, "line_distance", tr("Distance from a line without partner, 0 = half a lane (m)"),
+        tr("How far beside a painted line the driving line runs where the lane has no second line."),
+        minimum=0.0, maximum=10.0, advanced=True,
+    ),
+    Knob(
+        "TRAFFIC_SIDE", DRIVING, "traffic_side", tr("Side of traffic"),
+        tr("The side one drives on; it gives the driving lines their direction. Automatic goes by the lane the "
+           "vehicle itself used."),
+        choices=("automatic", "right", "left"),
+    ),
+)
+
+
+class DrivingLines(LanewrightAlgorithm):
+    ID, TITLE, ROOM = "drivinglines", "Driving lines", "Driving"
+    SUMMARY = "Draws the line to drive in every lane, in the direction of travel, and tabulates the elements of its curves."
+    TAGS = ("lane", "centre line", "hd map", "curve elements", "radius")
+
+    def initAlgorithm(self, configuration=None):
+        self.add_layer("MARKING_LINES", tr("Marking lines"), tr("The layer written by Fit marking lines."), "LineStringZ")
+        self.add_trajectory()
+        self.add_layer(
+            "MARKINGS", tr("Markings"), tr("With it a lane is led through zebra crossings and past stop lines, and gaps are told apart."),
+            "PolygonZ", optional=True,
+        )
+        self.add_layer(
+            "ROAD_EDGES", tr("Road edges"), tr("With it lanes without an outer line end at the edge."), "LineStringZ", optional=True
+        )
+        self.add_cloud("ROAD_POINTS", tr("Road points"), tr("With it heights are the road's own."), optional=True)
+        self.add_knobs(DRIVING_KNOBS)
+        self.add_sink("DRIVING_LINES", tr("Driving lines"), fields=DRIVING_LINES, geometry="LineStringZ")
+        self.add_sink("CURVE_ELEMENTS", tr("Curve elements"), fields=CURVE_ELEMENTS, geometry="None", optional=True)
+
+    def run(self, call, progress):
+        from ...core.driving.lines import driving_lines
+
+        marking_lines = call.features("MARKING_LINES", MARKING_LINES, "LineStringZ")
+        markings = call.features("MARKINGS", MARKINGS, "PolygonZ")
+        edges = call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ")
+        road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.3)) if call.cloud("ROAD_POINTS") else None
+        frame = frame_of(call, marking_lines.crs, progress, road_points)
+        lines, elements = driving_lines(
+            marking_lines, frame, call.settings(DRIVING_KNOBS), progress.part(0.3, 1.0),
+            markings=markings, edges=edges, road_points=road_points,
+        )
+        call.layer("DRIVING_LINES", lines)
+        call.layer("CURVE_ELEMENTS", elements)

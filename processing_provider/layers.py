@@ -1,0 +1,113 @@
+"""Between QGIS layers and the core's Features."""
+
+from qgis.core import Qgis, QgsFeature, QgsFeatureSink, QgsField, QgsFields, QgsGeometry
+from qgis.PyQt.QtCore import QMetaType
+
+from ..core.errors import RoadExtractionError
+from ..core.features import Features, Field
+from .texts import tr
+
+WKB_TYPES = {
+    "PointZ": Qgis.WkbType.PointZ,
+    "LineStringZ": Qgis.WkbType.LineStringZ,
+    "PolygonZ": Qgis.WkbType.PolygonZ,
+    "None": Qgis.WkbType.NoGeometry,
+}
+COLUMN_TYPES = {int: QMetaType.Type.LongLong, float: QMetaType.Type.Double, str: QMetaType.Type.QString}
+
+
+def qgis_fields(schema):
+    fields = QgsFields()
+    for column in schema:
+        field = QgsField(column.name, COLUMN_TYPES[column.type])
+        field.setAlias(column.alias)
+        fields.append(field)
+    return fields
+
+
+def qgis_features(features, fields):
+    """Every row as a QgsFeature, geometries with Z."""
+    import shapely
+
+    names = [column.name for column in features.schema]
+    wkb = [None] * len(features)
+    if features.geometry_type != "None" and len(features):
+        wkb = shapely.to_wkb(features.geometries, output_dimension=3, flavor="iso")
+    for binary, row in zip(wkb, features.rows):
+        feature = QgsFeature(fields)
+        if binary is not None:
+            geometry = QgsGeometry()
+            geometry.fromWkb(binary)
+            feature.setGeometry(geometry)
+        feature.setAttributes([_plain(row.get(name)) for name in names])
+        yield feature
+
+
+def _plain(value):
+    """A Python value QGIS can store: numpy scalars unpacked, NaN as NULL."""
+    if hasattr(value, "item"):
+        value = value.item()
+    return None if value != value else value
+
+
+def read_features(source, schema, geometry_type, label):
+    """A feature source as Features; fields are matched by name, the layer's further fields are left out.
+
+    Multi-part geometries become one row a part. Raises RoadExtractionError where a
+    line or polygon layer carries no heights.
+    """
+    import shapely
+
+    fields = source.fields()
+    known = [column for column in schema if fields.lookupField(column.name) >= 0]
+    missing = [column.name for column in schema if column not in known]
+    if "road" in missing or (geometry_type == "None" and missing):
+        raise RoadExtractionError(
+            tr("{label} lacks the field(s) {fields}. Use the layer that Lanewright wrote.").format(
+                label=label, fields=", ".join(missing)
+            )
+        )
+    result = Features(geometry_type, list(schema), crs=crs_text(source.sourceCrs()))
+    index = {column.name: fields.lookupField(column.name) for column in known}
+    for feature in source.getFeatures():
+        row = {column.name: _typed(feature.attribute(index[column.name]), column) for column in known}
+        if geometry_type == "None":
+            result.add(None, **row)
+            continue
+        geometry = feature.geometry()
+        if geometry.isNull() or geometry.isEmpty():
+            continue
+        for part in shapely.get_parts(shapely.from_wkb(bytes(geometry.asWkb()))):
+            if not part.has_z:
+                raise RoadExtractionError(
+                    tr("{label} has geometries without heights (Z). Use the layer that Lanewright wrote.").format(
+                        label=label
+                    )
+                )
+            result.add(part, **row)
+    return result
+
+
+def _typed(value, column: Field):
+    if value is None or (hasattr(value, "isNull") and value.isNull()):
+        return None
+    return column.type(value)
+
+
+def crs_text(crs):
+    """WKT of a QgsCoordinateReferenceSystem, "" where it is unknown."""
+    return crs.toWkt(Qgis.CrsWktVariant.Preferred) if crs.isValid() else ""
+
+
+def write_features(sink, features, fields):
+    """All rows in one go; raises RoadExtractionError when the sink refuses."""
+    rows = list(qgis_features(features, fields))
+    if not sink.addFeatures(rows, QgsFeatureSink.Flag.FastInsert):
+        raise RoadExtractionError(
+            tr("The result could not be written: {reason}. Is the disk full or the file open elsewhere?").format(
+                reason=sink.lastError() or tr("the sink refused the features")
+            )
+        )
+    # Absent on QGIS 3.40, needed from 3.44 on
+    if hasattr(sink, "finalize"):
+        sink.finalize()

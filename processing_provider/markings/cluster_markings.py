@@ -1,0 +1,40 @@
+"""Paint gathered into markings."""
+
+from ...core.schemas import MARKINGS
+from ..algorithm import LanewrightAlgorithm
+from ..knobs import Knob
+from ..survey_input import frame_of, road_points_of
+from ..texts import tr
+
+CLUSTERS = "markings.clusters:ClusterSettings"
+
+CLUSTER_KNOBS = (
+    Knob(
+        "DISTANCE", CLUSTERS, "distance", tr("Distance that joins points (m)"),
+        tr("Larger joins worn paint into one marking, but also neighbouring markings; smaller keeps them apart."),
+        minimum=0.02, maximum=2.0,
+    ),
+)
+
+
+class ClusterMarkings(LanewrightAlgorithm):
+    ID, TITLE, ROOM = "clustermarkings", "Cluster markings", "Markings"
+    SUMMARY = "Gathers paint into markings, measures them and tells lines from crossings, arrows and the rest."
+    TAGS = ("road marking", "cluster", "zebra crossing", "stop line", "arrow")
+
+    def initAlgorithm(self, configuration=None):
+        self.add_cloud("MARKING_POINTS", tr("Marking points"), tr("The file written by Remove outliers or Extract markings."))
+        self.add_trajectory()
+        self.add_knobs(CLUSTER_KNOBS)
+        self.add_sink("MARKINGS", tr("Markings"), fields=MARKINGS, geometry="PolygonZ")
+        self.add_laz("CLUSTERED_POINTS", tr("Clustered points"), tr("The points with the extra field cluster."))
+
+    def run(self, call, progress):
+        from ...core.markings.clusters import cluster_markings
+        from ...core.survey.road_points_file import write_road_points
+
+        points = road_points_of(call, "MARKING_POINTS", progress.part(0.0, 0.2))
+        frame = frame_of(call, points.crs, progress, points)
+        markings, clustered = cluster_markings(points, frame, call.settings(CLUSTER_KNOBS), progress.part(0.2, 0.9))
+        write_road_points(clustered, call.new_file("CLUSTERED_POINTS"), progress.part(0.9, 1.0))
+        call.layer("MARKINGS", markings)

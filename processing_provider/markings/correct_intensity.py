@@ -1,0 +1,34 @@
+"""Intensity freed of range and incidence."""
+
+from ..algorithm import LanewrightAlgorithm
+from ..knobs import Knob
+from ..survey_input import frame_of, road_points_of
+from ..texts import tr
+
+INTENSITY = "markings.intensity:IntensitySettings"
+
+INTENSITY_KNOBS = ()
+
+
+class CorrectIntensity(LanewrightAlgorithm):
+    ID, TITLE, ROOM = "correctintensity", "Correct intensity", "Markings"
+    SUMMARY = "Evens out the fall of intensity with range and incidence, scanner by scanner, from the road's own asphalt."
+    HELP = "The raw intensity stays as it was; the corrected one is the extra field intensity_corrected, which later stages prefer."
+    TAGS = ("intensity", "range correction", "calibration")
+
+    def initAlgorithm(self, configuration=None):
+        self.add_cloud("ROAD_POINTS", tr("Road points"), tr("The file written by Extract road surface."))
+        self.add_trajectory()
+        self.add_knobs(INTENSITY_KNOBS)
+        self.add_laz("OUTPUT", tr("Corrected road points"))
+        self.add_report()
+
+    def run(self, call, progress):
+        from ...core.markings.intensity import correct_intensity
+        from ...core.survey.road_points_file import write_road_points
+
+        road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
+        frame = frame_of(call, road_points.crs, progress, road_points)
+        corrected, report = correct_intensity(road_points, frame, call.settings(INTENSITY_KNOBS, INTENSITY), progress.part(0.2, 0.8))
+        write_road_points(corrected, call.new_file("OUTPUT"), progress.part(0.8, 1.0))
+        call.text("REPORT", report.to_html())

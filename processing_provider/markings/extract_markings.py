@@ -1,0 +1,46 @@
+"""Points of paint."""
+
+from ..algorithm import LanewrightAlgorithm
+from ..knobs import Knob
+from ..survey_input import frame_of, road_points_of
+from ..texts import tr
+
+EXTRACTION = "markings.extraction:MarkingSettings"
+
+MARKING_KNOBS = (
+    Knob(
+        "METHOD", EXTRACTION, "method", tr("Method"),
+        tr("Multi-threshold sets a threshold for every strip along the road, so that paint far from the scanner is found too."),
+        choices=("multi-threshold",),
+    ),
+)
+
+
+class ExtractMarkings(LanewrightAlgorithm):
+    ID, TITLE, ROOM = "extractmarkings", "Extract markings", "Markings"
+    SUMMARY = "Tells paint from asphalt by thresholds of the intensity image and takes the points of it."
+    TAGS = ("road marking", "threshold", "otsu")
+
+    def initAlgorithm(self, configuration=None):
+        self.add_cloud("ROAD_POINTS", tr("Road points"), tr("The file that the intensity image was made from."))
+        self.add_layer_raster("INTENSITY_IMAGE", tr("Intensity image"), tr("The GeoTIFF written by Intensity image."))
+        self.add_trajectory()
+        self.add_knobs(MARKING_KNOBS)
+        self.add_laz("MARKING_POINTS", tr("Marking points"))
+        self.add_raster(
+            "MARKING_MASK", tr("Marking mask"), tr("1 where a pixel is paint, 0 where it is not."), optional=True, by_default=False
+        )
+
+    def run(self, call, progress):
+        from ...core.markings.extraction import extract_markings
+        from ...core.markings.image import IntensityImage
+        from ...core.survey.road_points_file import write_road_points
+
+        road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
+        frame = frame_of(call, road_points.crs, progress, road_points)
+        image = IntensityImage.open(call.raster("INTENSITY_IMAGE"))
+        markings = extract_markings(
+            road_points, image, frame, call.settings(MARKING_KNOBS), progress.part(0.2, 0.95),
+            mask_path=call.new_file("MARKING_MASK") or None,
+        )
+        write_road_points(markings, call.new_file("MARKING_POINTS"), progress.part(0.95, 1.0))

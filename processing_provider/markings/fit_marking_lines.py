@@ -1,0 +1,44 @@
+"""Markings as curves."""
+
+from ...core.schemas import MARKING_LINES, MARKINGS
+from ..algorithm import LanewrightAlgorithm
+from ..knobs import Knob
+from ..survey_input import frame_of, road_points_of
+from ..texts import tr
+
+LINES = "markings.lines:LineSettings"
+
+LINE_KNOBS = (
+    Knob(
+        "CURVE", LINES, "curve", tr("Curve"),
+        tr("Automatic takes the simplest curve that fits (Bayesian information criterion). Choose one to force it "
+           "on every line."),
+        choices=("automatic", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline"),
+    ),
+    Knob(
+        "DEGREE", LINES, "degree", tr("Degree of the polynomial (0-9)"),
+        tr("Used with polynomial only. Higher follows more bends, but swings between its points."),
+        minimum=1, maximum=9,
+    ),
+)
+
+
+class FitMarkingLines(LanewrightAlgorithm):
+    ID, TITLE, ROOM = "fitmarkinglines", "Fit marking lines", "Markings"
+    SUMMARY = "Links dashes along the road and fits a curve to every painted line."
+    TAGS = ("lane line", "curve fitting", "circle", "clothoid", "spline")
+
+    def initAlgorithm(self, configuration=None):
+        self.add_cloud("CLUSTERED_POINTS", tr("Clustered points"), tr("The file written by Cluster markings."))
+        self.add_layer("MARKINGS", tr("Markings"), tr("The layer written by Cluster markings together with the points."), "PolygonZ")
+        self.add_trajectory()
+        self.add_knobs(LINE_KNOBS)
+        self.add_sink("MARKING_LINES", tr("Marking lines"), fields=MARKING_LINES, geometry="LineStringZ")
+
+    def run(self, call, progress):
+        from ...core.markings.lines import fit_marking_lines
+
+        markings = call.features("MARKINGS", MARKINGS, "PolygonZ")
+        points = road_points_of(call, "CLUSTERED_POINTS", progress.part(0.0, 0.2))
+        frame = frame_of(call, points.crs, progress, points)
+        call.layer("MARKING_LINES", fit_marking_lines(points, markings, frame, call.settings(LINE_KNOBS), progress.part(0.2, 1.0)))

@@ -1,0 +1,44 @@
+"""The geo-referenced intensity image."""
+
+from ..algorithm import LanewrightAlgorithm
+from ..knobs import Knob
+from ..survey_input import road_points_of
+from ..texts import tr
+
+IMAGE = "markings.image:ImageSettings"
+
+IMAGE_KNOBS = (
+    Knob(
+        "CELL_SIZE", IMAGE, "cell_size", tr("Cell size (m)"),
+        tr("Smaller shows narrow lines more sharply while the cloud is dense enough; larger fills gaps and makes smaller files."),
+        minimum=0.01, maximum=1.0,
+    ),
+)
+
+
+class IntensityImage(LanewrightAlgorithm):
+    ID, TITLE, ROOM = "intensityimage", "Intensity image", "Markings"
+    SUMMARY = "Interpolates the intensity of road points into a GeoTIFF: near and bright points count more."
+    TAGS = ("intensity", "image", "raster", "orthophoto")
+
+    def initAlgorithm(self, configuration=None):
+        self.add_cloud(
+            "ROAD_POINTS", tr("Road points"),
+            tr("The file written by Correct intensity, or by Extract road surface for the raw intensity."),
+        )
+        self.add_knobs(IMAGE_KNOBS)
+        self.add_raster("INTENSITY_IMAGE", tr("Intensity image"))
+        self.add_raster(
+            "DISPLAY_IMAGE", tr("Intensity image, 8 bit"),
+            tr("The same for viewing: stretched to 256 grey values, for programs that show no floating-point images."),
+            optional=True, by_default=False,
+        )
+
+    def run(self, call, progress):
+        from ...core.markings.image import write_display_image, write_intensity_image
+
+        road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
+        path = call.new_file("INTENSITY_IMAGE")
+        write_intensity_image(road_points, path, call.settings(IMAGE_KNOBS), progress.part(0.2, 0.9))
+        if call.wants("DISPLAY_IMAGE"):
+            write_display_image(path, call.new_file("DISPLAY_IMAGE"), progress.part(0.9, 1.0))

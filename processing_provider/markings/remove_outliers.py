@@ -1,0 +1,46 @@
+"""Lone points taken out of paint."""
+
+from ..algorithm import LanewrightAlgorithm
+from ..knobs import Knob
+from ..survey_input import road_points_of
+from ..texts import tr
+
+OUTLIERS = "markings.outliers:OutlierSettings"
+
+OUTLIER_KNOBS = (
+    Knob(
+        "NEIGHBOURS", OUTLIERS, "neighbours", tr("Nearest points looked at (points)"),
+        tr("More judges by a wider neighbourhood and removes small clumps too; fewer removes single points only."),
+        minimum=1, maximum=1000,
+    ),
+    Knob(
+        "STD_RATIO", OUTLIERS, "std_ratio", tr("Allowed distance above the mean (σ)"),
+        tr("Smaller removes more, first where points are sparse; larger keeps far paint, and some noise with it."),
+        minimum=0.0, maximum=20.0,
+    ),
+    Knob(
+        "SCOPE", OUTLIERS, "scope", tr("Statistics over"),
+        tr("All compares every point with the whole file, as PCL does, and eats sparse paint far from the scanner; "
+           "windows compares it with its own stretch of the road."),
+        choices=("all", "windows"),
+    ),
+)
+
+
+class RemoveOutliers(LanewrightAlgorithm):
+    ID, TITLE, ROOM = "removeoutliers", "Remove outliers", "Markings"
+    SUMMARY = "Statistical outlier removal: points that lie farther from their neighbours than is usual go."
+    TAGS = ("outlier", "noise", "sor")
+
+    def initAlgorithm(self, configuration=None):
+        self.add_cloud("INPUT", tr("Marking points"), tr("The file written by Extract markings."))
+        self.add_knobs(OUTLIER_KNOBS)
+        self.add_laz("OUTPUT", tr("Marking points without outliers"))
+
+    def run(self, call, progress):
+        from ...core.markings.outliers import remove_outliers
+        from ...core.survey.road_points_file import write_road_points
+
+        points = road_points_of(call, "INPUT", progress.part(0.0, 0.3))
+        kept = remove_outliers(points, call.settings(OUTLIER_KNOBS), progress.part(0.3, 0.8))
+        write_road_points(kept, call.new_file("OUTPUT"), progress.part(0.8, 1.0))

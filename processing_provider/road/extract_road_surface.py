@@ -1,0 +1,49 @@
+"""The points and the outline of the road surface."""
+
+from ...core.schemas import ROAD_EDGES, ROAD_SURFACE
+from ..algorithm import LanewrightAlgorithm
+from ..knobs import Knob
+from ..survey_input import SURVEY_KNOBS, open_survey_of
+from ..texts import tr
+
+SURFACE = "road.surface:SurfaceSettings"
+
+SURFACE_KNOBS = (
+    Knob(
+        "MAX_WIDTH", SURFACE, "max_width", tr("Farthest surface from the trajectory (m)"),
+        tr("On a side without an edge the surface grows outward while it stays smooth, at most this far. Wider reaches "
+           "the far lanes of a broad road, but also yards and forecourts."),
+        minimum=1.0, maximum=100.0,
+    ),
+)
+
+
+class ExtractRoadSurface(LanewrightAlgorithm):
+    ID, TITLE, ROOM = "extractroadsurface", "Extract road surface", "Road"
+    SUMMARY = "Keeps the points of the road surface: between the road edges, or as far as the ground stays smooth."
+    TAGS = ("road surface", "ground")
+
+    def initAlgorithm(self, configuration=None):
+        self.add_survey()
+        self.add_layer(
+            "ROAD_EDGES", tr("Road edges"),
+            tr("The layer written by Fit road edges. Without it the surface is grown on both sides."),
+            "LineStringZ", optional=True,
+        )
+        self.add_knobs(SURFACE_KNOBS)
+        self.add_knobs(SURVEY_KNOBS)
+        self.add_laz(
+            "ROAD_POINTS", tr("Road points"),
+            tr("Class 11, with the extra fields road, pass, station_m, offset_m and half_width for the stages that follow."),
+        )
+        self.add_sink("ROAD_SURFACE", tr("Road surface"), fields=ROAD_SURFACE, geometry="PolygonZ", optional=True)
+
+    def run(self, call, progress):
+        from ...core.road.surface import extract_road_surface
+        from ...core.survey.road_points_file import write_road_points
+
+        edges = call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ")
+        survey = open_survey_of(call, progress.part(0.0, 0.5))
+        road_points, surface = extract_road_surface(survey, edges, call.settings(SURFACE_KNOBS), progress.part(0.5, 0.9))
+        write_road_points(road_points, call.new_file("ROAD_POINTS"), progress.part(0.9, 1.0))
+        call.layer("ROAD_SURFACE", surface)

@@ -1,0 +1,42 @@
+"""Road edges as smooth lines through curb points."""
+
+from ...core.schemas import CURB_POINTS, ROAD_EDGES
+from ..algorithm import LanewrightAlgorithm
+from ..knobs import Knob
+from ..survey_input import frame_of
+from ..texts import tr
+
+EDGES = "road.edges:EdgeSettings"
+
+EDGE_KNOBS = (
+    Knob(
+        "MAX_GAP", EDGES, "max_gap", tr("Longest gap bridged (m)"),
+        tr("Longer carries the edge past rows of parked cars, flagged as bridged; shorter breaks it there."),
+        minimum=0.0, maximum=200.0,
+    ),
+    Knob(
+        "FALLBACK_WIDTH", EDGES, "fallback_width", tr("Assumed road width where no curb is seen, 0 = none (m)"),
+        tr("0 draws no edge where none was found. A width draws one at half of it either side of the road's reference "
+           "line, flagged as inferred."),
+        minimum=0.0, maximum=100.0, advanced=True,
+    ),
+)
+
+
+class FitRoadEdges(LanewrightAlgorithm):
+    ID, TITLE, ROOM = "fitroadedges", "Fit road edges", "Road"
+    SUMMARY = "Draws the road edges through curb points as smoothing splines, bridging short gaps and saying so."
+    TAGS = ("curb", "road edge", "spline")
+
+    def initAlgorithm(self, configuration=None):
+        self.add_layer("CURB_POINTS", tr("Curb points"), tr("The layer written by Detect curbs."), "PointZ")
+        self.add_trajectory()
+        self.add_knobs(EDGE_KNOBS)
+        self.add_sink("ROAD_EDGES", tr("Road edges"), fields=ROAD_EDGES, geometry="LineStringZ")
+
+    def run(self, call, progress):
+        from ...core.road.edges import fit_road_edges
+
+        curb_points = call.features("CURB_POINTS", CURB_POINTS, "PointZ")
+        frame = frame_of(call, curb_points.crs, progress)
+        call.layer("ROAD_EDGES", fit_road_edges(curb_points, frame, call.settings(EDGE_KNOBS), progress))

@@ -1,0 +1,59 @@
+"""Names, order, group and style of the layers a run puts into the project."""
+
+from pathlib import Path
+
+from qgis.core import QgsProcessingLayerPostProcessorInterface
+
+from .texts import tr
+
+STYLES = Path(__file__).resolve().parents[1] / "resources" / "styles"
+
+# Output name -> (style, place in the group: small is drawn below)
+LOOKS = {
+    "INTENSITY_IMAGE": ("intensity_image", 10),
+    "DENSITY": ("density", 11),
+    "ROAD_SURFACE": ("road_surface", 20),
+    "MARKINGS": ("markings", 30),
+    "TRUTH_MARKINGS": ("markings", 31),
+    "MARKING_LINES": ("marking_lines", 40),
+    "ROAD_EDGES": ("road_edges", 50),
+    "TRUTH_BOUNDARIES": ("road_edges", 51),
+    "CURB_POINTS": ("curb_points", 60),
+    "DRIVING_LINES": ("driving_lines", 70),
+    "TRUTH_DRIVING_LINES": ("driving_lines", 71),
+    "TRAJECTORY": ("trajectory", 80),
+    "OUTPUT": ("trajectory", 80),
+}
+
+
+class Styler(QgsProcessingLayerPostProcessorInterface):
+    """Applies a QML once QGIS has loaded the layer (never in qgis_process, which loads none)."""
+
+    _kept = []  # QGIS keeps no reference, and Python would collect it before the layer is loaded
+
+    def __init__(self, qml):
+        super().__init__()
+        self.qml = qml
+
+    @classmethod
+    def make(cls, qml):
+        styler = cls(str(qml))
+        cls._kept = cls._kept[-50:] + [styler]
+        return styler
+
+    def postProcessLayer(self, layer, context, feedback):
+        layer.loadNamedStyle(self.qml)
+        layer.triggerRepaint()
+
+
+def style_on_load(name, dest, title, context, style=None):
+    """Name, group and style the layer `dest` where QGIS is going to load it."""
+    if not dest or not context.willLoadLayerOnCompletion(dest):
+        return
+    details = context.layerToLoadOnCompletionDetails(dest)
+    details.name, details.forceName, details.groupName = title, True, tr("Road map")
+    look, order = LOOKS.get(name, (None, 90))
+    details.layerSortKey = order
+    qml = STYLES / f"{style or look}.qml"
+    if qml.exists():
+        details.setPostProcessor(Styler.make(qml))

@@ -1,0 +1,145 @@
+"""Opening what the stages work on: the survey, the road frame, the road points."""
+
+from dataclasses import replace
+
+import numpy as np
+from qgis.core import QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsCsException, QgsLineString
+
+from ..core.errors import RoadExtractionError
+from .knobs import Knob
+from .layers import crs_text
+from .texts import tr
+
+SURVEY = "survey.survey:SurveySettings"
+
+SURVEY_KNOBS = (
+    Knob(
+        "CORRIDOR", SURVEY, "corridor", tr("Corridor either side of the trajectory (m)"),
+        tr("Points farther out are left unread. Wider reaches the far side of a broad avenue, but takes longer and "
+           "brings in the neighbouring street."),
+        minimum=5.0, maximum=100.0, advanced=True,
+    ),
+    Knob(
+        "SCANNER_FIELD", SURVEY, "scanner_field", tr("Field that tells the scanners apart"),
+        tr("Automatic takes scanner_channel where it is used and point_source_id where it interleaves in time. Name "
+           "one when the report counts the wrong number of scanners."),
+        choices=("automatic", "scanner_channel", "point_source_id"), advanced=True,
+    ),
+    Knob(
+        "TIME", SURVEY, "time", tr("Time of the trajectory"),
+        tr("How its clock counts: gps (since 1980), adjusted (the same less a billion), week or day. Automatic "
+           "compares with the point clouds and says what it chose."),
+        choices=("automatic", "gps", "adjusted", "week", "day"), advanced=True,
+    ),
+)
+
+
+def open_survey_of(call, progress):
+    """The survey of POINT_CLOUDS and TRAJECTORY, the trajectory brought to the clouds' CRS."""
+    from ..core.survey.point_cloud import read_headers
+    from ..core.survey.survey import open_survey
+
+    paths = call.point_clouds()
+    trajectory = call.trajectory()
+    clouds = next((header.crs for header in read_headers(paths) if header.crs), "") or call.crs()
+    trajectory = to_crs(trajectory, clouds, call.context, progress)
+    settings = call.settings(SURVEY_KNOBS, crs=call.crs())
+    return open_survey(paths, trajectory, settings, progress)
+
+
+def frame_of(call, crs, progress, road_points=None):
+    """The road frame of TRAJECTORY for data in `crs`; with road points given, on their clock."""
+    from ..core.survey.road_frame import build_frame
+
+    trajectory = to_crs(call.trajectory(), crs, call.context, progress)
+    if road_points is not None and trajectory.has_time:
+        trajectory = _on_clock_of(road_points, trajectory, progress)
+    frame = build_frame(trajectory)
+    frame.crs = crs or trajectory.crs
+    return frame
+
+
+def _on_clock_of(road_points, trajectory, progress):
+    from ..core.survey.time_systems import align_time
+
+    ends = []
+    for road, number in road_points.all_sections():
+        time = road_points.section(road, number).time
+        ends += [float(time.min()), float(time.max())] if len(time) else []
+    if not ends or min(ends) == max(ends):
+        return trajectory
+    offset, note = align_time(trajectory.time, (min(ends), max(ends)))
+    if note:
+        progress.say(note)
+    return trajectory.shifted(offset) if offset else trajectory
+
+
+def road_points_of(call, name, progress):
+    """A LAZ file made by Extract road surface or a stage after it, as RoadPoints."""
+    from ..core.survey.road_points_file import read_road_points
+
+    return read_road_points(call.cloud(name), progress)
+
+
+def to_crs(trajectory, wkt, context, progress):
+    """The trajectory in the CRS `wkt`; unchanged where either CRS is unknown or both agree."""
+    if not trajectory.crs or not wkt:
+        return trajectory
+    source = QgsCoordinateReferenceSystem.fromWkt(trajectory.crs)
+    target = _horizontal(QgsCoordinateReferenceSystem.fromWkt(wkt))
+    if not source.isValid() or not target.isValid() or _same(source, target):
+        return trajectory
+    transform = QgsCoordinateTransform(source, target, context.transformContext())
+    line = QgsLineString(trajectory.x.tolist(), trajectory.y.tolist())
+    try:
+        line.transform(transform)
+    except QgsCsException as problem:
+        raise RoadExtractionError(
+            tr("The trajectory is in {source} and cannot be brought to {target} of the point clouds ({problem}). "
+               "Check the CRS of the trajectory.").format(
+                source=source.userFriendlyIdentifier(), target=target.userFriendlyIdentifier(), problem=problem)
+        ) from problem
+    progress.say(
+        tr("The trajectory was reprojected from {source} to {target}.").format(
+            source=source.userFriendlyIdentifier(), target=target.userFriendlyIdentifier())
+    )
+    # Little-endian WKB of a 2-D line: 9 bytes of head, then x, y, x, y ...
+    x, y = np.frombuffer(bytes(line.asWkb()), "<f8", offset=9).reshape(-1, 2).T.copy()
+    return replace(trajectory, x=x, y=y, crs=crs_text(target))
+
+
+def _horizontal(crs):
+    flat = crs.horizontalCrs() if hasattr(crs, "horizontalCrs") else crs
+    return flat if flat.isValid() else crs
+
+
+def _same(a, b):
+    """Whether two CRSs are one, however their WKT was written (LAS files round and rename)."""
+    a = _horizontal(a)
+    if a == b or (a.authid() and a.authid() == b.authid()):
+        return True
+    return bool(a.toProj()) and a.toProj() == b.toProj()
+
+
+def imported_trajectory(call, progress):
+    """INPUT in TARGET_CRS (or the clouds' CRS) and, with POINT_CLOUDS given, on the clouds' clock."""
+    from ..core.survey.point_cloud import read_headers
+    from ..core.survey.survey import match_clocks
+
+    trajectory = call.trajectory("INPUT")
+    if call.crs("INPUT_CRS"):
+        trajectory = replace(trajectory, crs=call.crs("INPUT_CRS"))
+    headers = read_headers(call.point_clouds()) if call.parameters.get("POINT_CLOUDS") else []
+    target = call.crs("TARGET_CRS") or next((header.crs for header in headers if header.crs), "")
+    trajectory = to_crs(trajectory, target, call.context, progress)
+    if target and not trajectory.crs:
+        progress.warn(
+            tr("The trajectory says no CRS; its coordinates are taken to be in {target} as they are.").format(
+                target=QgsCoordinateReferenceSystem.fromWkt(target).userFriendlyIdentifier())
+        )
+        trajectory = replace(trajectory, crs=target)
+    if headers:
+        trajectory, note, _ = match_clocks(headers, trajectory, call.settings(SURVEY_KNOBS), progress)
+        if note:
+            progress.say(note)
+    return trajectory
