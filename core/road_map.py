@@ -1,0 +1,157 @@
+"""The whole chain in one call: survey in, road map out.
+
+The stages are the same functions that the single algorithms call, handed on in
+memory; nothing but the intensity image, which is one of the results, goes to disk.
+"""
+
+import time
+from dataclasses import dataclass, field
+
+from .driving.lines import DrivingSettings, driving_lines
+from .features import Features
+from .markings.clusters import ClusterSettings, cluster_markings
+from .markings.extraction import MarkingSettings, extract_markings
+from .markings.image import ImageSettings, IntensityImage, write_intensity_image
+from .markings.intensity import IntensitySettings, correct_intensity
+from .markings.lines import LineSettings, fit_marking_lines
+from .markings.outliers import OutlierSettings, remove_outliers
+from .progress import Progress
+from .road.curbs import CurbSettings, detect_curbs
+from .road.edges import EdgeSettings, fit_road_edges
+from .road.surface import SurfaceSettings, extract_road_surface
+from .survey.survey import SurveySettings, open_survey
+
+
+@dataclass(frozen=True)
+class RoadMapSettings:
+    """The settings of every stage, and whether intensity is corrected first."""
+
+    survey: SurveySettings = SurveySettings()
+    curbs: CurbSettings = CurbSettings()
+    edges: EdgeSettings = EdgeSettings()
+    surface: SurfaceSettings = SurfaceSettings()
+    correct: bool = True
+    intensity: IntensitySettings = IntensitySettings()
+    image: ImageSettings = ImageSettings()
+    markings: MarkingSettings = MarkingSettings()
+    outliers: OutlierSettings = OutlierSettings()
+    clusters: ClusterSettings = ClusterSettings()
+    lines: LineSettings = LineSettings()
+    driving: DrivingSettings = DrivingSettings()
+
+
+@dataclass
+class RoadMap:
+    """Every result of the chain; `seconds` and `counts` tell of each stage.
+
+    `without_paint` is the sentence that says why there are no markings, "" where
+    there are.
+    """
+
+    frame: object
+    crs: str
+    curb_points: Features
+    edges: Features
+    surface: Features
+    road_points: object
+    intensity_report: object = None
+    image: object = None
+    markings: Features = None
+    marking_lines: Features = None
+    driving_lines: Features = None
+    curve_elements: Features = None
+    without_paint: str = ""
+    seconds: dict = field(default_factory=dict)
+    counts: dict = field(default_factory=dict)
+    survey_facts: dict = field(default_factory=dict)
+
+
+class _Stages:
+    """Runs the stages one after the other, each with its share of the bar, and takes their times."""
+
+    # shares of the whole as measured on sample surveys
+    SHARES = dict(survey=0.24, curbs=0.16, edges=0.02, surface=0.14, intensity=0.08, image=0.12, markings=0.10,
+                  outliers=0.03, clusters=0.05, lines=0.03, driving=0.03)
+
+    def __init__(self, progress):
+        self.progress, self.done, self.seconds = progress, 0.0, {}
+
+    def run(self, name, title, function, *arguments, **options):
+        share = self.SHARES[name]
+        self.progress.say(title)
+        began = time.perf_counter()
+        result = function(*arguments, progress=self.progress.part(self.done, self.done + share), **options)
+        self.seconds[name] = time.perf_counter() - began
+        self.done += share
+        self.progress.at(self.done)
+        return result
+
+
+def make_road_map(paths, trajectory, image_path, settings=RoadMapSettings(), progress=Progress()):
+    """Run the chain.
+
+    Parameters
+    ----------
+    paths : point cloud files
+    trajectory : Trajectory in the clouds' CRS
+    image_path : where the intensity image is written (.tif)
+
+    Returns
+    -------
+    RoadMap
+
+    Raises
+    ------
+    RoadExtractionError
+        If a stage cannot work with what it is given. A cloud without intensity still
+        yields edges and surface; `without_paint` then says why markings are missing.
+    """
+    stages = _Stages(progress)
+    survey = stages.run("survey", "Reading the survey …", open_survey, paths, trajectory, settings.survey)
+    try:
+        curb_points = stages.run("curbs", "Detecting curbs …", detect_curbs, survey, settings.curbs)
+        edges = stages.run("edges", "Fitting road edges …", fit_road_edges, curb_points, survey.frame, settings.edges)
+        road_points, surface = stages.run("surface", "Extracting the road surface …", extract_road_surface,
+                                          survey, edges, settings.surface)
+        facts = dict(files=len(survey.files), scanners=len(survey.scanners), passes=len(survey.frame.passes),
+                     roads=len(survey.frame.roads), sensor_height=survey.sensor_height, **survey.counts)
+        has_intensity = survey.has_intensity
+    finally:
+        survey.store.close()
+    result = RoadMap(survey.frame, survey.crs, curb_points, edges, surface, road_points, seconds=stages.seconds,
+                     survey_facts=facts)
+    result.counts.update(curb_points=len(curb_points), road_points=len(road_points))
+    if not has_intensity:
+        result.without_paint = ("The point cloud has no intensity (all values are 0), so paint cannot be told from "
+                                "asphalt: no markings, marking lines or driving lines were made.")
+        progress.warn(result.without_paint)
+        return result
+    _paint(result, image_path, settings, stages)
+    return result
+
+
+def _paint(result, image_path, settings, stages):
+    """Intensity, markings and lines, added to the result."""
+    frame = result.frame
+    if settings.correct:
+        result.road_points, result.intensity_report = stages.run(
+            "intensity", "Correcting intensity …", correct_intensity, result.road_points, frame, settings.intensity)
+    stages.run("image", "Making the intensity image …", write_intensity_image,
+               result.road_points, image_path, settings.image)
+    result.image = IntensityImage.open(image_path)
+    points = stages.run("markings", "Extracting markings …", extract_markings,
+                        result.road_points, result.image, frame, settings.markings)
+    result.counts["marking_points"] = len(points)
+    if len(points):
+        points = stages.run("outliers", "Removing outliers …", remove_outliers, points, settings.outliers)
+    result.counts["marking_points_kept"] = len(points)
+    result.markings, clustered = stages.run("clusters", "Clustering markings …", cluster_markings,
+                                            points, frame, settings.clusters)
+    result.marking_lines = stages.run("lines", "Fitting marking lines …", fit_marking_lines,
+                                      clustered, result.markings, frame, settings.lines)
+    result.driving_lines, result.curve_elements = stages.run(
+        "driving", "Making driving lines …", driving_lines, result.marking_lines, frame, settings.driving,
+        markings=result.markings, edges=result.edges, road_points=result.road_points)
+    if not len(result.markings):
+        result.without_paint = "No paint was found on this road, so there are no marking lines and no driving lines."
+        stages.progress.warn(result.without_paint)
