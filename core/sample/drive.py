@@ -1,0 +1,76 @@
+"""How the survey vehicle moved: one pass along the made road."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+SENSOR_HEIGHT = 2.6  # m, the trajectory's point above the ground
+_RUN_OUT = 15.0      # m driven before and after the surveyed stretch
+
+
+@dataclass(frozen=True)
+class Drive:
+    """One pass: position and attitude as smooth functions of the time since its start.
+
+    Attributes
+    ----------
+    direction : 1 along the axis, -1 against it
+    offset : m, where in the cross-section the vehicle keeps
+    speed : m/s, mean
+    start_time : gps time of its first moment, s
+    phase : radians, sets the wobble of this pass
+    """
+
+    scene: object
+    direction: int
+    offset: float
+    speed: float
+    start_time: float
+    phase: float
+
+    @property
+    def duration(self):
+        """Seconds, whole trajectory intervals of 5 ms."""
+        return np.ceil((self.scene.length + 2 * _RUN_OUT) / self.speed * 200.0) / 200.0
+
+    def station(self, t):
+        """Station of the vehicle; its speed swings by 3 percent."""
+        swing = 0.03 * 17.0 / (2 * np.pi)
+        way = self.speed * (t + swing * (np.cos(self.phase) - np.cos(2 * np.pi * t / 17.0 + self.phase)))
+        return way - _RUN_OUT if self.direction > 0 else self.scene.length + _RUN_OUT - way
+
+    def _ground_track(self, t):
+        s = self.station(t)
+        d = self.offset + 0.12 * np.sin(s / 11.0 + self.phase) + 0.04 * np.sin(s / 3.7 + 2 * self.phase)
+        x, y = self.scene.axis.to_map(s, d)
+        return s, d, x, y
+
+    def pose(self, t):
+        """x, y, z (m, local), roll, pitch, heading (radians) at times since the start.
+
+        Roll is positive with the right side down, pitch with the nose up;
+        heading counts clockwise from grid north.
+        """
+        s, d, x, y = self._ground_track(t)
+        *_, ahead_x, ahead_y = self._ground_track(t + 0.01)
+        *_, behind_x, behind_y = self._ground_track(t - 0.01)
+        heading = np.arctan2(ahead_x - behind_x, ahead_y - behind_y)
+        sway = self.phase
+        z = self.scene.carriageway(s, d) + SENSOR_HEIGHT + 0.010 * np.sin(2 * np.pi * t / 1.3 + sway)
+        # A road falling to the left (negative slope) lowers the left side: negative roll.
+        roll = (self.direction * np.arctan(self.scene.cross_slope(d))
+                + np.radians(0.35) * np.sin(2 * np.pi * t / 1.9 + sway) + np.radians(0.08) * np.sin(2 * np.pi * t / 0.7))
+        pitch = (self.direction * np.arctan(self.scene.grade(s))
+                 + np.radians(0.25) * np.sin(2 * np.pi * t / 2.3 + 2 * sway) + np.radians(0.06) * np.sin(2 * np.pi * t / 0.9))
+        heading = heading + np.radians(0.20) * np.sin(2 * np.pi * t / 3.1 + sway)
+        return x, y, z, roll, pitch, heading % (2 * np.pi)
+
+
+def attitude(roll, pitch, heading):
+    """(N, 3, 3) rotations from the vehicle (x ahead, y left, z up) to the map."""
+    turn = np.pi / 2 - heading
+    cr, sr, cp, sp, ct, st = np.cos(roll), np.sin(roll), np.cos(pitch), np.sin(pitch), np.cos(turn), np.sin(turn)
+    ahead = np.stack([ct * cp, st * cp, sp])
+    left = np.stack([-st * cr - ct * sp * sr, ct * cr - st * sp * sr, cp * sr])
+    up = np.stack([st * sr - ct * sp * cr, -ct * sr - st * sp * cr, cp * cr])
+    return np.moveaxis(np.stack([ahead, left, up], axis=1), 2, 0)

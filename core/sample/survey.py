@@ -1,0 +1,261 @@
+"""A made mobile laser scanning survey with known truth: for the demo, the tests and for trying settings.
+
+The street, the drive and the scanners are simulated: every pulse of two
+rotating line scanners is followed to what it meets first. Figures measured
+on such a survey are figures on simulated data.
+"""
+
+import os
+from collections import deque
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from datetime import date, datetime, timedelta
+
+import numpy as np
+
+from ..errors import RoadExtractionError
+from ..progress import Progress
+from ..survey.trajectory import Trajectory
+from . import truth
+from .casting import OBSTACLE, cast
+from .drive import Drive
+from .intensity import brightness_of, label_hits, received
+from .scanner import butterfly
+from .scene import LABEL, LABELS
+from .scenes import build_scene
+
+SCENES = ("street", "rural", "urban")
+_SURVEY_DAY = datetime(2025, 5, 14, 2, 30)
+# Adjusted standard GPS time: seconds since 1980-01-06, leap seconds (18) not taken out, minus 1e9.
+_START_TIME = (_SURVEY_DAY - datetime(1980, 1, 6)) / timedelta(seconds=1) + 18.0 - 1e9
+_PAUSE = 55.0        # s between two passes
+_PULSES = 50_000     # per block
+_RANGE_NOISE = 0.005
+_VERGE_NOISE = 0.02  # m, blades of grass above the ground
+_LOST, _STRAY = 0.004, 0.00015
+
+POINT = np.dtype([("x", "f8"), ("y", "f8"), ("z", "f8"), ("time", "f8"), ("intensity", "u2"), ("scanner", "u1"),
+                  ("scan_angle", "f4"), ("label", "u1"), ("pass", "u1"), ("range", "f4"), ("station", "f8"), ("offset", "f8")])
+
+
+@dataclass(frozen=True)
+class SampleSettings:
+    """What is surveyed and how densely."""
+
+    scene: str = "street"          # street, rural or urban
+    length: float = 120.0          # m of road
+    seed: int = 1
+    speed_kmh: float = 40.0        # of the vehicle
+    pulse_rate: float = 300_000.0  # pulses per second of each scanner
+    rotation_rate: float = 200.0   # lines per second of each scanner
+    radius: float = 120.0          # m, of the bends
+    curb_height: float = 0.13      # m
+    gutter: float = 0.0            # m, width of a concrete gutter along the curbs (urban has one anyway)
+    reach: float = 18.0            # m, points further from the road's axis are left out
+    crs: str = "EPSG:32650"
+    origin: tuple = (610400.0, 2710200.0, 20.0)  # map coordinates of the road's beginning, whole metres
+
+    def __post_init__(self):
+        if self.scene not in SCENES:
+            raise RoadExtractionError(f"There is no sample scene {self.scene!r}. Choose one of: {', '.join(SCENES)}.")
+        for name, low, high, unit in (
+                ("length", 20, 20_000, "m"), ("seed", 0, 2**31, ""), ("speed_kmh", 5, 120, "km/h"), ("pulse_rate", 5_000, 2e6, "Hz"),
+                ("rotation_rate", 10, 400, "Hz"), ("radius", 60, 5_000, "m"), ("curb_height", 0.04, 0.30, "m"),
+                ("gutter", 0, 1, "m"), ("reach", 12, 24, "m")):
+            value = getattr(self, name)
+            if not low <= value <= high:
+                raise RoadExtractionError(
+                    f"Sample survey: {name.replace('_', ' ')} is {value:g}; it must be from {low:g} to {high:g} {unit}".rstrip() + ".")
+
+
+def make_sample_survey(settings=None, progress=None):
+    """Build the street and its truth; points are made when they are asked for.
+
+    Returns
+    -------
+    SampleSurvey
+
+    Raises
+    ------
+    RoadExtractionError
+        If the CRS is not understood, geographic or not in metres.
+    """
+    from ..survey.crs import check_metric, parse_crs
+
+    settings = settings or SampleSettings()
+    crs = parse_crs(settings.crs)
+    if crs is not None:
+        check_metric(crs, "The sample survey")
+    return SampleSurvey(settings, "" if crs is None else crs.to_wkt("WKT1_GDAL"), progress or Progress())
+
+
+class SampleSurvey:
+    """The made survey.
+
+    Attributes
+    ----------
+    scene : Scene, in local coordinates (map minus settings.origin)
+    trajectory : Trajectory at 200 Hz, 2.6 m above the road, all passes
+    truth_boundaries, truth_markings, truth_driving_lines, truth_surface : Features in map coordinates
+    crs : WKT
+    """
+
+    def __init__(self, settings, crs, progress):
+        self.settings, self.crs = settings, crs
+        self.scene = build_scene(settings.scene, float(settings.length), settings.seed, settings.radius,
+                                 settings.curb_height, settings.gutter)
+        self.scanners = butterfly(settings.rotation_rate, settings.pulse_rate)
+        phases = np.random.default_rng([settings.seed, 2]).uniform(0, 2 * np.pi, len(self.scene.passes))
+        self.drives, start = [], _START_TIME
+        for (direction, offset, haste), phase in zip(self.scene.passes, phases):
+            drive = Drive(self.scene, direction, offset, settings.speed_kmh / 3.6 * haste, start, float(phase))
+            self.drives.append(drive)
+            start = np.ceil(start + drive.duration + _PAUSE)
+        self.trajectory = self._trajectory()
+        progress.at(0.3)
+        self.truth_boundaries = truth.true_boundaries(self.scene, settings.origin, crs)
+        self.truth_markings = truth.true_markings(self.scene, settings.origin, crs)
+        self.truth_driving_lines = truth.true_driving_lines(self.scene, settings.origin, crs)
+        self.truth_surface = truth.true_surface(self.scene, settings.origin, crs)
+        progress.at(1.0)
+
+    def _trajectory(self):
+        columns = []
+        for drive in self.drives:
+            t = np.arange(int(round(drive.duration * 200)) + 1) / 200.0
+            x, y, z, roll, pitch, heading = drive.pose(t)
+            columns.append(np.stack([drive.start_time + t, x + self.settings.origin[0], y + self.settings.origin[1],
+                                     z + self.settings.origin[2], *np.degrees([roll, pitch, heading])]))
+        return Trajectory(*np.concatenate(columns, axis=1), crs=self.crs)
+
+    def _blocks(self):
+        """Pass, scanner and turns of each block, in the order they are written."""
+        turns = max(1, int(_PULSES * self.settings.rotation_rate / self.settings.pulse_rate))
+        for number, drive in enumerate(self.drives):
+            lines = np.arange(int(drive.duration * self.settings.rotation_rate))
+            for start in range(0, len(lines), turns):
+                for scanner in self.scanners:
+                    yield number, drive, scanner, lines[start:start + turns]
+
+    def blocks(self, noise=True, progress=None):
+        """The points in blocks of time and scanner, as POINT arrays in map coordinates; some may be empty.
+
+        Without `noise` every point lies where its pulse met the street, none is
+        lost and intensities have no speckle.
+        """
+        progress = progress or Progress()
+        jobs = list(self._blocks())
+        with ThreadPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as pool:
+            waiting = deque()
+            try:
+                for done, job in enumerate(jobs):
+                    waiting.append(pool.submit(self._measure, *job, noise))
+                    if len(waiting) > 4:
+                        yield waiting.popleft().result()
+                        progress.at(done / len(jobs))
+                while waiting:
+                    yield waiting.popleft().result()
+            finally:
+                for job in waiting:
+                    job.cancel()
+
+    def points(self, noise=True, progress=None):
+        """All points in memory: a POINT array with labels (see scene.LABELS), true station and offset."""
+        return np.concatenate(list(self.blocks(noise, progress)))
+
+    def _measure(self, number, drive, scanner, lines, noise):
+        settings, scene = self.settings, self.scene
+        random = np.random.default_rng([settings.seed, 3, number, scanner.number, int(lines[0])])
+        origin, direction, times, angles = scanner.pulses(drive, lines)
+        station = float(drive.station(times[len(times) // 2]))
+        hits = cast(scene, origin, direction, station, random, settings.reach)
+        found = np.flatnonzero(np.isfinite(hits.distance) & (hits.cosine > 0))
+        label = label_hits(scene, hits, found)
+        distance, cosine = hits.distance[found], hits.cosine[found]
+        start, way = origin[:, found], direction[:, found]
+        s, d = hits.station[found], hits.offset[found]
+        standing = np.flatnonzero(hits.strip[found] == OBSTACLE)
+        place = start[:, standing] + distance[standing] * way[:, standing]
+        s[standing], d[standing], *_ = scene.axis.locate(place[0], place[1], np.full(len(standing), station), steps=3)
+        strength = received(brightness_of(scene, label, s, d, hits.brightness[found]), distance, cosine, scanner.gain)
+        kept = (s >= 0) & (s <= settings.length) & (np.abs(d) <= settings.reach)
+        true_range = distance
+        if noise:
+            normal = random.standard_normal((3, len(found)), dtype=np.float32)
+            chance = random.random((2, len(found)), dtype=np.float32)
+            distance = distance + _RANGE_NOISE * normal[0]
+            stray = chance[0] < _STRAY
+            distance[stray] = 1.5 + (distance[stray] - 1.5) * chance[1][stray]
+            label[stray] = LABEL["stray"]
+            strength = strength * (1.0 + 0.07 * normal[1]) + 25.0 * normal[2]
+            # Weak returns are missed: half of those near 150 counts.
+            kept &= chance[1] > _LOST + 0.5 * np.exp2(-np.maximum(strength, 0.0) / 150.0)
+        place = start + distance * way
+        if noise:
+            grass = np.flatnonzero(label == LABEL["verge"])
+            place[2, grass] += _VERGE_NOISE * np.abs(normal[2, grass])
+        points = np.zeros(int(kept.sum()), dtype=POINT)
+        for axis, name in enumerate("xyz"):
+            points[name] = place[axis, kept] + settings.origin[axis]
+        points["time"] = drive.start_time + times[found][kept]
+        points["intensity"] = np.clip(np.rint(strength[kept]), 1, 65535)
+        points["scan_angle"] = angles[found][kept]
+        points["scanner"], points["pass"] = scanner.number, number + 1
+        points["label"], points["range"] = label[kept], true_range[kept]
+        points["station"], points["offset"] = s[kept], d[kept]
+        return points
+
+    def write_cloud(self, path, progress=None, noise=True):
+        """Write the survey as LAS 1.4, point format 6 (LAZ where the name says so), in blocks.
+
+        Returns the number of points. The file appears when it is complete.
+        """
+        import laspy
+
+        progress = progress or Progress()
+        path = os.fspath(path)
+        part = f"{path}.part"
+        header = self._header(laspy)
+        count = 0
+        try:
+            with open(part, "wb") as stream, laspy.open(
+                    stream, mode="w", header=header, do_compress=path.lower().endswith(".laz"), closefd=False) as writer:
+                for points in self.blocks(noise, progress):
+                    if len(points):
+                        writer.write_points(_las_record(laspy, points, header))
+                        count += len(points)
+            os.replace(part, path)
+        except OSError as problem:
+            raise RoadExtractionError(f"The sample survey could not be written to {path}: {problem.strerror or problem}. "
+                                      "Choose a folder that exists and is not full.") from problem
+        finally:
+            if os.path.exists(part):
+                os.remove(part)
+        return count
+
+    def _header(self, laspy):
+        header = laspy.LasHeader(version="1.4", point_format=6)
+        header.scales, header.offsets = np.full(3, 0.001), np.array(self.settings.origin)
+        header.creation_date = date(_SURVEY_DAY.year, _SURVEY_DAY.month, _SURVEY_DAY.day)
+        header.system_identifier, header.generating_software = "simulated survey", "Lanewright"
+        header.global_encoding.gps_time_type = laspy.header.GpsTimeType.STANDARD
+        if self.crs:
+            header.vlrs.append(laspy.vlrs.known.WktCoordinateSystemVlr(self.crs))
+            header.global_encoding.wkt = True
+        return header
+
+
+def _las_record(laspy, points, header):
+    record = laspy.ScaleAwarePointRecord.zeros(len(points), header=header)
+    for axis, name in enumerate("xyz"):
+        record[name.upper()] = np.rint((points[name] - header.offsets[axis]) / 0.001).astype(np.int32)
+    record["intensity"], record["gps_time"] = points["intensity"], points["time"]
+    record["point_source_id"] = points["scanner"]
+    record["scan_angle"] = np.rint(points["scan_angle"] / 0.006).astype(np.int16)
+    record["return_number"] = record["number_of_returns"] = np.ones(len(points), dtype=np.uint8)
+    return record
+
+
+def label_of(name):
+    """Number of a label, such as "curb face"."""
+    return LABELS.index(name)

@@ -1,0 +1,106 @@
+"""What is true about the made street, as layers in map coordinates."""
+
+import numpy as np
+
+from ..features import Features, Field
+from ..schemas import DRIVING_LINES, END, HEIGHT, LENGTH, PART, RADIUS, ROAD, SIDE, STATION, WIDTH
+
+_STEP = 0.25      # m between vertices along the road
+_DROPPED = 0.05   # m, a curb lower than this is a dropped one
+
+BOUNDARIES = [ROAD, SIDE, PART, Field("kind", str, "Kind (curb/dropped)"), STATION, END, HEIGHT, LENGTH]
+MARKINGS = [ROAD, Field("class", str, "Class"), Field("line", int, "Line"), Field("pattern", str, "Pattern"),
+            STATION, END, WIDTH, Field("wear", float, "Share of paint worn away")]
+DRIVING = [field for field in DRIVING_LINES if field.name in
+           ("road", "lane", "direction", "radius_m", "station_m", "end_m", "length_m")]
+SURFACE = [ROAD, Field("area_m2", float, "Area (m²)")]
+
+
+def _stations(start, end):
+    return np.linspace(start, end, max(2, int(np.ceil((end - start) / _STEP)) + 1))
+
+
+def _coordinates(scene, origin, s, d):
+    x, y, z = scene.to_map(s, d)
+    return np.column_stack([x + origin[0], y + origin[1], z + origin[2]])
+
+
+def true_boundaries(scene, origin, crs):
+    """Curb bottoms and tops, in pieces of one kind; nothing where there is no curb."""
+    from shapely import LineString
+
+    layer = Features("LineStringZ", BOUNDARIES, crs=crs)
+    for side, name in ((scene.left, "left"), (scene.right, "right")):
+        if not side.curb_height:
+            continue
+        for start, end, kind in _curb_pieces(side, scene.length):
+            s = _stations(start, end)
+            height = float(np.median(side.curb(s)))
+            # A point on a border belongs to the strip within; ask a hair's breadth outside the face for the top.
+            for part, away in (("bottom", side.borders[0]), ("top", side.borders[1] + 1e-9)):
+                line = LineString(_coordinates(scene, origin, s, side.sign * away))
+                layer.add(line, road=1, side=name, part=part, kind=kind, station_m=float(start), end_m=float(end),
+                          height_m=height, length_m=float(line.length))
+    return layer
+
+
+def _curb_pieces(side, length):
+    s = np.arange(0.0, length + 1e-9, 0.01)
+    dropped = side.curb(s) < _DROPPED
+    cuts = np.concatenate([[0], np.flatnonzero(np.diff(dropped)) + 1, [len(s) - 1]])
+    return [(s[a], s[b], "dropped" if dropped[a] else "curb") for a, b in zip(cuts[:-1], cuts[1:]) if b > a]
+
+
+def true_markings(scene, origin, crs):
+    """Every painted piece as it was painted, worn places included."""
+    from shapely import Polygon
+
+    layer = Features("PolygonZ", MARKINGS, crs=crs)
+    for marking in scene.paint.markings:
+        dash = getattr(marking, "dash", None)
+        pattern = None if marking.line is None else "solid" if dash is None else "dashed"
+        for outline in marking.outlines():
+            ring = _densified(outline)
+            polygon = Polygon(_coordinates(scene, origin, ring[:, 0], ring[:, 1]))
+            layer.add(polygon, road=1, line=marking.line, pattern=pattern, width_m=getattr(marking, "width", None),
+                      wear=float(marking.wear), station_m=float(outline[:, 0].min()), end_m=float(outline[:, 0].max()),
+                      **{"class": marking.kind})
+    return layer
+
+
+def _densified(outline):
+    closed = np.vstack([outline, outline[:1]])
+    sides = [a + np.linspace(0, 1, max(1, int(np.ceil(np.hypot(*(b - a)) / _STEP))), endpoint=False)[:, None] * (b - a)
+             for a, b in zip(closed[:-1], closed[1:])]
+    return np.vstack([*sides, outline[:1]])
+
+
+def true_driving_lines(scene, origin, crs):
+    """The middle of every lane, in its direction of travel; radius_m is that of its sharpest bend."""
+    from shapely import LineString
+
+    layer = Features("LineStringZ", DRIVING, crs=crs)
+    for lane in scene.lanes:
+        s = _stations(lane.stations[0], lane.stations[-1])
+        d = np.interp(s, lane.stations, lane.offsets)
+        bend = scene.axis.curvature(s)
+        bend = bend / (1.0 - bend * d)
+        sharpest = float(np.abs(bend).max())
+        line = LineString(_coordinates(scene, origin, s, d)[::lane.direction])
+        layer.add(line, road=1, lane=lane.number, direction=lane.direction,
+                  radius_m=1.0 / sharpest if sharpest > 1e-6 else None,
+                  station_m=float(s[0]), end_m=float(s[-1]), length_m=float(line.length))
+    return layer
+
+
+def true_surface(scene, origin, crs):
+    """The carriageway between its edges, over the surveyed stretch."""
+    from shapely import Polygon
+
+    s = _stations(0.0, scene.length)
+    left = _coordinates(scene, origin, s, scene.left.edge)
+    right = _coordinates(scene, origin, s[::-1], -scene.right.edge)
+    polygon = Polygon(np.vstack([left, right]))
+    layer = Features("PolygonZ", SURFACE, crs=crs)
+    layer.add(polygon, road=1, area_m2=float(polygon.area))
+    return layer
