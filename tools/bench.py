@@ -1,0 +1,105 @@
+"""Seconds per stage and peak memory of the whole chain, on sample surveys of two sizes.
+
+Prints, for each size, what `make bench` promises: seconds of every stage, points per
+second, peak memory, and the same run's ratio to reading the file with laspy in blocks of
+100,000 points. Each size runs in a process of its own, so that peaks do not mix.
+"""
+
+import argparse
+import json
+import os
+import resource
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+SIZES = (5_000_000, 20_000_000)
+
+
+def read_with_laspy(path):
+    """(seconds, points) of laspy's own read in blocks of 100,000."""
+    import laspy
+
+    began, count = time.perf_counter(), 0
+    with laspy.open(path) as reader:
+        for points in reader.chunk_iterator(100_000):
+            count += len(points.x)
+    return time.perf_counter() - began, count
+
+
+def measure(folder):
+    """Run the chain on the survey in a folder; a dict of figures."""
+    from plugin_package import load
+
+    load()
+    from lanewright.core.road_map import make_road_map
+    from lanewright.core.survey.trajectory_file import read_trajectory
+
+    cloud = folder / "survey.laz"
+    read_seconds, count = read_with_laspy(cloud)
+    began, cpu = time.perf_counter(), time.process_time()
+    road_map = make_road_map([cloud], read_trajectory(folder / "trajectory.csv"), folder / "intensity.tif")
+    wall = time.perf_counter() - began
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**10
+    return dict(points=count, read=read_seconds, seconds=road_map.seconds, wall=wall,
+                cpu=time.process_time() - cpu, peak_mib=peak,
+                length_m=road_map.frame.roads[0].length, driving_lines=len(road_map.driving_lines or ()))
+
+
+def make(folder, points):
+    """A sample survey of about `points` points: the same street, as long as it takes."""
+    from plugin_package import load
+
+    load()
+    from lanewright.core.sample.survey import SampleSettings, make_sample_survey, points_per_metre
+
+    folder.mkdir(parents=True, exist_ok=True)
+    settings = SampleSettings()
+    settings = SampleSettings(length=points / points_per_metre(settings))
+    sample = make_sample_survey(settings)
+    sample.write_cloud(folder / "survey.laz")
+    sample.write_trajectory(folder / "trajectory.csv")
+
+
+def show(figures, floor):
+    print(f"\n{figures['points']:,} points, {figures['length_m']:.0f} m of road; one laspy read {floor:.1f} s")
+    for stage, seconds in figures["seconds"].items():
+        print(f"  {stage:<10} {seconds:7.1f} s  {figures['points'] / max(seconds, 1e-9) / 1e6:8.2f} M points/s"
+              f"  {seconds / floor:6.2f} x reading")
+    print(f"  {'whole':<10} {figures['wall']:7.1f} s  {figures['points'] / figures['wall'] / 1e6:8.2f} M points/s"
+          f"  {figures['wall'] / floor:6.2f} x reading   ({figures['cpu']:.1f} CPU s, peak {figures['peak_mib']:.0f} MiB)")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--folder", type=Path, default=Path(__file__).resolve().parents[1] / "build" / "bench")
+    parser.add_argument("--sizes", type=int, nargs="+", default=SIZES, help="points")
+    parser.add_argument("--child", choices=("make", "measure"), help=argparse.SUPPRESS)
+    arguments = parser.parse_args()
+    if arguments.child == "make":
+        make(arguments.folder, arguments.sizes[0])
+        return
+    if arguments.child == "measure":
+        print(json.dumps(measure(arguments.folder)))
+        return
+    print(f"load {os.getloadavg()[0]:.1f}, {os.cpu_count()} cores")
+    walls = []
+    for size in arguments.sizes:
+        folder = arguments.folder / f"{size}"
+        child = [sys.executable, __file__, "--folder", str(folder), "--sizes", str(size), "--child"]
+        if not (folder / "trajectory.csv").exists():
+            subprocess.run([*child, "make"], check=True)
+        found = subprocess.run([*child, "measure"], check=True, stdout=subprocess.PIPE, text=True).stdout
+        figures = json.loads(found.strip().splitlines()[-1])
+        show(figures, figures["read"])
+        walls.append((figures["points"], figures["wall"], figures["peak_mib"]))
+    if len(walls) == 2:
+        (n0, w0, m0), (n1, w1, m1) = walls
+        print(f"\n{n1 / n0:.1f} x the points take {w1 / w0:.1f} x the time and {m1 / m0:.2f} x the memory")
+
+
+if __name__ == "__main__":
+    main()

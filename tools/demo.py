@@ -1,0 +1,153 @@
+"""A sample survey with known truth through the whole chain, by the real qgis_process, and a map of the result.
+
+Everything is left in build/demo/. Any stage that fails, and any result that is missing or
+empty, ends the demo with an error.
+"""
+
+import json
+import math
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from plugin_package import ROOT, load
+
+FOLDER = ROOT / "build" / "demo"
+PACKAGE = FOLDER / "road_map.gpkg"
+TRUTH = FOLDER / "truth.gpkg"
+TABLES = ("road_surface", "road_edges", "markings", "marking_lines", "driving_lines", "curve_elements")
+
+
+def stop(text):
+    sys.exit(f"The demo failed: {text}")
+
+
+def process(algorithm, **inputs):
+    """Run an algorithm as a user would on the command line; its results by name."""
+    began = time.perf_counter()
+    run = subprocess.run([str(ROOT / "tools" / "qgis_process"), "run", f"lanewright:{algorithm}", "-"],
+                         input=json.dumps({"inputs": inputs}), capture_output=True, text=True)
+    if run.returncode:
+        stop(f"{algorithm} ended with code {run.returncode}.\n{run.stderr.strip()}")
+    results = json.loads(run.stdout)["results"]
+    missing = [name for name in inputs if name.isupper() and name in results and not results[name]]
+    if missing or not results:
+        stop(f"{algorithm} returned no {', '.join(missing) or 'results'}.")
+    print(f"{algorithm:<16} {time.perf_counter() - began:6.1f} s")
+    return results
+
+
+def table(package, name):
+    """The destination of one layer in a GeoPackage that holds several."""
+    return f"ogr:dbname='{package}' table=\"{name}\" (geom)"
+
+
+def geometries(package, name):
+    """Shapely geometries and attribute rows of a GeoPackage layer."""
+    import shapely
+    from osgeo import ogr
+
+    ogr.UseExceptions()
+    source = ogr.Open(str(package))
+    layer = source.GetLayerByName(name)
+    found, rows = [], []
+    for feature in layer:
+        geometry = feature.GetGeometryRef()
+        found.append(None if geometry is None else shapely.from_wkb(bytes(geometry.ExportToIsoWkb())))
+        rows.append(feature.items())
+    return found, rows
+
+
+def check_results(image, cloud, report, picture):
+    """Stop unless every result is there and holds something."""
+    import laspy
+    import shapely
+    from osgeo import gdal
+
+    gdal.UseExceptions()
+    for name in TABLES:
+        found, _ = geometries(PACKAGE, name)
+        if not found:
+            stop(f"layer {name} of {PACKAGE} is empty.")
+        if name != "curve_elements" and not all(shapely.has_z(g) for g in found):
+            stop(f"layer {name} of {PACKAGE} has geometries without heights.")
+    raster = gdal.Open(str(image))
+    band = raster.GetRasterBand(1)
+    if not raster.GetProjection() or band.GetNoDataValue() is None or band.Checksum() == 0:
+        stop(f"{image} lacks its CRS, its nodata value or any data.")
+    with laspy.open(cloud) as reader:
+        if not reader.header.point_count:
+            stop(f"{cloud} holds no points.")
+    for path in (report, picture):
+        if not path.exists() or path.stat().st_size < 2000:
+            stop(f"{path} is missing or empty.")
+
+
+def percent(share):
+    return "–" if math.isnan(share) else f"{100 * share:.1f} %"
+
+
+def accuracy():
+    """Print how far the result is from the truth of the sample survey."""
+    load()
+    import shapely
+    from lanewright.core.assess.lines import compare_lines
+    from lanewright.core.assess.polygons import compare_polygons
+
+    surface = shapely.union_all([g.buffer(0) for g in map(shapely.force_2d, geometries(PACKAGE, "road_surface")[0])])
+    # The truth reaches as far as the street; the survey as far as the scanner saw it
+    area = surface.buffer(1.0)
+    edges = compare_lines(geometries(PACKAGE, "road_edges")[0], _curbs(), area=area)
+    paint = compare_polygons(geometries(PACKAGE, "markings")[0], geometries(TRUTH, "markings")[0], area=area)
+    lanes = compare_lines(geometries(PACKAGE, "driving_lines")[0], geometries(TRUTH, "driving_lines")[0], area=area)
+    print("\nAgainst the truth of the sample survey (simulated data):")
+    print(f"  road edges     complete {percent(edges.completeness[0.10])}, right {percent(edges.correctness[0.10])} "
+          f"within 10 cm; RMSE {100 * edges.rmse:.1f} cm across, {100 * edges.height_rmse:.1f} cm in height")
+    print(f"  markings       precision {percent(paint.precision)}, recall {percent(paint.recall)}, "
+          f"F1 {percent(paint.f1)} (by area, one cell of 4 cm tolerance)")
+    print(f"  driving lines  recall {percent(lanes.completeness[0.05])} / {percent(lanes.completeness[0.15])}, "
+          f"miscoding {percent(1 - lanes.correctness[0.05])} / {percent(1 - lanes.correctness[0.15])} within 5 / 15 cm; "
+          f"RMSE {100 * lanes.rmse:.1f} cm across, {100 * lanes.height_rmse:.1f} cm in height")
+    for what, share in (("road edges", edges.completeness[0.10]), ("markings", paint.f1),
+                        ("driving lines", lanes.completeness[0.15])):
+        if not share > 0.7:
+            stop(f"{what} agree with the truth by {percent(share)} only; 70 % is the least a sound chain gives.")
+
+
+def _curbs():
+    """True curb bottoms, without the dropped ones that are level with the road."""
+    found, rows = geometries(TRUTH, "boundaries")
+    return [g for g, row in zip(found, rows) if row.get("part") != "top" and row.get("kind") != "dropped"]
+
+
+def main():
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    for old in FOLDER.iterdir():
+        if old.is_file():
+            old.unlink()
+    cloud, trajectory = FOLDER / "survey.laz", FOLDER / "trajectory.gpkg"
+    process("samplesurvey", POINT_CLOUD=str(cloud), TRAJECTORY=str(trajectory),
+            TRUTH_BOUNDARIES=table(TRUTH, "boundaries"), TRUTH_MARKINGS=table(TRUTH, "markings"),
+            TRUTH_DRIVING_LINES=table(TRUTH, "driving_lines"))
+    image, road, report = FOLDER / "intensity.tif", FOLDER / "road_points.laz", FOLDER / "report.html"
+    results = process("roadmap", POINT_CLOUDS=[str(cloud)], TRAJECTORY=str(trajectory), INTENSITY_IMAGE=str(image),
+                      ROAD_POINTS=str(road), REPORT=str(report),
+                      **{name.upper(): table(PACKAGE, name) for name in TABLES})
+    absent = [name for name in (*map(str.upper, TABLES), "INTENSITY_IMAGE", "ROAD_POINTS", "REPORT") if not results.get(name)]
+    if absent:
+        stop(f"roadmap returned no {', '.join(absent)}.")
+    picture = FOLDER / "map.png"
+    drawn = subprocess.run([sys.executable, str(ROOT / "tools" / "draw_map.py"), str(PACKAGE), str(image), str(picture)])
+    if drawn.returncode:
+        stop("the map could not be drawn.")
+    check_results(image, road, report, picture)
+    accuracy()
+    print("\nResults:")
+    for path, what in ((PACKAGE, "all layers, styled"), (image, "intensity image"), (road, "road points"),
+                       (report, "numbers of every stage"), (picture, "the map")):
+        print(f"  {path}  ({what})")
+
+
+if __name__ == "__main__":
+    main()
