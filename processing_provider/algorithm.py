@@ -9,6 +9,7 @@ from qgis.core import (
     QgsProcessing,
     QgsProcessingAlgorithm,
     QgsProcessingException,
+    QgsProcessingOutputNumber,
     QgsProcessingParameterCrs,
     QgsProcessingParameterFeatureSink,
     QgsProcessingParameterFeatureSource,
@@ -180,6 +181,10 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
 
     def add_raster(self, name, label, text="", optional=False, by_default=True):
         self.add(QgsProcessingParameterRasterDestination(name, label, None, optional, by_default), text)
+
+    def add_number(self, name, label):
+        """A number among the results."""
+        self.addOutput(QgsProcessingOutputNumber(name, label))
 
     def add_report(self, name="REPORT", label=None, optional=True, by_default=True):
         label = label or tr("Report")

@@ -1,5 +1,6 @@
 """One run of an algorithm: the values the user gave, and the results on their way out."""
 
+import tempfile
 from pathlib import Path
 
 from qgis.core import (
@@ -28,6 +29,7 @@ class Call:
         self.algorithm, self.parameters = algorithm, parameters
         self.context, self.feedback = context, feedback
         self._files = UnfinishedFiles()
+        self._scratch = tempfile.TemporaryDirectory(prefix="lanewright-")
         self._results = {}
         self._layers = []
 
@@ -134,6 +136,16 @@ class Call:
         self._results[name] = path
         return self._files.begin(path)
 
+    def scratch_file(self, name):
+        """A path in a folder that vanishes with the run."""
+        return str(Path(self._scratch.name) / name)
+
+    def drop_file(self, name):
+        """Take back a file that `new_file` began: there is nothing to put into it."""
+        path = self._results.pop(name, "")
+        if path:
+            self._files.forget(path)
+
     def text(self, name, text):
         """Write a text result (a report) where it is wanted."""
         if self.wants(name):
@@ -168,6 +180,7 @@ class Call:
 
     def discard_unfinished(self):
         self._files.discard()
+        self._scratch.cleanup()
 
 
 def existing_file(path, label):

@@ -1,6 +1,7 @@
 """Every algorithm, in the order of the work."""
 
 from .driving.driving_lines import DrivingLines
+from .driving.road_map import RoadMap
 from .markings.cluster_markings import ClusterMarkings
 from .markings.correct_intensity import CorrectIntensity
 from .markings.extract_markings import ExtractMarkings
@@ -12,9 +13,11 @@ from .road.detect_curbs import DetectCurbs
 from .road.extract_road_surface import ExtractRoadSurface
 from .road.fit_road_edges import FitRoadEdges
 from .survey.import_trajectory import ImportTrajectory
+from .survey.sample_survey import SampleSurvey
 
 ALGORITHMS = (
     ImportTrajectory,
+    SampleSurvey,
     DetectCurbs,
     FitRoadEdges,
     DetectBoundaries,
@@ -26,4 +29,5 @@ ALGORITHMS = (
     ClusterMarkings,
     FitMarkingLines,
     DrivingLines,
+    RoadMap,
 )

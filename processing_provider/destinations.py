@@ -82,11 +82,20 @@ class UnfinishedFiles:
                 os.replace(sidecar, f"{destination}.aux.xml")
         self._waiting = []
 
+    def forget(self, destination):
+        """Remove what was begun for one destination."""
+        destination = Path(destination).absolute()
+        self._remove([pair for pair in self._waiting if pair[1] == destination])
+
     def discard(self):
-        for temporary, _ in self._waiting:
-            for leftover in (temporary, Path(f"{temporary}.aux.xml")):
+        """Remove everything that was begun and not committed."""
+        self._remove(list(self._waiting))
+
+    def _remove(self, pairs):
+        for pair in pairs:
+            for leftover in (pair[0], Path(f"{pair[0]}.aux.xml")):
                 leftover.unlink(missing_ok=True)
-        self._waiting = []
+            self._waiting.remove(pair)
 
 
 def _umask():

@@ -34,17 +34,21 @@ SURVEY_KNOBS = (
 )
 
 
-def open_survey_of(call, progress):
-    """The survey of POINT_CLOUDS and TRAJECTORY, the trajectory brought to the clouds' CRS."""
+def survey_inputs(call, progress):
+    """Paths of POINT_CLOUDS, and TRAJECTORY brought to the clouds' CRS."""
     from ..core.survey.point_cloud import read_headers
-    from ..core.survey.survey import open_survey
 
     paths = call.point_clouds()
-    trajectory = call.trajectory()
     clouds = next((header.crs for header in read_headers(paths) if header.crs), "") or call.crs()
-    trajectory = to_crs(trajectory, clouds, call.context, progress)
-    settings = call.settings(SURVEY_KNOBS, crs=call.crs())
-    return open_survey(paths, trajectory, settings, progress)
+    return paths, to_crs(call.trajectory(), clouds, call.context, progress)
+
+
+def open_survey_of(call, progress):
+    """The survey of POINT_CLOUDS and TRAJECTORY."""
+    from ..core.survey.survey import open_survey
+
+    paths, trajectory = survey_inputs(call, progress)
+    return open_survey(paths, trajectory, call.settings(SURVEY_KNOBS, crs=call.crs()), progress)
 
 
 def frame_of(call, crs, progress, road_points=None):
@@ -124,7 +128,7 @@ def _same(a, b):
 def imported_trajectory(call, progress):
     """INPUT in TARGET_CRS (or the clouds' CRS) and, with POINT_CLOUDS given, on the clouds' clock."""
     from ..core.survey.point_cloud import read_headers
-    from ..core.survey.survey import match_clocks
+    from ..core.survey.survey import _match_clocks as match_clocks
 
     trajectory = call.trajectory("INPUT")
     if call.crs("INPUT_CRS"):

@@ -43,6 +43,7 @@ class ImportTrajectory(LanewrightAlgorithm):
         )
         self.add_knobs(TIME_KNOB)
         self.add_sink("OUTPUT", tr("Imported trajectory"), fields=TRAJECTORY, geometry="PointZ")
+        self.add_number("ROWS", tr("Positions"))
 
     def run(self, call, progress):
         from ...core.survey.trajectory import clean_trajectory

@@ -1,0 +1,102 @@
+"""The whole chain in one call."""
+
+from qgis.core import QgsProcessingParameterBoolean
+
+from ...core.features import Features
+from ...core.schemas import CURB_POINTS, CURVE_ELEMENTS, DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES, ROAD_SURFACE
+from ..algorithm import LanewrightAlgorithm
+from ..markings.cluster_markings import CLUSTER_KNOBS
+from ..markings.correct_intensity import INTENSITY, INTENSITY_KNOBS
+from ..markings.extract_markings import MARKING_KNOBS
+from ..markings.fit_marking_lines import LINE_KNOBS
+from ..markings.intensity_image import IMAGE_KNOBS
+from ..markings.remove_outliers import OUTLIER_KNOBS
+from ..road.detect_boundaries import add_boundary_method
+from ..road.detect_curbs import CURB_KNOBS
+from ..road.extract_road_surface import SURFACE_KNOBS
+from ..road.fit_road_edges import EDGE_KNOBS
+from ..survey_input import SURVEY_KNOBS, survey_inputs
+from ..texts import tr
+from .driving_lines import DRIVING_KNOBS
+
+# Field of RoadMapSettings -> its knobs
+STAGES = {
+    "curbs": CURB_KNOBS,
+    "edges": EDGE_KNOBS,
+    "surface": SURFACE_KNOBS,
+    "image": IMAGE_KNOBS,
+    "markings": MARKING_KNOBS,
+    "outliers": OUTLIER_KNOBS,
+    "clusters": CLUSTER_KNOBS,
+    "lines": LINE_KNOBS,
+    "driving": DRIVING_KNOBS,
+}
+
+# The dialog shows what one turns from survey to survey; the rest is for the single stages
+SHOWN = (
+    "MIN_HEIGHT", "MAX_HEIGHT", "SLOPE", "BLOCK_LENGTH", "MAX_GAP", "FALLBACK_WIDTH", "MAX_WIDTH", "CELL_SIZE", "METHOD",
+    "CURVE", "DEGREE", "LANE_WIDTH", "LINE_DISTANCE", "TRAFFIC_SIDE",
+)
+
+LAYERS = (
+    ("ROAD_EDGES", "edges", "LineStringZ", ROAD_EDGES, tr("Road edges")),
+    ("ROAD_SURFACE", "surface", "PolygonZ", ROAD_SURFACE, tr("Road surface")),
+    ("MARKINGS", "markings", "PolygonZ", MARKINGS, tr("Markings")),
+    ("MARKING_LINES", "marking_lines", "LineStringZ", MARKING_LINES, tr("Marking lines")),
+    ("DRIVING_LINES", "driving_lines", "LineStringZ", DRIVING_LINES, tr("Driving lines")),
+    ("CURVE_ELEMENTS", "curve_elements", "None", CURVE_ELEMENTS, tr("Curve elements")),
+)
+
+
+class RoadMap(LanewrightAlgorithm):
+    ID, TITLE, ROOM = "roadmap", "Road map", "Road map"
+    SUMMARY = "From a survey to driving lines in one call: edges, surface, intensity image, markings, lines and curve elements."
+    HELP = "The same stages as the single algorithms, handed on in memory. Every output is optional."
+    TAGS = ("hd map", "lane", "driving line", "road marking", "curb")
+
+    def initAlgorithm(self, configuration=None):
+        self.add_survey()
+        add_boundary_method(self)
+        self.add(
+            QgsProcessingParameterBoolean("CORRECT_INTENSITY", tr("Correct intensity first"), True),
+            tr("Evens out range, incidence and the difference between scanners. Switch it off for clouds whose "
+               "intensity was corrected already."),
+        )
+        for knobs in STAGES.values():
+            self.add_knobs(knobs, only=SHOWN)
+        self.add_knobs(SURVEY_KNOBS)
+        for name, _, geometry, fields, label in LAYERS:
+            self.add_sink(name, label, fields=fields, geometry=geometry, optional=True)
+        self.add_sink("CURB_POINTS", tr("Curb points"), fields=CURB_POINTS, geometry="PointZ", optional=True, by_default=False)
+        self.add_laz(
+            "ROAD_POINTS", tr("Road points"), tr("Class 11, with the fields the single stages need."), optional=True, by_default=False
+        )
+        self.add_raster("INTENSITY_IMAGE", tr("Intensity image"), optional=True)
+        self.add_report()
+
+    def run(self, call, progress):
+        from ...core.road_map import RoadMapSettings, make_road_map
+        from ...core.survey.road_points_file import write_road_points
+
+        settings = RoadMapSettings(
+            correct=call.flag("CORRECT_INTENSITY"),
+            intensity=call.settings(INTENSITY_KNOBS, INTENSITY),
+            survey=call.settings(SURVEY_KNOBS, crs=call.crs()),
+            **{field: call.settings(knobs) for field, knobs in STAGES.items()},
+        )
+        paths, trajectory = survey_inputs(call, progress)
+        image_path = call.new_file("INTENSITY_IMAGE") or call.scratch_file("intensity.tif")
+        road_map = make_road_map(paths, trajectory, image_path, settings, progress.part(0.0, 0.95))
+        if call.wants("ROAD_POINTS"):
+            write_road_points(road_map.road_points, call.new_file("ROAD_POINTS"), progress.part(0.95, 1.0))
+        if road_map.image is None:
+            call.drop_file("INTENSITY_IMAGE")
+        for name, attribute, geometry, fields, _ in LAYERS:
+            layer = getattr(road_map, attribute)
+            call.layer(name, layer if layer is not None else Features(geometry, fields, crs=road_map.crs))
+        call.layer("CURB_POINTS", road_map.curb_points)
+        if call.wants("REPORT"):
+            from ...core.report import road_map_report
+
+            call.text("REPORT", road_map_report(road_map))
+        return {}

@@ -1,0 +1,95 @@
+"""A made survey with known truth."""
+
+from qgis.core import QgsProcessingParameterCrs
+
+from ...core.schemas import TRAJECTORY
+from ..algorithm import LanewrightAlgorithm
+from ..knobs import Knob
+from ..texts import tr
+from ..trajectory_source import trajectory_features
+
+SAMPLE = "sample.survey:SampleSettings"
+
+SAMPLE_KNOBS = (
+    Knob(
+        "SCENE", SAMPLE, "scene", tr("Scene"),
+        tr("Street is a curved two-lane road with curbs and parked cars, rural has verges instead of curbs, urban is "
+           "broader with more lanes and gutters."),
+        choices=("street", "rural", "urban"),
+    ),
+    Knob(
+        "LENGTH", SAMPLE, "length", tr("Length of the road (m)"),
+        tr("Longer takes longer to make and to work through, in proportion."),
+        minimum=20.0, maximum=20000.0,
+    ),
+    Knob(
+        "SEED", SAMPLE, "seed", tr("Seed of the random numbers (whole number)"),
+        tr("Another seed gives another street with other cars, wear and noise; the same seed gives the same points."),
+        minimum=0, maximum=2**31 - 1,
+    ),
+    Knob(
+        "SPEED", SAMPLE, "speed_kmh", tr("Speed of the vehicle (km/h)"),
+        tr("Faster spreads the scan lines wider apart."), minimum=5.0, maximum=120.0, advanced=True,
+    ),
+    Knob(
+        "PULSE_RATE", SAMPLE, "pulse_rate", tr("Pulses of each scanner (per second)"),
+        tr("More gives a denser cloud and a larger file."), minimum=5000.0, maximum=2e6, advanced=True,
+    ),
+    Knob(
+        "ROTATION_RATE", SAMPLE, "rotation_rate", tr("Scan lines of each scanner (per second)"),
+        tr("More brings the lines closer together, with fewer points on each."), minimum=10.0, maximum=400.0, advanced=True,
+    ),
+    Knob(
+        "RADIUS", SAMPLE, "radius", tr("Radius of the bends (m)"), tr("Smaller makes sharper bends."),
+        minimum=60.0, maximum=5000.0, advanced=True,
+    ),
+    Knob(
+        "CURB_HEIGHT", SAMPLE, "curb_height", tr("Height of the curbs (m)"), tr("Lower is harder to find."),
+        minimum=0.04, maximum=0.3, advanced=True,
+    ),
+    Knob(
+        "GUTTER", SAMPLE, "gutter", tr("Width of a concrete gutter along the curbs (m)"),
+        tr("A gutter is as bright as paint and is not to be taken for it; 0 leaves it out."),
+        minimum=0.0, maximum=1.0, advanced=True,
+    ),
+)
+
+TRUTHS = (
+    ("TRUTH_BOUNDARIES", "truth_boundaries", "LineStringZ", tr("True road boundaries")),
+    ("TRUTH_MARKINGS", "truth_markings", "PolygonZ", tr("True markings")),
+    ("TRUTH_DRIVING_LINES", "truth_driving_lines", "LineStringZ", tr("True driving lines")),
+    ("TRUTH_SURFACE", "truth_surface", "PolygonZ", tr("True road surface")),
+)
+
+
+class SampleSurvey(LanewrightAlgorithm):
+    ID, TITLE, ROOM = "samplesurvey", "Sample survey", "Survey"
+    SUMMARY = "Makes a mobile laser scanning survey of a street that exists only on paper, together with the truth about it."
+    HELP = "Every pulse of two scanners is followed to what it meets first. Figures reached on it are figures on simulated data."
+    TAGS = ("sample", "simulation", "test data")
+    TRAJECTORIES = ()
+
+    def initAlgorithm(self, configuration=None):
+        self.add_knobs(SAMPLE_KNOBS)
+        self.add(
+            QgsProcessingParameterCrs("CRS", tr("CRS of the survey"), "EPSG:32650", optional=True),
+            tr("A projected CRS in metres. The coordinates are the same in each; it only says where on earth they are."),
+            advanced=True,
+        )
+        self.add_laz("POINT_CLOUD", tr("Point cloud"))
+        self.add_sink("TRAJECTORY", tr("Trajectory"), fields=TRAJECTORY, geometry="PointZ")
+        for name, _, geometry, label in TRUTHS:
+            self.add_sink(name, label, geometry=geometry, optional=True)
+        self.add_number("POINTS", tr("Points"))
+
+    def run(self, call, progress):
+        from ...core.sample.survey import make_sample_survey
+
+        settings = call.settings(SAMPLE_KNOBS, **({"crs": call.crs()} if call.crs() else {}))
+        survey = make_sample_survey(settings, progress.part(0.0, 0.1))
+        count = survey.write_cloud(call.new_file("POINT_CLOUD"), progress.part(0.1, 1.0))
+        progress.say(tr("{count} points of a {length:.0f} m road.").format(count=count, length=settings.length))
+        call.layer("TRAJECTORY", trajectory_features(survey.trajectory))
+        for name, attribute, _, _ in TRUTHS:
+            call.layer(name, getattr(survey, attribute))
+        return {"POINTS": count}
