@@ -2,6 +2,7 @@
 
 import os
 import tempfile
+import threading
 from collections import OrderedDict, defaultdict
 
 import numpy as np
@@ -10,6 +11,7 @@ from .points import Points, UNIT, canonical_order
 
 SECTION_LENGTH = 20.0  # m of station; results must not depend on it
 MEMORY_LIMIT = 400 * 2**20  # bytes of records kept before they are spilled
+KEPT_SECTIONS = 8  # last read, sorted: neighbours ask for them again
 
 
 class SectionStore:
@@ -27,6 +29,7 @@ class SectionStore:
         self._waiting = defaultdict(list)   # (road, section) -> arrays in memory
         self._spilled = defaultdict(list)   # (road, section) -> (offset, count) in the file
         self._sorted = OrderedDict()        # a few sections as last read
+        self._lock = threading.Lock()       # sections are read by several threads
         self._waiting_bytes = 0
         self._file = None
         self._end = 0
@@ -77,10 +80,11 @@ class SectionStore:
     def section(self, road, section):
         """The records of one section in canonical order (empty where there are none)."""
         key = (road, section)
-        cached = self._sorted.get(key)
-        if cached is not None:
-            self._sorted.move_to_end(key)
-            return cached
+        with self._lock:
+            cached = self._sorted.get(key)
+            if cached is not None:
+                self._sorted.move_to_end(key)
+                return cached
         arrays = []
         for offset, count in self._spilled.get(key, ()):
             # pread leaves the file's position alone, so threads may read together
@@ -90,17 +94,16 @@ class SectionStore:
         arrays += self._waiting.get(key, [])
         records = np.concatenate(arrays) if arrays else np.empty(0, self.dtype)
         records = records[canonical_order(records)]
-        self._sorted[key] = records
-        while len(self._sorted) > 6:
-            try:
+        with self._lock:
+            self._sorted[key] = records
+            while len(self._sorted) > KEPT_SECTIONS:
                 self._sorted.popitem(last=False)
-            except KeyError:
-                break
         return records
 
     def _read_at(self, offset, count):
-        self._file.seek(offset)
-        return self._file.read(count * self.dtype.itemsize)
+        with self._lock:
+            self._file.seek(offset)
+            return self._file.read(count * self.dtype.itemsize)
 
     def window(self, road, start, end):
         """Points of a road with start <= station < end (metres), in canonical order per section."""
