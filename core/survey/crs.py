@@ -1,5 +1,10 @@
 """The coordinate reference system a survey is worked in: projected, in metres, and agreed on."""
 
+import warnings
+from dataclasses import replace
+
+import numpy as np
+
 from ..errors import RoadExtractionError
 
 
@@ -75,3 +80,71 @@ def check_metric(crs, what):
             raise RoadExtractionError(
                 f"{what} has heights in {', '.join(sorted(vertical))} ({crs.sub_crs_list[-1].name}). Lanewright works "
                 "in metres: convert the heights and run again.")
+
+
+def same_place(a, b):
+    """Whether two CRSs give a place the same x and y, however their WKT was written."""
+    a, b = horizontal(a), horizontal(b)
+    if a.equals(b, ignore_axis_order=True):
+        return True
+    # LAS files round and rename; the projection itself is what counts
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        a, b = a.to_dict(), b.to_dict()
+    ignored = ("title", "type", "no_defs")
+    return bool(a) and {k: v for k, v in a.items() if k not in ignored} == {k: v for k, v in b.items() if k not in ignored}
+
+
+def reproject_trajectory(trajectory, target_wkt):
+    """The trajectory in another CRS: positions, and the heading turned to the target's grid north.
+
+    Heights stay as they are; whether they are ellipsoidal or not is absorbed by
+    the estimated height of the sensor. A trajectory or target without CRS, or
+    both in one CRS, comes back unchanged.
+
+    Raises
+    ------
+    RoadExtractionError
+        If the target is not projected in metres, the source is in another unit
+        than metres or degrees, or positions cannot be brought to the target.
+    """
+    from pyproj import Transformer
+    from pyproj.exceptions import ProjError
+
+    source, target = parse_crs(trajectory.crs), parse_crs(target_wkt)
+    if source is None or target is None:
+        return trajectory
+    if same_place(source, target):
+        return replace(trajectory, crs=target.to_wkt())
+    check_metric(target, "The target of the trajectory")
+    source, target = horizontal(source), horizontal(target)
+    if not source.is_geographic:
+        check_metric(source, "The trajectory")
+    try:
+        transformer = Transformer.from_crs(source, target, always_xy=True)
+        x, y = transformer.transform(trajectory.x, trajectory.y)
+        known = np.isfinite(trajectory.x) & np.isfinite(trajectory.y)
+        if not (np.isfinite(x[known]) & np.isfinite(y[known])).all():
+            raise ProjError("some positions lie where the projection is not defined")
+    except ProjError as problem:
+        raise RoadExtractionError(
+            f"The trajectory is in {source.name} and cannot be brought to {target.name} ({problem}). Check the CRS of the trajectory.") from problem
+    x, y = np.where(known, x, np.nan), np.where(known, y, np.nan)
+    heading = _turned_heading(trajectory, source, transformer, x, y)
+    note = f"The trajectory was reprojected from {source.name} to {target.name}."
+    return replace(trajectory, x=x, y=y, heading=heading, crs=target.to_wkt(), notes=(*trajectory.notes, note))
+
+
+def _turned_heading(trajectory, source, transformer, x, y):
+    """Headings against the target's grid north: a step of some metres ahead is reprojected too."""
+    known = np.isfinite(trajectory.heading) & np.isfinite(x)
+    heading = np.full(len(x), np.nan)
+    if not known.any():
+        return heading
+    ahead = np.radians(trajectory.heading[known])
+    step_x, step_y = 10.0 * np.sin(ahead), 10.0 * np.cos(ahead)
+    if source.is_geographic:
+        step_y, step_x = step_y / 111_000.0, step_x / (111_000.0 * np.cos(np.radians(trajectory.y[known])))
+    to_x, to_y = transformer.transform(trajectory.x[known] + step_x, trajectory.y[known] + step_y)
+    heading[known] = np.degrees(np.arctan2(to_x - x[known], to_y - y[known])) % 360.0
+    return heading
