@@ -1,0 +1,1 @@
+"""Reports: one HTML page a run, complete in itself, with numbers and pictures."""
