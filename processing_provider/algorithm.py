@@ -172,7 +172,7 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
 
     def add_sink(self, name, label, text="", geometry="any", optional=False, by_default=True, fields=()):
         """A vector output; the help lists its fields."""
-        listed = "; ".join(f"<i>{field.name}</i> {tr(field.alias)}" for field in fields)
+        listed = "; ".join(f"{field.name} ({tr(field.alias)})" for field in fields)
         text = " ".join(part for part in (text, tr("Fields: {fields}.").format(fields=listed) if fields else "") if part)
         self.add(QgsProcessingParameterFeatureSink(name, label, SOURCES[geometry], None, optional, by_default), text)
 

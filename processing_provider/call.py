@@ -52,15 +52,15 @@ class Call:
         """WKT, or "" where none was chosen."""
         return crs_text(self.algorithm.parameterAsCrs(self.parameters, name, self.context))
 
-    def trajectory(self, name="TRAJECTORY"):
-        """The trajectory as the core takes it, from a layer, a table or a file."""
+    def trajectory(self, name="TRAJECTORY", crs=""):
+        """The trajectory as the core takes it, from a layer, a table or a file; `crs` overrules what it says."""
         path = trajectory_path(self.parameters.get(name))
         if path is not None:
             from ..core.survey.trajectory_file import read_trajectory
 
-            return read_trajectory(existing_file(str(path), self.label(name)))
+            return read_trajectory(existing_file(str(path), self.label(name)), crs)
         source = self._source(name)
-        return None if source is None else read_trajectory_source(source, self.label(name))
+        return None if source is None else read_trajectory_source(source, self.label(name), crs)
 
     def raster(self, name):
         """The file of a raster input."""

@@ -2,12 +2,7 @@
 
 from dataclasses import replace
 
-import numpy as np
-from qgis.core import QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsCsException, QgsLineString
-
-from ..core.errors import RoadExtractionError
 from .knobs import Knob
-from .layers import crs_text
 from .texts import tr
 
 SURVEY = "survey.survey:SurveySettings"
@@ -36,11 +31,12 @@ SURVEY_KNOBS = (
 
 def survey_inputs(call, progress):
     """Paths of POINT_CLOUDS, and TRAJECTORY brought to the clouds' CRS."""
+    from ..core.survey.crs import reproject_trajectory
     from ..core.survey.point_cloud import read_headers
 
     paths = call.point_clouds()
     clouds = next((header.crs for header in read_headers(paths) if header.crs), "") or call.crs()
-    return paths, to_crs(call.trajectory(), clouds, call.context, progress)
+    return paths, reproject_trajectory(call.trajectory(), clouds)
 
 
 def open_survey_of(call, progress):
@@ -53,9 +49,10 @@ def open_survey_of(call, progress):
 
 def frame_of(call, crs, progress, road_points=None):
     """The road frame of TRAJECTORY for data in `crs`; with road points given, on their clock."""
+    from ..core.survey.crs import reproject_trajectory
     from ..core.survey.road_frame import build_frame
 
-    trajectory = to_crs(call.trajectory(), crs, call.context, progress)
+    trajectory = reproject_trajectory(call.trajectory(), crs)
     if road_points is not None and trajectory.has_time:
         trajectory = _on_clock_of(road_points, trajectory, progress)
     frame = build_frame(trajectory)
@@ -85,63 +82,19 @@ def road_points_of(call, name, progress):
     return read_road_points(call.cloud(name), progress)
 
 
-def to_crs(trajectory, wkt, context, progress):
-    """The trajectory in the CRS `wkt`; unchanged where either CRS is unknown or both agree."""
-    if not trajectory.crs or not wkt:
-        return trajectory
-    source = QgsCoordinateReferenceSystem.fromWkt(trajectory.crs)
-    target = _horizontal(QgsCoordinateReferenceSystem.fromWkt(wkt))
-    if not source.isValid() or not target.isValid() or _same(source, target):
-        return trajectory
-    transform = QgsCoordinateTransform(source, target, context.transformContext())
-    line = QgsLineString(trajectory.x.tolist(), trajectory.y.tolist())
-    try:
-        line.transform(transform)
-    except QgsCsException as problem:
-        raise RoadExtractionError(
-            tr("The trajectory is in {source} and cannot be brought to {target} of the point clouds ({problem}). "
-               "Check the CRS of the trajectory.").format(
-                source=source.userFriendlyIdentifier(), target=target.userFriendlyIdentifier(), problem=problem)
-        ) from problem
-    progress.say(
-        tr("The trajectory was reprojected from {source} to {target}.").format(
-            source=source.userFriendlyIdentifier(), target=target.userFriendlyIdentifier())
-    )
-    # Little-endian WKB of a 2-D line: 9 bytes of head, then x, y, x, y ...
-    x, y = np.frombuffer(bytes(line.asWkb()), "<f8", offset=9).reshape(-1, 2).T.copy()
-    return replace(trajectory, x=x, y=y, crs=crs_text(target))
-
-
-def _horizontal(crs):
-    flat = crs.horizontalCrs() if hasattr(crs, "horizontalCrs") else crs
-    return flat if flat.isValid() else crs
-
-
-def _same(a, b):
-    """Whether two CRSs are one, however their WKT was written (LAS files round and rename)."""
-    a = _horizontal(a)
-    if a == b or (a.authid() and a.authid() == b.authid()):
-        return True
-    return bool(a.toProj()) and a.toProj() == b.toProj()
-
-
 def imported_trajectory(call, progress):
     """INPUT in TARGET_CRS (or the clouds' CRS) and, with POINT_CLOUDS given, on the clouds' clock."""
+    from ..core.survey.crs import reproject_trajectory
     from ..core.survey.point_cloud import read_headers
     from ..core.survey.survey import _match_clocks as match_clocks
 
-    trajectory = call.trajectory("INPUT")
-    if call.crs("INPUT_CRS"):
-        trajectory = replace(trajectory, crs=call.crs("INPUT_CRS"))
+    trajectory = call.trajectory("INPUT", call.crs("INPUT_CRS"))
     headers = read_headers(call.point_clouds()) if call.parameters.get("POINT_CLOUDS") else []
     target = call.crs("TARGET_CRS") or next((header.crs for header in headers if header.crs), "")
-    trajectory = to_crs(trajectory, target, call.context, progress)
     if target and not trajectory.crs:
-        progress.warn(
-            tr("The trajectory says no CRS; its coordinates are taken to be in {target} as they are.").format(
-                target=QgsCoordinateReferenceSystem.fromWkt(target).userFriendlyIdentifier())
-        )
+        progress.warn(tr("The trajectory says no CRS; its coordinates are taken to be those of the target CRS as they are."))
         trajectory = replace(trajectory, crs=target)
+    trajectory = reproject_trajectory(trajectory, target)
     if headers:
         trajectory, note, _ = match_clocks(headers, trajectory, call.settings(SURVEY_KNOBS), progress)
         if note:

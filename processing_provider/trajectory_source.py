@@ -37,72 +37,73 @@ def accept_trajectory_file(algorithm, parameters, context):
     return accepted
 
 
-def read_trajectory_source(source, label):
+def read_trajectory_source(source, label, crs=""):
     """A point layer, line layer or table as the core's Trajectory (not yet cleaned)."""
-    from ..core.survey.trajectory import Trajectory
+    from ..core.survey.trajectory_file import trajectory_from_columns
 
-    names = [field.name() for field in source.fields()]
-    roles = column_roles(names)
     kind = QgsWkbTypes.geometryType(source.wkbType())
     if kind == QgsWkbTypes.GeometryType.LineGeometry:
-        return _from_lines(source, label)
-    has_points = kind == QgsWkbTypes.GeometryType.PointGeometry
-    columns = {role: [] for role in ("time", "x", "y", "z", "roll", "pitch", "heading")}
-    missing = [role for role in ("x", "y", "z") if role not in roles]
-    if not has_points and missing:
+        columns = _line_columns(source)
+    elif kind == QgsWkbTypes.GeometryType.PointGeometry:
+        columns = _point_columns(source)
+    else:
+        columns = _table_columns(source, label)
+    if not len(next(iter(columns.values()))):
         raise RoadExtractionError(
-            tr("{label} is a table with the columns {names}; x, y and z are needed. Name the columns so, or run Import trajectory.").format(
-                label=label, names=", ".join(names)
-            )
+            tr("{label} has no rows. Choose the layer that holds the driven positions.").format(label=label)
         )
-    with_z = has_points and QgsWkbTypes.hasZ(source.wkbType())
-    if has_points and not with_z and "z" not in roles:
-        raise RoadExtractionError(
-            tr("{label} has points without heights and no column z. Use a layer with Z, or add the heights as a column z.").format(label=label)
-        )
-    for feature in source.getFeatures():
-        place = {}
-        if has_points:
-            geometry = feature.geometry()
-            if geometry.isNull() or geometry.isEmpty():
-                continue
-            vertex = next(geometry.vertices())
-            place = {"x": vertex.x(), "y": vertex.y()}
-            if with_z:
-                place["z"] = vertex.z()
-        for role, values in columns.items():
-            if role in place:
-                values.append(place[role])
-            else:
-                values.append(_number(feature.attribute(roles[role])) if role in roles else np.nan)
-    arrays = {role: np.array(values, float) for role, values in columns.items()}
-    has_time = "time" in roles and np.isfinite(arrays["time"]).any()
-    if not has_time:
-        arrays["time"] = np.arange(len(arrays["x"]), dtype=float)
-    return Trajectory(**arrays, crs=crs_text(source.sourceCrs()), has_time=has_time)
+    return trajectory_from_columns(columns, crs or crs_text(source.sourceCrs()), label=label)
 
 
-def _from_lines(source, label):
+def _line_columns(source):
     """Vertices in drawing order; M, where there is one, is the time."""
-    from ..core.survey.trajectory import Trajectory
-
-    if not QgsWkbTypes.hasZ(source.wkbType()):
-        raise RoadExtractionError(tr("{label} has lines without heights (Z). Use a line layer with Z.").format(label=label))
-    has_time = QgsWkbTypes.hasM(source.wkbType())
-    rows = []
-    for feature in source.getFeatures():
-        rows += [(v.x(), v.y(), v.z(), v.m() if has_time else 0.0) for v in feature.geometry().vertices()]
+    has_z, has_m = QgsWkbTypes.hasZ(source.wkbType()), QgsWkbTypes.hasM(source.wkbType())
+    rows = [
+        (v.x(), v.y(), v.z() if has_z else np.nan, v.m() if has_m else np.nan)
+        for feature in source.getFeatures()
+        for v in feature.geometry().vertices()
+    ]
     x, y, z, time = np.array(rows, float).reshape(-1, 4).T
-    if not has_time:
-        time = np.arange(len(x), dtype=float)
-    return Trajectory(time, x, y, z, crs=crs_text(source.sourceCrs()), has_time=has_time)
+    return {"x": x, "y": y, **({"z": z} if has_z else {}), **({"time": time} if has_m else {})}
 
 
-def column_roles(names):
-    """Which column is time, x, y, z, roll, pitch, heading: the same words as for files."""
-    from ..core.survey.trajectory_file import columns_by_role
+def _point_columns(source):
+    """Places from the geometry (the height too, where it has one), the rest from fields."""
+    names = _roles(source)
+    for role in ("x", "y", "lon", "lat", *(("z",) if QgsWkbTypes.hasZ(source.wkbType()) else ())):
+        names.pop(role, None)
+    places, fields = [], {role: [] for role in names}
+    for feature in source.getFeatures():
+        geometry = feature.geometry()
+        if geometry.isNull() or geometry.isEmpty():
+            continue
+        vertex = next(geometry.vertices())
+        places.append((vertex.x(), vertex.y(), vertex.z()))
+        for role, name in names.items():
+            fields[role].append(_number(feature.attribute(name)))
+    x, y, z = np.array(places, float).reshape(-1, 3).T
+    columns = {role: np.array(values, float) for role, values in fields.items()}
+    return {"x": x, "y": y, **columns, **({} if "z" in names else {"z": z})}
 
-    return columns_by_role(names)
+
+def _table_columns(source, label):
+    names = _roles(source)
+    missing = [role for role, other in (("x", "lon"), ("y", "lat"), ("z", "z")) if role not in names and other not in names]
+    if missing:
+        raise RoadExtractionError(
+            tr("{label} is a table with the columns {names}; {missing} cannot be found among them. Name them time, x, y, z, "
+               "roll, pitch, heading.").format(
+                label=label, names=", ".join(field.name() for field in source.fields()), missing=", ".join(missing))
+        )
+    rows = [[_number(feature.attribute(name)) for name in names.values()] for feature in source.getFeatures()]
+    return dict(zip(names, np.array(rows, float).reshape(-1, len(names)).T))
+
+
+def _roles(source):
+    """Role to field name, by the same words as for files."""
+    from ..core.survey.trajectory_columns import columns_by_role
+
+    return columns_by_role([field.name() for field in source.fields()])
 
 
 def _number(value):
@@ -127,7 +128,7 @@ def trajectory_features(trajectory):
                trajectory.roll, trajectory.pitch, trajectory.heading)
     rows = [
         dict(zip(("time", "roll", "pitch", "heading", "road", "pass", "station_m"), (*values, *where)))
-        for values, where in zip(np.c_[columns].T.tolist(), placed)
+        for values, where in zip(np.stack(columns, axis=1).tolist(), placed)
     ]
     return Features("PointZ", TRAJECTORY, list(points), rows, trajectory.crs)
 
