@@ -121,18 +121,22 @@ def _beyond_edge(scene, side, rays, t, s, d):
     live = np.flatnonzero(outward > 0.02)
     t, s, away, ray = t[live], s[live], side.sign * d[live], rays.some(live)
     t, s, away = ray.reach(side, side.edge, t, s, away, times=3)
+    on = np.flatnonzero((t > 0) & (np.abs(away - side.edge) < 0.01))
+    live, ray, t, s, away = live[on], ray.some(on), t[on], s[on], away[on]
     above = ray.oz + t * ray.vz - scene.edge_height(side, s)
     for k in range(1, len(side.borders)):
         next_t, next_s, next_away = ray.reach(side, side.borders[k], t, s, away, times=2 if k < 3 else 3)
+        # In a bend a few pulses run along a border and never pass it; they are left out.
+        passed = (next_t >= t) & (np.abs(next_away - side.borders[k]) < 0.01)
         ground = scene.edge_height(side, next_s) + side.border_rise(k, next_s)
         next_above = ray.oz + next_t * ray.vz - ground
-        met = np.flatnonzero(next_above <= 0)
+        met = np.flatnonzero(passed & (next_above <= 0))
         if len(met):
             at = live[met]
             found_t[at], found_s[at], found_d[at] = _within_strip(
                 scene, side, k - 1, ray.some(met), (t[met], above[met]), (next_t[met], next_above[met]), s[met])
             found_strip[at] = side.sign * k
-        on = next_above > 0
+        on = np.flatnonzero(passed & (next_above > 0))
         live, ray = live[on], ray.some(on)
         t, s, away, above = next_t[on], next_s[on], next_away[on], next_above[on]
         if len(live) == 0:

@@ -101,10 +101,11 @@ def car_bodies(length, width, height, brightness):
 
 @dataclass(frozen=True)
 class Post:
-    """An upright cylinder from the ground to `top` (a height like z): a pole, a trunk."""
+    """An upright cylinder from the ground at `z` to the height `top`: a pole, a trunk."""
 
     x: float
     y: float
+    z: float
     top: float
     radius: float
     label: int
@@ -121,7 +122,9 @@ class Post:
         inside = half**2 - square * (dx**2 + dy**2 - self.radius**2)
         with np.errstate(divide="ignore", invalid="ignore"):
             t = (-half - np.sqrt(inside)) / square
-        hit = (inside > 0) & (t > 0) & (origin[2] + t * direction[2] <= self.top)
+        height = origin[2] + t * direction[2]
+        # The ground itself is not computed outside the surveyed stretch, so the foot is checked here.
+        hit = (inside > 0) & (t > 0) & (height <= self.top) & (height >= self.z - 0.03)
         # Across the post the surface turns away; along it the ray meets it at its elevation.
         cosine = np.sqrt(np.maximum(inside, 0.0)) / self.radius
         return np.where(hit, t, np.inf), np.where(hit, cosine, 0.0), np.full(len(t), self.brightness)

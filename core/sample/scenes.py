@@ -88,10 +88,10 @@ class _Furnishing:
             if kind == "car":
                 scene.obstacles.append(Car(x, y, z, float(self.axis.heading(np.array([s]))[0]), car_bodies(*shape)))
             elif kind == "pole":
-                scene.obstacles.append(Post(x, y, z + shape[1], shape[0], LABEL["pole"], 0.35))
+                scene.obstacles.append(Post(x, y, z, z + shape[1], shape[0], LABEL["pole"], 0.35))
             else:
                 trunk, reach, half, middle = shape
-                scene.obstacles.append(Post(x, y, z + middle, trunk, LABEL["tree"], 0.18))
+                scene.obstacles.append(Post(x, y, z, z + middle, trunk, LABEL["tree"], 0.18))
                 scene.obstacles.append(Crown(x, y, z + middle, reach, half, z + middle + half))
         return scene
 
@@ -143,11 +143,11 @@ def _street(length, seed, radius, curb_height, gutter):
 
 def _through_lane(road, direction, beside_double, beside_single, zebra):
     """The left lane, through every crossing; its inner line changes from double to single there and back."""
-    places = []
+    places = [(0.0, beside_double)]
     for base in road.modules():
-        places += [(base, beside_double), (base + zebra[0] - 2.0, beside_double),
-                   (base + zebra[1] + 2.4, beside_single), (base + _MODULE - 1e-6, beside_single)]
-    road.lane(1, direction, *places)
+        places += [(base + 4.0, beside_double), (base + zebra[0] - 2.0, beside_double),
+                   (base + zebra[1] + 2.4, beside_single), (base + _MODULE - 4.0, beside_single)]
+    road.lane(1, direction, *places, (places[-1][0] + 4.0, beside_single))
 
 
 def _rural(length, seed, radius, curb_height, gutter):

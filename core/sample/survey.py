@@ -21,7 +21,7 @@ from .casting import OBSTACLE, cast
 from .drive import Drive
 from .intensity import brightness_of, label_hits, received
 from .scanner import butterfly
-from .scene import LABEL, LABELS
+from .scene import LABEL
 from .scenes import build_scene
 
 SCENES = ("street", "rural", "urban")
@@ -45,7 +45,7 @@ class SampleSettings:
     scene: str = "street"          # street, rural or urban
     length: float = 120.0          # m of road
     seed: int = 1
-    speed_kmh: float = 40.0        # of the vehicle
+    speed_kmh: float = 50.0        # of the vehicle
     pulse_rate: float = 300_000.0  # pulses per second of each scanner
     rotation_rate: float = 200.0   # lines per second of each scanner
     radius: float = 120.0          # m, of the bends
@@ -182,10 +182,10 @@ class SampleSurvey:
         true_range = distance
         if noise:
             normal = random.standard_normal((3, len(found)), dtype=np.float32)
-            chance = random.random((2, len(found)), dtype=np.float32)
+            chance = random.random((3, len(found)), dtype=np.float32)
             distance = distance + _RANGE_NOISE * normal[0]
             stray = chance[0] < _STRAY
-            distance[stray] = 1.5 + (distance[stray] - 1.5) * chance[1][stray]
+            distance[stray] = 1.5 + (distance[stray] - 1.5) * chance[2][stray]
             label[stray] = LABEL["stray"]
             strength = strength * (1.0 + 0.07 * normal[1]) + 25.0 * normal[2]
             # Weak returns are missed: half of those near 150 counts.
@@ -231,6 +231,7 @@ class SampleSurvey:
         finally:
             if os.path.exists(part):
                 os.remove(part)
+        progress.at(1.0)
         return count
 
     def _header(self, laspy):
@@ -255,7 +256,3 @@ def _las_record(laspy, points, header):
     record["return_number"] = record["number_of_returns"] = np.ones(len(points), dtype=np.uint8)
     return record
 
-
-def label_of(name):
-    """Number of a label, such as "curb face"."""
-    return LABELS.index(name)

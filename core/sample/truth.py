@@ -36,8 +36,7 @@ def true_boundaries(scene, origin, crs):
         for start, end, kind in _curb_pieces(side, scene.length):
             s = _stations(start, end)
             height = float(np.median(side.curb(s)))
-            # A point on a border belongs to the strip within; ask a hair's breadth outside the face for the top.
-            for part, away in (("bottom", side.borders[0]), ("top", side.borders[1] + 1e-9)):
+            for part, away in (("bottom", side.borders[0]), ("top", side.borders[1])):
                 line = LineString(_coordinates(scene, origin, s, side.sign * away))
                 layer.add(line, road=1, side=name, part=part, kind=kind, station_m=float(start), end_m=float(end),
                           height_m=height, length_m=float(line.length))
