@@ -6,13 +6,13 @@ import numpy as np
 
 from ..errors import RoadExtractionError
 from ..progress import Progress
-from .crs import check_projected
+from .crs import check_projected, parse_crs, reproject_trajectory
 from .point_cloud import BLOCK, read_blocks, read_headers
 from .points import SURVEY_POINT, UNIT, Points, to_units
 from .road_frame import CORRIDOR, build_frame
 from .scanners import ScannerCensus
 from .section_store import MEMORY_LIMIT, SECTION_LENGTH, SectionStore
-from .time_systems import align_time
+from .time_systems import WEEK, align_time, wrapped_week
 
 NEAR_TRACK = 1.5       # m either side of the vehicle's own track: road, not sidewalk
 DEFAULT_HEIGHT = 2.6   # m, sensor above road, where nothing lies on the track
@@ -102,7 +102,8 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
     """
     files = read_headers(paths)
     crs = check_projected(files, settings.crs, trajectory.crs)
-    trajectory, time_note, has_time = _match_clocks(files, trajectory, settings, progress)
+    trajectory = reproject_trajectory(trajectory, crs)
+    trajectory, time_note, has_time, week_ends = _match_clocks(files, trajectory, settings, progress)
     if time_note:
         progress.say(time_note)
     frame = build_frame(trajectory)
@@ -110,9 +111,9 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
     frame.has_time = has_time
     for note in frame.notes:
         progress.say(note)
-    _check_extent(files, frame)
+    _check_extent(files, frame, crs, trajectory.crs)
     store = SectionStore(SURVEY_POINT, settings.section_length, settings.memory_limit)
-    reader = _Reader(frame, store, settings, has_time)
+    reader = _Reader(frame, store, settings, has_time, week_ends)
     total, done = sum(file.count for file in files), 0
     for file in files:
         for block in read_blocks(file.path, settings.block):
@@ -136,8 +137,9 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
 class _Reader:
     """Places blocks of points; the coarse height limits come from the first points on the track."""
 
-    def __init__(self, frame, store, settings, has_time):
+    def __init__(self, frame, store, settings, has_time, week_ends=False):
         self.frame, self.store, self.settings, self.has_time = frame, store, settings, has_time
+        self.week_ends = week_ends
         self.census = ScannerCensus()
         self.brightest = 0
         self.drop = None          # metres from track to road, rough
@@ -160,6 +162,7 @@ class _Reader:
         self.brightest = max(self.brightest, int(intensity.max(initial=0)))
         source = np.asarray(block["point_source_id"])
         time = np.asarray(block["gps_time"], float) if "gps_time" in names else np.zeros(len(x))
+        time = _carried_on(time) if self.week_ends else time
         channel = np.asarray(block["scanner_channel"]) if "scanner_channel" in names else np.zeros(len(x), np.uint8)
         if len(x):
             self.census.add("point_source_id", source, time)
@@ -272,27 +275,33 @@ def _sensor_heights(frame, store):
 
 
 def _match_clocks(files, trajectory, settings, progress):
-    """The trajectory in the cloud's time system, a note for the user, and whether time can be used."""
+    """The trajectory in the cloud's time system, a note, whether time can be used, whether the GPS week ends during the scan."""
     if not trajectory.has_time:
-        return trajectory, "The trajectory has no time; each point is placed at the nearest foot on it.", False
+        return trajectory, "The trajectory has no time; each point is placed at the nearest foot on it.", False, False
     if not all(file.has_time for file in files):
-        return trajectory, "The point cloud has no gps_time; each point is placed at the nearest foot on the trajectory.", False
+        return trajectory, "The point cloud has no gps_time; each point is placed at the nearest foot on the trajectory.", False, False
     span = _time_span(files)
     if span is None:
-        return trajectory, "All gps_time values are equal; each point is placed at the nearest foot on the trajectory.", False
+        return trajectory, "All gps_time values are equal; each point is placed at the nearest foot on the trajectory.", False, False
+    span, week_ends = span
     offset, note = align_time(trajectory.time, span, settings.time, files[0].adjusted_time)
-    return trajectory.shifted(offset) if offset else trajectory, note, True
+    return trajectory.shifted(offset), note, True, week_ends
+
+
+def _carried_on(time):
+    """Seconds of the week, those after the week's end carried on."""
+    return np.where(time < WEEK / 2, time + WEEK, time)
 
 
 def _time_span(files):
-    """(first, last) gps_time seen in samples of every file, or None where it stands still.
+    """((first, last) gps_time in samples of every file, whether the week ends between), or None where time stands still.
 
     Whole files are not read for it: blocks at the start of each file, and the
     last block, give the span to within the overlap test's needs.
     """
     from .point_cloud import open_cloud
 
-    first, last = np.inf, -np.inf
+    samples = []
     for file in files:
         if not file.count:
             continue
@@ -307,12 +316,16 @@ def _time_span(files):
                         f"{file.path} is damaged: its header promises {file.count} points, but those from "
                         f"{start} on cannot be read ({problem}). Copy or export the file again.") from problem
                 time = time[np.isfinite(time)]
-                if len(time):
-                    first, last = min(first, time.min()), max(last, time.max())
-    return (first, last) if last > first else None
+                samples.append(time)
+    times = np.concatenate(samples)
+    if not len(times) or times.max() <= times.min():
+        return None
+    week_ends = wrapped_week((times.min(), times.max()))
+    times = _carried_on(times) if week_ends else times
+    return (float(times.min()), float(times.max())), week_ends
 
 
-def _check_extent(files, frame):
+def _check_extent(files, frame, crs, trajectory_crs):
     low = np.min([file.minimum for file in files if file.count], axis=0)
     high = np.max([file.maximum for file in files if file.count], axis=0)
     x = np.concatenate([p.x for p in frame.passes]) + frame.origin[0]
@@ -322,7 +335,15 @@ def _check_extent(files, frame):
         raise RoadExtractionError(
             f"The trajectory does not run through the point cloud. The cloud covers x {low[0]:.1f} to {high[0]:.1f}, "
             f"y {low[1]:.1f} to {high[1]:.1f}; the trajectory runs over x {x.min():.1f} to {x.max():.1f}, "
-            f"y {y.min():.1f} to {y.max():.1f}. Check that both belong to one survey and use one CRS.")
+            f"y {y.min():.1f} to {y.max():.1f}. {_which_crs(crs, trajectory_crs)}")
+
+
+def _which_crs(crs, trajectory_crs):
+    """What to try where cloud and trajectory lie apart."""
+    if trajectory_crs:
+        return f"Both were taken to be in {parse_crs(crs).name}. Check that they belong to one survey, and the CRS of the trajectory."
+    cloud = f"The cloud is in {parse_crs(crs).name}, the trajectory" if crs else "The trajectory"
+    return f"{cloud} carries no CRS. Give it the one its coordinates are in (Import trajectory does), and check that both belong to one survey."
 
 
 def _no_overlap(files, frame, reader):

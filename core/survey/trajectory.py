@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..errors import RoadExtractionError
+from .time_systems import unwrap_time
 
 
 @dataclass(frozen=True)
@@ -45,8 +46,8 @@ class Trajectory:
                                 for name in ("time", "x", "y", "z", "roll", "pitch", "heading")})
 
     def shifted(self, seconds):
-        """The same drive with another zero of time."""
-        return replace(self, time=self.time + seconds)
+        """The same drive with another zero of time, carried on where its count starts again."""
+        return replace(self, time=unwrap_time(self.time) + seconds)
 
 
 def clean_trajectory(trajectory):
@@ -58,9 +59,14 @@ def clean_trajectory(trajectory):
     Raises
     ------
     RoadExtractionError
-        If fewer than two different positions remain.
+        If fewer than two different positions remain, or they are in degrees.
     """
     notes = list(trajectory.notes)
+    _refuse_degrees(trajectory)
+    carried = unwrap_time(trajectory.time)
+    if carried is not trajectory.time and (carried != trajectory.time)[np.isfinite(carried)].any():
+        notes.append("The trajectory's time starts again from zero during the drive; it was carried on.")
+        trajectory = replace(trajectory, time=carried)
     good = np.isfinite(trajectory.time) & np.isfinite(trajectory.x) & np.isfinite(trajectory.y) & np.isfinite(trajectory.z)
     if not good.all():
         notes.append(f"{np.count_nonzero(~good)} of {len(good)} trajectory rows had no usable time or position and were dropped.")
@@ -78,3 +84,13 @@ def clean_trajectory(trajectory):
             f"The trajectory has {len(trajectory)} usable positions over {length:.1f} m. At least two positions and "
             "1 m of driving are needed; check the time and coordinate columns of the file.")
     return replace(trajectory, notes=tuple(notes))
+
+
+def _refuse_degrees(trajectory):
+    from .crs import horizontal, parse_crs
+
+    crs = parse_crs(trajectory.crs)
+    if crs is not None and horizontal(crs).is_geographic:
+        raise RoadExtractionError(
+            f"The trajectory is in {horizontal(crs).name} (degrees) and it is not known what to bring it to: the point cloud "
+            "carries no CRS. Give the projected CRS of the survey, or run Import trajectory with it as the target.")
