@@ -9,12 +9,14 @@ from importlib.util import find_spec
 
 from .texts import tr
 
-NEEDED = ("numpy", "scipy", "laspy", "lazrs", "shapely")
+# What Python imports -> what it is called where one installs it
+NEEDED = {"numpy": "numpy", "scipy": "scipy", "laspy": "laspy", "lazrs": "lazrs", "shapely": "shapely",
+          "pyproj": "pyproj", "cv2": "opencv-python-headless"}
 
 
 def missing_packages():
     """One sentence naming what is missing or too old, or "" when everything is there."""
-    missing = [name for name in NEEDED if find_spec(name) is None]
+    missing = [package for name, package in NEEDED.items() if find_spec(name) is None]
     if missing:
         return tr("Missing Python package(s): {names}. Install them for the Python of QGIS and start QGIS again.").format(
             names=", ".join(missing)

@@ -96,7 +96,7 @@ class RoadMap(LanewrightAlgorithm):
             call.layer(name, layer if layer is not None else Features(geometry, fields, crs=road_map.crs))
         call.layer("CURB_POINTS", road_map.curb_points)
         if call.wants("REPORT"):
-            from ...core.report import road_map_report
+            from ...core.report.road_map import road_map_report
 
-            call.text("REPORT", road_map_report(road_map))
+            call.text("REPORT", road_map_report(road_map, image_path))
         return {}
