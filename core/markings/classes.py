@@ -1,0 +1,151 @@
+"""What kind of marking a cluster is, by its size, its direction and its neighbours, or that it is none."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import RoadExtractionError
+
+NOT_PAINT = ""
+LINES = ("edge", "lane", "centre")
+LANE = 2.0            # m: less room than this between a line and the road edge is no lane: the line is an edge line
+DOUBLE = 0.45         # m between the middles of a double line
+SOLID = 10.0          # m: longer than any dash in town; solid lines inside the road are centre lines
+STRIPE_WIDTH = (0.25, 0.80)
+STRIPE_LENGTH = (1.5, 10.0)
+STRIPE_PITCH = (0.5, 1.6)   # m from stripe to stripe of a zebra crossing
+STRIPES = 3
+STOP_WIDTH = (0.18, 0.90)
+STOP_LENGTH = 1.5
+COVER = (0.30, 1.15)  # m, diameter of manhole covers
+SPECK = 0.30          # m: what is not longer than this and has no companion is no marking
+SPECK_AREA = 0.03     # m2
+
+
+@dataclass(frozen=True)
+class ClassSettings:
+    """When a cluster is a line to be kept for the marking lines.
+
+    min_width, max_width, min_length : m; min_elongation : length over width
+    margin : m beyond the road's half width that a marking may still lie
+    """
+
+    min_width: float = 0.06
+    max_width: float = 0.35
+    min_length: float = 1.0
+    min_elongation: float = 4.0
+    margin: float = 0.5
+
+    def __post_init__(self):
+        if not 0 < self.min_width < self.max_width:
+            raise RoadExtractionError(
+                f"A marking line is {self.min_width} to {self.max_width} m wide; the first must be above 0 m and below the second.")
+
+
+def classify(shapes, half_widths, settings=ClassSettings()):
+    """Class of every cluster of one road.
+
+    Parameters
+    ----------
+    shapes : list of Shape
+    half_widths : (N,) m from the reference line to the road edge on each cluster's side
+
+    Returns
+    -------
+    list of (class, use): class "" for what is not paint; use "keep" or "other"
+    """
+    if not shapes:
+        return []
+    column = {name: np.array([getattr(shape, name) for shape in shapes])
+              for name in ("s0", "s1", "d0", "d1", "offset", "length", "width", "elongation", "direction", "area", "along")}
+    room = np.asarray(half_widths) - np.abs(column["offset"])
+    line = _is_line(column, settings)
+    zebra = _zebra_stripes(column)
+    line &= ~zebra
+    found = []
+    doubles = _has_partner(column, line)
+    for k, shape in enumerate(shapes):
+        if room[k] < -settings.margin or _speck(shape) or _round_cover(shape) or _gutter(shape, room[k], line[k], zebra[k]):
+            kind = NOT_PAINT
+        elif zebra[k]:
+            kind = "zebra"
+        elif line[k]:
+            kind = _line_kind(shape, room[k], doubles[k])
+        else:
+            kind = _other_kind(shape)
+        found.append((kind, "keep" if kind in LINES else "other"))
+    return found
+
+
+def _is_line(column, settings):
+    width = column["width"]
+    return column["along"] & (width >= settings.min_width) & (width <= settings.max_width) \
+        & (column["length"] >= settings.min_length) & (column["elongation"] >= settings.min_elongation)
+
+
+def _zebra_stripes(column):
+    """Stripes along the road, side by side at an even pitch, at least three of them."""
+    stripe = column["along"] & (column["width"] >= STRIPE_WIDTH[0]) & (column["width"] <= STRIPE_WIDTH[1]) \
+        & (column["length"] >= STRIPE_LENGTH[0]) & (column["length"] <= STRIPE_LENGTH[1])
+    rows = np.flatnonzero(stripe)
+    result = np.zeros(len(stripe), bool)
+    if len(rows) < STRIPES:
+        return result
+    s0, s1, d = column["s0"][rows], column["s1"][rows], column["offset"][rows]
+    overlap = np.minimum(s1[:, None], s1) - np.maximum(s0[:, None], s0)
+    shared = overlap > 0.5 * np.minimum((s1 - s0)[:, None], s1 - s0)
+    pitch = np.abs(d[:, None] - d)
+    beside = shared & (pitch >= STRIPE_PITCH[0]) & (pitch <= STRIPE_PITCH[1])
+    from scipy.sparse.csgraph import connected_components
+
+    count, group = connected_components(beside, directed=False)
+    size = np.bincount(group, minlength=count)
+    result[rows] = size[group] >= STRIPES
+    return result
+
+
+def _has_partner(column, line):
+    """Lines with another line beside them, a decimetre or two away over most of their length."""
+    rows = np.flatnonzero(line)
+    result = np.zeros(len(line), bool)
+    if len(rows) < 2:
+        return result
+    s0, s1, d = column["s0"][rows], column["s1"][rows], column["offset"][rows]
+    overlap = np.minimum(s1[:, None], s1) - np.maximum(s0[:, None], s0)
+    near = np.abs(d[:, None] - d) <= DOUBLE
+    np.fill_diagonal(near, False)
+    result[rows] = (near & (overlap > 0.5 * (s1 - s0)[:, None])).any(axis=1)
+    return result
+
+
+def _line_kind(shape, room, double):
+    if room < LANE and not double:
+        return "edge"
+    return "centre" if double or shape.length > SOLID else "lane"
+
+
+def _speck(shape):
+    return shape.area < SPECK_AREA or max(shape.length, shape.width) < SPECK
+
+
+def _round_cover(shape):
+    along, across = shape.s1 - shape.s0, shape.d1 - shape.d0
+    longer, shorter = max(along, across), min(along, across)
+    return COVER[0] <= longer <= COVER[1] and shorter > 0.7 * longer and shape.area > 0.5 * along * across
+
+
+def _gutter(shape, room, line, zebra):
+    """A broad bright strip that reaches the road edge: concrete, not paint."""
+    return shape.along and not zebra and not line and shape.length > 2.0 and shape.elongation > 3 and room < shape.width
+
+
+def _other_kind(shape):
+    turn = abs(shape.direction)
+    if turn > np.radians(60) and STOP_WIDTH[0] <= shape.width <= STOP_WIDTH[1] and shape.length >= STOP_LENGTH:
+        return "stop"
+    along, across = shape.s1 - shape.s0, shape.d1 - shape.d0
+    if 1.5 <= along <= 8.0 and 0.3 <= across <= 1.8 and shape.area < 0.7 * along * across and turn < np.radians(25):
+        return "arrow"
+    if (np.radians(20) < turn <= np.radians(75) and shape.elongation > 2) or (along > 4 and across > 0.8):
+        return "hatch"
+    return "symbol"

@@ -1,0 +1,203 @@
+"""Paint points to markings: which points belong together, and what they are.
+
+Conditional Euclidean clustering: two points belong together if they are near
+each other, and the condition is that near is measured in the road's own way:
+farther along the road, where scan lines lie apart and paint wears through, than
+across it, where a decimetre may separate the two lines of a double line.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from ..errors import RoadExtractionError
+from ..features import Features
+from ..progress import Progress
+from ..schemas import MARKINGS
+from ..survey.points import ROAD_POINT, UNIT
+from ..survey.road_points import RoadPoints
+from . import polygons
+from .classes import LINES, NOT_PAINT, ClassSettings, classify
+from .shapes import CELL, measure
+
+WINDOW = 500     # cells of 4 cm: 20 m of station are linked at a time
+STRIPS = LINES + ("zebra", "stop")  # drawn as even strips, the others cell by cell
+STRETCH = 2.0    # neighbours may be this times the distance apart along the road, and across it the distance over this
+
+
+@dataclass(frozen=True)
+class ClusterSettings:
+    """How points join, and how small a marking may be.
+
+    distance : m between points of one marking (twice as much along the road, half as much across it)
+    min_points : fewer are no marking
+    classes : when a cluster is a line
+    """
+
+    distance: float = 0.20
+    min_points: int = 8
+    classes: ClassSettings = field(default_factory=ClassSettings)
+
+    def __post_init__(self):
+        if not 0.02 <= self.distance <= 2.0:
+            raise RoadExtractionError(f"The clustering distance is {self.distance} m; it must be between 0.02 and 2 m.")
+        if self.min_points < 1:
+            raise RoadExtractionError(f"A marking has at least {self.min_points} points; the number must be 1 or more.")
+
+
+def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress=Progress()):
+    """Group paint points into markings with class, size and outline.
+
+    Parameters
+    ----------
+    marking_points : RoadPoints on paint
+    frame : RoadFrame
+
+    Returns
+    -------
+    MARKINGS : Features, one polygon a marking; one that wear or a shadow cut apart has
+        several, with one `cluster` number
+    clustered : RoadPoints with `cluster`, the number of the marking; 0 on what is no marking
+    """
+    markings = Features("PolygonZ", MARKINGS, crs=marking_points.crs)
+    clustered = RoadPoints.empty_like(marking_points)
+    clustered.has_cluster = True
+    number, refused = 0, 0
+    roads = marking_points.roads()
+    for k, road in enumerate(roads):
+        part = progress.part(k / len(roads), (k + 1) / len(roads))
+        records, labels = group(marking_points, road, settings.distance, part.part(0, 0.4))
+        records, starts = _by_cluster(records, labels, settings.min_points)
+        rows = list(zip(starts[:-1], starts[1:]))
+        shapes = [measure(records["s"][a:b], records["d"][a:b]) for a, b in rows]
+        half_widths = [float(np.median(records["half_width"][a:b])) * 1e-3 for a, b in rows]
+        kinds = classify(shapes, half_widths, settings.classes)
+        for i in sorted(range(len(rows)), key=lambda i: (shapes[i].s0, shapes[i].d0, shapes[i].s1)):
+            if kinds[i][0] == NOT_PAINT:
+                refused += 1
+                continue
+            number += 1
+            a, b = rows[i]
+            records["cluster"][a:b] = number
+            _add(markings, records[a:b], shapes[i], kinds[i], number, road, frame)
+            part.at(0.4 + 0.6 * number / max(len(rows), 1))
+        clustered.store.append(road, records)
+    progress.say(f"{number} markings found; {refused} clusters were left out as gutters, covers or specks.")
+    return markings, clustered
+
+
+def group(marking_points, road, distance, progress=Progress()):
+    """Connected components of the points of one road.
+
+    Returns
+    -------
+    records : (N,) ROAD_POINT of the road
+    labels : (N,) int component of each; its numbering follows station
+
+    Notes
+    -----
+    Points of one 4 cm cell are one member, at their mean place: the pair graph of
+    dense paint would otherwise have hundreds of edges a point. Cells are fixed
+    in station, and windows are joined through the cells they share, so neither
+    window nor section length shows in the result.
+    """
+    start, end = marking_points.store.span(road)
+    reach = int(np.ceil(distance * STRETCH / (CELL * UNIT))) + 1
+    records, labels, links = [], [], []
+    shared_cells, shared_labels, count = np.empty((0, 2), np.int64), np.empty(0, np.int64), 0
+    windows = range(int(np.floor(start / UNIT / CELL / WINDOW)), int(np.floor(end / UNIT / CELL / WINDOW)) + 1)
+    for step, window in enumerate(windows):
+        first, last = window * WINDOW, (window + 1) * WINDOW
+        found = marking_points.window(road, (first - 1) * CELL * UNIT, (last + reach + 1) * CELL * UNIT).records
+        column = found["s"] // CELL
+        found = found[(column >= first) & (column < last + reach)]
+        cells, member, component = _components(found, distance)
+        component = component + count
+        count = component.max(initial=count - 1) + 1
+        links.append(_shared(shared_cells, shared_labels, cells, component))
+        beyond = cells[:, 0] >= last
+        shared_cells, shared_labels = cells[beyond], component[beyond]
+        own = found["s"] // CELL < last
+        records.append(found[own])
+        labels.append(component[member[own]])
+        progress.at((step + 1) / len(windows))
+    if not records:
+        return np.empty(0, ROAD_POINT), np.empty(0, np.int64)
+    pairs = np.concatenate(links)
+    graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
+    _, merged = connected_components(graph, directed=False)
+    labels = np.concatenate(labels)
+    return np.concatenate(records), merged[labels] if len(labels) else labels
+
+
+def _components(records, distance):
+    """Occupied cells, the cell of each point, and the component of each cell."""
+    cells, member, size = np.unique(np.c_[records["s"] // CELL, records["d"] // CELL].astype(np.int64).reshape(-1, 2),
+                                    axis=0, return_inverse=True, return_counts=True)
+    if not len(cells):
+        return cells, member, np.empty(0, np.int64)
+    # integer sums are the same in any order
+    s = np.zeros(len(cells), np.int64)
+    d = np.zeros(len(cells), np.int64)
+    np.add.at(s, member, records["s"])
+    np.add.at(d, member, records["d"])
+    places = np.c_[s / size / STRETCH, d / size * STRETCH] * UNIT
+    pairs = cKDTree(places).query_pairs(distance, output_type="ndarray")
+    graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(len(cells), len(cells)))
+    return cells, member, connected_components(graph, directed=False)[1]
+
+
+def _shared(cells, labels, others, other_labels):
+    """(K, 2) labels that two windows gave to the same cells."""
+    if not len(cells) or not len(others):
+        return np.empty((0, 2), np.int64)
+    low = min(cells[:, 1].min(), others[:, 1].min())
+    width = max(cells[:, 1].max(), others[:, 1].max()) - low + 1
+    keys, other_keys = (c[:, 0] * width + c[:, 1] - low for c in (cells, others))
+    _, a, b = np.intersect1d(keys, other_keys, assume_unique=True, return_indices=True)
+    return np.c_[labels[a], other_labels[b]]
+
+
+def _by_cluster(records, labels, fewest):
+    """Records of clusters large enough, one cluster after the other; those of the rest at the end.
+
+    Returns records and the bounds of the clusters (one more than there are clusters).
+    """
+    records = records.copy()
+    records["cluster"] = 0
+    if not len(records):
+        return records, np.zeros(1, np.int64)
+    size = np.bincount(labels)
+    large = size[labels] >= fewest
+    order = np.lexsort((labels, ~large))
+    records, labels, large = records[order], labels[order], large[order]
+    used = int(large.sum())
+    starts = np.flatnonzero(np.r_[True, np.diff(labels[:used]) != 0]) if used else np.empty(0, np.int64)
+    return records, np.r_[starts, used]
+
+
+def _add(markings, records, shape, kind, number, road, frame):
+    if kind[0] in STRIPS:
+        drawn = polygons.band(records["s"], records["d"], shape)
+    else:
+        drawn = polygons.outline(*polygons.painted_cells(records["s"] * UNIT, records["d"] * UNIT))
+    places = np.c_[records["x"], records["y"], records["z"]] * UNIT
+    scanned_from = _scanning_distance(records, frame)
+    for part in polygons.parts(drawn):
+        geometry = polygons.to_map(part, frame.road(road), frame.origin, places)
+        markings.add(geometry, road=int(road), cluster=number, use=kind[1], station_m=shape.s0, offset_m=shape.offset,
+                     length_m=shape.length, width_m=shape.width, elongation=shape.elongation, scan_m=scanned_from,
+                     area_m2=float(geometry.area), points=shape.points, **{"class": kind[0]})
+
+
+def _scanning_distance(records, frame):
+    """Median distance across the road from the track that scanned the marking."""
+    away = np.empty(len(records))
+    for number in np.unique(records["pass_number"]):
+        rows = records["pass_number"] == number
+        track = frame.passes[number].at_station(records["s"][rows] * UNIT)[0]
+        away[rows] = np.abs(records["d"][rows] * UNIT - track)
+    return float(np.median(away))
