@@ -207,4 +207,4 @@ def _urban(length, seed, radius, curb_height, gutter):
         road.lane(number, direction, (0.0, offset), (length, offset))
     left = sidewalk(1, left_edge, curb_height, lowered)
     right = sidewalk(-1, right_edge, curb_height, lowered)
-    return road.scene("urban", left, right, [(1, -1.7, 1.0), (-1, 4.9, 1.12)], gutter or 0.30)
+    return road.scene("urban", left, right, [(1, -1.7, 1.0), (-1, 4.9, 1.12)], gutter)

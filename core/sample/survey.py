@@ -50,7 +50,7 @@ class SampleSettings:
     rotation_rate: float = 200.0   # lines per second of each scanner
     radius: float = 120.0          # m, of the bends
     curb_height: float = 0.13      # m
-    gutter: float = 0.0            # m, width of a concrete gutter along the curbs (urban has one anyway)
+    gutter: float = 0.0            # m, width of a concrete gutter along the curbs
     reach: float = 18.0            # m, points further from the road's axis are left out
     crs: str = "EPSG:32650"
     origin: tuple = (610400.0, 2710200.0, 20.0)  # map coordinates of the road's beginning, whole metres

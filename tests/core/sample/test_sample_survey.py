@@ -238,6 +238,16 @@ def test_painted_points_lie_in_the_true_markings(street, true_points):
     assert not shapely.contains_xy(shapely.buffer(union, -0.005), road["x"], road["y"]).any()
 
 
+@pytest.mark.parametrize("scene", ["street", "rural", "urban"])
+def test_true_shapes_are_valid_and_carry_heights(scene):
+    sample = survey(scene, length=130.0)
+    for layer in (sample.truth_markings, sample.truth_surface, sample.truth_boundaries, sample.truth_driving_lines):
+        names = {field.name for field in layer.schema}
+        for geometry, row in layer:
+            assert geometry.is_valid and geometry.has_z
+            assert set(row) <= names
+
+
 def test_the_street_has_every_kind_of_marking():
     kinds = set(survey(length=120.0).truth_markings.column("class"))
     assert kinds == {"edge line", "centre line", "lane line", "stop line", "zebra crossing", "arrow"}
@@ -360,3 +370,14 @@ def test_settings_that_make_no_street_are_refused_by_name(setting, value, word):
 def test_a_geographic_crs_is_refused():
     with pytest.raises(RoadExtractionError, match="geographic"):
         make_sample_survey(SampleSettings(crs="EPSG:4326"))
+
+
+def test_a_concrete_gutter_lies_along_the_curb_and_shines_brighter_than_asphalt():
+    sample = survey("urban", gutter=0.30)
+    points = sample.points()
+    gutter, road = labelled(points, "gutter"), labelled(points, "road")
+    side = np.where(gutter["offset"] > 0, sample.scene.left.edge, sample.scene.right.edge)
+    assert len(gutter) > 1000
+    assert np.all((np.abs(gutter["offset"]) > side - 0.30) & (np.abs(gutter["offset"]) <= side))
+    at = [part[(part["range"] > 6) & (part["range"] < 8)]["intensity"] for part in (gutter, road)]
+    assert np.median(at[0]) > 1.5 * np.median(at[1])
