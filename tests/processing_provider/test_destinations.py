@@ -1,0 +1,76 @@
+"""Results appear whole or not at all."""
+
+import os
+
+import pytest
+from lanewright.core.errors import RoadExtractionError
+from lanewright.processing_provider.destinations import UnfinishedFiles, check_writable, destination_path
+
+
+def test_yesterdays_result_stands_until_todays_is_complete(tmp_path):
+    result = tmp_path / "road.laz"
+    result.write_text("yesterday")
+    files = UnfinishedFiles()
+    with open(files.begin(result), "w") as stream:
+        stream.write("today")
+    assert result.read_text() == "yesterday"
+    files.commit()
+    assert result.read_text() == "today" and os.listdir(tmp_path) == ["road.laz"]
+
+
+def test_a_run_that_fails_leaves_no_half_file(tmp_path):
+    files = UnfinishedFiles()
+    with open(files.begin(tmp_path / "road.laz"), "w") as stream:
+        stream.write("half")
+    files.discard()
+    assert os.listdir(tmp_path) == []
+
+
+def test_statistics_beside_an_image_go_with_it(tmp_path):
+    files = UnfinishedFiles()
+    name = files.begin(tmp_path / "image.tif")
+    open(f"{name}.aux.xml", "w").close()
+    files.commit()
+    assert sorted(os.listdir(tmp_path)) == ["image.tif", "image.tif.aux.xml"]
+
+
+def test_the_temporary_name_ends_as_the_file_does_since_drivers_go_by_it(tmp_path):
+    files = UnfinishedFiles()
+    assert files.begin(tmp_path / "a.tif").endswith(".tif")
+    assert files.begin(tmp_path / "b.copc.laz").endswith(".copc.laz")
+    assert files.begin(tmp_path / "v1.2.laz").endswith(".laz")
+
+
+@pytest.mark.parametrize("value, path", [
+    ("lines.gpkg", "lines.gpkg"),
+    ("ogr:dbname='/data/all.gpkg' table=\"lanes\" (geom)", "/data/all.gpkg"),
+    ("/data/all.gpkg|layername=lanes", "/data/all.gpkg"),
+    ("TEMPORARY_OUTPUT", None),
+    ("memory:", None),
+    ("postgres://dbname='gis'", None),
+    ("", None),
+    (None, None),
+])
+def test_the_file_behind_a_destination(value, path):
+    found = destination_path(value)
+    assert (str(found) if found else None) == path
+
+
+def test_a_missing_folder_is_named_before_any_work(tmp_path):
+    with pytest.raises(RoadExtractionError, match="there is no folder .*nowhere"):
+        check_writable(tmp_path / "nowhere" / "road.laz", "Road points")
+
+
+def test_a_folder_given_for_a_file_is_refused(tmp_path):
+    with pytest.raises(RoadExtractionError, match="which is a folder"):
+        check_writable(tmp_path, "Road points")
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
+def test_a_folder_without_permission_is_refused(tmp_path):
+    tmp_path.chmod(0o555)
+    try:
+        with pytest.raises(RoadExtractionError, match="cannot be written"):
+            check_writable(tmp_path / "road.laz", "Road points")
+    finally:
+        tmp_path.chmod(0o755)

@@ -1,0 +1,91 @@
+"""Layers written and read again are the layers that were written."""
+
+import numpy as np
+import pytest
+import shapely
+from qgis.core import QgsCoordinateReferenceSystem, QgsFeatureSink, QgsProcessingContext, QgsProcessingUtils, QgsVectorLayer
+from lanewright.core.errors import RoadExtractionError
+from lanewright.core.features import Features
+from lanewright.core.schemas import CURVE_ELEMENTS, ROAD_EDGES
+from lanewright.processing_provider.layers import WKB_TYPES, crs_text, qgis_fields, read_features, write_features
+
+UTM = QgsCoordinateReferenceSystem("EPSG:32650")
+
+
+def through_a_geopackage(features, folder):
+    """Write features with a sink and open the file as a layer."""
+    context = QgsProcessingContext()
+    fields = qgis_fields(features.schema)
+    sink, dest = QgsProcessingUtils.createFeatureSink(
+        str(folder / "layer.gpkg"), context, fields, WKB_TYPES[features.geometry_type], UTM
+    )
+    write_features(sink, features, fields)
+    del sink
+    layer = QgsVectorLayer(dest, "layer", "ogr")
+    assert layer.isValid()
+    return layer
+
+
+def edges():
+    features = Features("LineStringZ", ROAD_EDGES, crs=crs_text(UTM))
+    line = shapely.LineString([(610427.12345678, 2710262.5, 24.001), (610430.0, 2710270.25, 24.0625)])
+    features.add(line, road=0, side="left", status="measured", station_m=0.1, length_m=line.length)
+    features.add(shapely.LineString([(0, 0, 0), (1, 1, 1)]), road=np.int64(3), side="right", rmse_m=np.float32(0.5), height_m=float("nan"))
+    return features
+
+
+def test_geometries_keep_every_digit_and_their_heights(tmp_path, qgis_app):
+    written = edges()
+    found = read_features(through_a_geopackage(written, tmp_path), ROAD_EDGES, "LineStringZ", "Road edges")
+    for before, after in zip(written.geometries, found.geometries):
+        np.testing.assert_array_equal(shapely.get_coordinates(before, include_z=True), shapely.get_coordinates(after, include_z=True))
+    assert found.crs == crs_text(UTM)
+
+
+def test_values_come_back_in_their_type_and_missing_ones_as_missing(tmp_path, qgis_app):
+    found = read_features(through_a_geopackage(edges(), tmp_path), ROAD_EDGES, "LineStringZ", "Road edges")
+    assert found.rows[0]["road"] == 0 and found.rows[0]["side"] == "left" and found.rows[0]["station_m"] == 0.1
+    assert found.rows[1]["road"] == 3 and found.rows[1]["rmse_m"] == 0.5
+    assert found.rows[1]["status"] is None and found.rows[1]["height_m"] is None
+
+
+def test_a_layer_without_rows_is_still_a_layer(tmp_path, qgis_app):
+    layer = through_a_geopackage(Features("LineStringZ", ROAD_EDGES, crs=crs_text(UTM)), tmp_path)
+    assert layer.featureCount() == 0 and layer.fields().lookupField("station_m") >= 0
+    assert len(read_features(layer, ROAD_EDGES, "LineStringZ", "Road edges")) == 0
+
+
+def test_a_table_has_rows_and_no_geometry(tmp_path, qgis_app):
+    table = Features("None", CURVE_ELEMENTS)
+    table.add(None, road=0, lane=1, radius_m=140.8, turn="left")
+    found = read_features(through_a_geopackage(table, tmp_path), CURVE_ELEMENTS, "None", "Curve elements")
+    assert found.rows[0]["radius_m"] == 140.8 and found.geometries == [None]
+
+
+def test_lines_in_many_parts_become_lines(qgis_app):
+    layer = QgsVectorLayer("MultiLineStringZ?crs=EPSG:32650&field=road:integer", "edges", "memory")
+    from qgis.core import QgsFeature, QgsGeometry
+
+    feature = QgsFeature(layer.fields())
+    feature.setAttributes([2])
+    feature.setGeometry(QgsGeometry.fromWkt("MultiLineStringZ((0 0 1, 1 0 1),(2 0 1, 3 0 1))"))
+    layer.dataProvider().addFeatures([feature], QgsFeatureSink.Flag.FastInsert)
+    found = read_features(layer, ROAD_EDGES, "LineStringZ", "Road edges")
+    assert [g.geom_type for g in found.geometries] == ["LineString", "LineString"] and found.column("road") == [2, 2]
+
+
+def test_a_line_layer_without_heights_is_refused_by_name(qgis_app):
+    layer = QgsVectorLayer("LineString?crs=EPSG:32650&field=road:integer", "edges", "memory")
+    from qgis.core import QgsFeature, QgsGeometry
+
+    feature = QgsFeature(layer.fields())
+    feature.setGeometry(QgsGeometry.fromWkt("LineString(0 0, 1 0)"))
+    layer.dataProvider().addFeatures([feature])
+    with pytest.raises(RoadExtractionError, match="Road edges has geometries without heights"):
+        read_features(layer, ROAD_EDGES, "LineStringZ", "Road edges")
+
+
+def test_a_layer_of_something_else_is_refused_by_its_fields(qgis_app):
+    layer = QgsVectorLayer("LineStringZ?crs=EPSG:32650&field=name:string", "rivers", "memory")
+    with pytest.raises(RoadExtractionError, match="Road edges lacks the field.*road"):
+        read_features(layer, ROAD_EDGES, "LineStringZ", "Road edges")

@@ -1,0 +1,106 @@
+"""What the toolbox shows: every algorithm, and every parameter explaining itself."""
+
+import re
+
+import pytest
+from qgis.core import Qgis, QgsProcessingParameterDefinition
+
+from lanewright.processing_provider.catalogue import ALGORITHMS
+from lanewright.processing_provider.knobs import settings_class
+
+# Commands, models and scripts call these; a name that changes breaks them.
+INTERFACE = {
+    "importtrajectory": "INPUT INPUT_CRS TARGET_CRS POINT_CLOUDS TIME OUTPUT",
+    "samplesurvey": "SCENE LENGTH SEED POINT_CLOUD TRAJECTORY TRUTH_BOUNDARIES TRUTH_MARKINGS TRUTH_DRIVING_LINES",
+    "detectcurbs": "POINT_CLOUDS TRAJECTORY CRS BLOCK_LENGTH PROFILE_WIDTH POINT_SPACING LAYER_JUMP SLOPE MIN_HEIGHT "
+                   "MAX_HEIGHT CURB_POINTS PRINCIPAL_POINTS",
+    "fitroadedges": "CURB_POINTS TRAJECTORY MAX_GAP FALLBACK_WIDTH ROAD_EDGES",
+    "detectboundaries": "POINT_CLOUDS TRAJECTORY CRS BOUNDARY_METHOD ROAD_EDGES",
+    "extractroadsurface": "POINT_CLOUDS TRAJECTORY CRS ROAD_EDGES MAX_WIDTH ROAD_POINTS ROAD_SURFACE",
+    "correctintensity": "ROAD_POINTS TRAJECTORY OUTPUT REPORT",
+    "intensityimage": "ROAD_POINTS CELL_SIZE INTENSITY_IMAGE",
+    "extractmarkings": "ROAD_POINTS INTENSITY_IMAGE TRAJECTORY METHOD MARKING_POINTS MARKING_MASK",
+    "removeoutliers": "INPUT NEIGHBOURS STD_RATIO SCOPE OUTPUT",
+    "clustermarkings": "MARKING_POINTS TRAJECTORY DISTANCE MARKINGS CLUSTERED_POINTS",
+    "fitmarkinglines": "CLUSTERED_POINTS MARKINGS TRAJECTORY CURVE DEGREE MARKING_LINES",
+    "drivinglines": "MARKING_LINES TRAJECTORY MARKINGS ROAD_EDGES ROAD_POINTS LANE_WIDTH LINE_DISTANCE TRAFFIC_SIDE "
+                    "DRIVING_LINES CURVE_ELEMENTS",
+    "roadmap": "POINT_CLOUDS TRAJECTORY CRS BOUNDARY_METHOD ROAD_EDGES ROAD_SURFACE ROAD_POINTS INTENSITY_IMAGE MARKINGS "
+               "MARKING_LINES DRIVING_LINES CURVE_ELEMENTS REPORT",
+}
+UNIT = re.compile(r"\((m|m²|s|°|%|points|σ|km/h|per second|per line|counts|whole number|\d+-\d+)\)$")
+
+
+@pytest.fixture(params=ALGORITHMS, ids=lambda algorithm: algorithm.ID)
+def algorithm(request, provider):
+    return request.param().create()
+
+
+@pytest.mark.parametrize("name", INTERFACE)
+def test_every_algorithm_is_listed_under_its_fixed_names(provider, name):
+    algorithm = provider.algorithm(name)
+    assert algorithm is not None
+    assert not set(INTERFACE[name].split()) - {p.name() for p in algorithm.parameterDefinitions()}
+
+
+def test_every_algorithm_of_the_catalogue_has_its_interface_written_down(provider):
+    assert {algorithm.ID for algorithm in ALGORITHMS} == set(INTERFACE)
+
+
+def test_every_number_has_help_and_a_unit(algorithm):
+    for parameter in algorithm.parameterDefinitions():
+        if parameter.type() == "number":
+            assert len(parameter.help()) > 20, parameter.name()
+            assert UNIT.search(parameter.description()), parameter.description()
+
+
+def test_every_input_explains_itself(algorithm):
+    for parameter in algorithm.parameterDefinitions():
+        if not parameter.isDestination():
+            assert parameter.help(), parameter.name()
+
+
+def test_every_number_starts_from_the_default_of_the_core(algorithm):
+    for parameter in algorithm.parameterDefinitions():
+        if parameter.type() in ("number", "enum", "boolean"):
+            assert parameter.defaultValue() is not None, parameter.name()
+
+
+def test_choices_are_written_as_words(algorithm):
+    for parameter in algorithm.parameterDefinitions():
+        if parameter.type() == "enum":
+            assert parameter.usesStaticStrings(), parameter.name()
+            assert parameter.defaultValue() in parameter.options(), parameter.name()
+
+
+def test_the_dialog_tells_what_the_algorithm_does(algorithm):
+    assert algorithm.displayName() and algorithm.group() and len(algorithm.shortDescription()) > 30
+    for parameter in algorithm.parameterDefinitions():
+        assert parameter.help() in algorithm.shortHelpString()
+
+
+def test_every_vector_result_lists_its_fields(algorithm):
+    truth = re.compile("TRUTH_|PRINCIPAL_POINTS")
+    for parameter in algorithm.destinationParameterDefinitions():
+        if parameter.type() == "sink" and not truth.match(parameter.name()):
+            assert "Fields:" in parameter.help(), parameter.name()
+
+
+def test_clouds_are_files_since_qgis_without_pdal_cannot_load_them(algorithm):
+    clouds = algorithm.parameterDefinition("POINT_CLOUDS")
+    if clouds is not None:
+        assert clouds.layerType() == Qgis.ProcessingSourceType.File
+
+
+def test_rarely_turned_knobs_are_out_of_the_way(provider):
+    shown = [
+        parameter
+        for parameter in provider.algorithm("roadmap").parameterDefinitions()
+        if parameter.type() in ("number", "enum", "boolean")
+        and not parameter.flags() & QgsProcessingParameterDefinition.Flag.FlagAdvanced
+    ]
+    assert len(shown) <= 20
+
+
+def test_settings_of_a_package_that_is_not_there_leave_the_algorithm_listed():
+    assert settings_class("survey.no_such_room:Settings") is None
