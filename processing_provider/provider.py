@@ -10,6 +10,21 @@ from .catalogue import ALGORITHMS
 RESOURCES = Path(__file__).resolve().parents[1] / "resources"
 
 
+class ListedModel(QgsProcessingModelAlgorithm):
+    """A model of ours: its id has no spaces, so that it is as easy to call as the algorithms."""
+
+    def name(self):
+        return super().name().lower().replace(" ", "")
+
+    def displayName(self):
+        return super().name()
+
+    def createInstance(self):
+        copy = ListedModel()
+        copy.loadVariant(self.toVariant())
+        return copy
+
+
 class LanewrightProvider(QgsProcessingProvider):
     def id(self):
         return "lanewright"
@@ -27,6 +42,6 @@ class LanewrightProvider(QgsProcessingProvider):
         for algorithm in ALGORITHMS:
             self.addAlgorithm(algorithm())
         for path in sorted((RESOURCES / "models").glob("*.model3")):
-            model = QgsProcessingModelAlgorithm()
+            model = ListedModel()
             if model.fromFile(str(path)):
                 self.addAlgorithm(model)

@@ -1,0 +1,5 @@
+#!/usr/bin/env bash
+# Rebuilds the graphical model of the chain; see make_model.py.
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/env.sh"
+exec "$LANEWRIGHT_BUILD/venv/bin/python" "$LANEWRIGHT_ROOT/tools/make_model.py"
