@@ -17,6 +17,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 SIZES = (5_000_000, 20_000_000)
+POINTS_PER_METRE = 21_200  # of the default sample survey; the figures printed use the true count
 
 
 def read_with_laspy(path):
@@ -54,14 +55,15 @@ def make(folder, points):
     from plugin_package import load
 
     load()
-    from lanewright.core.sample.survey import SampleSettings, make_sample_survey, points_per_metre
+    import numpy as np
+    from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 
     folder.mkdir(parents=True, exist_ok=True)
-    settings = SampleSettings()
-    settings = SampleSettings(length=points / points_per_metre(settings))
-    sample = make_sample_survey(settings)
+    sample = make_sample_survey(SampleSettings(length=points / POINTS_PER_METRE))
     sample.write_cloud(folder / "survey.laz")
-    sample.write_trajectory(folder / "trajectory.csv")
+    drive = sample.trajectory
+    np.savetxt(folder / "trajectory.csv", np.c_[drive.time, drive.x, drive.y, drive.z], "%.4f", ",",
+               header="time,x,y,z", comments="")
 
 
 def show(figures, floor):

@@ -6,23 +6,12 @@ Leaves cloud.laz, trajectory.csv and truth.gpkg (boundaries, markings, driving l
 """
 
 import argparse
-import importlib.util
 import sys
 import time
 from pathlib import Path
 
 import numpy as np
-
-ROOT = Path(__file__).resolve().parents[1]
-
-
-def load_package(name="lanewright"):
-    """This checkout as a package, whatever its folder is called."""
-    spec = importlib.util.spec_from_file_location(name, ROOT / "__init__.py", submodule_search_locations=[str(ROOT)])
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    spec.loader.exec_module(module)
-
+from plugin_package import load
 
 def write_layers(path, layers):
     """Features into the layers of one GeoPackage."""
@@ -50,7 +39,7 @@ def write_layers(path, layers):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
-    load_package()
+    load()
     from lanewright.core.errors import RoadExtractionError
     from lanewright.core.sample.survey import SCENES, SampleSettings, make_sample_survey
 
