@@ -1,0 +1,101 @@
+"""Fit a named curve, or the simplest that the points allow."""
+
+import numpy as np
+
+from ..errors import RoadExtractionError
+from .arcs import fit_circle, fit_line
+from .curve import Arc
+from .clothoid import Clothoid
+from .ellipse import Ellipse, fit_ellipse
+from .polynomial import Polynomial, fit_polynomial
+from .spline import Spline, fit_spline
+from .transitions import fit_clothoid
+
+CURVES = ("automatic", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline")
+WORST_RESIDUAL = 0.05  # m: 95 % of the points must be nearer than this to a simpler curve
+BIC_MARGIN = 6.0       # a simpler curve is taken while its BIC is within this of the best
+
+
+def fit_curve(x, y, curve="automatic", degree=2, along=None):
+    """The curve of one kind, or the simplest acceptable one.
+
+    Automatic fits line, circle, clothoid, ellipse and B-spline and takes the
+    simplest whose BIC is within 6 of the best and whose 95 % residual is below
+    5 cm. A polynomial is never chosen: it is no shape of a road.
+
+    Parameters
+    ----------
+    x, y : (N,) metres, thinned (one place per 0.25 m or so), ordered along the line
+    curve : one of CURVES
+    degree : of the polynomial
+    along : (N,) distances along the line where they are known, metres (B-spline only)
+
+    Returns
+    -------
+    Fit
+
+    Raises
+    ------
+    RoadExtractionError
+        If the kind is unknown or these points cannot carry it.
+    """
+    if curve not in CURVES:
+        raise RoadExtractionError(f"There is no curve called {curve!r}. Choose one of {', '.join(CURVES)}.")
+    if curve == "automatic":
+        return choose(candidates(x, y, along))
+    least = {"line": 2, "circle": 3, "ellipse": 6, "clothoid": 5, "polynomial": degree + 1, "b-spline": 4}[curve]
+    if len(x) < least:
+        raise RoadExtractionError(
+            f"A {curve} needs at least {least} places along the line, there are {len(x)}. Choose curve = automatic.")
+    fits = {"line": fit_line, "circle": fit_circle, "ellipse": fit_ellipse, "clothoid": fit_clothoid}
+    if curve == "polynomial":
+        return fit_polynomial(x, y, degree)
+    if curve == "b-spline":
+        return fit_spline(x, y, along)
+    return fits[curve](x, y)
+
+
+def candidates(x, y, along=None):
+    """Fits of line, circle, clothoid, ellipse and B-spline, simplest first; those the points cannot carry are missing."""
+    found = [fit_line(x, y)]
+    if len(x) >= 4:
+        found.append(fit_circle(x, y))
+    if len(x) >= 8:
+        found.append(fit_clothoid(x, y))
+    if len(x) >= 12 and abs(found[1].curve.bend) * found[1].curve.length > np.radians(60.0):
+        try:
+            found.append(fit_ellipse(x, y))
+        except RoadExtractionError:
+            pass
+    if len(x) >= 6:
+        found.append(fit_spline(x, y, along))
+    return found
+
+
+def choose(fits):
+    """The first (simplest) fit whose BIC is within 6 of the best and whose 95 % residual is below 5 cm.
+
+    Where none is that close, the one of the least 95 % residual.
+    """
+    best = min(fit.bic for fit in fits)
+    for fit in fits:
+        if fit.bic <= best + BIC_MARGIN and fit.worst < WORST_RESIDUAL:
+            return fit
+    return min(fits, key=lambda fit: fit.worst)
+
+
+def curve_of(params):
+    """The curve of a dict that `Curve.params` made (or of its JSON, loaded)."""
+    p = dict(params)
+    kind = p.pop("curve")
+    if kind in ("line", "circle"):
+        return Arc(*(p[name] for name in ("x", "y", "direction", "bend", "length")))
+    if kind == "clothoid":
+        return Clothoid(**p)
+    if kind == "ellipse":
+        return Ellipse(**p)
+    if kind == "polynomial":
+        return Polynomial(**{**p, "coefficients": tuple(p["coefficients"])})
+    if kind == "b-spline":
+        return Spline(tuple(p["knots"]), tuple(p["control_x"]), tuple(p["control_y"]))
+    raise RoadExtractionError(f"There is no curve called {kind!r}. Choose one of {', '.join(CURVES[1:])}.")

@@ -1,0 +1,114 @@
+"""What a fit of a curve gives back, and the robust least squares that all fits share."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+F_SCALE = 0.03        # m: residuals beyond this count less and less (soft L1)
+NOISE_FLOOR = 0.004   # m: below it a smaller residual is no reason for a more complex curve
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A curve with how well it fits.
+
+    residuals : (N,) signed orthogonal distances of the points, left of the curve positive, metres
+    parameters : how many free numbers the curve has (for BIC and AIC)
+    """
+
+    curve: object
+    residuals: np.ndarray
+    parameters: float
+
+    @property
+    def rmse(self):
+        """Root mean square of the orthogonal residuals, metres; outliers count in full."""
+        return float(np.sqrt(np.mean(self.residuals**2)))
+
+    @property
+    def worst(self):
+        """95 % of the residuals are smaller, metres."""
+        return float(np.percentile(np.abs(self.residuals), 95))
+
+    @property
+    def _information(self):
+        n = len(self.residuals)
+        spread = 2 * F_SCALE**2 * np.sum(np.sqrt(1 + (self.residuals / F_SCALE) ** 2) - 1) / n
+        return n * np.log(max(spread, NOISE_FLOOR**2))
+
+    @property
+    def bic(self):
+        """n ln(RSS/n) + p ln n with the robust RSS that was minimised."""
+        return float(self._information + self.parameters * np.log(len(self.residuals)))
+
+    @property
+    def aic(self):
+        """n ln(RSS/n) + 2 p."""
+        return float(self._information + 2 * self.parameters)
+
+
+def robust_weights(residuals):
+    """(N,) weights of soft L1: 1 for small residuals, falling as 1/|r| for large ones."""
+    residuals = np.asarray(residuals)
+    scale = max(F_SCALE, 1.4826 * float(np.median(np.abs(residuals))))
+    return 1.0 / np.sqrt(1.0 + (residuals / scale) ** 2)
+
+
+def minimise(residuals, jacobian, start, scale):
+    """Parameters that minimise soft L1 of the residuals, by Levenberg-Marquardt on reweighted squares.
+
+    Plain least squares first; where the curve cannot follow the points no residual
+    is an outlier, so the scale of soft L1 grows with that misfit.
+
+    residuals, jacobian : functions of the parameters (P,) giving (N,) and (N, P)
+    scale : (P,) the size of a sensible step in each parameter
+    """
+    scale = np.asarray(scale, float)
+    found = _levenberg(residuals, jacobian, np.asarray(start, float), scale, np.inf)
+    misfit = 1.4826 * float(np.median(np.abs(residuals(found))))
+    return _levenberg(residuals, jacobian, found, scale, max(F_SCALE, misfit))
+
+
+def _levenberg(residuals, jacobian, found, scale, f_scale):
+    def cost(r):
+        return float(np.sum(r * r if np.isinf(f_scale) else 2 * f_scale**2 * (np.sqrt(1 + (r / f_scale) ** 2) - 1)))
+
+    r = residuals(found)
+    now, damping = cost(r), 1e-3
+    for _ in range(100):
+        weight = 1.0 / np.sqrt(1.0 + (r / f_scale) ** 2)
+        j = jacobian(found) * scale
+        normal, right = j.T @ (j * weight[:, None]), j.T @ (weight * r)
+        while True:
+            step = -scale * np.linalg.solve(normal + damping * np.diag(np.diag(normal) + 1e-12), right)
+            tried = residuals(found + step)
+            then = cost(tried)
+            if then <= now or damping > 1e8:
+                break
+            damping *= 8
+        if not then <= now:
+            return found
+        done = now - then <= 1e-13 * now
+        found, r, now, damping = found + step, tried, then, max(damping / 8, 1e-10)
+        if done and np.abs(step / scale).max() < 1e-9:
+            break
+    return found
+
+
+def checked(x, y, least):
+    """x, y as float arrays of one length, at least `least` points; ValueError otherwise (a caller's mistake)."""
+    x, y = np.asarray(x, float), np.asarray(y, float)
+    if x.shape != y.shape or x.ndim != 1 or len(x) < least:
+        raise ValueError(f"a curve needs x and y of one length, at least {least} points; got {x.shape} and {y.shape}")
+    return x, y
+
+
+def chord(x, y):
+    """Middle (2,) and direction (radians) of ordered points: the line through the two halves' centres.
+
+    Unlike the principal axis this keeps the order of the points, and it does not
+    turn where an arc is nearly half a circle.
+    """
+    half = max(1, len(x) // 2)
+    return (np.array([x.mean(), y.mean()]),
+            float(np.arctan2(y[-half:].mean() - y[:half].mean(), x[-half:].mean() - x[:half].mean())))

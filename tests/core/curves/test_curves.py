@@ -1,0 +1,235 @@
+"""Curves fitted to painted lines whose shape is known."""
+
+import json
+
+import numpy as np
+import pytest
+from lanewright.core.curves.arcs import fit_circle, fit_line
+from lanewright.core.curves.choice import candidates, curve_of, fit_curve
+from lanewright.core.curves.clothoid import Clothoid
+from lanewright.core.curves.concentric import fit_concentric
+from lanewright.core.curves.curve import Arc
+from lanewright.core.curves.ellipse import Ellipse, fit_ellipse
+from lanewright.core.curves.parallel import parallel_of_line, parallel_places
+from lanewright.core.curves.polynomial import fit_polynomial
+from lanewright.core.curves.segments import segment_line
+from lanewright.core.curves.spline import fit_spline
+from lanewright.core.curves.transitions import fit_clothoid
+from lanewright.core.errors import RoadExtractionError
+
+EVERY_CURVE = [
+    Arc(12.0, -7.0, 0.7, 0.0, 60.0),
+    Arc(12.0, -7.0, 0.7, 1 / 60, 90.0),
+    Arc(12.0, -7.0, 0.7, -1 / 140, 90.0),
+    Clothoid(5.0, 3.0, 2.0, -1 / 200, 1 / 4800, 80.0),
+    Ellipse(20.0, 30.0, 80.0, 50.0, 0.4, 0.2, 2.0),
+    Ellipse(20.0, 30.0, 80.0, 50.0, 0.4, 2.0, 0.2),
+]
+
+
+def painted(curve, noise=0.01, step=0.25, seed=1):
+    """Places on a line with lateral noise, one per `step` metres."""
+    u = np.arange(0.0, curve.length, step)
+    heading = curve.heading(u)
+    e = np.random.default_rng(seed).normal(0, noise, len(u)) if noise else np.zeros(len(u))
+    return (curve.at(u) + e[:, None] * np.c_[-np.sin(heading), np.cos(heading)]).T
+
+
+def along(elements, noise=0.008, step=0.5):
+    """Places along straights (0, 0, L), arcs (k, k, L) and transitions (k0, k1, L) laid end to end."""
+    x, y, heading, places = 0.0, 0.0, 0.0, []
+    for k, (first, last, length) in enumerate(elements):
+        curve = Clothoid(x, y, heading, first, (last - first) / length, length)
+        places.append(np.stack(painted(curve, noise, step, seed=k)))
+        (x, y), = curve.at(np.array([length])).tolist()
+        heading = float(curve.heading(length))
+    return np.hstack(places)
+
+
+def test_a_short_arc_among_outliers_keeps_its_radius():
+    """The thesis's own case: R = 140 m over 25.8 m, 3 cm of noise, every tenth point a stray."""
+    radii = []
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        turn = np.linspace(0, 25.8, 600) / 140
+        off = rng.normal(0, 0.03, 600)
+        off += np.where(rng.random(600) < 0.1, rng.uniform(-0.3, 0.3, 600), 0)
+        radii.append(fit_circle((140 + off) * np.cos(turn) + 500, (140 + off) * np.sin(turn)).curve.radius)
+    assert np.mean(radii) == pytest.approx(139.9, abs=2.5)
+    assert np.std(radii) < 2.5
+
+
+def test_the_radius_of_an_exact_arc_is_exact_and_left_turns_bend_positive():
+    for bend in (1 / 60, -1 / 60, 1 / 400):
+        fit = fit_circle(*painted(Arc(0.0, 0.0, 0.3, bend, 20.0), noise=0))
+        assert fit.curve.bend == pytest.approx(bend, rel=1e-6)
+        assert fit.rmse < 1e-7
+
+
+def test_a_straight_line_is_no_circle_of_a_kilometre():
+    fit = fit_curve(*painted(Arc(0.0, 0.0, 0.3, 0.0, 60.0)))
+    assert fit.curve.kind == "line"
+    assert np.isnan(fit.curve.radius)
+    assert fit.curve.length == pytest.approx(59.75, abs=0.02)
+
+
+def test_a_parabola_is_no_circle():
+    """For R = 140 m the parabola's best error grows from millimetres to half a metre."""
+    for length, least, most in ((26, 0.0, 0.002), (80, 0.02, 0.05), (160, 0.4, 0.8)):
+        x, y = painted(Arc(0.0, 0.0, -length / 280, 1 / 140, float(length)), noise=0)
+        assert least <= np.abs(fit_polynomial(x, y, 2).residuals).max() <= most
+        assert np.abs(fit_circle(x, y).residuals).max() < 1e-6
+
+
+def test_a_polynomial_refuses_a_line_that_turns_back():
+    with pytest.raises(RoadExtractionError, match="turns back"):
+        fit_polynomial(*painted(Arc(0.0, 0.0, 0.0, 1 / 10, 45.0)))
+
+
+def test_a_clothoid_is_recovered():
+    truth = Clothoid(10.0, 20.0, 0.7, -1 / 200, 1 / 4800, 80.0)
+    fit = fit_clothoid(*painted(truth))
+    assert fit.curve.bend == pytest.approx(truth.bend, abs=2e-4)
+    assert fit.curve.change == pytest.approx(truth.change, rel=0.03)
+    assert np.abs(truth.foot(*fit.curve.sample(1.0).T)[1]).max() < 0.01
+
+
+def test_an_ellipse_is_recovered_whichever_way_it_is_walked():
+    truth = EVERY_CURVE[4]
+    x, y = painted(truth)
+    for fit, turn in ((fit_ellipse(x, y), 1), (fit_ellipse(x[::-1], y[::-1]), -1)):
+        assert sorted((fit.curve.a, fit.curve.b)) == pytest.approx([50, 80], rel=0.01)
+        assert np.sign(fit.curve.curvature(np.array([30.0]))) == turn
+
+
+def test_an_ellipse_of_a_short_arc_is_refused():
+    with pytest.raises(RoadExtractionError, match="60 degrees"):
+        fit_ellipse(*painted(Arc(0.0, 0.0, 0.0, 1 / 80, 60.0), noise=0.0))
+
+
+@pytest.mark.parametrize("truth, kind", [
+    (EVERY_CURVE[0], "line"), (EVERY_CURVE[1], "circle"), (EVERY_CURVE[3], "clothoid"), (EVERY_CURVE[4], "ellipse")])
+def test_automatic_names_the_curve_that_was_painted(truth, kind):
+    assert fit_curve(*painted(truth)).curve.kind == kind
+
+
+def test_a_winding_road_becomes_a_spline_that_lies_on_the_paint():
+    x, y = along([(0, 0, 60), (1 / 60, 1 / 60, 50), (-1 / 90, -1 / 90, 50), (0, 0, 40)])
+    fit = fit_curve(x, y)
+    assert fit.curve.kind == "b-spline"
+    exact = along([(0, 0, 60), (1 / 60, 1 / 60, 50), (-1 / 90, -1 / 90, 50), (0, 0, 40)], noise=0)
+    assert np.sqrt(np.mean(fit.curve.foot(*exact)[1] ** 2)) < 0.006
+
+
+def test_a_spline_crosses_the_gaps_of_a_dashed_bend():
+    """6 m dashes, 9 m gaps, R = 60 m: between the dashes the line stays on the arc."""
+    truth = Arc(0.0, 0.0, 0.0, 1 / 60, 120.0)
+    x, y = painted(truth)
+    painted_there = np.arange(len(x)) * 0.25 % 15 < 6
+    fit = fit_spline(x[painted_there], y[painted_there])
+    assert np.abs(truth.foot(*fit.curve.sample(0.5).T)[1]).max() < 0.02
+
+
+def test_three_arcs_of_a_bend_share_their_centre():
+    """15 m arcs of R = 57, 60, 63.5 m: alone their radii scatter, together their distances hold."""
+    lines = [painted(Arc(0.0, -offset, 0.0, 1 / (60 + offset), 15.0 * (60 + offset) / 60), seed=3 + k)
+             for k, offset in enumerate((-3.0, 0.0, 3.5))]
+    found = fit_concentric(lines)
+    radii = [fit.curve.radius for fit in found.fits]
+    assert found.concentric
+    assert np.ptp([fit.curve.centre for fit in found.fits], axis=0).max() < 1e-6
+    assert np.diff(radii) == pytest.approx([3.0, 3.5], abs=0.02)
+    assert radii[1] == pytest.approx(60, rel=0.03)
+
+
+def test_arcs_of_two_bends_are_told_apart():
+    lines = [painted(Arc(0.0, 0.0, 0.0, 1 / 60, 40.0)), painted(Arc(0.0, -4.0, 0.0, 1 / 90, 40.0))]
+    assert not fit_concentric(lines).concentric
+
+
+def test_an_alignment_is_cut_into_its_elements():
+    found = segment_line(*along([(0, 0, 60), (0, 1 / 80, 40), (1 / 80, 1 / 80, 60), (1 / 80, 0, 40), (0, 0, 40)]))
+    assert [segment.kind for segment in found] == ["line", "clothoid", "circle", "clothoid", "line"]
+    assert found[2].fit.curve.radius == pytest.approx(80, rel=0.02)
+    assert [segment.first for segment in found] == pytest.approx([0, 60, 100, 160, 200], abs=10)
+    assert [a.last == b.first for a, b in zip(found, found[1:])] == [True] * 4
+
+
+def test_one_bend_is_one_element():
+    found = segment_line(*along([(1 / 60, 1 / 60, 150)]))
+    assert [segment.kind for segment in found] == ["circle"]
+
+
+@pytest.mark.parametrize("curve", EVERY_CURVE, ids=lambda c: f"{c.kind}{c.length:.0f}")
+def test_arc_length_heading_and_curvature_belong_together(curve):
+    u = np.linspace(0, curve.length, 4001)
+    places = curve.at(u)
+    steps = np.diff(places, axis=0)
+    assert np.hypot(*steps.T) == pytest.approx(curve.length / 4000, rel=1e-4)
+    middle = curve.heading((u[1:] + u[:-1]) / 2)
+    assert np.abs(np.angle(np.exp(1j * (np.arctan2(steps[:, 1], steps[:, 0]) - middle)))).max() < 1e-4
+    assert np.gradient(curve.heading(u), u)[5:-5] == pytest.approx(curve.curvature(u)[5:-5], abs=1e-5)
+
+
+@pytest.mark.parametrize("curve", EVERY_CURVE, ids=lambda c: f"{c.kind}{c.length:.0f}")
+def test_a_curve_survives_json_shifting_and_walking_back(curve):
+    again = curve_of(json.loads(json.dumps(curve.moved(1000.0, -2000.0).params())))
+    u = np.linspace(0, curve.length, 50)
+    np.testing.assert_allclose(again.at(u), curve.at(u) + [1000.0, -2000.0], atol=1e-8)
+    back = curve.reversed()
+    np.testing.assert_allclose(back.at(u), curve.at(curve.length - u), atol=1e-6)
+    np.testing.assert_allclose(back.curvature(u), -curve.curvature(curve.length - u), atol=1e-6)
+
+
+def test_the_foot_of_a_point_gives_back_where_it_was_put():
+    for curve in EVERY_CURVE:
+        u = np.linspace(2, curve.length - 2, 40)
+        heading = curve.heading(u)
+        x, y = (curve.at(u) + 3.0 * np.c_[-np.sin(heading), np.cos(heading)]).T
+        found_u, found_e = curve.foot(x, y)
+        np.testing.assert_allclose(found_u, u, atol=1e-5)
+        np.testing.assert_allclose(found_e, 3.0, atol=1e-6)
+
+
+def test_the_parallel_of_a_bend_keeps_its_distance():
+    bend = Arc(0.0, 0.0, 0.0, 1 / 60, 80.0)
+    beside = parallel_places(bend, 3.5)
+    np.testing.assert_allclose(bend.foot(*beside.T)[1], 3.5, atol=1e-9)
+    np.testing.assert_allclose(bend.parallel(3.5).foot(*beside.T)[1], 0.0, atol=1e-9)
+    assert bend.parallel(3.5).radius == pytest.approx(56.5)
+    traced = parallel_of_line(*bend.sample(0.5).T, 3.5)
+    np.testing.assert_allclose(bend.foot(*traced.T)[1], 3.5, atol=1e-3)
+
+
+def test_the_inner_parallel_of_a_tight_corner_does_not_turn_back():
+    corner = Arc(0.0, 0.0, 0.0, 1 / 2.0, 3.0)
+    assert len(parallel_places(corner, 3.5)) == 0
+    assert np.isnan(parallel_of_line(*corner.sample(0.1).T, 3.5)).all()
+
+
+@pytest.mark.parametrize("kind", ["line", "circle", "clothoid", "b-spline"])
+def test_where_on_earth_the_line_lies_changes_nothing(kind):
+    x, y = painted(EVERY_CURVE[3])
+    here, there = fit_curve(x, y, kind), fit_curve(x + 400000.0, y + 500000.0, kind)
+    np.testing.assert_allclose(there.curve.moved(-400000.0, -500000.0).sample(2.0), here.curve.sample(2.0), atol=1e-4)
+
+
+@pytest.mark.parametrize("kind", ["line", "circle", "clothoid", "polynomial", "b-spline"])
+def test_a_line_traced_backwards_is_the_same_line(kind):
+    x, y = painted(EVERY_CURVE[2])
+    there, back = fit_curve(x, y, kind), fit_curve(x[::-1], y[::-1], kind)
+    np.testing.assert_allclose(back.curve.reversed().sample(2.0), there.curve.sample(2.0), atol=2e-3)
+
+
+def test_an_unknown_curve_and_too_few_places_are_named():
+    x, y = painted(EVERY_CURVE[0])
+    with pytest.raises(RoadExtractionError, match="sinusoid"):
+        fit_curve(x, y, "sinusoid")
+    with pytest.raises(RoadExtractionError, match="at least 5 places"):
+        fit_curve(x[:3], y[:3], "clothoid")
+    assert [fit.curve.kind for fit in candidates(x[:2], y[:2])] == ["line"]
+
+
+def test_the_residual_is_positive_left_of_the_line():
+    fit = fit_line(np.array([0.0, 10.0, 20.0, 30.0, 40.0]), np.array([0.0, 0.0, 0.02, 0.0, 0.0]))
+    assert fit.residuals[2] > 0.01
