@@ -18,6 +18,8 @@ class LanewrightPlugin:
         add_library_folders()
         self.provider = LanewrightProvider()
         QgsApplication.processingRegistry().addProvider(self.provider)
+        # A model looks its stages up in the registry, which holds them only now
+        self.provider.refreshAlgorithms()
 
     def initGui(self):
         self.initProcessing()

@@ -10,21 +10,6 @@ from .catalogue import ALGORITHMS
 RESOURCES = Path(__file__).resolve().parents[1] / "resources"
 
 
-class ListedModel(QgsProcessingModelAlgorithm):
-    """A model of ours: its id has no spaces, so that it is as easy to call as the algorithms."""
-
-    def name(self):
-        return super().name().lower().replace(" ", "")
-
-    def displayName(self):
-        return super().name()
-
-    def createInstance(self):
-        copy = ListedModel()
-        copy.loadVariant(self.toVariant())
-        return copy
-
-
 class LanewrightProvider(QgsProcessingProvider):
     def id(self):
         return "lanewright"
@@ -42,6 +27,6 @@ class LanewrightProvider(QgsProcessingProvider):
         for algorithm in ALGORITHMS:
             self.addAlgorithm(algorithm())
         for path in sorted((RESOURCES / "models").glob("*.model3")):
-            model = ListedModel()
+            model = QgsProcessingModelAlgorithm()
             if model.fromFile(str(path)):
                 self.addAlgorithm(model)
