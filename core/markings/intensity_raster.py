@@ -1,0 +1,229 @@
+"""The intensity image as a file: a tiled GeoTIFF that is written whole or not at all, and read in windows."""
+
+import os
+import threading
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import RoadExtractionError
+from ..progress import Progress
+
+TILE = 512          # px, side of a tile of the file and of the work
+NODATA = -9999.0
+DISPLAY_LONGEST = 2000  # px of the reduced image from which the stretch is taken
+
+
+class IntensityImage:
+    """An intensity image opened for reading, by several threads if need be.
+
+    Attributes
+    ----------
+    path : of the file
+    geotransform : as GDAL has it, map coordinates
+    cell_size : metres
+    width, height : pixels
+    crs : WKT, "" where the file carries none
+    """
+
+    def __init__(self, path, geotransform, width, height, crs):
+        self.path = str(path)
+        self.geotransform = geotransform
+        self.cell_size = geotransform[1]
+        self.width, self.height = width, height
+        self.crs = crs
+        self._own = threading.local()  # GDAL's datasets serve one thread each
+
+    @classmethod
+    def open(cls, path):
+        """Open an image.
+
+        Raises
+        ------
+        RoadExtractionError
+            If the file is missing, no raster, rotated, without square pixels, or in degrees.
+        """
+        dataset = _open_raster(path)
+        transform = dataset.GetGeoTransform(can_return_null=True)
+        if transform is None:
+            raise RoadExtractionError(f"{path} is a picture without a place on the map. Give the intensity image written by “Intensity image”.")
+        if transform[2] or transform[4] or abs(transform[1] + transform[5]) > 1e-6 * abs(transform[1]) or transform[1] <= 0:
+            raise RoadExtractionError(
+                f"{path} has pixels of {transform[1]:g} by {-transform[5]:g} map units or is rotated. "
+                "An intensity image has square pixels and north up: make it anew with “Intensity image”.")
+        crs = dataset.GetProjection() or ""
+        reference = dataset.GetSpatialRef()
+        if reference is not None and reference.IsGeographic():
+            raise RoadExtractionError(
+                f"{path} is in {reference.GetName()} (degrees). Markings are measured in metres: make the image anew "
+                "from road points in a projected CRS.")
+        return cls(path, transform, dataset.RasterXSize, dataset.RasterYSize, crs)
+
+    def read_pixels(self, column, row, width, height):
+        """(height, width) float32 from a pixel on; NaN where there is no data or no image."""
+        values = np.full((height, width), np.nan, np.float32)
+        c0, c1 = max(column, 0), min(column + width, self.width)
+        r0, r1 = max(row, 0), min(row + height, self.height)
+        if c0 >= c1 or r0 >= r1:
+            return values
+        band = self._dataset().GetRasterBand(1)
+        data = np.frombuffer(band.ReadRaster(c0, r0, c1 - c0, r1 - r0, buf_type=_float32()), np.float32).reshape(r1 - r0, c1 - c0)
+        nodata = band.GetNoDataValue()
+        known = np.isfinite(data) if nodata is None else np.isfinite(data) & (data != np.float32(nodata))
+        values[r0 - row:r1 - row, c0 - column:c1 - column] = np.where(known, data, np.nan)
+        return values
+
+    def read_window(self, bounds):
+        """The pixels that a box of the map touches.
+
+        Parameters
+        ----------
+        bounds : (min x, min y, max x, max y), map coordinates
+
+        Returns
+        -------
+        (H, W) float32, row 0 in the north, NaN where there is no data; and the map
+        coordinates x, y of the outer (north-west) corner of pixel 0, 0.
+        """
+        left, _, _, top, _, _ = self.geotransform
+        x0, y0, x1, y1 = bounds
+        column, row = int(np.floor((x0 - left) / self.cell_size)), int(np.floor((top - y1) / self.cell_size))
+        width = max(int(np.ceil((x1 - left) / self.cell_size)) - column, 1)
+        height = max(int(np.ceil((top - y0) / self.cell_size)) - row, 1)
+        corner = left + column * self.cell_size, top - row * self.cell_size
+        return self.read_pixels(column, row, width, height), corner
+
+    def pixel_of(self, x, y, origin=(0.0, 0.0)):
+        """Column and row, (N,) float, of places; pixel 0 reaches from 0 to 1.
+
+        `origin` is what was subtracted from the map coordinates (frame.origin), nothing by default.
+        """
+        left, _, _, top, _, _ = self.geotransform
+        return (np.asarray(x, float) + (origin[0] - left)) / self.cell_size, \
+            ((top - origin[1]) - np.asarray(y, float)) / self.cell_size
+
+    def sample(self, x, y, origin=(0.0, 0.0), bilinear=False):
+        """Image values at places.
+
+        Parameters
+        ----------
+        x, y : (N,) map coordinates, or local ones with their `origin`
+        bilinear : between the centres of four pixels, else the pixel that a place lies in
+
+        Returns
+        -------
+        (N,) float32, NaN where there is no data; bilinear needs all four pixels.
+        """
+        column, row = self.pixel_of(x, y, origin)
+        if bilinear:
+            column, row = column - 0.5, row - 0.5
+        values = np.full(len(column), np.nan, np.float32)
+        whole_column, whole_row = np.floor(column).astype(np.int64), np.floor(row).astype(np.int64)
+        inside = np.flatnonzero((whole_column >= -1) & (whole_row >= -1) & (whole_column < self.width) & (whole_row < self.height))
+        tile = (whole_row[inside] // TILE) * (self.width // TILE + 2) + whole_column[inside] // TILE
+        order = inside[np.argsort(tile, kind="stable")]
+        cuts = np.flatnonzero(np.diff(np.sort(tile, kind="stable"))) + 1
+        for rows in np.split(order, cuts) if len(order) else []:
+            c, r = whole_column[rows], whole_row[rows]
+            c0, r0 = int(c.min()), int(r.min())
+            pixels = self.read_pixels(c0, r0, int(c.max()) - c0 + 2, int(r.max()) - r0 + 2)
+            c, r = c - c0, r - r0
+            if bilinear:
+                u, v = column[rows] - whole_column[rows], row[rows] - whole_row[rows]
+                values[rows] = ((1 - v) * ((1 - u) * pixels[r, c] + u * pixels[r, c + 1])
+                                + v * ((1 - u) * pixels[r + 1, c] + u * pixels[r + 1, c + 1]))
+            else:
+                values[rows] = pixels[r, c]
+        return values
+
+    def _dataset(self):
+        if not hasattr(self._own, "dataset"):
+            self._own.dataset = _open_raster(self.path)
+        return self._own.dataset
+
+
+def _float32():
+    from osgeo import gdal
+
+    return gdal.GDT_Float32
+
+
+def _open_raster(path):
+    from osgeo import gdal
+
+    gdal.UseExceptions()
+    if not Path(path).is_file():
+        raise RoadExtractionError(f"There is no file {path}. Give the intensity image written by “Intensity image”.")
+    try:
+        return gdal.Open(str(path))
+    except RuntimeError as problem:
+        raise RoadExtractionError(
+            f"{path} cannot be read as an image ({problem}). Give the GeoTIFF written by “Intensity image”.") from problem
+
+
+@contextmanager
+def new_geotiff(path, width, height, geotransform, crs, byte=False, nodata=NODATA):
+    """A one-band GDAL dataset to write into: tiled, DEFLATE, empty tiles left out; it takes its name when all went well."""
+    from osgeo import gdal
+
+    gdal.UseExceptions()
+    path = Path(path)
+    unfinished = path.with_name(path.name + ".unfinished.tif")
+    options = [f"BLOCKXSIZE={TILE}", f"BLOCKYSIZE={TILE}", "TILED=YES", "COMPRESS=DEFLATE", "SPARSE_OK=TRUE",
+               "BIGTIFF=IF_SAFER", f"PREDICTOR={2 if byte else 3}"]
+    try:
+        try:
+            dataset = gdal.GetDriverByName("GTiff").Create(
+                str(unfinished), width, height, 1, gdal.GDT_Byte if byte else gdal.GDT_Float32, options)
+        except RuntimeError as problem:
+            raise RoadExtractionError(f"{path} cannot be written ({problem}). Choose another folder or free its space.") from problem
+        dataset.SetGeoTransform(geotransform)
+        if crs:
+            dataset.SetProjection(crs)
+        dataset.GetRasterBand(1).SetNoDataValue(nodata)
+        yield dataset
+        dataset.FlushCache()
+        dataset = None
+        os.replace(unfinished, path)
+        # statistics that a viewer kept beside yesterday's image are not those of this one
+        path.with_name(path.name + ".aux.xml").unlink(missing_ok=True)
+    finally:
+        dataset = None
+        unfinished.unlink(missing_ok=True)
+
+
+def write_display_image(image_path, path, progress=Progress()):
+    """Write an intensity image stretched to bytes 1 to 255, for viewers; 0 is no data.
+
+    The stretch runs from the 1st to the 99.5th percentile of the image.
+    """
+    from osgeo import gdal
+
+    image = IntensityImage.open(image_path)
+    low, high = _stretch(image)
+    with new_geotiff(path, image.width, image.height, image.geotransform, image.crs, byte=True, nodata=0) as dataset:
+        band = dataset.GetRasterBand(1)
+        rows = range(0, image.height, TILE)
+        for row in rows:
+            for column in range(0, image.width, TILE):
+                width, height = min(TILE, image.width - column), min(TILE, image.height - row)
+                values = image.read_pixels(column, row, width, height)
+                known = np.isfinite(values)
+                if known.any():
+                    grey = 1 + np.rint(254 * np.clip((values - low) / max(high - low, 1e-9), 0, 1))
+                    data = np.where(known, grey, 0).astype(np.uint8)
+                    band.WriteRaster(column, row, width, height, data.tobytes(), buf_type=gdal.GDT_Byte)
+            progress.at(min(row + TILE, image.height) / image.height)
+
+
+def _stretch(image):
+    """1st and 99.5th percentile of an image, taken from every n-th pixel."""
+    step = max(1, max(image.width, image.height) // DISPLAY_LONGEST)
+    parts = [np.empty(0, np.float32)]
+    for row in range(0, image.height, TILE):
+        for column in range(0, image.width, TILE):
+            values = image.read_pixels(column, row, TILE, TILE)[::step, ::step]
+            parts.append(values[np.isfinite(values)])
+    values = np.concatenate(parts)
+    return tuple(np.percentile(values, [1.0, 99.5])) if len(values) else (0.0, 1.0)
