@@ -1,0 +1,178 @@
+"""Chains of steps along the road, and the one chain after another that is the curb.
+
+A single step may be anything; a curb goes on. Steps of neighbouring profiles are
+linked where offset and height continue, and the links make chains. Of chains that
+lie side by side the choice along the road weighs the length covered against
+lateral jumps, with a weak preference for what is near the vehicle.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+LINK_REACH = 1.0       # m along the road that a link may span
+DRIFT = 0.25           # m across per m along, beyond which neighbours are not one line
+SLACK = 0.05           # m across that two steps of one line may differ anyway
+HEIGHT_SLACK = 0.03    # m that bottom heights of neighbours may differ
+SHORTEST = 1.5         # m of a chain that counts
+DENSEST = 0.5          # share of its profiles in which a chain must be seen
+WANDER = 0.02          # m, scatter about its own running line beyond the scanner's noise
+ROUGH_ROAD = 0.012     # m about the road side's line beyond the scanner's noise
+WIDEST_FACE = 0.10     # m across, beyond the scanner's noise
+JUMP_COST = 4.0        # m of curb that a lateral jump of 1 m must bring to pay
+CLIMB_COST = 60.0      # the same for 1 m of height: ground behind a curb is higher
+JUMP_CAP = 10.0        # m of curb that any jump costs at most
+NEARNESS = 0.03        # share of a metre's worth lost for each metre farther out
+MEMORY = 40.0          # m of road after which a chain is forgotten
+
+
+@dataclass
+class Chain:
+    """Steps of one line, sorted by station: indices into the steps, first and last station."""
+
+    steps: np.ndarray
+    start: float
+    end: float
+
+
+def link_chains(steps, profile_width):
+    """(M,) number of the chain of every step, numbered by first station.
+
+    Each step is linked with the one ahead that continues it best, if that one has
+    no better step behind: so chains never branch.
+    """
+    count = len(steps)
+    if not count:
+        return np.empty(0, np.int64)
+    order = np.lexsort((steps.u, steps.profile))
+    profile, u, h, s = steps.profile[order], steps.u[order], steps.h[order], steps.s[order]
+    ahead, cost_ahead = _best_partner(profile, u, h, s, profile_width, 1)
+    behind, _ = _best_partner(profile, u, h, s, profile_width, -1)
+    rows = np.flatnonzero(ahead >= 0)
+    rows = rows[behind[ahead[rows]] == rows]
+    graph = coo_matrix((np.ones(len(rows)), (rows, ahead[rows])), shape=(count, count))
+    _, label = connected_components(graph, directed=False)
+    found = np.empty(count, np.int64)
+    found[order] = label
+    return found
+
+
+def _best_partner(profile, u, h, s, width, direction):
+    """Index of the cheapest step in the following (or preceding) profiles, -1 where none fits."""
+    count = len(u)
+    span = u.max() - u.min() + 1000.0
+    key = profile * span + (u - u.min())
+    best, cheapest = np.full(count, -1), np.full(count, np.inf)
+    for gap in range(1, max(int(round(LINK_REACH / width)), 1) + 1):
+        wanted = (profile + direction * gap) * span + (u - u.min())
+        right = np.searchsorted(key, wanted)
+        for candidate in (right - 1, right):
+            k = np.clip(candidate, 0, count - 1)
+            along = np.abs(s[k] - s)
+            across, up = np.abs(u[k] - u), np.abs(h[k] - h)
+            fits = (profile[k] == profile + direction * gap) & (across <= SLACK + DRIFT * along) \
+                & (up <= HEIGHT_SLACK + 0.05 * along)
+            cost = np.where(fits, (across / SLACK) ** 2 + (up / HEIGHT_SLACK) ** 2 + (gap - 1), np.inf)
+            better = cost < cheapest
+            best[better], cheapest[better] = k[better], cost[better]
+    return best, cheapest
+
+
+def curb_chains(steps, label, profile_width, least, slope):
+    """Chains that look like a curb: long, dense, straight in the small, steep, with raised ground behind.
+
+    Parameters
+    ----------
+    steps : Steps of one side of one road
+    label : (M,) chain of each step
+    least : m, median height that a chain must have
+    slope : radians, least angle of the face
+
+    Returns
+    -------
+    list of Chain, sorted by start
+    """
+    order = np.lexsort((steps.s, label))
+    cuts = np.flatnonzero(np.diff(label[order])) + 1
+    chains = []
+    for members in np.split(order, cuts):
+        s = steps.s[members]
+        length = s[-1] - s[0] + profile_width
+        if length < SHORTEST or len(members) * profile_width < DENSEST * length:
+            continue
+        height, usual = np.median(steps.height[members]), np.median(steps.usual[members])
+        run = np.median(steps.run[members])
+        if height < least or np.arctan2(height, run) < slope and run > 2 * usual:
+            continue
+        if run > WIDEST_FACE + 2 * usual or np.median(steps.noise[members]) > ROUGH_ROAD + 1.5 * usual:
+            continue
+        if np.mean(steps.behind[members] >= 2) < 0.5:
+            continue
+        u = steps.u[members]
+        if len(u) > 2 and np.median(np.abs(u[1:-1] - 0.5 * (u[2:] + u[:-2]))) > WANDER + 0.7 * usual:
+            continue
+        chains.append(Chain(members, float(s[0]), float(s[-1])))
+    return sorted(chains, key=lambda c: (c.start, c.end))
+
+
+def choose_along(chains, steps, near):
+    """The chain that is the curb, along the road.
+
+    Parameters
+    ----------
+    chains : list of Chain of one side
+    near : function, station -> outward offset of the outermost track on that side
+
+    Returns
+    -------
+    list of (chain index, from station, to station), in order along the road
+    """
+    places = [(steps.s[c.steps], steps.u[c.steps], steps.h[c.steps]) for c in chains]
+    starts, ends = np.array([c.start for c in chains]), np.array([c.end for c in chains])
+    cuts = np.unique(np.r_[starts, ends])
+    worth = np.full(len(chains), -np.inf)  # of the best way that is on this chain, or was on it last
+    way = [None] * len(chains)             # that way: (chain, from, to, way before)
+    old_worth, old_way = 0.0, None         # the best of what is forgotten; at first, no curb at all
+    for a, b in zip(cuts[:-1], cuts[1:]):
+        for c in np.flatnonzero((ends + MEMORY < a) & np.isfinite(worth)):
+            if worth[c] > old_worth:
+                old_worth, old_way = worth[c], way[c]
+            worth[c] = -np.inf
+        active = np.flatnonzero((starts <= a) & (ends >= b))
+        known = np.flatnonzero(np.isfinite(worth))
+        there = np.array([[np.interp(a, places[k][0], v) for v in places[k][1:]] for k in known]).reshape(-1, 2)
+        middle, found = 0.5 * (a + b), []
+        for c in active:
+            u, h = (np.interp(middle, places[c][0], v) for v in places[c][1:])
+            gain = (b - a) * max(1.0 - NEARNESS * max(u - near(middle), 0.0), 0.1)
+            gap = np.maximum(a - ends[known], 0.0)
+            jump = np.maximum(np.abs(u - there[:, 0]) - 0.05 - 0.1 * gap, 0.0)
+            climb = np.maximum(np.abs(h - there[:, 1]) - 0.03 - 0.003 * gap, 0.0)
+            value = worth[known] - np.where(known == c, 0.0, np.minimum(JUMP_COST * jump + CLIMB_COST * climb, JUMP_CAP))
+            best, before = old_worth - (JUMP_CAP / 2 if old_way else 0.0), old_way
+            if len(known) and value.max() >= best:
+                k = int(np.argmax(value))
+                best, before = value[k], way[known[k]]
+            found.append((c, best + gain, (int(c), float(a), float(b), before)))
+        for c, value, step in found:
+            worth[c], way[c] = value, step
+    if len(chains) and worth.max() >= old_worth:
+        old_way = way[int(np.argmax(worth))]
+    path = []
+    while old_way:
+        path.append(old_way[:3])
+        old_way = old_way[3]
+    return _merged(path[::-1])
+
+
+def _merged(path):
+    """Touching intervals of one chain made one."""
+    merged = []
+    for chain, a, b in path:
+        if merged and merged[-1][0] == chain and merged[-1][2] == a:
+            merged[-1] = (chain, merged[-1][1], b)
+        else:
+            merged.append((chain, a, b))
+    return merged

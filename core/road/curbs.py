@@ -1,0 +1,251 @@
+"""Curb points: where the road ends against a raised edge, nearest the driven track on each side."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from ..errors import RoadExtractionError
+from ..features import Features
+from ..parallel import in_order
+from ..progress import Progress
+from ..schemas import CURB_POINTS
+from .chains import choose_along, curb_chains, link_chains
+from .profiles import pseudo_scan_lines
+from .shadows import Sight
+from .steps import Steps, find_steps
+
+SECTION = 20.0          # m of road worked at a time
+SIDES = {"left": 1, "right": -1}
+VEHICLE_HALF = 0.6      # m from the track: no curb nearer
+REACH = 20.0            # m from the reference line beyond which no curb is sought
+MERGE_ACROSS = 0.12     # m between the same step seen in two passes
+MERGE_UP = 0.10
+DROPPED = 0.5           # a lower curb counts where it continues a full one: share of MIN_HEIGHT
+STRAIGHT_BLOCK, SHARP_BLOCK = 2.0, 0.5  # m
+TURN_PER_BLOCK = np.radians(1.0)        # a block of road turns no more than this
+END_STEPS = 3           # profiles that give the end point of a chain
+HIDDEN_STEP = 0.5       # m between rows of hidden curb
+HIDDEN_REACH = 25.0     # m between curbs within which hidden curb is reported
+
+
+@dataclass(frozen=True)
+class CurbSettings:
+    """How curbs are recognised.
+
+    block_length : m of road per curb point; 0 = 0.5 to 2.0, shorter in sharp bends
+    profile_width : m of road per profile
+    point_spacing : m, cells of the pseudo scan-lines
+    layer_jump : m of height that parts ground from what is above it
+    slope : degrees, least steepness of a curb face
+    min_height, max_height : m, road to top of curb
+    """
+
+    block_length: float = 0.0
+    profile_width: float = 0.25
+    point_spacing: float = 0.025
+    layer_jump: float = 0.05
+    slope: float = 60.0
+    min_height: float = 0.05
+    max_height: float = 0.35
+
+    def __post_init__(self):
+        if self.block_length != 0 and not 0.25 <= self.block_length <= 10.0:
+            raise RoadExtractionError(f"The block length is {self.block_length} m; it must be between 0.25 and 10 m, or 0 for automatic.")
+        if not 0.05 <= self.profile_width <= 2.0:
+            raise RoadExtractionError(f"The profile width is {self.profile_width} m; it must be between 0.05 and 2 m.")
+        if not 0.01 <= self.point_spacing <= 0.1:
+            raise RoadExtractionError(f"The point spacing is {self.point_spacing} m; it must be between 0.01 and 0.1 m.")
+        if not 0.0 < self.layer_jump <= 0.5:
+            raise RoadExtractionError(f"The layer jump is {self.layer_jump} m; it must be above 0 and at most 0.5 m.")
+        if not 10.0 <= self.slope < 90.0:
+            raise RoadExtractionError(f"The slope is {self.slope}°; it must be at least 10° and less than 90°.")
+        if not 0.01 <= self.min_height < self.max_height <= 1.0:
+            raise RoadExtractionError(f"Curbs from {self.min_height} m to {self.max_height} m were asked for; the minimum "
+                                      "must be at least 0.01 m, the maximum above it and at most 1 m.")
+
+
+def detect_curbs(survey, settings=CurbSettings(), progress=Progress()):
+    """Bottom corners of the curb on each side of every road, one per block.
+
+    Parameters
+    ----------
+    survey : Survey
+
+    Returns
+    -------
+    Features CURB_POINTS: PointZ in map coordinates. Rows of status `measured` are
+    vertices of the road edge; rows of status `occluded` say where something hides
+    it, at the place where it is expected.
+    """
+    found = Features("PointZ", list(CURB_POINTS), crs=survey.crs)
+    roads = survey.store.roads()
+    for i, road in enumerate(roads):
+        part = progress.part(i / len(roads), (i + 1) / len(roads))
+        steps, sight = _steps_of_road(survey, road, settings, part)
+        for side in SIDES:
+            _report_side(found, survey, road, side, steps[side], sight[side], settings)
+    measured = sum(row["status"] == "measured" for row in found.rows)
+    progress.say(f"{measured:,} curb points measured, {len(found) - measured:,} hidden by something in front.")
+    return found
+
+
+class Track:
+    """Outward offset of the outermost driven track of one side."""
+
+    def __init__(self, frame, road, sign):
+        self.passes, self.sign = frame.passes_of(road), sign
+
+    def __call__(self, s):
+        s = np.asarray(s, float)
+        offsets = np.full(s.shape, -np.inf)
+        for p in self.passes:
+            first, last = p.span
+            there = (s >= first - 5.0) & (s <= last + 5.0)
+            offsets = np.where(there, np.maximum(offsets, self.sign * p.at_station(s)[0]), offsets)
+        return np.where(np.isfinite(offsets), offsets, 0.0)
+
+
+def _steps_of_road(survey, road, settings, progress):
+    """Steps of each side, passes merged, and what was seen beside the road."""
+    width = settings.profile_width
+    start, end = survey.store.span(road)
+    first, last = int(np.floor(start / width)), int(np.ceil(end / width))
+    sight = {side: Sight(width, first, last - first, REACH) for side in SIDES}
+    tracks = {side: Track(survey.frame, road, sign) for side, sign in SIDES.items()}
+    count = max(int(np.ceil((end - start) / SECTION)), 1)
+    bounds = np.unique(np.rint(np.linspace(first, last, count + 1)).astype(int))
+
+    def work(section):
+        a, b = section
+        points = survey.window(road, a * width, b * width)
+        s, d = points.s, points.d
+        h = points.z - survey.road_height(road, s)
+        return [(side, _steps_of_section(sign * d, s, h, points.pass_number, (a, b), tracks[side], sight[side], settings))
+                for side, sign in SIDES.items()]
+
+    parts = {side: [] for side in SIDES}
+    for results in in_order(work, list(zip(bounds[:-1], bounds[1:])), progress):
+        for side, steps in results:
+            if steps is not None:
+                parts[side].append(steps)
+    return {side: Steps.join(parts[side]) if parts[side] else None for side in SIDES}, sight
+
+
+def _steps_of_section(u, s, h, pass_number, profiles, track, sight, settings):
+    width = settings.profile_width
+    stations = (np.arange(profiles[0], profiles[1]) + 0.5) * width
+    origin = np.floor(track(stations).min())
+    outward = np.flatnonzero((u > origin) & (u < REACH))
+    u, s, h, pass_number = u[outward], s[outward], h[outward], pass_number[outward]
+    found = []
+    for number in np.unique(pass_number):
+        own = pass_number == number
+        lines = pseudo_scan_lines(u[own], s[own], h[own], profiles, width, settings.point_spacing,
+                                  settings.layer_jump, origin, REACH)
+        sight.look(u[own], s[own], h[own], profiles, lines)
+        steps = find_steps(lines, DROPPED * settings.min_height, settings.max_height)
+        found.append(steps[steps.u > track(steps.s) + VEHICLE_HALF])
+    return _merge_passes(found) if found else None
+
+
+def _merge_passes(found):
+    """One step where several passes saw the same one: the mean, weighted by support."""
+    steps = Steps.join(found)
+    if len(found) < 2 or not len(steps):
+        return steps
+    order = np.lexsort((steps.u, steps.profile))
+    steps = steps[order]
+    apart = (np.diff(steps.profile) > 0) | (np.diff(steps.u) > MERGE_ACROSS) | (np.abs(np.diff(steps.h)) > MERGE_UP)
+    group = np.r_[0, np.cumsum(apart)]
+    weight = np.sqrt(steps.support)
+    total = np.bincount(group, weight)
+    values = {name: np.bincount(group, weight * getattr(steps, name)) / total
+              for name in ("s", "u", "h", "height", "run", "noise", "usual")}
+    return Steps(profile=steps.profile[np.r_[True, apart]], **values,
+                 support=np.bincount(group, steps.support).astype(np.int64),
+                 behind=np.bincount(group, steps.behind).astype(np.int64))
+
+
+def _report_side(found, survey, road, side, steps, sight, settings):
+    """Curb points of one side of one road, measured and hidden, in order of station."""
+    if steps is None or not len(steps):
+        return
+    frame, sign = survey.frame, SIDES[side]
+    track = Track(frame, road, sign)
+    label = link_chains(steps, settings.profile_width)
+    chains = curb_chains(steps, label, settings.profile_width, settings.min_height, np.radians(settings.slope))
+    chosen = choose_along(chains, steps, track)
+    edges = block_edges(frame.road(road), *survey.store.span(road), settings.block_length)
+    rows = []
+    for number, (chain, a, b) in enumerate(chosen):
+        members = chains[chain].steps
+        members = members[(steps.s[members] >= a) & (steps.s[members] <= b)]
+        rows += _block_points(steps[members], edges, number)
+    measured = np.array([(r["s"], r["u"], r["h"]) for r in rows]).reshape(-1, 3)
+    rows += _hidden_points(measured, sight, track)
+    rows.sort(key=lambda r: r["s"])
+    if not rows:
+        return
+    s, u, h = (np.array([r[name] for r in rows]) for name in ("s", "u", "h"))
+    x, y, z = frame.to_map(road, s, sign * u, h + survey.road_height(road, s))
+    for point, row in zip(shapely.points(np.round(x, 4), np.round(y, 4), np.round(z, 4)), rows):
+        found.add(point, road=road, side=side, station_m=round(row["s"], 4), offset_m=round(sign * row["u"], 4),
+                  part="bottom", **row["fields"])
+
+
+def block_edges(road, start, end, block_length):
+    """Stations at which blocks begin and end, counted from station 0.
+
+    Automatic blocks are 0.5 to 2.0 m long, so that the road turns no more than a
+    degree within one; the length is decided for every 20 m of road.
+    """
+    edges = []
+    first, last = int(np.floor(start / SECTION)), int(np.ceil(end / SECTION))
+    if block_length:
+        return np.arange(np.floor(start / block_length), np.ceil(end / block_length) + 1) * block_length
+    for k in range(first, last):
+        bend = np.abs(road.curvature(np.arange(k * SECTION, (k + 1) * SECTION, 0.5))).max()
+        length = np.clip(TURN_PER_BLOCK / max(bend, 1e-9), SHARP_BLOCK, STRAIGHT_BLOCK)
+        edges.append(np.linspace(k * SECTION, (k + 1) * SECTION, int(np.ceil(SECTION / length)) + 1)[:-1])
+    return np.r_[np.concatenate(edges), last * SECTION] if edges else np.array([start, end])
+
+
+def _block_points(steps, edges, chain):
+    """One point per block from the steps of a chain: their line, read at the middle of what was seen."""
+    if not len(steps):
+        return []
+    block = 2 * np.searchsorted(edges, steps.s, side="right")
+    # a chain's ends stand for themselves, not for the middle of their blocks
+    if len(steps) > 2 * END_STEPS:
+        block[:END_STEPS] = block[0] - 1
+        block[-END_STEPS:] = block[-1] + 1
+    names, member = np.unique(block, return_inverse=True)
+    n = np.bincount(member)
+
+    def mean(v):
+        return np.bincount(member, v) / n
+
+    s, u, h, height = (mean(v) for v in (steps.s, steps.u, steps.h, steps.height))
+    residual = np.sqrt(mean((steps.u - np.interp(steps.s, s, u)) ** 2))
+    support = np.bincount(member, steps.support)
+    return [dict(s=float(s[k]), u=float(u[k]), h=float(h[k]),
+                 fields=dict(status="measured", height_m=round(float(height[k]), 4), chain=chain,
+                             residual_m=round(float(residual[k]), 4), support=int(support[k]))) for k in range(len(names))]
+
+
+def _hidden_points(measured, sight, track):
+    """Places in the gaps between curb points where something hides the curb."""
+    if len(measured) < 2:
+        return []
+    measured = measured[np.argsort(measured[:, 0], kind="stable")]
+    s = np.arange(np.ceil(measured[0, 0] / HIDDEN_STEP), np.floor(measured[-1, 0] / HIDDEN_STEP) + 1) * HIDDEN_STEP
+    after = np.clip(np.searchsorted(measured[:, 0], s, side="right"), 1, len(measured) - 1)
+    before_s, after_s = measured[after - 1, 0], measured[after, 0]
+    wide = (after_s - before_s <= HIDDEN_REACH) & (after_s - before_s > STRAIGHT_BLOCK) \
+        & (s - before_s > 0.5 * HIDDEN_STEP) & (after_s - s > 0.5 * HIDDEN_STEP)
+    s = s[wide]
+    u, h = (np.interp(s, measured[:, 0], measured[:, k]) for k in (1, 2))
+    hidden = sight.hidden(s, u, h, track(s))
+    return [dict(s=float(a), u=float(b), h=float(c), fields=dict(status="occluded"))
+            for a, b, c in zip(s[hidden], u[hidden], h[hidden])]
