@@ -13,10 +13,12 @@ from .road.detect_curbs import DetectCurbs
 from .road.extract_road_surface import ExtractRoadSurface
 from .road.fit_road_edges import FitRoadEdges
 from .survey.import_trajectory import ImportTrajectory
+from .survey.inspect_survey import InspectSurvey
 from .survey.sample_survey import SampleSurvey
 
 ALGORITHMS = (
     ImportTrajectory,
+    InspectSurvey,
     SampleSurvey,
     DetectCurbs,
     FitRoadEdges,

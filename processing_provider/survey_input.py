@@ -96,7 +96,7 @@ def imported_trajectory(call, progress):
         trajectory = replace(trajectory, crs=target)
     trajectory = reproject_trajectory(trajectory, target)
     if headers:
-        trajectory, note, _ = match_clocks(headers, trajectory, call.settings(SURVEY_KNOBS), progress)
+        trajectory, note, *_ = match_clocks(headers, trajectory, call.settings(SURVEY_KNOBS), progress)
         if note:
             progress.say(note)
     return trajectory

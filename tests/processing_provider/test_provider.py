@@ -11,6 +11,7 @@ from lanewright.processing_provider.knobs import settings_class
 # Commands, models and scripts call these; a name that changes breaks them.
 INTERFACE = {
     "importtrajectory": "INPUT INPUT_CRS TARGET_CRS POINT_CLOUDS TIME OUTPUT",
+    "inspectsurvey": "POINT_CLOUDS TRAJECTORY CRS REPORT DENSITY",
     "samplesurvey": "SCENE LENGTH SEED POINT_CLOUD TRAJECTORY TRUTH_BOUNDARIES TRUTH_MARKINGS TRUTH_DRIVING_LINES",
     "detectcurbs": "POINT_CLOUDS TRAJECTORY CRS BLOCK_LENGTH PROFILE_WIDTH POINT_SPACING LAYER_JUMP SLOPE MIN_HEIGHT "
                    "MAX_HEIGHT CURB_POINTS PRINCIPAL_POINTS",

@@ -1,0 +1,260 @@
+"""What a survey's files hold: points, density, time, scanners, intensity, and whether the trajectory fits."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ..errors import RoadExtractionError
+from ..progress import Progress
+from .crs import check_metric, horizontal, parse_crs, reproject_trajectory
+from .point_cloud import BLOCK, read_blocks, read_headers
+from .scanners import ScannerCensus
+from .survey import SurveySettings
+from .survey import _match_clocks as match_clocks
+from .trajectory import clean_trajectory
+
+NEAR = 25.0        # m from the trajectory that counts as measured from it
+SAMPLED = 50       # every how manyth point the distance to the trajectory is taken of
+INTENSITY_VALUES = 65536
+MOST_CELLS = 40_000_000  # of the density raster
+
+
+@dataclass(frozen=True)
+class InspectionSettings:
+    """Edges of the cells that density is counted in, metres."""
+
+    cell_size: float = 1.0
+    cube_size: float = 1.0
+
+    def __post_init__(self):
+        for name, value in (("cell", self.cell_size), ("cube", self.cube_size)):
+            if not 0.05 <= value <= 100.0:
+                raise RoadExtractionError(f"The density {name} is {value} m; it must be between 0.05 and 100 m.")
+
+
+@dataclass
+class Inspection:
+    """Findings; lengths in metres, times in the clouds' own seconds.
+
+    per_area, per_volume : points per m² and per m³: mean, median and largest over occupied
+        cells, and of_a_point, the mean over points of the density of their own cell
+    density : ((H, W) float32 points per m², row 0 in the north, NaN where empty;
+        (min x, max y) of its corner)
+    intensity : (65536,) counts of each value
+    scanners : LAS field that tells them apart or None, and its values
+    near_share, in_time_share : share of points measured near and during the trajectory, None without one
+    """
+
+    files: list
+    crs: str
+    count: int
+    minimum: np.ndarray
+    maximum: np.ndarray
+    per_area: dict
+    per_volume: dict
+    density: tuple
+    intensity: np.ndarray
+    time_span: tuple
+    scanner_field: str
+    scanners: list
+    returns: dict
+    classes: dict
+    settings: InspectionSettings
+    near_share: float = None
+    in_time_share: float = None
+    trajectory: object = None
+    notes: list = field(default_factory=list)
+
+
+def inspect_survey(paths, trajectory=None, settings=InspectionSettings(), crs="", progress=Progress()):
+    """Read every point once and count.
+
+    Parameters
+    ----------
+    paths : LAS, LAZ or COPC files
+    trajectory : Trajectory in any known CRS and time system, or None
+    crs : WKT for clouds that carry none
+
+    Returns
+    -------
+    Inspection. What the road map would refuse (a geographic CRS, no overlap, no
+    time, no intensity) stands in `notes`, each with a way on.
+
+    Raises
+    ------
+    RoadExtractionError
+        If a file is missing, damaged, or all are empty.
+    """
+    files = read_headers(paths)
+    wkt = next((file.crs for file in files if file.crs), "") or crs
+    counter = _Counter(files, settings, _usable(trajectory, wkt))
+    total, done = sum(file.count for file in files), 0
+    for file in files:
+        for block in read_blocks(file.path, BLOCK):
+            counter.take(block)
+            done += len(block)
+            progress.at(done / total)
+    return counter.inspection(files, wkt, trajectory, progress)
+
+
+def _usable(trajectory, wkt):
+    """The trajectory in the clouds' CRS, or None where it cannot be brought there."""
+    if trajectory is None:
+        return None
+    try:
+        return clean_trajectory(reproject_trajectory(trajectory, wkt))
+    except RoadExtractionError:
+        return None
+
+
+class _Counter:
+    """Counts block by block; memory grows with the ground covered, not with the points."""
+
+    def __init__(self, files, settings, trajectory):
+        self.settings = settings
+        filled = [file for file in files if file.count]
+        self.minimum = np.min([file.minimum for file in filled], axis=0)
+        self.maximum = np.max([file.maximum for file in filled], axis=0)
+        self.corner = np.floor(self.minimum / settings.cell_size) * settings.cell_size
+        self.cells, self.cubes = _Tally(), _Tally()
+        self.intensity = np.zeros(INTENSITY_VALUES, np.int64)
+        self.census, self.time = ScannerCensus(), [np.inf, -np.inf]
+        self.returns, self.classes = np.zeros(256, np.int64), np.zeros(256, np.int64)
+        self.count = self.sampled = self.near = 0
+        self.tree = None if trajectory is None else cKDTree(np.c_[trajectory.x, trajectory.y])
+
+    def take(self, block):
+        x, y, z = (np.asarray(block[name], float) for name in "xyz")
+        self.count += len(x)
+        cell, cube = self.settings.cell_size, self.settings.cube_size
+        column, row = np.floor((x - self.corner[0]) / cell), np.floor((y - self.corner[1]) / cell)
+        self.cells.add(_key(column, row))
+        self.cubes.add(_key(np.floor((x - self.corner[0]) / cube), np.floor((y - self.corner[1]) / cube),
+                            np.floor((z - self.corner[2]) / cube)))
+        self.intensity += np.bincount(np.asarray(block["intensity"]), minlength=INTENSITY_VALUES)
+        self.returns += np.bincount(np.asarray(block["return_number"]), minlength=256)
+        self.classes += np.bincount(np.asarray(block["classification"]), minlength=256)
+        names = block.point_format.dimension_names
+        time = np.asarray(block["gps_time"], float) if "gps_time" in names else np.zeros(len(x))
+        self.time = [min(self.time[0], time.min(initial=np.inf)), max(self.time[1], time.max(initial=-np.inf))]
+        for name in ("point_source_id", "scanner_channel"):
+            if name in names:
+                self.census.add(name, np.asarray(block[name]), time)
+        if self.tree is not None:
+            distance, _ = self.tree.query(np.c_[x, y][::SAMPLED], distance_upper_bound=NEAR)
+            self.sampled += len(distance)
+            self.near += int(np.isfinite(distance).sum())
+
+    def inspection(self, files, wkt, trajectory, progress):
+        scanner_field, scanners = self.census.choose()
+        has_time = all(file.has_time for file in files) and self.time[1] > self.time[0]
+        found = Inspection(
+            files, wkt, self.count, self.minimum, self.maximum,
+            _density(self.cells.counts, self.settings.cell_size**2), _density(self.cubes.counts, self.settings.cube_size**3),
+            self._raster(), self.intensity, tuple(self.time) if has_time else None, scanner_field, scanners,
+            _named(self.returns), _named(self.classes), self.settings, trajectory=trajectory)
+        if self.sampled:
+            found.near_share = self.near / self.sampled
+        _judge_crs(found)
+        if trajectory is not None:
+            _judge_trajectory(found, wkt, has_time, progress)
+        if not self.intensity[1:].any():
+            found.notes.append("All intensities are 0: road edges can be found, markings and driving lines cannot.")
+        if not has_time:
+            found.notes.append("There is no usable gps_time: each point is placed at the nearest foot on the trajectory, "
+                               "which mixes the passes where a street was driven twice.")
+        return found
+
+    def _raster(self):
+        cell = self.settings.cell_size
+        width, height = (int(np.floor((self.maximum[k] - self.corner[k]) / cell)) + 1 for k in (0, 1))
+        corner = (self.corner[0], self.corner[1] + height * cell)
+        if width * height > MOST_CELLS:
+            raise RoadExtractionError(
+                f"A density raster of {width} x {height} cells of {cell} m would be too large. Choose a larger cell, or "
+                "inspect fewer files at once.")
+        image = np.full((height, width), np.nan, np.float32)
+        column, row, _ = _unkey(self.cells.keys)
+        inside = (column < width) & (row < height) & (column >= 0) & (row >= 0)
+        image[height - 1 - row[inside], column[inside]] = self.cells.counts[inside] / cell**2
+        return image, corner
+
+
+class _Tally:
+    """How often each key was seen, kept sorted by key."""
+
+    def __init__(self):
+        self.keys, self.counts = np.empty(0, np.int64), np.empty(0, np.int64)
+
+    def add(self, keys):
+        new, counts = np.unique(keys, return_counts=True)
+        place = np.searchsorted(self.keys, new)
+        known = place < len(self.keys)
+        known[known] = self.keys[place[known]] == new[known]
+        self.counts[place[known]] += counts[known]
+        self.keys = np.r_[self.keys, new[~known]]
+        self.counts = np.r_[self.counts, counts[~known]]
+        order = np.argsort(self.keys, kind="stable")
+        self.keys, self.counts = self.keys[order], self.counts[order]
+
+
+def _key(column, row, layer=0):
+    """One int64 of up to three cell numbers below 2**20 each."""
+    part = [np.clip(np.asarray(v), 0, 2**20 - 1).astype(np.int64) for v in (column, row, layer)]
+    return (part[2] << 40) | (part[1] << 20) | part[0]
+
+
+def _unkey(keys):
+    mask = 2**20 - 1
+    return keys & mask, (keys >> 20) & mask, keys >> 40
+
+
+def _density(counts, size):
+    """Points per unit: over occupied cells, and of_a_point, the mean over points of their own cell.
+
+    The latter is what a density per neighbourhood, as CloudCompare computes it
+    and the figures 4.2 and 4.5 of the driving-line thesis show it, comes close to.
+    """
+    counts = counts / size
+    return dict(cells=len(counts), mean=float(counts.mean()), median=float(np.median(counts)), largest=float(counts.max()),
+                of_a_point=float((counts**2).sum() / counts.sum()))
+
+
+def _named(counts):
+    return {int(value): int(counts[value]) for value in np.flatnonzero(counts)}
+
+
+def _judge_crs(found):
+    crs = parse_crs(found.crs)
+    if crs is None:
+        found.notes.append("The point clouds carry no CRS: set the parameter CRS, so that the results carry one.")
+        return
+    try:
+        check_metric(crs, "The point cloud")
+    except RoadExtractionError as problem:
+        found.notes.append(str(problem))
+    names = {horizontal(parse_crs(file.crs)).name for file in found.files if file.crs}
+    if len(names) > 1:
+        found.notes.append(f"The files use different CRSs ({', '.join(sorted(names))}): reproject them to one first.")
+
+
+def _judge_trajectory(found, wkt, has_time, progress):
+    """Overlap in space and time; what is wrong goes to the notes."""
+    try:
+        trajectory = clean_trajectory(reproject_trajectory(found.trajectory, wkt))
+        found.notes += [note for note in trajectory.notes if note not in found.notes]
+        if has_time:
+            trajectory, note, *_ = match_clocks(found.files, trajectory, SurveySettings(), progress)
+            found.notes += [note] if note else []
+        found.trajectory = trajectory
+    except RoadExtractionError as problem:
+        found.notes.append(str(problem))
+        return
+    if has_time and trajectory.has_time:
+        first, last = found.time_span
+        shared = min(last, trajectory.time[-1]) - max(first, trajectory.time[0])
+        found.in_time_share = float(np.clip(shared / (last - first), 0.0, 1.0))
+    if not found.near_share:
+        found.notes.append(
+            f"No point lies within {NEAR:.0f} m of the trajectory. Check that both belong to one survey and use one CRS.")

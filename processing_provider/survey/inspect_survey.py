@@ -1,0 +1,69 @@
+"""What the files of a survey hold."""
+
+from ..algorithm import LanewrightAlgorithm
+from ..knobs import Knob
+from ..texts import tr
+
+INSPECTION = "survey.inspection:InspectionSettings"
+
+INSPECTION_KNOBS = (
+    Knob(
+        "CELL_SIZE", INSPECTION, "cell_size", tr("Cell of the density raster (m)"),
+        tr("Smaller shows single scan lines, larger the broad picture."), minimum=0.05, maximum=100.0, advanced=True,
+    ),
+    Knob(
+        "CUBE_SIZE", INSPECTION, "cube_size", tr("Cube that the density in space is counted in (m)"),
+        tr("1 gives points per cubic metre as they are published; smaller ones follow surfaces more closely."),
+        minimum=0.05, maximum=100.0, advanced=True,
+    ),
+)
+
+NUMBERS = (
+    ("POINTS", tr("Points")),
+    ("POINTS_PER_M2", tr("Points per m², mean of occupied cells")),
+    ("POINTS_PER_M3", tr("Points per m³, mean of occupied cubes")),
+    ("FIRST_TIME", tr("First gps_time (s)")),
+    ("LAST_TIME", tr("Last gps_time (s)")),
+    ("SCANNERS", tr("Scanners")),
+    ("NEAR_TRAJECTORY", tr("Points near the trajectory (%)")),
+    ("TIME_COVERED", tr("Scan time covered by the trajectory (%)")),
+)
+
+
+class InspectSurvey(LanewrightAlgorithm):
+    ID, TITLE, ROOM = "inspectsurvey", "Inspect survey", "Survey"
+    SUMMARY = "Tells what point clouds and trajectory hold, and whether they fit together, before work is done on them."
+    HELP = "What the road map would stumble over, such as a geographic CRS or two clocks, is said with a way on."
+    TAGS = ("density", "report", "las", "header", "overlap")
+
+    def initAlgorithm(self, configuration=None):
+        self.add_survey(trajectory_optional=True)
+        self.add_knobs(INSPECTION_KNOBS)
+        self.add_report(optional=False)
+        self.add_raster("DENSITY", tr("Point density"), tr("Points per m² in every cell."), optional=True, by_default=False)
+        for name, label in NUMBERS:
+            self.add_number(name, label)
+
+    def run(self, call, progress):
+        from ...core.report.inspection import inspection_report
+        from ...core.survey.density_raster import write_density
+        from ...core.survey.inspection import inspect_survey
+
+        found = inspect_survey(
+            call.point_clouds(), call.trajectory(), call.settings(INSPECTION_KNOBS), call.crs(), progress.part(0.0, 0.95)
+        )
+        for note in found.notes:
+            progress.warn(note)
+        call.text("REPORT", inspection_report(found))
+        if call.wants("DENSITY"):
+            write_density(found, call.new_file("DENSITY"))
+        first, last = found.time_span or (None, None)
+        values = (
+            found.count, found.per_area["mean"], found.per_volume["mean"], first, last, len(found.scanners),
+            _percent(found.near_share), _percent(found.in_time_share),
+        )
+        return {name: float(value) for (name, _), value in zip(NUMBERS, values) if value is not None}
+
+
+def _percent(share):
+    return None if share is None else 100.0 * share

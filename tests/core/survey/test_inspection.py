@@ -1,0 +1,106 @@
+"""What a survey holds, told of clouds whose content is known."""
+
+import laspy
+import numpy as np
+import pytest
+from lanewright.core.errors import RoadExtractionError
+from lanewright.core.report.inspection import inspection_report
+from lanewright.core.survey.inspection import InspectionSettings, inspect_survey
+from lanewright.core.survey.trajectory import Trajectory
+
+WEST, SOUTH = 610400.0, 2710200.0
+
+
+def a_carpet(path, per_metre=10, length=20, width=6, start=318204000.0, crs="EPSG:32650", intensity=500, layers=1):
+    """A level carpet of `per_metre` points a metre both ways, in `layers` heights two metres apart."""
+    step = 1.0 / per_metre
+    x, y, layer = np.meshgrid(np.arange(step / 2, length, step), np.arange(step / 2, width, step), np.arange(layers), indexing="ij")
+    header = laspy.LasHeader(point_format=6, version="1.4")
+    header.scales, header.offsets = np.full(3, 0.001), [WEST, SOUTH, 0.0]
+    header.global_encoding.gps_time_type = laspy.header.GpsTimeType.STANDARD
+    if crs:
+        from pyproj import CRS
+
+        header.add_crs(CRS.from_user_input(crs))
+    cloud = laspy.LasData(header)
+    cloud.x, cloud.y, cloud.z = WEST + x.ravel(), SOUTH + y.ravel(), 20.5 + 2.0 * layer.ravel()
+    cloud.gps_time = start + x.ravel() / 10.0
+    cloud.intensity = np.full(x.size, intensity)
+    cloud.return_number = cloud.number_of_returns = np.ones(x.size, int)
+    cloud.write(str(path))
+    return str(path)
+
+
+def drive(shift=0.0, crs="EPSG:32650", start=318204000.0, north=3.0):
+    along = np.arange(-5.0, 25.0, 0.5)
+    return Trajectory(start + along / 10.0, WEST + along + shift, np.full(len(along), SOUTH + north), np.full(len(along), 23.0), crs=crs)
+
+
+def test_the_density_of_an_even_carpet_is_what_it_was_made_with(tmp_path):
+    found = inspect_survey([a_carpet(tmp_path / "a.laz")])
+    assert found.count == 12000
+    assert found.per_area["mean"] == found.per_area["median"] == found.per_area["of_a_point"] == 100.0
+    assert found.per_volume["mean"] == 100.0
+
+
+def test_layers_above_each_other_add_up_in_the_plane_and_not_in_space(tmp_path):
+    found = inspect_survey([a_carpet(tmp_path / "a.laz", layers=3)])
+    assert found.per_area["mean"] == 300.0 and found.per_volume["mean"] == 100.0
+
+
+def test_a_carpet_in_two_files_is_the_same_carpet(tmp_path):
+    whole = inspect_survey([a_carpet(tmp_path / "whole.laz", per_metre=20)])
+    with laspy.open(str(tmp_path / "whole.laz")) as reader:
+        cloud = reader.read()
+    halves = []
+    for name, which in (("odd.laz", slice(1, None, 2)), ("even.laz", slice(0, None, 2))):
+        half = laspy.LasData(cloud.header)
+        half.points = cloud.points[which].copy()
+        half.write(str(tmp_path / name))
+        halves.append(str(tmp_path / name))
+    found = inspect_survey(halves)
+    assert found.count == whole.count and found.per_area == whole.per_area and found.per_volume == whole.per_volume
+    np.testing.assert_array_equal(found.density[0], whole.density[0])
+
+
+def test_the_density_raster_has_north_above(tmp_path):
+    path = a_carpet(tmp_path / "a.laz", width=2)
+    with laspy.open(path) as reader:
+        cloud = reader.read()
+    cloud.points = cloud.points[np.asarray(cloud.y) > SOUTH + 1.0]
+    cloud.y = np.where(np.asarray(cloud.x) < WEST + 1.0, np.asarray(cloud.y) - 1.0, np.asarray(cloud.y))
+    cloud.write(path)
+    density, (west, north) = inspect_survey([path]).density
+    assert (west, north) == (WEST, SOUTH + 2.0) and density.shape == (2, 20)
+    assert np.isnan(density[0, 0]) and density[1, 0] == 100.0 and density[0, 5] == 100.0 and np.isnan(density[1, 5])
+
+
+def test_a_trajectory_of_the_same_survey_covers_it(tmp_path):
+    found = inspect_survey([a_carpet(tmp_path / "a.laz")], drive())
+    assert found.near_share == 1.0 and found.in_time_share == 1.0 and not found.notes
+
+
+def test_a_trajectory_elsewhere_is_noted(tmp_path):
+    found = inspect_survey([a_carpet(tmp_path / "a.laz")], drive(north=500.0))
+    assert found.near_share == 0.0
+    assert any("one survey" in note for note in found.notes)
+
+
+def test_a_trajectory_of_another_day_is_noted_with_both_times(tmp_path):
+    found = inspect_survey([a_carpet(tmp_path / "a.laz")], drive(start=318204000.0 + 5 * 86400 + 1234.0))
+    assert any("does not cover the scan in time" in note and "318204000" in note for note in found.notes)
+
+
+def test_what_the_road_map_would_stumble_over_is_noted(tmp_path):
+    found = inspect_survey([a_carpet(tmp_path / "a.laz", crs="", intensity=0)])
+    assert any("no CRS" in note for note in found.notes) and any("intensities are 0" in note for note in found.notes)
+
+
+def test_the_report_tells_and_shows(tmp_path):
+    report = inspection_report(inspect_survey([a_carpet(tmp_path / "a.laz")], drive()))
+    assert "12\u202f000" in report and "UTM zone 50N" in report and report.count("<img") == 1
+
+
+def test_an_absurd_cell_is_refused(tmp_path):
+    with pytest.raises(RoadExtractionError, match="density cell is 0.0 m"):
+        InspectionSettings(cell_size=0.0)
