@@ -1,5 +1,6 @@
 """The drive cut into passes: one run along a carriageway each."""
 
+from bisect import bisect_left
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,18 +8,28 @@ from scipy.spatial import cKDTree
 
 STEP = 2.0          # m between the positions that are compared
 NEAR = 12.0         # m: closer than this and parallel is the same carriageway
+LEVEL = 3.0         # m of height: farther above is another level of a ramp or bridge
 PARALLEL = np.radians(30.0)
 RETURN_AFTER = 60.0  # m of driving before coming near one's own track counts as a return
 SHORTEST = 10.0     # m: shorter pieces are not worth a pass of their own
+STANDSTILL = 0.5    # m that a standing vehicle's position may tremble
+TURN = np.radians(75.0)   # off the apex's heading: where a turn on the spot begins and ends
+TURN_REACH = 40.0   # m either side of its apex
 
 
 @dataclass(frozen=True)
 class DrivenPath:
-    """A stretch of the trajectory: rows `first` to `last` (exclusive), `length` metres driven."""
+    """A stretch of the trajectory: rows `first` to `last` (exclusive), `length` metres driven.
+
+    Rows `line_first` to `line_last` leave out the halves of turns on the spot at
+    its ends: the vehicle turned there, the road does not.
+    """
 
     first: int
     last: int
     length: float
+    line_first: int
+    line_last: int
 
 
 def thin_by_distance(x, y, step):
@@ -33,21 +44,30 @@ def thin_by_distance(x, y, step):
     return keep
 
 
-def moving_rows(x, y, jitter=0.05):
-    """Indices of the rows that advance: a standing vehicle's jitter adds no length to the road."""
-    keep = [0]
-    step = np.hypot(np.diff(x), np.diff(y))
-    slow = step < jitter
-    if not slow.any():
-        return np.arange(len(x))
-    # Only rows inside slow stretches need the sequential look, and there only the far-moved survive.
-    last = 0
-    for row in range(1, len(x)):
-        if not slow[row - 1] or np.hypot(x[row] - x[last], y[row] - y[last]) >= jitter:
-            keep.append(row)
-            last = row
-    if keep[-1] != len(x) - 1 and len(keep) > 1:
-        keep[-1] = len(x) - 1
+def moving_rows(x, y, step=STANDSTILL):
+    """Indices of rows that lie at least `step` metres from the one kept before: trembling adds no length to the road.
+
+    First and last row are kept (the last in place of the one before where that is nearer than `step`).
+    """
+    count = len(x)
+    driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))].tolist()
+    keep, last = [0], 0
+    while True:
+        # Nothing nearer than `step` along the track can be `step` away from it
+        row = bisect_left(driven, driven[last] + step, last + 1)
+        reach = 64
+        while row < count:
+            far = np.flatnonzero(np.hypot(x[row:row + reach] - x[last], y[row:row + reach] - y[last]) >= step)
+            if len(far):
+                row += int(far[0])
+                break
+            row, reach = row + reach, 2 * reach
+        if row >= count:
+            break
+        keep.append(row)
+        last = row
+    if keep[-1] != count - 1:
+        keep = keep[:-1] + [count - 1] if len(keep) > 1 else keep + [count - 1]
     return np.array(keep)
 
 
@@ -73,31 +93,63 @@ def _split_at_pauses(trajectory):
     pause = (gaps > max(5.0, 20 * usual)) if trajectory.has_time else jump > max(50.0, 20 * np.median(jump))
     pause |= (jump > 100.0) & (jump > 60.0 * gaps) if trajectory.has_time else False
     cuts = np.r_[0, np.flatnonzero(pause) + 1, len(trajectory)]
-    return [(a, b) for a, b in zip(cuts[:-1], cuts[1:]) if b - a >= 2]
+    return [(int(a), int(b)) for a, b in zip(cuts[:-1], cuts[1:]) if b - a >= 2]
 
 
 def _split_at_returns(trajectory, first, last):
-    x, y = trajectory.x[first:last], trajectory.y[first:last]
-    driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
+    x, y, z = trajectory.x[first:last], trajectory.y[first:last], trajectory.z[first:last]
     rows = moving_rows(x, y)
+    driven = np.interp(np.arange(last - first), rows, np.r_[0.0, np.cumsum(np.hypot(np.diff(x[rows]), np.diff(y[rows])))])
     rows = rows[thin_by_distance(x[rows], y[rows], STEP)]
-    if len(rows) < 4:
-        return [DrivenPath(first, last, float(driven[-1]))]
-    px, py = x[rows], y[rows]
-    along = np.r_[0.0, np.cumsum(np.hypot(np.diff(px), np.diff(py)))]
-    heading = np.unwrap(np.arctan2(np.gradient(py), np.gradient(px)))
-    cuts = _return_cuts(px, py, along, heading)
-    bounds = np.r_[0, rows[cuts].astype(int), last - first - 1] if len(cuts) else np.array([0, last - first - 1])
-    return [DrivenPath(first + int(a), first + int(b) + 1, float(driven[b] - driven[a]))
-            for a, b in zip(bounds[:-1], bounds[1:]) if b > a]
+    cuts = []
+    if len(rows) >= 4:
+        px, py = x[rows], y[rows]
+        along = np.r_[0.0, np.cumsum(np.hypot(np.diff(px), np.diff(py)))]
+        heading = np.unwrap(np.arctan2(np.gradient(py), np.gradient(px)))
+        cuts = [(int(rows[k]), *(int(rows[m]) for m in (_turn_ends(heading, along, k) if is_turn else (k, k))))
+                for k, is_turn in _return_cuts(px, py, z[rows], along, heading)]
+    count = last - first
+    cuts = _long_enough(cuts, driven)
+    starts = [(0, 0)] + [(row, after) for row, _, after in cuts]
+    ends = [(row + 1, before + 1) for row, before, _ in cuts] + [(count, count)]
+    return [DrivenPath(first + a, first + b, float(driven[b - 1] - driven[a]), first + line_a, first + line_b)
+            for (a, line_a), (b, line_b) in zip(starts, ends) if b - a > 1]
 
 
-def _return_cuts(px, py, along, heading):
-    """Positions (indices) at which a new pass begins."""
+def _long_enough(cuts, driven):
+    """The cuts without those that leave a piece too short for a pass: its rows stay with the piece before."""
+    kept, begins = [], 0.0
+    for cut in cuts:
+        if driven[cut[0]] - begins >= SHORTEST:
+            kept.append(cut)
+            begins = driven[cut[0]]
+    while kept and driven[-1] - driven[kept[-1][0]] < SHORTEST:
+        kept.pop()
+    return kept
+
+
+def _turn_ends(heading, along, apex):
+    """Indices before and after the apex of a turn on the spot at which the vehicle is back in its lane's direction."""
+    off = np.abs(heading - heading[apex])
+    straight = (off >= TURN) & (np.abs(along - along[apex]) <= TURN_REACH)
+    before, after = np.flatnonzero(straight[:apex]), np.flatnonzero(straight[apex:])
+    return (before[-1] if len(before) else apex), (apex + after[0] if len(after) else apex)
+
+
+def _apex(px, py, heading, a, b):
+    """Index of the position farthest out between two that face opposite ways: of an arc or of a reversal alike."""
+    out_x, out_y = np.cos(heading[a]) - np.cos(heading[b]), np.sin(heading[a]) - np.sin(heading[b])
+    return a + int(np.argmax(px[a:b + 1] * out_x + py[a:b + 1] * out_y))
+
+
+def _return_cuts(px, py, pz, along, heading):
+    """[(index, is it a turn on the spot)] of the positions at which a new pass begins."""
     pairs = cKDTree(np.c_[px, py]).query_pairs(NEAR, output_type="ndarray")
     if not len(pairs):
-        return np.empty(0, int)
+        return []
     i, j = pairs.min(axis=1), pairs.max(axis=1)
+    level = np.abs(pz[j] - pz[i]) < LEVEL
+    i, j = i[level], j[level]
     apart = along[j] - along[i]
     turned = np.abs((heading[j] - heading[i] + np.pi) % (2 * np.pi) - np.pi)
     back = (turned > np.pi - PARALLEL) & (apart > 4 * STEP)
@@ -111,6 +163,7 @@ def _return_cuts(px, py, along, heading):
         if a < start:
             continue
         # A turn on the spot is cut at its apex, a return from elsewhere where it comes back.
-        start = (a + b) // 2 if is_back and path < RETURN_AFTER + 20 else b
-        cuts.append(start)
-    return np.array(cuts, int)
+        is_turn = bool(is_back and path < RETURN_AFTER + 20)
+        start = _apex(px, py, heading, int(a), int(b)) if is_turn else int(b)
+        cuts.append((start, is_turn))
+    return cuts

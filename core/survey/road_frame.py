@@ -9,18 +9,15 @@ published methods speak, and in which every stage works.
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 from scipy.spatial import cKDTree
 
-from ..errors import RoadExtractionError
-from .passes import moving_rows, split_into_passes, thin_by_distance
+from .passes import LEVEL, moving_rows, split_into_passes, thin_by_distance
+from .reference_line import EXTENSION, NODE, continued, reference_nodes, track_line
 from .trajectory import clean_trajectory
 
-NODE = 0.1         # m between nodes of the reference line: 0.02 mm of sagitta at R = 60 m
-SMOOTHING = 2.0    # m, sigma: takes jitter out of the heading; d is measured from the result anyway
-EXTENSION = 10.0   # m that the frame reaches beyond the driven part: scanners look ahead and behind
 CORRIDOR = 25.0    # m either side
 JOIN_DISTANCE = 12.0          # m between two passes over one carriageway
+JOIN_REACH = 15.0             # m at most, where the lanes of one drift apart
 JOIN_ANGLE = np.radians(30.0)
 JOIN_LENGTH = 20.0            # m that two passes must share
 
@@ -28,7 +25,7 @@ JOIN_LENGTH = 20.0            # m that two passes must share
 class Road:
     """One carriageway's reference line in local coordinates.
 
-    Station 0 is where the longest pass began; offset is left positive.
+    Station 0 is where the line begins, in the direction of the longest pass; offset is left positive.
     """
 
     def __init__(self, number, nodes_x, nodes_y, start):
@@ -221,120 +218,149 @@ def build_frame(trajectory):
     """Roads and passes of a trajectory.
 
     The drive is cut into passes; the longest becomes the reference of the first
-    road; what runs within 12 m of it and parallel, either way, is a further pass
-    over the same road; what is left makes the next road.
+    road, lengthened by passes that go on where it ends; what runs within 12 m of
+    it and parallel, either way, is a further pass over the same road; what is
+    left makes the next road.
     """
     trajectory = clean_trajectory(trajectory)
     origin = np.floor([trajectory.x.min(), trajectory.y.min(), trajectory.z.min()])
-    x, y, z = trajectory.x - origin[0], trajectory.y - origin[1], trajectory.z - origin[2]
-    waiting = [(piece.first, piece.last) for piece in split_into_passes(trajectory)]
+    track = np.c_[trajectory.x - origin[0], trajectory.y - origin[1], trajectory.z - origin[2]]
+    pieces = split_into_passes(trajectory)
+    turning = np.zeros(len(track), bool)
+    for piece in pieces:
+        turning[piece.first:piece.line_first] = turning[piece.line_last:piece.last] = True
+    waiting = [(piece.first, piece.last) for piece in pieces]
     roads, passes = [], []
     while waiting:
-        waiting.sort(key=lambda rows: (-_driven(x, y, rows), rows))
-        first, last = waiting.pop(0)
-        if roads and _driven(x, y, (first, last)) < JOIN_LENGTH:
-            continue
-        road = _reference_line(len(roads), x[first:last], y[first:last])
+        waiting.sort(key=lambda rows: (-_driven(track, rows), rows))
+        longest = waiting[0]
+        if roads and _driven(track, longest) < JOIN_LENGTH:
+            break
+        road, members, waiting = _grow_road(len(roads), track, turning, longest, waiting)
         roads.append(road)
-        members, rest = [(first, last)], []
-        for rows in waiting:
-            shared, left = _shared_with(road, x, y, rows)
-            members += shared
-            rest += left
-        waiting = rest
-        for a, b in sorted(members):
-            passes.append(_make_pass(road, trajectory.time[a:b], x[a:b], y[a:b], z[a:b]))
+        passes += [_make_pass(road, trajectory.time[a:b], *track[a:b].T) for a, b in sorted(members)]
     passes.sort(key=lambda p: p.time[0])
     for number, p in enumerate(passes):
         p.number = number
     return RoadFrame(origin, roads, passes, trajectory.crs, trajectory.has_time, trajectory.notes)
 
 
-def _driven(x, y, rows):
-    a, b = rows
-    kept = a + thin_by_distance(x[a:b], y[a:b], 1.0)
-    return float(np.hypot(np.diff(x[kept]), np.diff(y[kept])).sum())
+def _driven(track, rows):
+    line = track_line(*track[rows[0]:rows[1]].T)
+    return float(np.hypot(*np.diff(line[:, :2], axis=0).T).sum())
 
 
-def _reference_line(number, x, y):
-    rows = moving_rows(x, y)
-    x, y = x[rows], y[rows]
-    driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
-    unique = np.r_[True, np.diff(driven) > 0]
-    driven, x, y = driven[unique], x[unique], y[unique]
-    if len(driven) < 2:
-        raise RoadExtractionError("The trajectory does not move: at least 1 m of driving is needed to define a road.")
-    u = np.arange(0.0, driven[-1] + NODE / 2, NODE)
-    x, y = _smooth(np.interp(u, driven, x)), _smooth(np.interp(u, driven, y))
-    x, y = _extend(x, y)
-    along = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
-    u = np.arange(0.0, along[-1], NODE)
-    return Road(number, np.interp(u, along, x), np.interp(u, along, y), -EXTENSION)
+def _line_of(track, turning, rows):
+    """The track of rows as a line, without a turn on the spot at its ends."""
+    straight = np.flatnonzero(~turning[rows[0]:rows[1]])
+    if len(straight) > 1:
+        rows = rows[0] + straight[0], rows[0] + straight[-1] + 1
+    return track_line(*track[rows[0]:rows[1]].T)
 
 
-def _smooth(values):
-    """Gaussian along the line, mirrored through its end points so that these stay."""
-    pad = min(int(4 * SMOOTHING / NODE), len(values) - 1)
-    head = 2 * values[0] - values[1:pad + 1][::-1]
-    tail = 2 * values[-1] - values[-pad - 1:-1][::-1]
-    return gaussian_filter1d(np.r_[head, values, tail], SMOOTHING / NODE)[pad:pad + len(values)]
+def _grow_road(number, track, turning, longest, waiting):
+    """(Road, row ranges of its passes, row ranges left over), beginning with the longest range."""
+    line = _line_of(track, turning, longest)
+    while True:
+        road = Road(number, *reference_nodes(line), -EXTENSION)
+        members, rest = [], []
+        for rows in waiting:
+            shared, left = ([rows], []) if rows == longest else _shared_with(road, line, track, rows)
+            members += shared
+            rest += left
+        for rows in sorted(rest, key=lambda rows: (-_driven(track, rows), rows)):
+            longer = continued(line, _line_of(track, turning, rows)) if _driven(track, rows) >= JOIN_LENGTH else None
+            if longer is not None:
+                line = longer
+                break
+        else:
+            return road, members, rest
 
 
-def _extend(x, y):
-    reach = min(int(3.0 / NODE), len(x) - 1)
-    steps = np.arange(1, int(round(EXTENSION / NODE)) + 1) * NODE
-
-    def beyond(tip, inner):
-        direction = np.array([x[tip] - x[inner], y[tip] - y[inner]])
-        direction /= np.hypot(*direction)
-        return x[tip] + steps * direction[0], y[tip] + steps * direction[1]
-
-    hx, hy = beyond(0, reach)
-    tx, ty = beyond(-1, len(x) - 1 - reach)
-    return np.r_[hx[::-1], x, tx], np.r_[hy[::-1], y, ty]
-
-
-def _shared_with(road, x, y, rows):
+def _shared_with(road, line, track, rows):
     """The parts of a driven piece that run along a road, and the parts that do not."""
     a, b = rows
-    kept = a + thin_by_distance(x[a:b], y[a:b], 2.0)
-    s, d = road.locate(x[kept], y[kept], corridor=JOIN_DISTANCE)
-    direction = np.arctan2(np.gradient(y[kept]), np.gradient(x[kept])) if len(kept) > 1 else np.zeros(len(kept))
+    kept = moving_rows(*track[a:b, :2].T)
+    kept = a + kept[thin_by_distance(*track[a + kept, :2].T, 2.0)]
+    x, y, z = track[kept].T
+    s, d = road.locate(x, y, corridor=JOIN_REACH)
+    level = np.abs(z - line[cKDTree(line[:, :2]).query(np.c_[x, y])[1], 2]) < LEVEL
+    direction = np.arctan2(np.gradient(y), np.gradient(x)) if len(kept) > 1 else np.zeros(len(kept))
     turned = np.abs((direction - road.heading(np.where(np.isnan(s), 0, s)) + np.pi / 2) % np.pi - np.pi / 2)
-    along = np.isfinite(d) & (turned < JOIN_ANGLE)
+    along = np.isfinite(d) & (turned < JOIN_ANGLE) & level
+    if len(kept) < JOIN_LENGTH:
+        along[:] = 2 * along.sum() > len(along)
     along = _fill_runs(along, int(JOIN_LENGTH / 2))
-    along = ~_fill_runs(~along, int(JOIN_LENGTH / 2))
-    if along.all():
-        return [rows], []
-    if not along.any():
-        return [], [rows]
-    cuts = np.r_[0, np.flatnonzero(np.diff(along.astype(int))) + 1, len(kept)]
+    if not along.all():
+        along = ~_fill_runs(~along, int(JOIN_LENGTH / 2))
+    for i, j in _runs(along):
+        if along[i] and not np.nanmedian(np.abs(d[i:j])) <= JOIN_DISTANCE:
+            along[i:j] = False
     shared, left = [], []
-    for i, j in zip(cuts[:-1], cuts[1:]):
-        piece = (int(kept[i]), int(kept[j]) if j < len(kept) else b)
-        (shared if along[i] else left).append(piece)
+    for i, j in _runs(along):
+        ends = [int(kept[i]) if i else a, int(kept[j]) if j < len(kept) else b]
+        if not along[i]:
+            left.append(tuple(ends))
+            continue
+        # Where a round begins again the station starts anew: the next pass
+        cuts = [int(kept[i + k]) for k in _jumps(s[i:j])]
+        shared += list(zip([ends[0], *cuts], [*cuts, ends[1]]))
     return shared, left
+
+
+def _jumps(s):
+    """Indices at which the station leaps, at least JOIN_LENGTH from the ends and each other."""
+    found = np.flatnonzero(np.abs(np.diff(s)) > 10.0) + 1
+    shortest, kept, last = int(JOIN_LENGTH / 2), [], 0
+    for k in found:
+        if k - last >= shortest and len(s) - k >= shortest:
+            kept.append(int(k))
+            last = k
+    return kept
+
+
+def _runs(mask):
+    """[(first, end)] of the runs of equal values."""
+    cuts = np.r_[0, np.flatnonzero(np.diff(mask.astype(int))) + 1, len(mask)]
+    return list(zip(cuts[:-1].tolist(), cuts[1:].tolist()))
 
 
 def _fill_runs(mask, shortest):
     """Turn runs of False shorter than `shortest` into True."""
-    mask = mask.copy()
-    cuts = np.r_[0, np.flatnonzero(np.diff(mask.astype(int))) + 1, len(mask)]
-    for i, j in zip(cuts[:-1], cuts[1:]):
+    filled = mask.copy()
+    for i, j in _runs(mask):
         if not mask[i] and j - i < shortest:
-            mask[i:j] = True
-    return mask
+            filled[i:j] = True
+    return filled
 
 
 def _make_pass(road, time, x, y, z):
-    # The vehicle's own foot is found by walking: each sample starts from the nearest node.
-    s, d = road.locate(x, y, corridor=2 * JOIN_DISTANCE)
+    """A pass with the vehicle's own feet on the road, found by walking so that they never leap."""
+    kept = moving_rows(x, y)
+    driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x[kept]), np.diff(y[kept])))]
+    s, _ = road.locate(x[kept], y[kept], corridor=2 * JOIN_DISTANCE)
+    rows = np.arange(len(x))
+    run = _longest_run(s)
+    if run is None:
+        hint = np.clip(road.nearest_station(x, y, np.inf), road.start, road.end)
+        direction = 1 if hint[-1] >= hint[0] else -1
+    else:
+        i, j = run
+        direction = 1 if s[j - 1] >= s[i] else -1
+        before, after = driven[:i] - driven[i], driven[j:] - driven[j - 1]
+        walked = np.r_[s[i] + direction * before, s[i:j], s[j - 1] + direction * after]
+        hint = np.interp(rows, kept, walked)
+    s, d = road.locate(x, y, hint, corridor=2 * JOIN_DISTANCE)
     good = np.isfinite(s)
     if not good.any():
-        s = np.clip(road.nearest_station(x, y, np.inf), road.start, road.end)
-        d = np.zeros(len(x))
-    else:
-        rows = np.arange(len(x))
-        s, d = np.interp(rows, rows[good], s[good]), np.interp(rows, rows[good], d[good])
-    direction = 1 if s[-1] >= s[0] else -1
+        return Pass(0, road.number, direction, time, x, y, z, np.clip(hint, road.start, road.end), np.zeros(len(x)))
+    s, d = np.interp(rows, rows[good], s[good]), np.interp(rows, rows[good], d[good])
     return Pass(0, road.number, direction, time, x, y, z, s, d)
+
+
+def _longest_run(s):
+    """(first, end) of the longest stretch whose stations are known and do not leap; None where none is known."""
+    broken = ~np.isfinite(s[1:]) | ~np.isfinite(s[:-1]) | (np.abs(np.diff(s)) > 30.0)
+    cuts = np.r_[0, np.flatnonzero(broken) + 1, len(s)]
+    runs = [(int(i), int(j)) for i, j in zip(cuts[:-1], cuts[1:]) if np.isfinite(s[i])]
+    return max(runs, key=lambda run: (run[1] - run[0], -run[0])) if runs else None
