@@ -144,7 +144,17 @@ def _turned_heading(trajectory, source, transformer, x, y):
     ahead = np.radians(trajectory.heading[known])
     step_x, step_y = 10.0 * np.sin(ahead), 10.0 * np.cos(ahead)
     if source.is_geographic:
-        step_y, step_x = step_y / 111_000.0, step_x / (111_000.0 * np.cos(np.radians(trajectory.y[known])))
+        latitude = np.radians(trajectory.y[known])
+        per_degree_y, per_degree_x = _metres_per_degree(source.ellipsoid, latitude)
+        step_x, step_y = step_x / per_degree_x, step_y / per_degree_y
     to_x, to_y = transformer.transform(trajectory.x[known] + step_x, trajectory.y[known] + step_y)
     heading[known] = np.degrees(np.arctan2(to_x - x[known], to_y - y[known])) % 360.0
     return heading
+
+
+def _metres_per_degree(ellipsoid, latitude):
+    """Metres along the meridian and along the parallel per degree, at latitudes in radians."""
+    major = ellipsoid.semi_major_metre
+    e2 = 1.0 - (ellipsoid.semi_minor_metre / major)**2
+    w = np.sqrt(1.0 - e2 * np.sin(latitude)**2)
+    return np.radians(1.0) * major * (1.0 - e2) / w**3, np.radians(1.0) * major * np.cos(latitude) / w

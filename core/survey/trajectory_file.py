@@ -242,7 +242,8 @@ def _is_sbet(path):
     rows = np.frombuffer(head, "<f8", usable).reshape(-1, SBET_DOUBLES)
     with np.errstate(invalid="ignore"):
         return bool(np.isfinite(rows[:, :4]).all() and (np.abs(rows[:, 1]) <= np.pi / 2).all()
-                    and (np.abs(rows[:, 2]) <= 2 * np.pi).all() and (rows[:, 0] >= 0).all())
+                    and (np.abs(rows[:, 2]) <= 2 * np.pi).all() and (rows[:, 0] >= 0).all()
+                    and (np.diff(rows[:, 0]) > 0).mean() > 0.9)
 
 
 def _read_sbet(path, crs):

@@ -6,6 +6,7 @@ import numpy as np
 from lanewright.core.survey.trajectory import Trajectory
 
 EAST, NORTH = 500_000.0, 5_400_000.0
+STREET_TIME = np.arange(0.0, 60.0, 0.1)  # s of a minute's drive
 
 
 def straight(length, start=(0.0, 0.0), heading=0.0):

@@ -101,6 +101,16 @@ def test_the_report_tells_and_shows(tmp_path):
     assert "12\u202f000" in report and "UTM zone 50N" in report and report.count("<img") == 1
 
 
+def test_two_scanners_are_told_apart_by_their_channel(tmp_path):
+    path = a_carpet(tmp_path / "a.laz")
+    with laspy.open(path) as reader:
+        cloud = reader.read()
+    cloud.scanner_channel = np.arange(len(cloud.points)) % 2
+    cloud.write(path)
+    found = inspect_survey([path])
+    assert (found.scanner_field, found.scanners) == ("scanner_channel", [0, 1])
+
+
 def test_an_absurd_cell_is_refused(tmp_path):
     with pytest.raises(RoadExtractionError, match="density cell is 0.0 m"):
         InspectionSettings(cell_size=0.0)
