@@ -135,7 +135,7 @@ class _Counter:
         self.intensity += np.bincount(np.asarray(block["intensity"]), minlength=INTENSITY_VALUES)
         self.returns += np.bincount(np.asarray(block["return_number"]), minlength=256)
         self.classes += np.bincount(np.asarray(block["classification"]), minlength=256)
-        names = block.point_format.dimension_names
+        names = set(block.point_format.dimension_names)
         time = np.asarray(block["gps_time"], float) if "gps_time" in names else np.zeros(len(x))
         self.time = [min(self.time[0], time.min(initial=np.inf)), max(self.time[1], time.max(initial=-np.inf))]
         for name in ("point_source_id", "scanner_channel"):

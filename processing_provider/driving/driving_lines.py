@@ -6,14 +6,14 @@ from ..knobs import Knob
 from ..survey_input import frame_of, road_points_of
 from ..texts import tr
 
-DRIVING = "driving.lines:DrivingSettings"
+DRIVING = "driving.settings:DrivingSettings"
 
 DRIVING_KNOBS = (
     Knob(
-        "LANE_WIDTH", DRIVING, "lane_width", tr("Usual lane width (m)"),
+        "LANE_WIDTH", DRIVING, "lane_width", tr("Lane width, 0 = as seen on the road (m)"),
         tr("Where only the outer lines are painted, the number of lanes follows from their distance and this width. "
            "Wider makes fewer lanes."),
-        minimum=2.0, maximum=6.0,
+        minimum=0.0, maximum=5.0,
     ),
     Knob(
         "LINE_DISTANCE", DRIVING, "line_distance", tr("Distance from a line without partner, 0 = half a lane (m)"),
@@ -25,6 +25,19 @@ DRIVING_KNOBS = (
         tr("The side one drives on; it gives the driving lines their direction. Automatic goes by the lane the "
            "vehicle itself used."),
         choices=("automatic", "right", "left"),
+    ),
+    Knob(
+        "MAX_BRIDGE", DRIVING, "max_bridge", tr("Longest gap of all lines bridged (m)"),
+        tr("Longer leads lanes through wider crossings; shorter leaves them open."), minimum=0.0, maximum=200.0, advanced=True,
+    ),
+    Knob(
+        "MAX_INFERRED", DRIVING, "max_inferred", tr("Longest gap beside other lines closed (m)"),
+        tr("Where another line of the road goes on, a lane is led along it through a gap up to this length."),
+        minimum=0.0, maximum=500.0, advanced=True,
+    ),
+    Knob(
+        "SHORTEST", DRIVING, "shortest", tr("Shortest driving line (m)"),
+        tr("Shorter keeps stubs at the ends of the survey."), minimum=0.0, maximum=200.0, advanced=True,
     ),
 )
 

@@ -14,6 +14,10 @@ CLUSTER_KNOBS = (
         tr("Larger joins worn paint into one marking, but also neighbouring markings; smaller keeps them apart."),
         minimum=0.02, maximum=2.0,
     ),
+    Knob(
+        "MIN_POINTS", CLUSTERS, "min_points", tr("Fewest points of a marking (points)"),
+        tr("Fewer keeps tiny remains of paint, and specks that are none."), minimum=1, maximum=100000, advanced=True,
+    ),
 )
 
 

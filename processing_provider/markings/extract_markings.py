@@ -13,6 +13,20 @@ MARKING_KNOBS = (
         tr("Multi-threshold sets a threshold for every strip along the road, so that paint far from the scanner is found too."),
         choices=("multi-threshold",),
     ),
+    Knob(
+        "SEPARATION", EXTRACTION, "separation", tr("Least distance of paint from asphalt (σ)"),
+        tr("How many spreads of asphalt the paint of a strip must lie above it before the strip counts as painted. Lower "
+           "finds fainter paint, but also gutters, patches and noise."),
+        minimum=0.5, maximum=20.0, advanced=True,
+    ),
+    Knob(
+        "SHORTEST_PAINT", EXTRACTION, "shortest", tr("Shortest run of paint along the road (m)"),
+        tr("Longer removes specks, but also worn remains of dashes."), minimum=0.0, maximum=2.0, advanced=True,
+    ),
+    Knob(
+        "CLOSE", EXTRACTION, "close", tr("Gap in paint closed along the road (m)"),
+        tr("Longer joins worn paint, but also neighbouring bars and letters."), minimum=0.0, maximum=2.0, advanced=True,
+    ),
 )
 
 

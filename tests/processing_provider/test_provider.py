@@ -29,7 +29,7 @@ INTERFACE = {
     "roadmap": "POINT_CLOUDS TRAJECTORY CRS BOUNDARY_METHOD ROAD_EDGES ROAD_SURFACE ROAD_POINTS INTENSITY_IMAGE MARKINGS "
                "MARKING_LINES DRIVING_LINES CURVE_ELEMENTS REPORT",
 }
-UNIT = re.compile(r"\((m|m²|s|°|%|points|σ|km/h|per second|per line|counts|whole number|\d+-\d+)\)$")
+UNIT = re.compile(r"\((m|m²|s|°|%|points|σ|km/h|per second|per line|cells|whole number|\d+-\d+)\)$")
 
 
 @pytest.fixture(params=ALGORITHMS, ids=lambda algorithm: algorithm.ID)

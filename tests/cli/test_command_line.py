@@ -1,0 +1,179 @@
+"""The command line as a user has it: the real qgis_process, called from any folder."""
+
+import json
+import os
+import re
+import subprocess
+from pathlib import Path
+
+import laspy
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+QGIS_PROCESS = str(ROOT / "tools" / "qgis_process")
+
+
+def qgis_process(*arguments, folder, **options):
+    return subprocess.run([QGIS_PROCESS, *arguments], cwd=folder, capture_output=True, text=True, stdin=subprocess.DEVNULL, **options)
+
+
+@pytest.fixture(scope="session")
+def survey(tmp_path_factory):
+    """A folder with a small sample survey: s.laz, drive.gpkg and drive.csv."""
+    folder = tmp_path_factory.mktemp("survey")
+    run = qgis_process(
+        "run", "lanewright:samplesurvey", "--LENGTH=30", "--PULSE_RATE=60000", "--ROTATION_RATE=100", "--POINT_CLOUD=s.laz",
+        "--TRAJECTORY=drive.gpkg", folder=folder,
+    )
+    assert run.returncode == 0, run.stderr
+    subprocess.run(
+        ["ogr2ogr", "-f", "CSV", "-sql", "SELECT time, ST_X(geom) x, ST_Y(geom) y, ST_Z(geom) z FROM drive", "drive.csv", "drive.gpkg"],
+        cwd=folder, check=True, capture_output=True,
+    )
+    return folder
+
+
+def one_sentence(run):
+    """What went wrong; qgis_process itself says it three times, we say nothing besides."""
+    assert run.returncode == 1, run.stdout + run.stderr
+    said = {line.removeprefix("ERROR:\t").strip() for line in run.stderr.splitlines()} - {""}
+    assert len(said) == 1, run.stderr
+    return said.pop()
+
+
+def test_all_algorithms_and_the_model_are_listed(tmp_path):
+    listed = qgis_process("list", folder=tmp_path).stdout
+    assert "lanewright:roadmap\t" in listed and "lanewright:Road map stages" in listed
+
+
+def test_paths_are_those_of_the_folder_one_calls_from(survey):
+    assert (survey / "s.laz").exists() and (survey / "drive.gpkg").exists()
+
+
+def test_the_same_sample_is_made_again(survey, tmp_path):
+    qgis_process(
+        "run", "lanewright:samplesurvey", "--LENGTH=30", "--PULSE_RATE=60000", "--ROTATION_RATE=100", "--POINT_CLOUD=s.laz",
+        "--TRAJECTORY=drive.gpkg", folder=tmp_path,
+    )
+    first, second = (laspy.read(folder / "s.laz") for folder in (survey, tmp_path))
+    assert first.points.array.tobytes() == second.points.array.tobytes()
+
+
+def test_a_trajectory_comes_from_a_csv_as_from_its_layer(survey, tmp_path):
+    rows = {}
+    for name in ("drive.gpkg", "drive.csv"):
+        run = qgis_process(
+            "run", "lanewright:importtrajectory", f"--INPUT={survey / name}", "--TARGET_CRS=EPSG:32650", "--OUTPUT=out.gpkg",
+            "--json", folder=tmp_path,
+        )
+        assert run.returncode == 0, run.stderr
+        rows[name] = json.loads(run.stdout)["results"]["ROWS"]
+    assert rows["drive.gpkg"] == rows["drive.csv"] > 100
+
+
+def test_a_survey_is_inspected_with_numbers_and_a_report(survey, tmp_path):
+    run = qgis_process(
+        "run", "lanewright:inspectsurvey", f"--POINT_CLOUDS={survey / 's.laz'}", f"--TRAJECTORY={survey / 'drive.csv'}",
+        "--REPORT=report.html", "--DENSITY=density.tif", "--json", folder=tmp_path,
+    )
+    assert run.returncode == 0, run.stderr
+    results = json.loads(run.stdout)["results"]
+    assert results["SCANNERS"] == 2 and results["TIME_COVERED"] == 100 and results["NEAR_TRAJECTORY"] > 99
+    assert "Points per m" in (tmp_path / "report.html").read_text() and (tmp_path / "density.tif").stat().st_size > 300
+
+
+def changed_cloud(survey, path, change):
+    cloud = laspy.read(survey / "s.laz")
+    change(cloud)
+    cloud.write(str(path))
+
+
+def empty(survey, folder):
+    def none(cloud):
+        cloud.points = cloud.points[:0]
+
+    changed_cloud(survey, folder / "bad.laz", none)
+
+
+def cut_off(survey, folder):
+    whole = (survey / "s.laz").read_bytes()
+    (folder / "bad.laz").write_bytes(whole[: len(whole) // 2])
+
+
+def far_away(survey, folder):
+    def move(cloud):
+        cloud.x = np.asarray(cloud.x) + 5000.0
+
+    changed_cloud(survey, folder / "bad.laz", move)
+
+
+def another_day(survey, folder):
+    def later(cloud):
+        cloud.gps_time = np.asarray(cloud.gps_time) + 5 * 86400.0 + 777.0
+
+    changed_cloud(survey, folder / "bad.laz", later)
+
+
+def in_degrees(survey, folder):
+    def degrees(cloud):
+        from pyproj import CRS
+
+        cloud.header.vlrs.clear()
+        cloud.header.add_crs(CRS.from_epsg(4326))
+
+    changed_cloud(survey, folder / "bad.laz", degrees)
+
+
+def not_a_cloud(survey, folder):
+    (folder / "bad.laz").write_text("x,y,z\n1,2,3\n")
+
+
+def nothing(survey, folder):
+    pass
+
+
+@pytest.mark.parametrize("cloud, says", [
+    (nothing, "no file bad.laz"),
+    (not_a_cloud, "cannot be read as a LAS/LAZ file"),
+    (empty, "hold no points"),
+    (cut_off, "damaged|cut off|cannot be read"),
+    (far_away, "does not run through the point cloud|not near"),
+    (another_day, "does not cover the scan in time"),
+    (in_degrees, "geographic CRS"),
+], ids=lambda value: getattr(value, "__name__", ""))
+def test_a_cloud_that_cannot_be_worked_with_is_told_in_one_sentence(survey, tmp_path, cloud, says):
+    cloud(survey, tmp_path)
+    before = set(os.listdir(tmp_path))
+    run = qgis_process(
+        "run", "lanewright:detectcurbs", "--POINT_CLOUDS=bad.laz", f"--TRAJECTORY={survey / 'drive.csv'}",
+        "--CURB_POINTS=curbs.gpkg", folder=tmp_path,
+    )
+    assert re.search(says, one_sentence(run)), run.stderr
+    assert set(os.listdir(tmp_path)) == before
+
+
+def test_a_folder_that_is_not_there_is_told_before_the_work(survey, tmp_path):
+    run = qgis_process(
+        "run", "lanewright:detectcurbs", f"--POINT_CLOUDS={survey / 's.laz'}", f"--TRAJECTORY={survey / 'drive.csv'}",
+        "--CURB_POINTS=nowhere/curbs.gpkg", folder=tmp_path,
+    )
+    assert "there is no folder" in one_sentence(run)
+    assert "points read" not in run.stdout
+
+
+def test_yesterdays_layer_stands_when_todays_run_fails(survey, tmp_path):
+    good = ("run", "lanewright:importtrajectory", "--OUTPUT=out.gpkg")
+    assert qgis_process(*good, f"--INPUT={survey / 'drive.gpkg'}", folder=tmp_path).returncode == 0
+    yesterday = (tmp_path / "out.gpkg").read_bytes()
+    (tmp_path / "bad.csv").write_text("time,x,y,z\n1,2,3,4\n")
+    one_sentence(qgis_process(*good, "--INPUT=bad.csv", folder=tmp_path))
+    assert (tmp_path / "out.gpkg").read_bytes() == yesterday
+
+
+def test_a_setting_beyond_reason_is_refused(survey, tmp_path):
+    run = qgis_process(
+        "run", "lanewright:detectcurbs", f"--POINT_CLOUDS={survey / 's.laz'}", f"--TRAJECTORY={survey / 'drive.csv'}",
+        "--MIN_HEIGHT=0.3", "--MAX_HEIGHT=0.1", "--CURB_POINTS=curbs.gpkg", folder=tmp_path,
+    )
+    assert "curb" in one_sentence(run).lower()

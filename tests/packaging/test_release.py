@@ -1,0 +1,92 @@
+"""What goes out to users: the zip, its description, and code that runs on Qt 5 and Qt 6."""
+
+import configparser
+import re
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+# Qt 5 only, or gone from QGIS 4
+OLD = re.compile(r"PyQt5|\.exec_\(|\bQVariant\.|resources_rc|QgsProcessing\.Type[A-Z]|QgsWkbTypes\.(Point|LineString|Polygon)Z?\b|QRegExp")
+
+
+@pytest.fixture(scope="session")
+def metadata():
+    parser = configparser.ConfigParser()
+    parser.read(ROOT / "metadata.txt", encoding="utf-8")
+    return parser["general"]
+
+
+@pytest.fixture(scope="session")
+def archive(tmp_path_factory):
+    if not (ROOT / ".git").exists():
+        pytest.skip("the release is made from the git history")
+    path = tmp_path_factory.mktemp("release") / "lanewright.zip"
+    subprocess.run([str(ROOT / "tools" / "package.sh"), str(path)], check=True, capture_output=True)
+    return zipfile.ZipFile(path)
+
+
+@pytest.mark.parametrize("key", [
+    "name", "qgisMinimumVersion", "description", "about", "version", "author", "email", "repository", "tracker", "homepage",
+    "icon", "tags", "category", "hasProcessingProvider", "supportsQt6",
+])
+def test_the_description_is_complete(metadata, key):
+    assert metadata[key].strip()
+
+
+def test_qgis_process_and_qgis_4_are_told_that_they_may_load_us(metadata):
+    assert metadata["hasProcessingProvider"] == metadata["supportsQt6"] == "yes"
+    assert metadata["qgisMinimumVersion"] == "3.40" and metadata["qgisMaximumVersion"] == "4.99"
+
+
+def test_every_package_one_must_install_is_named_to_the_user(metadata):
+    for line in (ROOT / "requirements.txt").read_text().splitlines():
+        if line and not line.startswith("#"):
+            name = re.split(r"[<>=]", line)[0].removesuffix("-python-headless")
+            assert name in metadata["about"], name
+
+
+def test_the_zip_has_one_folder_with_what_qgis_needs(archive):
+    names = archive.namelist()
+    assert {name.split("/")[0] for name in names} == {"lanewright"}
+    needed = {"metadata.txt", "LICENSE", "__init__.py", "plugin.py", "resources/icon.png", "resources/models/road_map.model3", "requirements.txt"}
+    assert not {f"lanewright/{name}" for name in needed} - set(names)
+
+
+def test_the_zip_has_nothing_a_user_has_no_use_for(archive):
+    names = [name.removeprefix("lanewright/") for name in archive.namelist()]
+    assert not [name for name in names if name.startswith(("tests", "tools", ".", "build", "Makefile")) or "__pycache__" in name]
+    assert sum(entry.file_size for entry in archive.infolist()) < 25e6
+
+
+def test_the_code_is_written_for_qt_5_and_qt_6_alike():
+    shell = [ROOT / "__init__.py", ROOT / "plugin.py", *(ROOT / "processing_provider").rglob("*.py"), *(ROOT / "tools").glob("*.py")]
+    found = [f"{path.name}: {match.group()}" for path in shell for match in OLD.finditer(path.read_text(encoding="utf-8"))]
+    assert not found
+
+
+def test_the_core_never_imports_qgis():
+    found = [path for path in (ROOT / "core").rglob("*.py") if re.search(r"^\s*(import|from) qgis", path.read_text(encoding="utf-8"), re.M)]
+    assert not found
+
+
+def test_importing_the_package_loads_nothing():
+    code = ("import sys, importlib.util as u; s = u.spec_from_file_location('lanewright', sys.argv[1], "
+            "submodule_search_locations=[]); m = u.module_from_spec(s); s.loader.exec_module(m); "
+            "sys.exit(bool({'qgis', 'numpy', 'laspy'} & set(sys.modules)))")
+    assert subprocess.run([sys.executable, "-S", "-c", code, str(ROOT / "__init__.py")]).returncode == 0
+
+
+def test_libraries_are_looked_for_after_those_of_qgis(monkeypatch, tmp_path):
+    import lanewright
+
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    monkeypatch.setenv("LANEWRIGHT_LIBS", str(tmp_path))
+    before = list(sys.path)
+    lanewright.add_library_folders()
+    lanewright.add_library_folders()
+    assert sys.path[: len(before)] == before and sys.path.count(str(tmp_path)) == 1
