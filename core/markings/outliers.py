@@ -1,9 +1,10 @@
 """Points far from their fellows: statistical outlier removal, exactly as PCL defines it.
 
 A point's mean distance to its k nearest neighbours is compared with the mean
-and spread of that distance over all points, or over a window of the road: point
-density falls with the distance from the scanner, and one limit for a whole
-survey would eat the far paint.
+and spread of that distance over all points, as PCL does. Point density falls
+with the distance from the scanner and paint is worn in places, and one limit for
+a whole survey eats both: by windows, a point must also be lonelier than its own
+neighbours are.
 """
 
 from dataclasses import dataclass
@@ -14,7 +15,7 @@ from scipy.spatial import cKDTree
 from ..errors import RoadExtractionError
 from ..parallel import in_order
 from ..progress import Progress
-from ..survey.points import canonical_order
+from ..survey.points import UNIT, canonical_order
 from ..survey.road_points import RoadPoints
 
 SCOPES = ("all", "windows")
@@ -22,6 +23,7 @@ WINDOW = 20.0   # m of station that one limit is taken from
 BAND = 3.0      # m of offset likewise
 HALO = 2.0      # m of station beyond a window where neighbours are still looked for
 FEWEST = 30     # points of a window that still have a spread worth the name
+LONELIER = 3.0  # times the distance that is usual among a point's own neighbours
 
 
 @dataclass(frozen=True)
@@ -31,7 +33,8 @@ class OutlierSettings:
     neighbours : k, how many neighbours the mean distance is taken over
     std_ratio : m, a point is removed beyond mean + m * standard deviation
     scope : "all" takes mean and deviation over the whole input (PCL),
-        "windows" per 20 m of station and 3 m of offset
+        "windows" per 20 m of station and 3 m of offset, and spares points whose
+        neighbours stand as far apart as they do: worn and far paint
     """
 
     neighbours: int = 20
@@ -47,25 +50,25 @@ class OutlierSettings:
             raise RoadExtractionError(f"The scope {self.scope!r} is not known; use one of {', '.join(SCOPES)}.")
 
 
-def mean_neighbour_distance(places, among, neighbours):
-    """Mean distance of each place to its nearest others.
+def neighbour_distances(places, neighbours):
+    """Mean distance of each place to its nearest others, and who these are.
 
     Parameters
     ----------
-    places : (N, 3) metres; every one is also in `among`
-    among : (M, 3) metres, M >= N
-    neighbours : k; fewer are used where `among` has no more
+    places : (N, 3) metres
+    neighbours : k; fewer are used where there are no more
 
     Returns
     -------
-    (N,) metres; inf where a place has no neighbour at all. The place itself is
-    left out, a second point at the very same place is not (as in PCL).
+    distances : (N,) metres; inf where a place has no neighbour at all. The place
+        itself is left out, a second point at the very same place is not (as in PCL).
+    nearest : (N, k) int
     """
-    k = min(neighbours, len(among) - 1)
-    if k < 1 or not len(places):
-        return np.full(len(places), np.inf)
-    distances, _ = cKDTree(among).query(places, k + 1)
-    return distances[:, 1:].mean(axis=1)
+    k = min(neighbours, len(places) - 1)
+    if k < 1:
+        return np.full(len(places), np.inf), np.empty((len(places), 0), np.int64)
+    distances, nearest = cKDTree(places).query(places, k + 1)
+    return distances[:, 1:].mean(axis=1), nearest[:, 1:]
 
 
 def within_spread(distances, std_ratio):
@@ -98,49 +101,50 @@ def remove_outliers(points, settings=OutlierSettings(), progress=Progress()):
     .. [1] PCL 1.13, filters/impl/statistical_outlier_removal.hpp.
     """
     kept = RoadPoints.empty_like(points)
-    for road in points.roads():
-        if settings.scope == "all":
-            continue
-        start, end = points.store.span(road)
-        windows = range(int(np.floor(start / WINDOW)), int(np.ceil(end / WINDOW)))
-        for records in in_order(lambda k: _clean_window(points, road, k, settings), windows, progress):
-            kept.store.append(road, records)
     if settings.scope == "all":
         _clean_all(points, kept, settings, progress)
+    else:
+        windows = [(road, number) for road in points.roads() for number in _windows(*points.store.span(road))]
+        cleaned = in_order(lambda window: _clean_window(points, *window, settings), windows, progress)
+        for (road, _), records in zip(windows, cleaned):
+            kept.store.append(road, records)
     progress.say(f"{len(points) - len(kept):,} of {len(points):,} points lay apart from the others and were left out.")
     return kept
 
 
+def _windows(start, end):
+    return range(int(np.floor(start / WINDOW)), int(np.ceil(end / WINDOW)))
+
+
 def _clean_window(points, road, number, settings):
-    found = points.window(road, number * WINDOW - HALO, (number + 1) * WINDOW + HALO)
-    s = found.s
+    records = points.window(road, number * WINDOW - HALO, (number + 1) * WINDOW + HALO).records
+    # distances are summed in one order whatever the sections were
+    records = records[canonical_order(records)]
+    s = records["s"] * UNIT
     own = (s >= number * WINDOW) & (s < (number + 1) * WINDOW)
     if not own.any():
-        return found.records[own]
-    # Distances are summed in one order whatever the sections were
-    records = found.records[canonical_order(found.records)]
-    s = records["s"] * 1e-4
-    own = (s >= number * WINDOW) & (s < (number + 1) * WINDOW)
-    places = np.c_[records["x"], records["y"], records["z"]] * 1e-4
-    distances = mean_neighbour_distance(places[own], places, settings.neighbours)
-    records = records[own]
-    band = np.floor(records["d"] * 1e-4 / BAND)
-    keep = np.ones(len(records), bool)
-    for value in np.unique(band):
-        rows = np.flatnonzero(band == value)
+        return records[own]
+    distances, nearest = neighbour_distances(_places(records), settings.neighbours)
+    usual = np.median(distances[nearest], axis=1) if nearest.shape[1] else np.zeros(len(records))
+    band = np.floor(records["d"] * UNIT / BAND)
+    keep = own.copy()
+    for value in np.unique(band[own]):
+        rows = np.flatnonzero(own & (band == value))
         if len(rows) >= FEWEST:
-            keep[rows] = within_spread(distances[rows], settings.std_ratio)
+            keep[rows] = within_spread(distances[rows], settings.std_ratio) | (distances[rows] <= LONELIER * usual[rows])
     return records[keep]
 
 
 def _clean_all(points, kept, settings, progress):
-    everything = points.all_points()
-    roads = points.point_roads()
-    order = canonical_order(everything.records)
-    records, roads = everything.records[order], roads[order]
-    places = np.c_[records["x"], records["y"], records["z"]] * 1e-4
+    records, roads = points.all_points().records, points.point_roads()
+    order = canonical_order(records)
+    records, roads = records[order], roads[order]
     progress.at(0.1)
-    keep = within_spread(mean_neighbour_distance(places, places, settings.neighbours), settings.std_ratio)
+    keep = within_spread(neighbour_distances(_places(records), settings.neighbours)[0], settings.std_ratio)
     for road in np.unique(roads[keep]):
         kept.store.append(int(road), records[keep & (roads == road)])
     progress.at(1.0)
+
+
+def _places(records):
+    return np.c_[records["x"], records["y"], records["z"]] * UNIT

@@ -1,0 +1,252 @@
+"""Which road points are paint: thresholds on the intensity image, and back to the points.
+
+The image is looked at in the road's own frame, station along and offset across,
+so that "along the road" is an axis of the array and a bend is straight.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import RoadExtractionError
+from ..parallel import in_order
+from ..progress import Progress
+from ..survey.points import UNIT
+from ..survey.road_points import RoadPoints
+from .gutters import gutter_cells, rim_distance
+from .polygons import fill_gaps
+from .thresholds import FEWEST, WIDEST, asphalt_bins, background, bin_edges, split_bins
+
+RIM = 0.60        # m from the rim of the road where gutters end and asphalt is asphalt
+BRIGHT = 2.5      # spreads: what is brighter is no background
+METHODS = ("multi-threshold",)
+CELL = 400        # units of 0.1 mm: the grid in (s, d) has cells of 4 cm
+WINDOW = 500      # cells: thresholds are taken from 20 m of road
+HALO = 100        # cells: 4 m about a window in which rims and runs are still looked at
+
+
+@dataclass(frozen=True)
+class MarkingSettings:
+    """When a spot of road is paint.
+
+    method : how the threshold is found
+    separation : spreads of asphalt between the mean of paint and the mean of
+        asphalt, below which a bin has no paint
+    lowest, highest : limits of the threshold in spreads above the median of asphalt
+    close, shortest : m, gaps along the road that are closed, and pieces shorter than that are dropped
+    """
+
+    method: str = "multi-threshold"
+    separation: float = 4.0
+    lowest: float = 3.0
+    highest: float = 8.0
+    close: float = 0.20
+    shortest: float = 0.20
+
+    def __post_init__(self):
+        if self.method not in METHODS:
+            raise RoadExtractionError(f"The method {self.method!r} is not known; use one of {', '.join(METHODS)}.")
+        if not 1.0 <= self.lowest <= self.highest:
+            raise RoadExtractionError(
+                f"The threshold lies between {self.lowest} and {self.highest} spreads above asphalt; the first must be at "
+                "least 1 and not above the second.")
+        if min(self.close, self.shortest) < 0:
+            raise RoadExtractionError("Lengths along the road must be 0 m or more.")
+
+
+class RoadGrid:
+    """A window of the road in cells of 4 cm: rows along the road, columns across it."""
+
+    def __init__(self, first, last, low, high):
+        self.first, self.last, self.low, self.high = first, last, low, high
+
+    @property
+    def shape(self):
+        return self.last - self.first, self.high - self.low
+
+    def stations(self):
+        return (np.arange(self.first, self.last) + 0.5) * CELL * UNIT
+
+    def offsets(self):
+        return (np.arange(self.low, self.high) + 0.5) * CELL * UNIT
+
+    def read(self, image, frame, road):
+        """(rows, columns) float32 brightness, NaN where nothing was scanned."""
+        s, d = np.meshgrid(self.stations(), self.offsets(), indexing="ij")
+        x, y = frame.road(road).to_map(s.ravel(), d.ravel())
+        return np.asarray(image.sample(x, y, frame.origin), np.float32).reshape(self.shape)
+
+
+def extract_markings(road_points, image, frame, settings=MarkingSettings(), progress=Progress(), mask_path=None):
+    """Road points that lie on paint.
+
+    Parameters
+    ----------
+    road_points : RoadPoints, corrected or not
+    image : anything with sample(x, y) -> brightness in map coordinates, made from the same points
+    frame : RoadFrame
+    mask_path : where to write the mask of markings as GeoTIFF in the image's own pixels, or None
+
+    Returns
+    -------
+    RoadPoints
+    """
+    kept = RoadPoints.empty_like(road_points)
+    roads = road_points.roads()
+    for k, road in enumerate(roads):
+        part = progress.part(k / len(roads), (k + 1) / len(roads))
+        look = _Look(road_points, image, frame, road, settings)
+        windows = look.windows()
+        bins = dict(zip(windows, in_order(look.bins, windows, part.part(0.0, 0.5))))
+        levels = Levels({w: found for w, found in bins.items() if found}, settings)
+        for records in in_order(lambda w: look.paint(w, levels), windows, part.part(0.5, 1.0)):
+            kept.store.append(road, records)
+    progress.say(f"{len(kept):,} of {len(road_points):,} road points lie on paint.")
+    return kept
+
+
+class _Look:
+    """One road's windows, looked at twice: for the level of asphalt, and for what is brighter."""
+
+    def __init__(self, road_points, image, frame, road, settings):
+        self.road_points, self.image, self.frame, self.road, self.settings = road_points, image, frame, road, settings
+
+    def windows(self):
+        start, end = self.road_points.store.span(self.road)
+        return list(range(int(np.floor(start / UNIT / CELL / WINDOW)), int(np.floor(end / UNIT / CELL / WINDOW)) + 1))
+
+    def _grid(self, window):
+        """The grid of a window with its halo, the records in it with row and column, brightness and rim distance."""
+        first, last = window * WINDOW - HALO, (window + 1) * WINDOW + HALO
+        records = self.road_points.window(self.road, (first - 1) * CELL * UNIT, (last + 1) * CELL * UNIT).records
+        row = records["s"] // CELL - first
+        inside = (row >= 0) & (row < last - first)
+        records, row = records[inside], row[inside]
+        own = (row >= HALO) & (row < HALO + WINDOW)
+        if not own.any():
+            return None
+        column = records["d"] // CELL
+        low, high = int(column.min()) - 1, int(column.max()) + 2
+        column = column - low
+        grid = RoadGrid(first, last, low, high)
+        occupied = np.zeros(grid.shape, bool)
+        occupied[row, column] = True
+        return grid, records, row, column, own, grid.read(self.image, self.frame, self.road), rim_distance(occupied)
+
+    def bins(self, window):
+        """Bins of asphalt and Otsu's splits of one window; an empty list where there is nothing to see."""
+        found = self._grid(window)
+        if found is None:
+            return []
+        grid, records, _, _, own, brightness, rim = found
+        rows = slice(HALO, HALO + WINDOW)
+        offsets = np.broadcast_to(grid.offsets(), grid.shape)
+        seen = np.isfinite(brightness)
+        interior = seen & (rim > RIM)
+        interior[:HALO] = interior[HALO + WINDOW:] = False
+        if np.count_nonzero(interior) < FEWEST:
+            interior = seen.copy()
+            interior[:HALO] = interior[HALO + WINDOW:] = False
+        if not interior.any():
+            return []
+        edges = bin_edges(records["d"][own] * UNIT, offsets[interior].min(), offsets[interior].max())
+        bins = asphalt_bins(brightness[interior], offsets[interior], edges)
+        z, gutter = flatten(brightness, *_profile(bins, grid.offsets()), rim)
+        counted = (seen & ~gutter)[rows]
+        return list(zip(bins, split_bins(z[rows][counted], offsets[rows][counted], bins, self.settings.separation)))
+
+    def paint(self, window, levels):
+        """Records of one window that lie on paint."""
+        found = self._grid(window)
+        if found is None:
+            return self.road_points.window(self.road, 0, 0).records
+        grid, records, row, column, own, brightness, rim = found
+        median, spread, scale, threshold = levels.at(grid)
+        z, gutter = flatten(brightness, median, spread, rim)
+        with np.errstate(invalid="ignore"):
+            mask = morphology((z > threshold * scale) & ~gutter, self.settings)
+        records, row, column = records[own], row[own], column[own]
+        value = np.where(np.isnan(records["corrected"]), records["intensity"].astype(np.float32), records["corrected"])
+        unit = (spread * scale)[row, column]
+        # what was taken from the cell as background is taken from the point as well
+        ground = brightness[row, column] - z[row, column] * spread[row, column]
+        return records[mask[row, column] & (value > ground + (threshold[row, column] - 0.5) * unit)]
+
+
+def flatten(brightness, median, spread, rim):
+    """Brightness in spreads above the asphalt about each cell, and the cells of gutters."""
+    z = (brightness - median) / spread
+    gutter = gutter_cells(z, rim)
+    with np.errstate(invalid="ignore"):
+        even = (z < BRIGHT) & (z > -2 * BRIGHT) & ~gutter
+    return z - background(z, even), gutter
+
+
+def _profile(bins, offsets):
+    middles = [b.middle for b in bins]
+    return (np.interp(offsets, middles, [b.median for b in bins]).astype(np.float32),
+            np.interp(offsets, middles, [b.spread for b in bins]).astype(np.float32))
+
+
+class Levels:
+    """Asphalt and threshold at any place, between the bins of all windows.
+
+    windows : dict of window number to list of (Bin, Split)
+    """
+
+    def __init__(self, windows, settings):
+        self.windows = windows
+        self.settings = settings
+        self.numbers = np.array(sorted(windows))
+        self._limits = {w: self._thresholds(w) for w in windows}
+
+    def _thresholds(self, w):
+        """Threshold in z of each bin: Otsu's where there is paint, else the neighbours', else the highest."""
+        near = [split for n in (w - 1, w, w + 1) for _, split in self.windows.get(n, ()) if split.accepted]
+        limits = []
+        for _, split in self.windows[w]:
+            value = split.threshold
+            if not split.accepted:
+                beside = [other.threshold for other in near if abs(other.middle - split.middle) < WIDEST]
+                value = float(np.median(beside)) if beside else self.settings.highest
+            limits.append(float(np.clip(value, self.settings.lowest, self.settings.highest)))
+        return limits
+
+    def at(self, grid):
+        """median, spread, scale, threshold as (rows, columns) arrays: a cell is bright beyond threshold * scale."""
+        numbers = self.numbers
+        position = grid.stations() / (WINDOW * CELL * UNIT) - 0.5
+        before = np.clip(np.searchsorted(numbers, np.floor(position), side="right") - 1, 0, len(numbers) - 1)
+        after = np.minimum(before + 1, len(numbers) - 1)
+        gap = np.maximum(numbers[after] - numbers[before], 1)
+        share = np.clip((position - numbers[before]) / gap, 0.0, 1.0)[:, None].astype(np.float32)
+        needed = np.unique(np.r_[before, after])
+        profiles = np.stack([self._profile(numbers[k], grid.offsets()) for k in needed])
+        a, b = np.searchsorted(needed, before), np.searchsorted(needed, after)
+        return [(1 - share) * profiles[a, q] + share * profiles[b, q] for q in range(4)]
+
+    def _profile(self, w, offsets):
+        pairs = self.windows[w]
+        middles = [b.middle for b, _ in pairs]
+        columns = ([b.median for b, _ in pairs], [b.spread for b, _ in pairs], [split.spread for _, split in pairs], self._limits[w])
+        return np.stack([np.interp(offsets, middles, column) for column in columns]).astype(np.float32)
+
+
+def morphology(mask, settings):
+    """Close gaps along the road, then drop what is short both along and across it.
+
+    A stop line is short along the road and a lane line across it: a cell stays
+    where either run through it is long enough.
+    """
+    length = int(round(settings.shortest / (CELL * UNIT)))
+    closed = fill_gaps(mask, int(round(settings.close / (CELL * UNIT))), 0)
+    return mask & (runs(closed, 0) >= length) | mask & (runs(closed, 1) >= length)
+
+
+def runs(mask, axis):
+    """Length of the run of on cells through each cell along one axis, in cells; 0 where off."""
+    on = np.moveaxis(mask, axis, 0)
+    index = np.arange(len(on)).reshape(-1, 1)
+    before = np.maximum.accumulate(np.where(on, -1, index), axis=0)
+    after = np.minimum.accumulate(np.where(on, len(on), index)[::-1], axis=0)[::-1]
+    return np.moveaxis(np.where(on, after - before - 1, 0), 0, axis)

@@ -1,0 +1,69 @@
+"""Concrete gutters along the road's rim: as bright as paint, and not paint.
+
+A gutter begins at the very rim of the road (a curb, an island, a wall) and is
+two decimetres wide or more over metres of rim. An edge line stands off the rim
+or is narrower, and a stop line or zebra stripe that reaches the rim takes up
+little of its length.
+"""
+
+import numpy as np
+from scipy import ndimage
+
+from .polygons import fill_gaps
+
+CELL = 0.04          # m
+BAND = 2             # cells: 8 cm bands inwards from the rim
+BANDS = 9            # 0.72 m: no gutter is wider
+COARSE = 5           # cells: shares are counted in squares of 20 cm
+REACH = 2.5          # m of rim either way that a gutter must be bright on
+SHARE = 0.65         # of the cells of a band
+NARROWEST = 3        # bands
+BRIGHT = 1.5         # spreads above asphalt
+GAP_ALONG, GAP_ACROSS = 15, 10   # cells: smaller gaps between points are road all the same
+
+
+def rim_distance(occupied):
+    """(rows, columns) metres from each cell of road inwards from its rim; 0 outside the road.
+
+    `occupied` are the cells that road points lie in. Beyond the first and last row the road goes on.
+    """
+    road = fill_gaps(fill_gaps(occupied, GAP_ACROSS, 1), GAP_ALONG, 0)
+    return ndimage.distance_transform_edt(road) * CELL
+
+
+def gutter_cells(z, distance):
+    """Cells of gutters.
+
+    Parameters
+    ----------
+    z : (rows, columns) brightness in spreads above asphalt, NaN where nothing was scanned
+    distance : (rows, columns) of `rim_distance`
+
+    Returns
+    -------
+    (rows, columns) bool
+    """
+    band = np.floor((distance / CELL - 0.5) / BAND).astype(np.int64)
+    near = (distance > 0) & (band < BANDS) & np.isfinite(z)
+    row, column = np.nonzero(near)
+    if not len(row):
+        return np.zeros(z.shape, bool)
+    coarse = tuple(-(-n // COARSE) for n in z.shape)
+    place = (band[row, column] * coarse[0] + row // COARSE) * coarse[1] + column // COARSE
+    size = BANDS * coarse[0] * coarse[1]
+    bright = z[row, column] > BRIGHT
+    box = 2 * int(round(REACH / CELL / COARSE)) + 1
+
+    def around(counts):
+        return ndimage.uniform_filter(counts.reshape(BANDS, *coarse), (0, box, box), mode="constant") * box * box
+
+    seen = around(np.bincount(place, minlength=size).astype(float))
+    share = around(np.bincount(place, bright, size)) / np.maximum(seen, 1e-9)
+    # at the very rim a cell is half curb: the first band may be anything
+    full = (share >= SHARE) & (seen > 20)
+    full[0] |= full[1]
+    width = np.cumprod(full, axis=0).sum(axis=0)
+    width = np.where(width >= NARROWEST, width + 1, 0)
+    found = np.zeros(z.shape, bool)
+    found[row, column] = band[row, column] < width[row // COARSE, column // COARSE]
+    return found
