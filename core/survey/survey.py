@@ -151,7 +151,7 @@ class _Reader:
 
     def take(self, block, file):
         x, y, z = (np.asarray(block[c], float) for c in ("x", "y", "z"))
-        names = block.point_format.dimension_names
+        names = set(block.point_format.dimension_names)
         good = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
         if "withheld" in names:
             good &= np.asarray(block["withheld"]) == 0

@@ -1,0 +1,100 @@
+"""Points kept by section of road, in memory or beyond it."""
+
+import threading
+
+import numpy as np
+import pytest
+
+from lanewright.core.survey.points import SURVEY_POINT, canonical_order, to_units
+from lanewright.core.survey.section_store import SectionStore
+
+
+def records(count=4000, seed=4, length=200.0):
+    rng = np.random.default_rng(seed)
+    made = np.zeros(count, SURVEY_POINT)
+    made["s"], made["d"] = to_units(rng.uniform(-10, length, count)), to_units(rng.uniform(-8, 8, count))
+    made["time"] = rng.integers(0, 500, count)  # many points share a time
+    made["x"], made["y"], made["z"] = (rng.integers(0, 2_000_000, count) for _ in range(3))
+    made["intensity"] = rng.integers(0, 65536, count)
+    return made
+
+
+def filled(parts, **settings):
+    store = SectionStore(SURVEY_POINT, **settings)
+    for part in parts:
+        store.append(0, part)
+    return store
+
+
+@pytest.mark.parametrize("limit", [0, 10_000, 10**9])
+def test_what_went_in_comes_out_sorted_by_time_and_place(limit):
+    made = records()
+    store = filled(np.array_split(made, 7), memory_limit=limit)
+    read = np.concatenate([store.section(0, number) for number in store.sections(0)])
+    assert store.count == len(read) == len(made)
+    np.testing.assert_array_equal(np.sort(read, order=["time", "x"]), np.sort(made, order=["time", "x"]))
+    for number in store.sections(0):
+        section = store.section(0, number)
+        assert (np.diff(section["time"]) >= 0).all()
+        assert ((section["s"] >= to_units(20.0 * number)) & (section["s"] < to_units(20.0 * (number + 1)))).all()
+
+
+def test_the_order_of_appending_leaves_no_trace():
+    made = records()
+    mixed = made[np.random.default_rng(1).permutation(len(made))]
+    one, other = filled([made]), filled(np.array_split(mixed, 13), memory_limit=5_000)
+    for number in one.sections(0):
+        np.testing.assert_array_equal(one.section(0, number), other.section(0, number))
+
+
+def test_a_window_holds_its_start_but_not_its_end():
+    made = records(3)
+    made["s"] = to_units([20.0, 39.9999, 40.0])
+    assert len(filled([made]).window(0, 20.0, 40.0)) == 2
+
+
+def test_windows_side_by_side_hold_every_point_once():
+    store = filled([records()])
+    edges = np.arange(-13.0, 214.0, 3.3)
+    assert sum(len(store.window(0, a, b)) for a, b in zip(edges[:-1], edges[1:])) == 4000
+
+
+def test_points_added_after_reading_are_seen():
+    store = filled([records(100)], memory_limit=1_000)
+    before = len(store.window(0, -20, 220))
+    store.append(0, records(50, seed=9))
+    assert (before, len(store.window(0, -20, 220))) == (100, 150)
+
+
+def test_an_empty_store_has_no_roads_and_empty_windows():
+    store = SectionStore(SURVEY_POINT)
+    store.append(0, records(0))
+    assert store.roads() == [] and store.sections(0) == [] and len(store.window(0, 0.0, 100.0)) == 0
+    assert store.span(0) == (0.0, 0.0)
+
+
+def test_several_threads_read_what_one_reads():
+    store = filled(np.array_split(records(20_000), 9), memory_limit=50_000)
+    expected = {number: store.section(0, number).tobytes() for number in store.sections(0)}
+    wrong = []
+
+    def read(seed):
+        for number in np.random.default_rng(seed).permutation(list(expected)):
+            if store.section(0, int(number)).tobytes() != expected[int(number)]:
+                wrong.append(number)
+
+    threads = [threading.Thread(target=read, args=(seed,)) for seed in range(8)]
+    [thread.start() for thread in threads]
+    [thread.join() for thread in threads]
+    assert not wrong
+
+
+def test_equal_times_are_ordered_by_place():
+    made = records(500)
+    made["time"] = 7.0
+    order = canonical_order(made)
+    assert (np.diff(made["x"][order]) >= 0).all()
+
+
+def test_a_tenth_of_a_millimetre_survives():
+    np.testing.assert_array_equal(to_units([0.0001, -0.0001, 123.45674]), [1, -1, 1234567])

@@ -1,0 +1,202 @@
+"""A survey read into the road frame: every point once, on its road, whatever way the files come."""
+
+import numpy as np
+import pytest
+from drives import EAST, NORTH, ahead, bend, chain, drive, joined, surveyed_points, write_cloud
+
+from lanewright.core.errors import RoadExtractionError
+from lanewright.core.survey.survey import SurveySettings, open_survey
+from lanewright.core.survey.trajectory import Trajectory
+
+CRS = "EPSG:32632"
+PATH = chain(ahead(80), bend(60, 60), ahead(60))
+
+
+def contents(survey):
+    """All records of a survey in one fixed order, without what depends on how roads are cut into sections."""
+    parts = [survey.section(road, number).records for road in survey.store.roads() for number in survey.store.sections(road)]
+    records = np.concatenate(parts)
+    return records[np.lexsort([records[name] for name in ("s", "z", "y", "x", "time")])]
+
+
+@pytest.fixture
+def street(tmp_path):
+    """(trajectory, points, path of their cloud) of a bend driven once."""
+    trajectory = drive(PATH)
+    points = surveyed_points(trajectory)
+    return trajectory, points, write_cloud(tmp_path / "street.laz", *points, crs=CRS)
+
+
+def test_every_point_gets_the_station_and_offset_it_was_made_with(street):
+    trajectory, (x, y, z, time), path = street
+    survey = open_survey([path], trajectory)
+    records = contents(survey)
+    assert len(records) == len(x)
+    offsets = np.unique(np.round(records["d"] * 1e-4 * 2) / 2)
+    np.testing.assert_array_equal(offsets, np.arange(-6.0, 6.1, 0.5))
+    middle = np.abs(records["s"] * 1e-4 - 110) < 60
+    np.testing.assert_allclose(records["d"][middle] * 1e-4, np.round(records["d"][middle] * 2e-4) / 2, atol=0.05)
+
+
+def test_the_sensor_stands_as_high_above_the_road_as_it_was_mounted(street):
+    trajectory, _, path = street
+    survey = open_survey([path], trajectory)
+    assert survey.sensor_height[0] == pytest.approx(2.0, abs=0.01)
+    np.testing.assert_allclose(survey.road_height(0, np.arange(0.0, 190.0)) + survey.frame.origin[2], 100.0, atol=0.01)
+
+
+@pytest.mark.parametrize("settings", [
+    SurveySettings(block=997), SurveySettings(section_length=7.0), SurveySettings(memory_limit=20_000),
+    SurveySettings(block=3001, section_length=50.0, memory_limit=0),
+])
+def test_block_size_section_length_and_memory_change_no_point(street, settings):
+    trajectory, _, path = street
+    np.testing.assert_array_equal(contents(open_survey([path], trajectory, settings)), contents(open_survey([path], trajectory)))
+
+
+def test_files_and_points_in_any_order_give_the_same_survey(street, tmp_path):
+    trajectory, points, path = street
+    order = np.random.default_rng(8).permutation(len(points[0]))
+    parts = [write_cloud(tmp_path / f"part{k}.laz", *(c[rows] for c in points), crs=CRS) for k, rows in enumerate(np.array_split(order, 3))]
+    whole = contents(open_survey([path], trajectory))
+    np.testing.assert_array_equal(contents(open_survey(parts, trajectory)), whole)
+    np.testing.assert_array_equal(contents(open_survey(parts[::-1], trajectory)), whole)
+
+
+def test_a_window_does_not_depend_on_where_sections_are_cut(street):
+    trajectory, _, path = street
+    windows = [open_survey([path], trajectory, SurveySettings(section_length=length)).window(0, 33.0, 71.5) for length in (20.0, 7.0)]
+    for name in ("x", "y", "z", "s", "d"):
+        np.testing.assert_array_equal(np.sort(getattr(windows[0], name)), np.sort(getattr(windows[1], name)))
+    assert windows[0].s.min() >= 33.0 and windows[0].s.max() < 71.5
+
+
+def test_moving_the_survey_five_hundred_kilometres_changes_no_station(street, tmp_path):
+    trajectory, (x, y, z, time), path = street
+    moved = Trajectory(trajectory.time, trajectory.x + 500_000, trajectory.y - 500_000, trajectory.z)
+    far = write_cloud(tmp_path / "far.laz", x + 500_000, y - 500_000, z, time, crs=CRS)
+    here, there = contents(open_survey([path], trajectory)), contents(open_survey([far], moved))
+    for name in ("x", "y", "z", "s", "d"):
+        assert np.abs(here[name].astype(int) - there[name]).max() <= 1, "0.1 mm of rounding"
+
+
+def test_driving_the_other_way_swaps_the_sides(street, tmp_path):
+    trajectory, (x, y, z, _), path = street
+    back = drive(PATH[::-1])
+    rows = np.argmin(np.hypot(x[:, None] - back.x[::10], y[:, None] - back.y[::10]), axis=1) * 10
+    other = write_cloud(tmp_path / "back.laz", x, y, z, back.time[rows], crs=CRS)
+    along, against = open_survey([path], trajectory), open_survey([other], back)
+    place = lambda survey: {(a, b): d for a, b, d in zip(*np.rint(survey.window(0, 30, 170).records[["x", "y", "d"]].tolist()).T)}  # noqa: E731
+    first, second = place(along), place(against)
+    shared = first.keys() & second.keys()
+    assert len(shared) > 10_000
+    assert max(abs(first[p] + second[p]) for p in shared) < 200, "2 cm, where the two lines were smoothed from either end"
+
+
+def test_two_passes_over_a_street_share_its_road_and_keep_their_numbers(tmp_path):
+    there, back = drive(PATH), drive(PATH[::-1] + [0.0, 3.0], start=3000.0)
+    first, second = surveyed_points(there), surveyed_points(back)
+    path = write_cloud(tmp_path / "twice.laz", *(np.r_[a, b] for a, b in zip(first, second)), crs=CRS)
+    survey = open_survey([path], joined(there, back))
+    records = contents(survey)
+    assert survey.store.roads() == [0] and len(survey.sensor_height) == 2
+    np.testing.assert_array_equal(np.unique(records["pass_number"]), [0, 1])
+    assert (records["time"][records["pass_number"] == 1] >= 3000.0).all()
+
+
+def test_a_place_seen_from_two_roads_belongs_to_the_pass_that_measured_it(tmp_path):
+    """Two carriageways 15 m apart: points between them follow the time, not the nearest line."""
+    here, there = drive(chain(ahead(150))), drive(chain(ahead(150)) + [0.0, 15.0], start=3000.0)
+    x, y, z, time = surveyed_points(here, half_width=12.0)
+    survey = open_survey([write_cloud(tmp_path / "a.laz", x, y, z, time, crs=CRS)], joined(here, there))
+    road = next(p.road for p in survey.frame.passes if p.time[0] < 2000)
+    assert survey.store.roads() == [road] and len(contents(survey)) == len(x)
+
+
+def test_without_gps_time_each_point_goes_to_the_nearest_foot(street, tmp_path):
+    trajectory, (x, y, z, _), path = street
+    for point_format, version in ((0, "1.2"), (2, "1.2")):
+        plain = write_cloud(tmp_path / f"plain{point_format}.las", x, y, z, point_format=point_format, version=version, crs=CRS)
+        survey = open_survey([plain], trajectory)
+        timed = contents(open_survey([path], trajectory))
+        assert not survey.has_time
+        assert len(contents(survey)) == pytest.approx(len(timed), rel=0.01)
+        assert survey.sensor_height[0] == pytest.approx(2.0, abs=0.01)
+
+
+def test_a_scanner_channel_tells_the_scanners_apart(street, tmp_path):
+    trajectory, (x, y, z, time), _ = street
+    channel = np.arange(len(x)) % 2 + 1
+    survey = open_survey([write_cloud(tmp_path / "two.laz", x, y, z, time, crs=CRS, channel=channel)], trajectory)
+    assert (survey.scanner_field, survey.scanners) == ("scanner_channel", [1, 2])
+    np.testing.assert_array_equal(np.unique(contents(survey)["scanner"]), [0, 1])
+
+
+@pytest.mark.parametrize("cloud_crs, says", [("EPSG:4326", "geographic"), ("EPSG:2263", "foot")])
+def test_a_cloud_that_is_not_in_metres_is_refused(street, tmp_path, cloud_crs, says):
+    trajectory, points, _ = street
+    with pytest.raises(RoadExtractionError, match=says):
+        open_survey([write_cloud(tmp_path / "bad.laz", *points, crs=cloud_crs)], trajectory)
+
+
+def test_a_trajectory_in_another_crs_is_brought_to_the_cloud(street):
+    from pyproj import Transformer
+
+    trajectory, points, path = street
+    x, y = Transformer.from_crs(32632, 25833, always_xy=True).transform(trajectory.x, trajectory.y)
+    other = Trajectory(trajectory.time, x, y, trajectory.z, crs="EPSG:25833")
+    survey = open_survey([path], other)
+    assert len(contents(survey)) == len(points[0])
+    np.testing.assert_allclose(contents(survey)["d"], contents(open_survey([path], trajectory))["d"], atol=50)
+
+
+def test_a_trajectory_elsewhere_is_refused_with_both_extents(street):
+    trajectory, _, path = street
+    away = Trajectory(trajectory.time, trajectory.x + 5_000, trajectory.y, trajectory.z)
+    with pytest.raises(RoadExtractionError, match="does not run through the point cloud.*carries no CRS"):
+        open_survey([path], away)
+
+
+def test_a_trajectory_of_another_hour_is_refused_with_both_spans(street):
+    trajectory, _, path = street
+    with pytest.raises(RoadExtractionError, match="does not cover the scan in time"):
+        open_survey([path], trajectory.shifted(7200.0))
+
+
+def test_a_trajectory_of_seconds_of_the_week_is_brought_to_adjusted_time(street, tmp_path):
+    trajectory, (x, y, z, time), _ = street
+    start = 318_204_000.0
+    cloud = write_cloud(tmp_path / "adjusted.laz", x, y, z, time - 1000 + start, crs=CRS)
+    survey = open_survey([cloud], trajectory.shifted((start + 1e9) % 604800 - 1000))
+    assert len(contents(survey)) == len(x)
+
+
+def test_a_scan_past_the_end_of_the_gps_week_is_one_drive(street, tmp_path):
+    trajectory, (x, y, z, time), path = street
+    week = lambda t: (t - 1000.0 + 604_790.0) % 604_800.0  # noqa: E731
+    cloud = write_cloud(tmp_path / "week.laz", x, y, z, week(time), crs=CRS, adjusted=False)
+    survey = open_survey([cloud], Trajectory(week(trajectory.time), trajectory.x, trajectory.y, trajectory.z))
+    np.testing.assert_array_equal(contents(survey)[["s", "d"]], contents(open_survey([path], trajectory))[["s", "d"]])
+
+
+def test_points_far_above_and_below_the_road_are_left_out(street, tmp_path):
+    trajectory, (x, y, z, time), _ = street
+    high = np.r_[z, z[::50] + 9.0, z[::50] - 9.0]
+    cloud = write_cloud(tmp_path / "ghosts.laz", np.r_[x, x[::50], x[::50]], np.r_[y, y[::50], y[::50]], high, np.r_[time, time[::50], time[::50]], crs=CRS)
+    survey = open_survey([cloud], trajectory)
+    assert survey.counts["kept"] == len(x) and survey.counts["outside"] == 2 * len(x[::50])
+
+
+def test_a_corridor_that_makes_no_sense_is_refused():
+    with pytest.raises(RoadExtractionError, match="corridor is 2.0 m"):
+        SurveySettings(corridor=2.0)
+
+
+def test_the_cloud_covers_only_part_of_a_long_drive(tmp_path):
+    long_drive = drive(chain(ahead(2000)))
+    part = long_drive.rows((long_drive.time > 1080) & (long_drive.time < 1100))
+    points = surveyed_points(part)
+    survey = open_survey([write_cloud(tmp_path / "part.laz", *points, crs=CRS)], long_drive)
+    s = contents(survey)["s"] * 1e-4
+    assert len(s) == len(points[0]) and 795 < s.min() and s.max() < 1005
+    assert (EAST, NORTH) == tuple(np.floor([long_drive.x.min(), long_drive.y.min()]))
