@@ -85,11 +85,10 @@ class Call:
     def knob(self, knob):
         return knob.value(self.algorithm, self.parameters, self.context)
 
-    def settings(self, knobs, path=None, **more):
+    def settings(self, knobs, **more):
         """The core Settings object that these knobs turn; one not in the dialog keeps its default."""
-        path = path or knobs[0].settings
-        shown = [k for k in knobs if k.settings == path and self.algorithm.parameterDefinition(k.name) is not None]
-        return settings_class(path)(**{k.field: self.knob(k) for k in shown}, **more)
+        shown = [k for k in knobs if self.algorithm.parameterDefinition(k.name) is not None]
+        return settings_class(knobs[0].settings)(**{k.field: self.knob(k) for k in shown}, **more)
 
     def number(self, name):
         return self.algorithm.parameterAsDouble(self.parameters, name, self.context)

@@ -53,26 +53,31 @@ def frame_of(call, crs, progress, road_points=None):
     from ..core.survey.road_frame import build_frame
 
     trajectory = reproject_trajectory(call.trajectory(), crs)
-    if road_points is not None and trajectory.has_time:
-        trajectory = _on_clock_of(road_points, trajectory, progress)
+    has_time = trajectory.has_time
+    if road_points is not None and has_time:
+        trajectory, has_time = _on_clock_of(road_points, trajectory, progress)
     frame = build_frame(trajectory)
-    frame.crs = crs or trajectory.crs
+    frame.crs, frame.has_time = crs or trajectory.crs, has_time
     return frame
 
 
 def _on_clock_of(road_points, trajectory, progress):
+    """The trajectory in the points' time system, and whether the points have time at all."""
     from ..core.survey.time_systems import align_time
 
-    ends = []
+    first, last = float("inf"), float("-inf")
     for road, number in road_points.all_sections():
         time = road_points.section(road, number).time
-        ends += [float(time.min()), float(time.max())] if len(time) else []
-    if not ends or min(ends) == max(ends):
-        return trajectory
-    offset, note = align_time(trajectory.time, (min(ends), max(ends)))
+        if len(time):
+            first, last = min(first, float(time.min())), max(last, float(time.max()))
+        if first < last and trajectory.time.min() <= first and last <= trajectory.time.max():
+            return trajectory, True
+    if not first < last:
+        return trajectory, False
+    offset, note = align_time(trajectory.time, (first, last))
     if note:
         progress.say(note)
-    return trajectory.shifted(offset) if offset else trajectory
+    return trajectory.shifted(offset), True
 
 
 def road_points_of(call, name, progress):

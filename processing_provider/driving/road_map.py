@@ -6,7 +6,7 @@ from ...core.features import Features
 from ...core.schemas import CURB_POINTS, CURVE_ELEMENTS, DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES, ROAD_SURFACE
 from ..algorithm import LanewrightAlgorithm
 from ..markings.cluster_markings import CLUSTER_KNOBS
-from ..markings.correct_intensity import INTENSITY, INTENSITY_KNOBS
+from ..markings.correct_intensity import INTENSITY_KNOBS
 from ..markings.extract_markings import MARKING_KNOBS
 from ..markings.fit_marking_lines import LINE_KNOBS
 from ..markings.intensity_image import IMAGE_KNOBS
@@ -24,6 +24,7 @@ STAGES = {
     "curbs": CURB_KNOBS,
     "edges": EDGE_KNOBS,
     "surface": SURFACE_KNOBS,
+    "intensity": INTENSITY_KNOBS,
     "image": IMAGE_KNOBS,
     "markings": MARKING_KNOBS,
     "outliers": OUTLIER_KNOBS,
@@ -80,7 +81,6 @@ class RoadMap(LanewrightAlgorithm):
 
         settings = RoadMapSettings(
             correct=call.flag("CORRECT_INTENSITY"),
-            intensity=call.settings(INTENSITY_KNOBS, INTENSITY),
             survey=call.settings(SURVEY_KNOBS, crs=call.crs()),
             **{field: call.settings(knobs) for field, knobs in STAGES.items()},
         )

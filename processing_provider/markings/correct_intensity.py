@@ -7,7 +7,14 @@ from ..texts import tr
 
 INTENSITY = "markings.intensity:IntensitySettings"
 
-INTENSITY_KNOBS = ()
+INTENSITY_KNOBS = (
+    Knob(
+        "SCALE", INTENSITY, "scale", tr("Scale of the intensities"),
+        tr("Linear ones are multiplied, logarithmic ones added to. Automatic goes by the spread of asphalt; choose one "
+           "when the report names the wrong one."),
+        choices=("automatic", "linear", "logarithmic"), advanced=True,
+    ),
+)
 
 
 class CorrectIntensity(LanewrightAlgorithm):
@@ -29,6 +36,8 @@ class CorrectIntensity(LanewrightAlgorithm):
 
         road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, road_points.crs, progress, road_points)
-        corrected, report = correct_intensity(road_points, frame, call.settings(INTENSITY_KNOBS, INTENSITY), progress.part(0.2, 0.8))
+        corrected, report = correct_intensity(road_points, frame, call.settings(INTENSITY_KNOBS), progress.part(0.2, 0.8))
         write_road_points(corrected, call.new_file("OUTPUT"), progress.part(0.8, 1.0))
+        for line in report.lines():
+            progress.say(line)
         call.text("REPORT", report.to_html())
