@@ -84,18 +84,20 @@ def choose(fits):
     return min(fits, key=lambda fit: fit.worst)
 
 
+_NUMBERS = {
+    "clothoid": (Clothoid, ("x", "y", "direction", "bend", "change", "length")),
+    "ellipse": (Ellipse, ("x", "y", "a", "b", "tilt", "first", "last")),
+    "polynomial": (Polynomial, ("x", "y", "tilt", "scale", "coefficients", "first", "last")),
+    "b-spline": (Spline, ("knots", "control_x", "control_y")),
+    "line": (Arc, ("x", "y", "direction", "bend", "length")),
+    "circle": (Arc, ("x", "y", "direction", "bend", "length")),
+}
+
+
 def curve_of(params):
-    """The curve of a dict that `Curve.params` made (or of its JSON, loaded)."""
-    p = dict(params)
-    kind = p.pop("curve")
-    if kind in ("line", "circle"):
-        return Arc(*(p[name] for name in ("x", "y", "direction", "bend", "length")))
-    if kind == "clothoid":
-        return Clothoid(**p)
-    if kind == "ellipse":
-        return Ellipse(**p)
-    if kind == "polynomial":
-        return Polynomial(**{**p, "coefficients": tuple(p["coefficients"])})
-    if kind == "b-spline":
-        return Spline(tuple(p["knots"]), tuple(p["control_x"]), tuple(p["control_y"]))
-    raise RoadExtractionError(f"There is no curve called {kind!r}. Choose one of {', '.join(CURVES[1:])}.")
+    """The curve of a dict that `Curve.params` made (or of its JSON, loaded); other entries are ignored."""
+    kind = params["curve"]
+    if kind not in _NUMBERS:
+        raise RoadExtractionError(f"There is no curve called {kind!r}. Choose one of {', '.join(CURVES[1:])}.")
+    maker, names = _NUMBERS[kind]
+    return maker(*(tuple(params[name]) if isinstance(params[name], list) else params[name] for name in names))

@@ -108,17 +108,22 @@ def _smoothed(values, reach=4):
     return np.convolve(padded, np.full(2 * reach + 1, 1 / (2 * reach + 1)), "valid")
 
 
-def _penalised(x, y, t, length, bandwidth):
+def _basis(t, length, bandwidth):
+    """Knots, design matrix and banded penalty for places t in [0, length]."""
     pieces = max(1, int(np.ceil(length / max(bandwidth, 1.0))))
     step = length / pieces
     knots = step * np.arange(-DEGREE, pieces + DEGREE + 1)
     inside = np.clip(t, knots[DEGREE], knots[-DEGREE - 1])
-    design = BSpline.design_matrix(inside, knots, DEGREE, extrapolate=False).toarray() if len(t) < 400 else \
-        BSpline.design_matrix(inside, knots, DEGREE, extrapolate=False)
-    count = pieces + DEGREE
-    third = np.diff(np.eye(count), 3, axis=0) / step**3 if count > 3 else np.zeros((0, count))
+    design = BSpline.design_matrix(inside, knots, DEGREE, extrapolate=False)
+    if len(t) < 400:
+        design = design.toarray()
     density = len(t) / max(length, 1e-6)
-    penalty = _bands(third.T @ third) * step * density * bandwidth**6
+    return knots, design, _roughness(pieces + DEGREE) * density * bandwidth**6 / step**5
+
+
+def _penalised(x, y, t, length, bandwidth):
+    knots, design, penalty = _basis(t, length, bandwidth)
+    inside = np.clip(t, knots[DEGREE], knots[-DEGREE - 1])
     weight = np.ones(len(t))
     middle = np.array([x.mean(), y.mean()])
     places = np.c_[x, y] - middle
@@ -131,7 +136,37 @@ def _penalised(x, y, t, length, bandwidth):
         weight = robust_weights(across)
     control = control + middle
     curve = Spline(tuple(knots.tolist()), tuple(control[:, 0].tolist()), tuple(control[:, 1].tolist()))
-    return Fit(curve, across, min(3 + length / (3 * bandwidth), count))
+    return Fit(curve, across, min(3 + length / (3 * bandwidth), len(knots) - 4))
+
+
+def _roughness(count):
+    """Upper banded form (4, K) of D'D with D the third differences of K control points."""
+    bands = np.zeros((DEGREE + 1, count))
+    difference = np.array([-1.0, 3.0, -3.0, 1.0])
+    for row in range(4):
+        for column in range(row, 4):
+            bands[DEGREE - (column - row), column:column + count - 3] += difference[row] * difference[column]
+    return bands
+
+
+def smooth_profile(t, values, bandwidth):
+    """A function of t that follows values smoothly, strays counting little; held constant beyond the ends.
+
+    t : (N,) rising; values : (N,) metres, as a height or an offset along a line.
+    """
+    t, values = np.asarray(t, float), np.asarray(values, float)
+    length = float(t[-1] - t[0])
+    if len(t) < 4 or length < 1.0:
+        level = float(np.median(values))
+        return lambda at: np.full(np.shape(at), level)
+    knots, design, penalty = _basis(t - t[0], length, bandwidth)
+    level = float(np.median(values))
+    weight = np.ones(len(t))
+    for _ in range(6):
+        control = _solve(design, weight, values[:, None] - level, penalty)[:, 0]
+        weight = robust_weights(values - level - design @ control)
+    spline = BSpline(knots, control, DEGREE)
+    return lambda at: level + spline(np.clip(np.asarray(at, float) - t[0], 0.0, knots[-DEGREE - 1]))
 
 
 def _bands(matrix):

@@ -1,0 +1,163 @@
+"""Which linked paint is a line, what kind of line it is, and how far it reaches."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from .classes import LANE
+from .linking import TWIN
+from .patterns import LONGEST_DASH, Piece, merged, pieces, stretches
+
+SHARED = 0.6         # of a line's paint that must have its twin beside it in a double line
+SLIVER = 0.35        # of a line's length: less paint beside a line than this is no second line but its frayed edge
+SAME_OFFSET = 0.25   # m: a lone dash this near the course of a dashed line is one of its dashes
+LONE_DASH = 1.5      # m
+WIDE_LANE = 2.6      # m: a solid line with less room than this to the road edge bounds the road
+
+
+@dataclass
+class Chosen:
+    """A line with its kind, its pieces by status and pattern, and the stations it is drawn between."""
+
+    line: object
+    kind: str
+    double: bool
+    pieces: list
+    width: float
+
+    @property
+    def span(self):
+        return self.pieces[0].first, self.pieces[-1].last
+
+
+def crossings(markings, road, frame):
+    """(K, 4) first and last station, least and greatest offset of zebra crossings and stop lines of a road."""
+    found = []
+    for geometry, row in markings:
+        if row["road"] == road and row["class"] in ("zebra", "stop"):
+            places = shapely.get_coordinates(geometry)
+            x, y = frame.to_local(places[:, 0], places[:, 1])
+            s, d = frame.road(road).locate(x, y)
+            if np.isfinite(s).any():
+                found.append((np.nanmin(s), np.nanmax(s), np.nanmin(d), np.nanmax(d)))
+    return np.array(found).reshape(-1, 4)
+
+
+def choose(lines, drift, crossed, min_paint):
+    """The lines worth drawing.
+
+    A line needs paint: `min_paint` metres of it, or two dashes of a rhythm, or one dash
+    on the course and of the length of a dashed line elsewhere on the road. What runs
+    close beside a much longer line is that line's frayed edge.
+
+    Parameters
+    ----------
+    lines : list of Line
+    drift : Drift
+    crossed : (K, 4) as `crossings` gives it
+    min_paint : metres
+
+    Returns
+    -------
+    list of Chosen, by station
+    """
+    if not lines:
+        return []
+    parts = [stretches(line) for line in lines]
+    level = [_level(line, drift) for line in lines]
+    beats = [_beats(stretch) for stretch in parts]
+    painted_to = max(line.last for line in lines)
+    painted_from = min(line.first for line in lines)
+    frayed, double = _beside(lines, drift)
+    found = []
+    for k, line in enumerate(lines):
+        lone = None
+        if not beats[k] and line.painted < LONGEST_DASH:
+            lone = _dash_of_another(k, lines, beats, level)
+        if frayed[k] or not (line.painted >= min_paint or beats[k] or lone):
+            continue
+        kind = _kind(line, double[k], bool(beats[k]) or lone is not None)
+        drawn = pieces(line)
+        if lone is not None:
+            drawn = [Piece(line.first, line.last, "measured", "dashed")]
+        drawn = _extended(drawn, parts[k], lone, (painted_from, painted_to), crossed, line)
+        width = float(np.average([s.width for s in line.strands], weights=[s.length for s in line.strands]))
+        found.append(Chosen(line, kind, bool(double[k]), drawn, width))
+    return found
+
+
+def _level(line, drift):
+    s, d, *_ = line.places()
+    return float(np.median(d - drift.at(s)))
+
+
+def _beats(parts):
+    return [part.rhythm for part in parts if part.rhythm]
+
+
+def _dash_of_another(k, lines, beats, level):
+    """The Rhythm of a dashed line elsewhere on the road, on whose course and of whose dash length line k is."""
+    if lines[k].painted < LONE_DASH or len(lines[k].strands) > 2:
+        return None
+    for j, rhythms in enumerate(beats):
+        apart = lines[j].last < lines[k].first or lines[j].first > lines[k].last
+        for beat in rhythms if apart and abs(level[j] - level[k]) <= SAME_OFFSET else ():
+            if len(lines[j].strands) >= 3 and abs(lines[k].last - lines[k].first - beat.dash) <= max(0.6, 0.25 * beat.dash):
+                return beat
+    return None
+
+
+def _beside(lines, drift):
+    """(N,) frayed: a sliver beside a longer line; (N,) double: one of two equal lines side by side."""
+    frayed, double = np.zeros(len(lines), bool), np.zeros(len(lines), bool)
+    tracks = []
+    for line in lines:
+        s, d, *_ = line.places()
+        cell = np.floor(s / 0.5).astype(np.int64)
+        cells, first = np.unique(cell, return_index=True)
+        tracks.append((cells, (d - drift.at(s))[first]))
+    for k in range(len(lines)):
+        for j in range(len(lines)):
+            if j == k or lines[j].first > lines[k].last or lines[j].last < lines[k].first:
+                continue
+            _, a, b = np.intersect1d(tracks[k][0], tracks[j][0], assume_unique=True, return_indices=True)
+            if len(a) < 3:
+                continue
+            away = float(np.median(np.abs(tracks[k][1][a] - tracks[j][1][b])))
+            share = len(a) / len(tracks[k][0])
+            if away <= TWIN[1] and share > SHARED:
+                if lines[k].painted < SLIVER * lines[j].painted and lines[k].painted < LONGEST_DASH:
+                    frayed[k] = True
+                elif away >= TWIN[0]:
+                    double[k] = True
+                    double[j] |= len(a) / len(tracks[j][0]) > SLIVER
+    return frayed, double
+
+
+def _kind(line, double, dashed):
+    votes = {}
+    for strand in line.strands:
+        for name, length in strand.classes.items():
+            votes[name] = votes.get(name, 0.0) + length
+    room = float(np.average([s.room for s in line.strands], weights=[s.length for s in line.strands]))
+    if double:
+        return "centre"
+    if votes.get("edge", 0.0) > 0.5 * line.painted or room < (LANE if dashed else WIDE_LANE):
+        return "edge"
+    return "lane" if dashed else "centre"
+
+
+def _extended(drawn, parts, lone, painted, crossed, line):
+    """A dashed line ends with a gap: its ends go on by one gap, but not past the paint of the road or into a crossing."""
+    drawn = list(drawn)
+    before, after = lone or parts[0].rhythm, lone or parts[-1].rhythm
+    d = float(np.median(line.places()[1]))
+    beside = crossed[(crossed[:, 2] <= d + 0.5) & (crossed[:, 3] >= d - 0.5)]
+    if before:
+        start = max(line.first - before.gap, painted[0], *(beside[beside[:, 1] < line.first + 0.5, 1]), )
+        drawn.insert(0, Piece(min(start, line.first), line.first, "measured", "dashed"))
+    if after:
+        end = min(line.last + after.gap, painted[1], *(beside[beside[:, 0] > line.last - 0.5, 0]), )
+        drawn.append(Piece(line.last, max(end, line.last), "measured", "dashed"))
+    return merged(drawn)

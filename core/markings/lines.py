@@ -1,0 +1,133 @@
+"""Marking lines: the painted lines of a road as curves, dashes linked, gaps told."""
+
+import json
+from dataclasses import dataclass
+
+import numpy as np
+from shapely.geometry import LineString
+
+from ..curves.choice import CURVES
+from ..errors import RoadExtractionError
+from ..features import Features
+from ..progress import Progress
+from ..schemas import MARKING_LINES
+from . import line_choice
+from .line_shape import shape_of
+from .linking import Drift, Line, link, link_far
+from .patterns import same_rhythm
+from .tracing import line_paint, trace
+
+
+@dataclass(frozen=True)
+class LineSettings:
+    """How marking lines are linked and which curve is fitted.
+
+    curve : one of core.curves.choice.CURVES; degree : of the polynomial
+    max_gap : m along the road over which paint of one line is linked
+    max_bridge : m over which it is linked where the line's own rhythm or a neighbouring line carries over
+    min_paint : m of paint without which there is no line (unless it fits another one's dashes)
+    """
+
+    curve: str = "automatic"
+    degree: int = 2
+    max_gap: float = 13.0
+    max_bridge: float = 30.0
+    min_paint: float = 4.0
+
+    def __post_init__(self):
+        if self.curve not in CURVES:
+            raise RoadExtractionError(f"There is no curve called {self.curve!r}. Choose one of {', '.join(CURVES)}.")
+        if not 0 <= self.degree <= 9:
+            raise RoadExtractionError(f"The polynomial's degree is {self.degree}; it must be between 0 and 9.")
+        if not 0 < self.max_gap <= self.max_bridge:
+            raise RoadExtractionError(
+                f"Gaps are linked up to {self.max_gap} m and bridged up to {self.max_bridge} m; both must be above 0 m "
+                "and the second not below the first.")
+
+
+def fit_marking_lines(clustered_points, markings, frame, settings=LineSettings(), progress=Progress()):
+    """Trace, link and fit the painted lines of all roads.
+
+    Parameters
+    ----------
+    clustered_points : RoadPoints with `cluster`
+    markings : Features MARKINGS of the same clusters
+    frame : RoadFrame
+
+    Returns
+    -------
+    Features MARKING_LINES: a line that is partly bridged, or changes between dashed and
+    solid, comes in touching pieces with one `line` number. Every piece is drawn on the
+    line's one curve, whose numbers (map coordinates, and the arc lengths `from` and
+    `to` of the piece) are in `params`. `rmse_m` is NULL on bridged pieces.
+
+    Raises
+    ------
+    RoadExtractionError
+        If the points were not clustered.
+    """
+    if not clustered_points.has_cluster:
+        raise RoadExtractionError(
+            "The points have no field “cluster”. Give the file written by “Cluster markings” together with its layer.")
+    found = Features("LineStringZ", MARKING_LINES, crs=clustered_points.crs)
+    number, replaced, dropped = 0, 0, 0
+    roads = clustered_points.roads()
+    for k, road in enumerate(roads):
+        part = progress.part(k / len(roads), (k + 1) / len(roads))
+        records, rank = line_paint(_records_of(clustered_points, road), markings, road)
+        part.at(0.1)
+        strands = trace(records, rank)
+        part.at(0.4)
+        drift = Drift(strands)
+        lines = link([Line([strand]) for strand in strands], drift, settings.max_gap)
+        lines = link_far(lines, drift, settings.max_gap, settings.max_bridge, same_rhythm)
+        part.at(0.5)
+        chosen = line_choice.choose(lines, drift, line_choice.crossings(markings, road, frame), settings.min_paint)
+        dropped += len(lines) - len(chosen)
+        for j, one in enumerate(chosen):
+            shape, as_wanted = shape_of(one.line, frame.road(road), drift,
+                                        lambda s, road=road: frame.track_height(road, s), one.span, settings)
+            number += 1
+            replaced += not as_wanted
+            _add(found, one, shape, number, road, frame.origin)
+            part.at(0.5 + 0.5 * (j + 1) / len(chosen))
+    progress.say(f"{number} marking lines; {dropped} fragments were left out.")
+    if replaced:
+        progress.warn(f"{replaced} of {number} lines cannot be a {settings.curve}; the automatic curve was used for them.")
+    return found
+
+
+def _records_of(points, road):
+    parts = [points.store.section(road, section) for section in points.sections(road)]
+    return np.concatenate(parts)
+
+
+def _add(found, one, shape, number, road, origin):
+    curve = shape.fit.curve.moved(*origin[:2])
+    numbers = _rounded(curve.params())
+    s, d, *_ = one.line.places()
+    for piece in one.pieces:
+        places = shape.draw(piece.first, piece.last) + origin
+        geometry = LineString(places)
+        if not geometry.length > 0:
+            continue
+        inside = (shape.s >= piece.first) & (shape.s <= piece.last)
+        residuals = shape.fit.residuals[inside]
+        measured = piece.status == "measured" and len(residuals)
+        start, end = shape.u(np.array([piece.first, piece.last]))
+        near = (s >= piece.first - 2.0) & (s <= piece.last + 2.0)
+        found.add(
+            geometry, road=int(road), line=number, kind=one.kind,
+            pattern=f"double-{piece.pattern}" if one.double else piece.pattern, status=piece.status,
+            curve=curve.kind, radius_m=float(curve.radius) if curve.kind == "circle" else None,
+            rmse_m=float(np.sqrt(np.mean(residuals**2))) if measured else None,
+            station_m=float(piece.first), end_m=float(piece.last),
+            offset_m=float(np.median(d[near])) if near.any() else None,
+            length_m=float(geometry.length), width_m=float(one.width),
+            params=json.dumps({**numbers, "from": round(float(start), 4), "to": round(float(end), 4)}))
+
+
+def _rounded(numbers):
+    """Long lists to 0.1 mm: a spline of a long road stays readable."""
+    return {key: [round(v, 4) for v in value] if isinstance(value, list) and key.startswith(("control", "knots")) else value
+            for key, value in numbers.items()}

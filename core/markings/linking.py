@@ -1,0 +1,280 @@
+"""Strands of paint linked along the road to whole lines: dashes over their gaps, worn lines over their holes.
+
+Linking looks along the road, never across it. What helps most is that painted lines
+run parallel: the vehicle's weaving shows in all of them alike, and once it is
+taken out (`Drift`) a line is nearly a constant offset, so that the next dash is
+searched where the line is, not where its last metre happened to point.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+BIN = 0.5            # m, nodes of the drift
+MEMORY = 5.0         # m that slopes are averaged over
+END = 6.0            # m of a strand's end that say where it goes
+OVERLAP = 0.6        # m that two strands of one line may overlap
+TWIN = (0.15, 0.50)  # m between the middles of the two lines of a double line
+BETWEEN = (0.25, 0.75)  # of the way from one line of a double to the other: its middle
+TURN = np.tan(np.radians(10.0))   # across per along by which two strands may differ
+
+
+class Drift:
+    """How the offset of all lines of a road changes together: d(s) of a line minus this is nearly constant."""
+
+    def __init__(self, strands):
+        self.s, self.value = np.zeros(1), np.zeros(1)
+        slopes = [_slopes(strand) for strand in strands if strand.length >= 1.5]
+        if not slopes:
+            return
+        s, slope, weight = (np.concatenate(parts) for parts in zip(*slopes))
+        bins = np.floor(s / BIN).astype(np.int64)
+        first = bins.min()
+        nodes = np.arange(first, bins.max() + 1)
+        middle = np.full(len(nodes), np.nan)
+        order = np.lexsort((slope, bins))
+        starts = np.flatnonzero(np.r_[True, np.diff(bins[order]) != 0])
+        for a, b in zip(starts, np.r_[starts[1:], len(order)]):
+            rows = order[a:b]
+            share = np.cumsum(weight[rows])
+            middle[bins[rows[0]] - first] = slope[rows[np.searchsorted(share, share[-1] / 2)]]
+        known = np.isfinite(middle)
+        at = (nodes + 0.5) * BIN
+        # where nothing is painted for long the lines are taken to follow the reference
+        middle = np.interp(at, at[known], middle[known])
+        away = np.abs(at - at[known][np.clip(np.searchsorted(at[known], at), 0, known.sum() - 1)])
+        behind = np.abs(at - at[known][np.clip(np.searchsorted(at[known], at) - 1, 0, known.sum() - 1)])
+        middle *= np.exp(-np.minimum(away, behind) / 10.0)
+        reach = int(MEMORY / BIN / 2)
+        middle = np.convolve(np.pad(middle, reach, mode="edge"), np.full(2 * reach + 1, 1 / (2 * reach + 1)), "valid")
+        self.s = np.r_[at[0] - BIN / 2, at + BIN / 2]
+        self.value = np.r_[0.0, np.cumsum(middle * BIN)]
+
+    def at(self, s):
+        """(N,) metres at stations s; flat beyond the painted part."""
+        return np.interp(s, self.s, self.value)
+
+
+def _slopes(strand):
+    """Station, dd/ds and weight every half metre of a strand, each from the places within 2.5 m."""
+    s = np.arange(strand.first + BIN / 2, strand.last, BIN)
+    low, high = np.searchsorted(strand.s, s - MEMORY / 2), np.searchsorted(strand.s, s + MEMORY / 2)
+    sums = [np.r_[0.0, np.cumsum(v)] for v in
+            (np.ones(len(strand.s)), strand.s, strand.d, strand.s**2, strand.s * strand.d)]
+    n, ms, md, mss, msd = (v[high] - v[low] for v in sums)
+    spread = n * mss - ms * ms
+    good = (n >= 5) & (spread > 0.2 * n * n)
+    slope = np.where(good, (n * msd - ms * md) / np.where(good, spread, 1.0), 0.0)
+    # a slope beyond any lane change is a false strand's
+    good &= np.abs(slope) < TURN
+    return s[good], slope[good], (spread / np.maximum(n, 1))[good]
+
+
+@dataclass
+class Line:
+    """Strands of one painted line in order of station."""
+
+    strands: list
+    bridged: list = field(default_factory=list)  # gaps, as (station, station), that only a period or a neighbour carries over
+
+    @property
+    def first(self):
+        return self.strands[0].first
+
+    @property
+    def last(self):
+        return self.strands[-1].last
+
+    @property
+    def painted(self):
+        """Metres of paint."""
+        return sum(strand.length for strand in self.strands)
+
+    def places(self):
+        """s, d, z, weight of all places."""
+        return tuple(np.concatenate([getattr(strand, name) for strand in self.strands])
+                     for name in ("s", "d", "z", "weight"))
+
+
+@dataclass(frozen=True)
+class _End:
+    """Where a line ends and how it goes on there: offset less drift at the end, and slope of that."""
+
+    s: float
+    d: float
+    slope: float
+    reach: float   # m of paint the slope is from
+
+    def offset_at(self, s, trust):
+        return self.d + trust * self.slope * (s - self.s)
+
+
+def line_end(line, drift, at_start, reach=END):
+    """The `_End` at the start or the end of a line, from its last `reach` metres of station."""
+    s, d, _, weight = line.places()
+    tip = line.first if at_start else line.last
+    near = np.abs(s - tip) <= reach
+    s, d, weight = s[near], d[near] - drift.at(s[near]), weight[near]
+    weight = np.minimum(weight, 10.0)
+    if not len(s):
+        return _End(tip, float("nan"), 0.0, 0.0)
+    middle, span = np.average(s, weights=weight), float(np.ptp(s))
+    level = _weighted_median(d, weight)
+    if span < 1.0:
+        return _End(tip, level, 0.0, span)
+    slope = np.sum(weight * (s - middle) * (d - np.average(d, weights=weight))) / np.sum(weight * (s - middle) ** 2)
+    slope = float(np.clip(slope, -TURN, TURN))
+    return _End(tip, float(level + slope * (tip - middle)), slope, span)
+
+
+def _weighted_median(values, weight):
+    order = np.argsort(values, kind="stable")
+    share = np.cumsum(weight[order])
+    return float(values[order][np.searchsorted(share, share[-1] / 2)])
+
+
+def mismatch(before, after):
+    """Metres across by which the end of one line misses the start of the next, at the middle of the gap.
+
+    The better of two views counts: the lines go on as they pointed, or parallel to
+    the others (a short dash hardly knows its own slope).
+    """
+    middle = (before.s + after.s) / 2
+    return min(abs(before.offset_at(middle, trust) - after.offset_at(middle, trust))
+               for trust in (0.0, _trust(before, after)))
+
+
+def _trust(before, after):
+    reach = min(before.reach, after.reach)
+    return reach**2 / (reach**2 + 4.0)
+
+
+def link(lines, drift, max_gap, allowed=0.30):
+    """Lines linked over gaps up to `max_gap`, each end once, the best match first.
+
+    Parameters
+    ----------
+    lines : list of Line
+    drift : Drift
+    max_gap : metres
+    allowed : metres across at the longest gap; half of it where lines touch
+
+    Returns
+    -------
+    list of Line
+    """
+    starts = [line_end(line, drift, True) for line in lines]
+    ends = [line_end(line, drift, False) for line in lines]
+    by_start = np.argsort([e.s for e in starts], kind="stable")
+    stations = np.array([starts[k].s for k in by_start])
+    twin_ends, twin_starts = (twins(lines, drift, at_start) for at_start in (False, True))
+    pairs = []
+    for a, before in enumerate(ends):
+        low, high = np.searchsorted(stations, [before.s - OVERLAP, before.s + max_gap])
+        for b in by_start[low:high]:
+            after, gap = starts[b], starts[b].s - before.s
+            if b == a or lines[b].last <= lines[a].last:
+                continue
+            if abs(before.slope - after.slope) > TURN and min(before.reach, after.reach) > 3.0:
+                continue
+            miss, limit = mismatch(before, after), allowed * (0.5 + 0.5 * max(gap, 0.0) / max(max_gap, 1e-6))
+            if _between_twins(twin_ends[a], twin_starts[b], before, after):
+                continue
+            if miss <= limit:
+                pairs.append(((miss / limit) ** 2 + max(gap, 0.0) / max_gap, before.s, a, int(b)))
+    follows, preceded = {}, set()
+    for _, _, a, b in sorted(pairs):
+        if a not in follows and b not in preceded:
+            follows[a] = b
+            preceded.add(b)
+    return _joined(lines, follows, preceded)
+
+
+def twins(lines, drift, at_start):
+    """(N,) signed distance across to the other line of a double line at each line's start (or end); 0 where there is none."""
+    tips = [line_end(line, drift, at_start) for line in lines]
+    spans = np.array([(line.first, line.last) for line in lines]).reshape(-1, 2)
+    result = np.zeros(len(lines))
+    for k, tip in enumerate(tips):
+        inner = tip.s + (1.0 if at_start else -1.0) * min(2.0, (spans[k, 1] - spans[k, 0]) / 2)
+        for j in np.flatnonzero((spans[:, 0] <= inner) & (spans[:, 1] >= inner)):
+            if j == k:
+                continue
+            s, d, *_ = lines[j].places()
+            near = np.abs(s - inner) <= 2.0
+            if near.any():
+                away = float(np.median(d[near] - drift.at(s[near]))) - tip.d
+                if TWIN[0] <= abs(away) <= TWIN[1]:
+                    result[k] = away
+    return result
+
+
+def _between_twins(twin_before, twin_after, before, after):
+    """Whether a double line meets a single one in its middle: it ends there. (Where wear hides a twin, the other goes straight on.)"""
+    if (twin_before == 0.0) == (twin_after == 0.0):
+        return False
+    middle = (before.s + after.s) / 2
+    step = after.offset_at(middle, 0.0) - before.offset_at(middle, 0.0)
+    share = step / twin_before if twin_before else -step / twin_after
+    return BETWEEN[0] < share < BETWEEN[1]
+
+
+def _joined(lines, follows, preceded):
+    found = []
+    for k in range(len(lines)):
+        if k in preceded:
+            continue
+        strands, bridged = list(lines[k].strands), list(lines[k].bridged)
+        while k in follows:
+            k = follows[k]
+            strands += lines[k].strands
+            bridged += lines[k].bridged
+        found.append(Line(sorted(strands, key=lambda strand: strand.first), bridged))
+    return sorted(found, key=lambda line: (line.first, line.strands[0].d[0]))
+
+
+def link_far(lines, drift, max_gap, max_bridge, same_rhythm, allowed=0.25):
+    """Link over longer gaps, up to `max_bridge`, where something carries over.
+
+    Either both sides have one rhythm of dashes and the gap is a whole multiple of
+    it (`same_rhythm(before, after)`), or another line runs on beside the gap
+    without one, so that the road does not end there. Such gaps are noted in `bridged`.
+    """
+    lines = list(lines)
+    while True:
+        best = None
+        ends = [line_end(line, drift, False, 3 * END) for line in lines]
+        starts = [line_end(line, drift, True, 3 * END) for line in lines]
+        for a, before in enumerate(ends):
+            for b, after in enumerate(starts):
+                gap = after.s - before.s
+                if a == b or not max_gap - OVERLAP < gap <= max_bridge or min(lines[a].painted, lines[b].painted) < 3.0:
+                    continue
+                miss = mismatch(before, after)
+                if miss > allowed or not (same_rhythm(lines[a], lines[b])
+                                          or _runs_beside(lines, (a, b), before, after, drift)):
+                    continue
+                score = (miss / allowed) ** 2 + gap / max_bridge, before.s, a, b
+                if best is None or score < best:
+                    best = score
+        if best is None:
+            return sorted(lines, key=lambda line: (line.first, line.strands[0].d[0]))
+        _, _, a, b = best
+        joined = Line(lines[a].strands + lines[b].strands,
+                      lines[a].bridged + lines[b].bridged + [(lines[a].last, lines[b].first)])
+        lines = [line for k, line in enumerate(lines) if k not in (a, b)] + [joined]
+
+
+def _runs_beside(lines, pair, before, after, drift):
+    """Another line within 8 m painted over most of the gap, with holes of at most 5 m, while keeping its distance."""
+    for k, other in enumerate(lines):
+        if k in pair:
+            continue
+        s, d, *_ = other.places()
+        there = (s > before.s - 5) & (s < after.s + 5)
+        if not there.any() or np.abs(np.median(d[there]) - drift.at(before.s) - before.d) > 8.0:
+            continue
+        covered = np.r_[before.s, np.sort(s[(s > before.s) & (s < after.s)]), after.s]
+        if np.diff(covered).max() <= 5.0:
+            return True
+    return False

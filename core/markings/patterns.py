@@ -1,0 +1,168 @@
+"""Solid or dashed, and with what rhythm: what the painted intervals of a line say."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+WEAR = 0.8           # m: a shorter hole is wear within a dash
+LONGEST_DASH = 10.5  # m: longer paint is solid line
+LEAST_GAP = 0.4      # of the dash: road markings leave gaps of half a dash (6 m and 3 m) or more
+ALIKE = 0.16         # of the period: how evenly dashes must follow each other
+SOLID_GAP = 2.5      # m: a longer hole in a solid line is bridged, not measured
+
+
+@dataclass(frozen=True)
+class Rhythm:
+    """Dashes of one length at one period; metres."""
+
+    dash: float
+    period: float
+
+    @property
+    def gap(self):
+        return self.period - self.dash
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Part of a line of one pattern, from station `first` to `last`; `rhythm` is None where it is solid."""
+
+    first: float
+    last: float
+    rhythm: Rhythm
+    intervals: tuple   # (first, last) of each painted interval
+
+    @property
+    def pattern(self):
+        return "dashed" if self.rhythm else "solid"
+
+
+def intervals(line):
+    """(K, 2) stations between which a line is painted, holes of wear closed."""
+    spans = [(strand.first, strand.last) for strand in line.strands]
+    found = [list(spans[0])]
+    for first, last in spans[1:]:
+        if first - found[-1][1] < WEAR:
+            found[-1][1] = max(found[-1][1], last)
+        else:
+            found.append([first, last])
+    return np.array(found)
+
+
+def stretches(line):
+    """The stretches of a line: dashed where short intervals follow a rhythm, solid elsewhere."""
+    spans = intervals(line)
+    long = np.diff(spans, axis=1)[:, 0] > LONGEST_DASH
+    cuts = np.flatnonzero(np.r_[True, np.diff(long.astype(int)) != 0, True])
+    found = []
+    for a, b in zip(cuts[:-1], cuts[1:]):
+        group = spans[a:b]
+        # beside solid stretches a few worn pieces look like dashes by chance
+        beat = None if long[a] or long.any() and len(group) < 3 else rhythm(group)
+        if found and found[-1][1] is None and beat is None:
+            found[-1] = (np.vstack([found[-1][0], group]), None)
+        else:
+            found.append((group, beat))
+    return [Stretch(float(group[0, 0]), float(group[-1, 1]), beat, tuple(map(tuple, group.tolist())))
+            for group, beat in found]
+
+
+def rhythm(spans):
+    """The Rhythm of painted intervals (K, 2), or None where they follow none.
+
+    Dashes may be missing: steps between dashes are then whole multiples of the
+    period. Some may be worn at their ends: three of five must have the common length.
+    """
+    if len(spans) < 2:
+        return None
+    length, steps = spans[:, 1] - spans[:, 0], np.diff(spans.mean(axis=1))
+    # the full dashes tell the length; worn ones are only ever shorter
+    dash = float(np.median(length[length >= 0.6 * np.percentile(length, 75)]))
+    alike = np.abs(length - dash) <= max(0.5, 0.2 * dash)
+    if len(spans) == 2:
+        gap = float(spans[1, 0] - spans[0, 1])
+        even = alike.all() and dash <= 8.0 and max(LEAST_GAP * dash, 1.5) <= gap <= 13.0
+        return Rhythm(dash, float(steps[0])) if even else None
+    period = _period(steps)
+    if period is None or period - dash < LEAST_GAP * dash or alike.mean() < 0.55:
+        return None
+    return Rhythm(dash, period)
+
+
+def _period(steps):
+    """The longest period of which most steps are whole multiples (up to 4), or None."""
+    best, best_share = None, 0.0
+    for start in np.unique(np.round(steps, 1)):
+        if start < 2 * WEAR:
+            continue
+        times = np.maximum(np.round(steps / start), 1.0)
+        good = (np.abs(steps / start - times) <= ALIKE) & (times <= 4)
+        if not good.any() or (times[good] == 1).sum() < 0.4 * len(steps):
+            continue
+        share = good.mean()
+        if share > best_share + 1e-9:
+            best, best_share = float(np.sum(steps[good]) / np.sum(times[good])), share
+    return best if best_share >= 0.65 else None
+
+
+def same_rhythm(before, after):
+    """Whether two lines are dashed alike and the gap between them is a whole multiple of the period."""
+    ends, begins = stretches(before)[-1], stretches(after)[0]
+    if not ends.rhythm or not begins.rhythm:
+        return False
+    period = (ends.rhythm.period + begins.rhythm.period) / 2
+    if abs(ends.rhythm.period - begins.rhythm.period) > ALIKE * period \
+            or abs(ends.rhythm.dash - begins.rhythm.dash) > max(0.6, 0.25 * ends.rhythm.dash):
+        return False
+    step = (np.mean(begins.intervals[0]) - np.mean(ends.intervals[-1])) / period
+    return abs(step - round(step)) <= ALIKE * 1.5
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Part of a line of one status and pattern, between two stations."""
+
+    first: float
+    last: float
+    status: str
+    pattern: str
+
+
+def pieces(line):
+    """Cut a line where its status or pattern changes.
+
+    A regular gap between dashes is part of the dashed line; a hole longer than the
+    line's own gap, or in a solid line longer than 2.5 m, is bridged.
+    """
+    found = []
+    parts = stretches(line)
+    for k, part in enumerate(parts):
+        gap = part.rhythm.gap * 1.25 + 0.8 if part.rhythm else SOLID_GAP
+        if k:
+            # between two patterns: the dashed one's gap, if there is one
+            other = parts[k - 1]
+            between = max(gap, other.rhythm.gap * 1.25 + 0.8 if other.rhythm else SOLID_GAP)
+            measured = part.first - other.last <= between
+            found.append(Piece(other.last, part.first, "measured" if measured else "bridged",
+                               other.pattern if other.rhythm else part.pattern))
+        spans = part.intervals
+        for j, (first, last) in enumerate(spans):
+            if j and first - spans[j - 1][1] > gap:
+                found.append(Piece(spans[j - 1][1], first, "bridged", part.pattern))
+            elif j:
+                found.append(Piece(spans[j - 1][1], first, "measured", part.pattern))
+            found.append(Piece(first, last, "measured", part.pattern))
+    return merged(found)
+
+
+def merged(parts):
+    """Pieces with equal neighbours put together; empty ones dropped."""
+    found = []
+    for part in parts:
+        if part.last - part.first <= 1e-9:
+            continue
+        if found and (found[-1].status, found[-1].pattern) == (part.status, part.pattern):
+            found[-1] = Piece(found[-1].first, part.last, part.status, part.pattern)
+        else:
+            found.append(part)
+    return found
