@@ -1,0 +1,130 @@
+"""The alignment that the lanes of a road have in common: its straights, arcs and clothoids."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..curves.curve import Arc
+from ..curves.segments import segment_line
+from .boundaries import STEP
+from .track import BRIDGED
+
+PARALLEL = 0.06     # m: 95 % of a lane's places are nearer than this to a parallel of the others
+LEAST_SHARED = 10.0  # m that a lane must share with others to be compared
+LEAST_PLACES = 8
+
+
+@dataclass(frozen=True)
+class Element:
+    """An arc or a straight of one lane, from station `start` to `end`.
+
+    arc : Arc in the road's direction, local metres; rmse : of the lane's places to it, metres
+    complete : False where the lane or the road's lines end before the element does
+    """
+
+    start: float
+    end: float
+    arc: Arc
+    rmse: float
+    complete: bool
+
+
+def lane_elements(tracks, s, road):
+    """Arcs and straights of every lane.
+
+    Lanes of a road run parallel, so that their bends are concentric: what they have
+    in common (the mean of their offsets, each less its own) is divided into elements
+    once, with all of their evidence, and each lane's elements are the parallels. A
+    lane that is not parallel to the others is divided alone.
+
+    Parameters
+    ----------
+    tracks : list of Track
+    s : (K,) grid stations
+    road : Road
+
+    Returns
+    -------
+    list, for every track, of lists of Element in order of station
+    """
+    found = [None] * len(tracks)
+    waiting = sorted(range(len(tracks)), key=lambda i: (-len(tracks[i]), i))
+    while waiting:
+        members, axis, first = _parallel_lanes([(i, tracks[i]) for i in waiting])
+        divided = _divided(axis, first, s, road)
+        for i, offset in members:
+            found[i] = _of_lane(tracks[i], offset, divided, s, road)
+        waiting = [i for i in waiting if i not in dict(members)]
+    return found
+
+
+def _parallel_lanes(tracks):
+    """The longest lane and all that are parallel to it, directly or through others.
+
+    Returns
+    -------
+    members : list of (index, offset from the axis)
+    axis : (N,) offset of the common axis from the grid station `first` on
+    """
+    size = max(track.last for _, track in tracks) + 1
+    total, weight = np.zeros(size), np.zeros(size)
+    members, rest = [], list(tracks)
+    added = True
+    while added:
+        added = False
+        for i, track in rest:
+            rows = np.arange(track.first, track.last + 1)
+            shared = weight[rows] > 0
+            offset = float(np.median(track.d))
+            if members:
+                if shared.sum() * STEP < min(LEAST_SHARED, 0.5 * len(track) * STEP):
+                    continue
+                apart = track.d[shared] - total[rows[shared]] / weight[rows[shared]]
+                offset = float(np.median(apart))
+                if np.percentile(np.abs(apart - offset), 95) > PARALLEL:
+                    continue
+            # a bridged place says little, but more than nothing where it is alone
+            w = np.where(track.status == BRIDGED, 1e-3, 1.0)
+            total[rows] += w * (track.d - offset)
+            weight[rows] += w
+            members.append((i, offset))
+            added = True
+        rest = [(i, track) for i, track in rest if i not in dict(members)]
+    covered = np.flatnonzero(weight)
+    first, last = covered[0], covered[-1]
+    return members, total[first:last + 1] / weight[first:last + 1], int(first)
+
+
+def _divided(axis, first, s, road):
+    """[(start, end, Segment)] of the axis, stations."""
+    at = s[first:first + len(axis)]
+    if len(axis) < LEAST_PLACES:
+        return []
+    x, y = road.to_map(at, axis)
+    u = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
+    return [(float(a), float(b), segment) for segment in segment_line(x, y)
+            for a, b in [np.interp([segment.first, segment.last], u, at)]]
+
+
+def _of_lane(track, offset, divided, s, road):
+    at = s[track.first:track.last + 1]
+    x, y = road.to_map(at, track.d)
+    elements = []
+    for k, (start, end, segment) in enumerate(divided):
+        if not isinstance(segment.fit.curve, Arc):
+            continue
+        a, b = max(start, at[0]), min(end, at[-1])
+        inside = (at >= a) & (at <= b)
+        if inside.sum() < LEAST_PLACES:
+            continue
+        u, e = segment.fit.curve.parallel(offset).foot(x[inside], y[inside])
+        arc = segment.fit.curve.parallel(offset + float(np.median(e)))
+        u, e = arc.foot(x[inside], y[inside])
+        complete = 0 < k < len(divided) - 1 and start >= at[0] and end <= at[-1]
+        elements.append(Element(a, b, _cut(arc, float(u[0]), float(u[-1])), float(np.sqrt(np.mean(e**2))), complete))
+    return elements
+
+
+def _cut(arc, first, last):
+    (x, y), = arc.at(np.array([first]))
+    return Arc(float(x), float(y), float(arc.heading(first)), arc.bend, last - first)

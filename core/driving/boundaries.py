@@ -1,0 +1,172 @@
+"""Marking lines as lateral positions d(s): what lanes are made of."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+STEP = 0.5                    # m of station between places where lanes are looked for
+OBLIQUE = np.tan(np.radians(25.0))  # a line that runs more across the road than this bounds no lane
+DOUBLE = 0.8                  # m: lines nearer than this are one boundary, a lane ends at the nearer one
+IN_LINE = 0.3                 # m across by which a line may jump where it goes on as another
+DASH_GAP = 9.5                # m that a dashed line may be silent at its ends before it is known to end
+
+
+@dataclass
+class Boundaries:
+    """All lines of one road on a common grid of stations.
+
+    s : (K,) stations; d, z : (L, K) offset and height of each line, NaN where it is not;
+    seen : (L, K) False where the line itself was bridged; numbers, kinds, patterns : per line
+    """
+
+    s: np.ndarray
+    d: np.ndarray
+    z: np.ndarray
+    seen: np.ndarray
+    numbers: list
+    kinds: list
+    patterns: list
+
+    @property
+    def seen_length(self):
+        """(L,) metres of each line that were measured."""
+        return STEP * (self.seen & np.isfinite(self.d)).sum(1)
+
+
+def road_boundaries(marking_lines, frame):
+    """The lines of every road as d(s).
+
+    Parameters
+    ----------
+    marking_lines : Features MARKING_LINES; `road`, `line`, `kind`, `pattern` and
+        `status` are used where they are, so that lines drawn by hand serve as well
+    frame : RoadFrame
+
+    Returns
+    -------
+    dict of road number to Boundaries
+    """
+    pieces = {}
+    for row_number, (geometry, row) in enumerate(marking_lines):
+        if geometry is None or geometry.is_empty:
+            continue
+        for part in getattr(geometry, "geoms", [geometry]):
+            piece = _piece(part, row, frame)
+            if piece is not None:
+                line = row.get("line")
+                pieces.setdefault(piece["road"], {}).setdefault(
+                    (0, int(line)) if line is not None else (1, row_number), []).append(piece)
+    return {road: _on_grid(frame.roads[road], lines) for road, lines in sorted(pieces.items())}
+
+
+def _piece(line, row, frame):
+    # straight between far vertices on the map is not straight in the road's frame
+    x, y, *z = shapely.get_coordinates(shapely.segmentize(line, STEP), include_z=line.has_z).T
+    x, y = frame.to_local(x, y)
+    z = z[0] - frame.origin[2] if z else np.full(len(x), np.nan)
+    road = row.get("road")
+    if road is None or not 0 <= int(road) < len(frame.roads):
+        numbers, _, _ = frame.locate_nearest(x, y)
+        numbers = numbers[numbers >= 0]
+        if not len(numbers):
+            return None
+        road = np.bincount(numbers).argmax()
+    s, d = frame.roads[int(road)].locate(x, y)
+    good = np.isfinite(s)
+    s, d, z = s[good], d[good], z[good]
+    if len(s) < 2:
+        return None
+    if s[-1] < s[0]:
+        s, d, z = s[::-1], d[::-1], z[::-1]
+    rising = s > np.r_[-np.inf, np.maximum.accumulate(s)[:-1]]
+    s, d, z = s[rising], d[rising], z[rising]
+    if len(s) < 2 or np.median(np.abs(np.diff(d)) / np.diff(s)) > OBLIQUE:
+        return None
+    return dict(road=int(road), s=s, d=d, z=z, kind=str(row.get("kind") or ""), pattern=str(row.get("pattern") or ""),
+                seen=str(row.get("status") or "measured") != "bridged")
+
+
+def _on_grid(road, lines):
+    first = np.ceil(min(p["s"][0] for pieces in lines.values() for p in pieces) / STEP)
+    last = np.floor(max(p["s"][-1] for pieces in lines.values() for p in pieces) / STEP)
+    s = STEP * np.arange(first, last + 1)
+    # the order of the layer's rows must not matter
+    order = sorted(lines, key=lambda key: (min(p["s"][0] for p in lines[key]), np.median(lines[key][0]["d"]), key))
+    d, z = np.full((2, len(order), len(s)), np.nan)
+    seen = np.zeros((len(order), len(s)), bool)
+    kinds, patterns = [], []
+    for k, key in enumerate(order):
+        pieces = sorted(lines[key], key=lambda p: (p["s"][0], p["s"][-1]))
+        for p in pieces:
+            # pieces of one line touch: the hair between two grid stations belongs to the line too
+            inside = (s >= p["s"][0] - 1e-6) & (s <= p["s"][-1] + 1e-6)
+            d[k, inside] = np.interp(s[inside], p["s"], p["d"])
+            z[k, inside] = np.interp(s[inside], p["s"], p["z"])
+            seen[k, inside] |= p["seen"]
+        longest = max(pieces, key=lambda p: (p["seen"], p["s"][-1] - p["s"][0]))
+        kinds.append(longest["kind"])
+        patterns.append(longest["pattern"])
+    found = _joined(Boundaries(s, d, z, seen, [key[1] for key in order], kinds, patterns))
+    _lengthen_dashed(found)
+    return found
+
+
+def _joined(lines):
+    """Lines that go on as another line after at most a dash gap, in one row: a dashed line turns solid at a junction."""
+    rows = list(range(len(lines.d)))
+    ends = {k: np.flatnonzero(np.isfinite(lines.d[k])) for k in rows}
+    rows = [k for k in rows if len(ends[k])]
+    for k in sorted(rows, key=lambda k: (ends[k][0], k)):
+        behind = [j for j in rows if j != k and 0 < (ends[k][0] - ends[j][-1]) * STEP <= DASH_GAP
+                  and abs(lines.d[k, ends[k][0]] - lines.d[j, ends[j][-1]]) <= IN_LINE]
+        if not behind:
+            continue
+        j = min(behind, key=lambda j: (abs(lines.d[k, ends[k][0]] - lines.d[j, ends[j][-1]]), j))
+        first, last = ends[j][-1], ends[k][0]
+        gap = np.arange(first + 1, last)
+        for values in (lines.d, lines.z):
+            values[j, last:] = np.where(np.isfinite(values[k, last:]), values[k, last:], values[j, last:])
+            values[j, gap] = np.interp(gap, [first, last], values[j, [first, last]])
+        lines.seen[j, last:] |= lines.seen[k, last:]
+        # a gap of a dashed line is no gap
+        lines.seen[j, gap] = any(lines.patterns[i].startswith("dash") for i in (j, k))
+        ends[j] = np.r_[ends[j], gap, ends[k]]
+        rows.remove(k)
+    return Boundaries(lines.s, lines.d[rows], lines.z[rows], lines.seen[rows], [lines.numbers[k] for k in rows],
+                      [lines.kinds[k] for k in rows], [lines.patterns[k] for k in rows])
+
+
+def _lengthen_dashed(lines):
+    """A dashed line goes on by up to one gap where lines on both its sides do.
+
+    Where the last dash ends says nothing of where the line does: the next dash is only
+    missed after a gap's length.
+    """
+    present = np.isfinite(lines.d)
+    reach = int(DASH_GAP / STEP)
+    for k in np.flatnonzero([pattern.startswith("dash") for pattern in lines.patterns]):
+        columns = np.flatnonzero(present[k])
+        if len(columns) < 2:
+            continue
+        for end, step in ((columns[-1], 1), (columns[0], -1)):
+            others = present[:, end].copy()
+            others[k] = False
+            offsets = np.where(others, lines.d[:, end] - lines.d[k, end], np.nan)
+            left = _nearest(offsets > DOUBLE, np.abs(offsets))
+            right = _nearest(offsets < -DOUBLE, np.abs(offsets))
+            if left is None or right is None:
+                continue
+            ahead = end + step * np.arange(1, reach + 1)
+            ahead = ahead[(ahead >= 0) & (ahead < len(lines.s))]
+            go = present[left, ahead] & present[right, ahead]
+            ahead = ahead[:len(go) if go.all() else int(np.argmin(go))]
+            share = (lines.d[k, end] - lines.d[right, end]) / (lines.d[left, end] - lines.d[right, end])
+            lines.d[k, ahead] = lines.d[right, ahead] + share * (lines.d[left, ahead] - lines.d[right, ahead])
+            lines.z[k, ahead] = lines.z[right, ahead] + share * (lines.z[left, ahead] - lines.z[right, ahead])
+            lines.seen[k, ahead] = lines.seen[left, ahead] & lines.seen[right, ahead]
+
+
+def _nearest(which, distance):
+    rows = np.flatnonzero(which)
+    return rows[np.argmin(distance[rows])] if len(rows) else None

@@ -1,0 +1,95 @@
+"""Heights of driving lines: the road's own."""
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d, median_filter
+
+from .boundaries import STEP
+
+REACH = 0.3        # m either side of the driving line
+LEAST_POINTS = 3
+SMOOTHING = 2.0    # m: a car does not follow a pothole
+WINDOW = 200.0     # m of road points in memory at a time
+
+
+def road_heights(road_points, road, s, d):
+    """Median height of road points within 0.3 m of places along a lane.
+
+    Parameters
+    ----------
+    road_points : RoadPoints
+    road : number
+    s, d : (N,) places along a lane, s rising in steps of STEP
+
+    Returns
+    -------
+    (N,) z, NaN where there are fewer than 3 points
+    """
+    z = np.full(len(s), np.nan)
+    for first in range(0, len(s), int(WINDOW / STEP)):
+        rows = slice(first, min(first + int(WINDOW / STEP), len(s)))
+        points = road_points.window(road, s[rows][0] - STEP / 2, s[rows][-1] + STEP / 2)
+        if len(points):
+            z[rows] = _medians(points.s, points.d, points.z, s[rows], d[rows])
+    return z
+
+
+def _medians(ps, pd, pz, s, d):
+    cell = np.rint((ps - s[0]) / STEP).astype(np.int64)
+    inside = (cell >= 0) & (cell < len(s))
+    inside[inside] &= np.abs(pd[inside] - d[cell[inside]]) <= REACH
+    cell, pz = cell[inside], pz[inside]
+    order = np.lexsort((pz, cell))
+    cell, pz = cell[order], pz[order]
+    begin, end = (np.searchsorted(cell, np.arange(len(s)), side) for side in ("left", "right"))
+    count = end - begin
+    found = np.full(len(s), np.nan)
+    enough = count >= LEAST_POINTS
+    lower, upper = begin + (count - 1) // 2, begin + count // 2
+    found[enough] = (pz[lower[enough]] + pz[upper[enough]]) / 2
+    return found
+
+
+def line_heights(lines, first, d):
+    """(N,) height between the marking lines (or beside them) at offsets d from grid station `first` on."""
+    window = slice(first, first + len(d))
+    z, at = lines.z[:, window], lines.d[:, window]
+    known = np.isfinite(z) & np.isfinite(at)
+    left = np.where(known & (at >= d), at - d, np.inf)
+    right = np.where(known & (at < d), d - at, np.inf)
+    i, j = left.argmin(0), right.argmin(0)
+    columns = np.arange(len(d))
+    a, b = left[i, columns], right[j, columns]
+    za, zb = z[i, columns], z[j, columns]
+    with np.errstate(invalid="ignore"):
+        between = (za * b + zb * a) / (a + b)
+    return np.where(np.isfinite(a) & np.isfinite(b), between, np.where(np.isfinite(a), za, np.where(np.isfinite(b), zb, np.nan)))
+
+
+def smooth_heights(z):
+    """Gaps closed along the lane, stray medians taken out, the rest smoothed; NaN only if all is."""
+    known = np.isfinite(z)
+    if not known.any():
+        return z
+    rows = np.arange(len(z))
+    z = np.interp(rows, rows[known], z[known])
+    z = median_filter(z, size=min(7, len(z)), mode="nearest")
+    # slopes go on beyond the ends
+    pad = min(int(4 * SMOOTHING / STEP), len(z) - 1)
+    if pad < 1:
+        return z
+    head, tail = 2 * z[0] - z[1:pad + 1][::-1], 2 * z[-1] - z[-pad - 1:-1][::-1]
+    return gaussian_filter1d(np.r_[head, z, tail], SMOOTHING / STEP)[pad:pad + len(z)]
+
+
+def lane_heights(lines, road_points, road, first, s, d):
+    """(N,) local z along a lane: from road points where there are any, else from the marking lines beside it."""
+    painted = line_heights(lines, first, d)
+    if road_points is None:
+        return smooth_heights(painted)
+    measured = road_heights(road_points, road, s, d)
+    both = np.isfinite(measured) & np.isfinite(painted)
+    # where the road was not scanned the lines' height serves, shifted to what the road says nearby
+    if both.any():
+        rows = np.arange(len(s))
+        painted = painted + np.interp(rows, rows[both], (measured - painted)[both])
+    return smooth_heights(np.where(np.isfinite(measured), measured, painted))

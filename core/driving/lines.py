@@ -1,0 +1,164 @@
+"""Driving lines: the middle of every lane, in the direction of travel, and the curves along them."""
+
+import json
+
+import numpy as np
+import shapely
+
+from ..features import Features
+from ..progress import Progress
+from ..schemas import CURVE_ELEMENTS, DRIVING_LINES
+from .alignment import lane_elements
+from .boundaries import STEP, road_boundaries
+from .direction import divide, driven_offsets, lane_directions, side_votes
+from .elements import element_row
+from .heights import lane_heights
+from .lanes import chosen_lines, divided_strips, lone_lanes, paired_lanes, seen_width, strips
+from .settings import DrivingSettings
+from .shape import element_of, lane_course, pieces, settled
+from .track import STATUS, connect, extend
+
+__all__ = ["DrivingSettings", "driving_lines"]
+
+ON_CURB = 0.3   # share of a lane's width: where a curb is this near the lane's middle there is no lane
+
+
+def driving_lines(marking_lines, frame, settings=DrivingSettings(), progress=Progress(),
+                  markings=None, edges=None, road_points=None):
+    """Lines to drive on.
+
+    Neighbouring marking lines as far apart as a lane is wide make a lane; its middle
+    is driven. Where a line is missing the lane goes on beside the other one; where
+    only outer lines are painted they are divided by the lane width (both `inferred`);
+    gaps of all lines are bridged one to one.
+
+    Parameters
+    ----------
+    marking_lines : Features MARKING_LINES
+    frame : RoadFrame
+    markings : Features MARKINGS or None
+    edges : Features ROAD_EDGES or None: no lane leads over a curb
+    road_points : RoadPoints or None: the heights of the road
+
+    Returns
+    -------
+    lines : Features DRIVING_LINES, digitised in the direction of travel. Lanes are
+        numbered from 1 on every road by where they begin, from right to left. A lane is cut into pieces
+        by `status`; pieces of one lane touch. `radius_m` and `curve` are the piece's
+        own, `params` the function of the piece's element, in map coordinates.
+    elements : Features CURVE_ELEMENTS, a row per arc of every lane
+    """
+    lines = Features("LineStringZ", DRIVING_LINES, crs=marking_lines.crs)
+    elements = Features("None", CURVE_ELEMENTS, crs=marking_lines.crs)
+    curbs = road_boundaries(edges, frame) if edges is not None and len(edges) else {}
+    found = {}
+    boundaries = road_boundaries(marking_lines, frame)
+    for count, (number, road_lines) in enumerate(boundaries.items()):
+        driven, directions = driven_offsets(frame, number, road_lines.s)
+        tracks = road_lanes(road_lines, driven, settings, curbs.get(number))
+        found[number] = road_lines, tracks, driven, directions, divide(road_lines, tracks, driven, directions)
+        progress.at(0.4 * (count + 1) / len(boundaries))
+    side = _traffic_side(found, settings, progress)
+    for count, (number, (road_lines, tracks, driven, directions, middle)) in enumerate(found.items()):
+        ways = lane_directions(tracks, middle, driven, directions, side, settings.traffic_side != "automatic")
+        alignment = lane_elements(tracks, road_lines.s, frame.roads[number])
+        for lane, (track, way, found_elements) in enumerate(zip(tracks, ways, alignment), start=1):
+            _write_lane(lines, lane, track, way, found_elements, road_lines, frame, number, road_points)
+            _write_elements(elements, lane, way, found_elements, number, frame.origin)
+        progress.at(0.4 + 0.6 * (count + 1) / len(found))
+    _say(lines, side, progress)
+    return lines, elements
+
+
+def road_lanes(lines, driven, settings, curbs=None):
+    """The lanes of one road as a list of Track, by first station, then from right to left."""
+    room = _room(lines, curbs)
+    kept = chosen_lines(lines, driven)
+    all_strips = strips(lines, kept)
+    tracks = paired_lanes(lines, all_strips, room)
+    lane_width = settings.lane_width or seen_width(tracks)
+    gaps = settings.max_bridge, settings.max_inferred
+    tracks = connect(tracks, lines, 0.0, 0.0)
+    tracks = [track for track in tracks if len(track) * STEP >= settings.shortest]
+    tracks = connect(tracks, lines, 0.0, settings.max_inferred)
+    tracks = extend(tracks, lines, kept, room, settings.max_bridge)
+    tracks = connect(tracks + divided_strips(lines, all_strips, tracks, driven, lane_width, room), lines, *gaps)
+    half = settings.line_distance or lane_width / 2
+    tracks = connect(tracks + lone_lanes(lines, kept, tracks, driven, half, room), lines, *gaps)
+    tracks = [track.without_bridged_ends() for track in tracks]
+    tracks = [track for track in tracks if track is not None and len(track) * STEP >= settings.shortest]
+    return sorted(tracks, key=lambda track: (track.first, float(track.d[0])))
+
+
+def _room(lines, curbs):
+    """A function that says whether a lane is clear of curbs."""
+    if curbs is None:
+        return lambda track: True
+    at = np.array([np.interp(lines.s, curbs.s, row, left=np.nan, right=np.nan) for row in curbs.d])
+
+    def clear(track):
+        near = np.abs(at[:, track.first:track.last + 1] - track.d)
+        with np.errstate(invalid="ignore"):
+            return (near < ON_CURB * track.width).any(0).mean() < 0.5
+    return clear
+
+
+def _traffic_side(found, settings, progress):
+    if settings.traffic_side != "automatic":
+        return settings.traffic_side
+    right, left = sum((side_votes(middle, driven, directions) for _, _, driven, directions, middle in found.values()),
+                      np.zeros(2))
+    if found and not right + left:
+        progress.warn("The trajectory does not tell the side of traffic; the right was assumed. Set Side of traffic "
+                      "where it is the left.")
+    return "left" if left > right else "right"
+
+
+def _write_lane(lines, lane, track, way, elements, road_lines, frame, number, road_points):
+    road, origin = frame.roads[number], frame.origin
+    course = lane_course(track, road_lines.s, road)
+    grid = road_lines.s[track.first:track.last + 1]
+    z = lane_heights(road_lines, road_points, number, track.first, grid, track.d)
+    status = settled(track.status)
+    for code, start, end in pieces(status, track.first, road_lines.s):
+        rows = slice(np.searchsorted(grid, start), np.searchsorted(grid, end) + 1)
+        x, y, s = _between(course, start, end, code_first=start == grid[0], code_last=end == grid[-1])
+        if len(x) < 2:
+            continue
+        places = np.c_[x + origin[0], y + origin[1], np.interp(s, grid, z) + origin[2]]
+        if way < 0:
+            places = places[::-1]
+        element = element_of(elements, start, end)
+        curve = element.arc if element is not None else course.curve
+        length = float(np.hypot(*np.diff(places[:, :2], axis=0).T).sum())
+        lines.add(shapely.linestrings(places), road=number, lane=lane, kind="lane", pattern="", direction=way,
+                  source="offset" if track.offset[rows].mean() > 0.5 else "pair", status=STATUS[code], curve=curve.kind,
+                  radius_m=float(curve.radius) if np.isfinite(curve.radius) else None, rmse_m=float(course.rmse),
+                  station_m=start, end_m=end, offset_m=float(np.median(track.d[rows])), length_m=length,
+                  width_m=float(np.median(track.width[rows])), params=json.dumps(curve.moved(*origin[:2]).params()))
+
+
+def _between(course, start, end, code_first, code_last):
+    """Vertices of a course from one station to another, with a vertex of its own at every cut."""
+    s = course.s
+    inside = (s > start + 0.02) & (s < end - 0.02)
+    at = np.r_[s[0] if code_first else start, s[inside], s[-1] if code_last else end]
+    at = at[np.r_[True, np.diff(at) > 0]]
+    return np.interp(at, s, course.x), np.interp(at, s, course.y), at
+
+
+def _write_elements(elements, lane, way, found, number, origin):
+    for element in found:
+        arc = element.arc if way > 0 else element.arc.reversed()
+        row = element_row(arc, element.complete, element.rmse, origin)
+        if row is not None:
+            elements.add(None, road=number, lane=lane, station_m=float(element.start), end_m=float(element.end), **row)
+
+
+def _say(lines, side, progress):
+    length = {name: sum(m for m, s in zip(lines.column("length_m"), lines.column("status")) if s == name) for name in STATUS}
+    if len(lines):
+        progress.say(f"{len({(r['road'], r['lane']) for r in lines.rows})} lanes, {side}-hand traffic: "
+                     + ", ".join(f"{metres:.0f} m {name}" for name, metres in length.items() if metres))
+    else:
+        progress.warn("No two marking lines lie a lane's width apart, so there are no driving lines.")
