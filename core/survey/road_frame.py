@@ -189,18 +189,27 @@ class RoadFrame:
         found = x + self.origin[0], y + self.origin[1]
         return found if z is None else found + (np.asarray(z, float) + self.origin[2],)
 
-    def track_height(self, road, s):
-        """(N,) local z of the trajectory at stations of a road: the mean of the passes that were there."""
+    def track_height(self, road, s, below=None):
+        """(N,) local z of the trajectory at stations of a road: the mean of the passes that were there.
+
+        `below` maps pass numbers to metres that are taken off each pass first.
+        """
         s = np.asarray(s, float)
+        below = below or {}
         total, count = np.zeros(s.shape), np.zeros(s.shape)
         passes = self.passes_of(road)
         for p in passes:
             first, last = p.span
             there = (s >= first) & (s <= last)
-            total += np.where(there, p.at_station(s)[1], 0.0)
+            total += np.where(there, p.at_station(s)[1] - below.get(p.number, 0.0), 0.0)
             count += there
-        longest = max(passes, key=lambda p: p.span[1] - p.span[0])
-        return np.where(count > 0, total / np.maximum(count, 1), longest.at_station(s)[1])
+        if not count.all():
+            # beyond the driven part, and where the road goes on between two passes: the pass that ends nearest
+            nearest = np.argmin([np.maximum(np.maximum(p.span[0] - s, s - p.span[1]), 0.0) for p in passes], axis=0)
+            for k, p in enumerate(passes):
+                alone = (count == 0) & (nearest == k)
+                total[alone], count[alone] = p.at_station(s[alone])[1] - below.get(p.number, 0.0), 1
+        return total / count
 
     def locate_nearest(self, x, y, corridor=CORRIDOR):
         """Road number, s and d of local places by the nearest foot; road is -1 where there is none."""

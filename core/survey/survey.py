@@ -12,11 +12,14 @@ from .points import SURVEY_POINT, UNIT, Points, to_units
 from .road_frame import CORRIDOR, build_frame
 from .scanners import ScannerCensus
 from .section_store import MEMORY_LIMIT, SECTION_LENGTH, SectionStore
+from .sensor_height import DEFAULT_HEIGHT, drops_on_track, first_estimate, sensor_heights
 from .time_systems import WEEK, align_time, wrapped_week
 
-NEAR_TRACK = 1.5       # m either side of the vehicle's own track: road, not sidewalk
-DEFAULT_HEIGHT = 2.6   # m, sensor above road, where nothing lies on the track
 ABOVE, BELOW = 3.5, 4.0  # m about the road kept: vehicles that hide a curb above, ditches below
+# m more that are stored: the height of the road is rough while reading, and exact when points are handed out,
+# so that what is handed out does not depend on which file came first
+MARGIN = 1.5
+WAITING = 4_000_000    # points kept back at most until that height is known
 CLOCK_SLACK = 1.0      # s that a cloud may begin before or end after the trajectory
 
 
@@ -60,18 +63,18 @@ class Survey:
     has_intensity: bool
     has_time: bool
     counts: dict = field(default_factory=dict)
-    _lut: np.ndarray = None
 
     def window(self, road, start, end):
-        """Points of a road with start <= station < end, scanners numbered from 0."""
-        return self._with_scanner(self.store.window(road, start, end).records)
+        """Points of a road with start <= station < end and near its height, scanners numbered from 0."""
+        return self._handed_out(road, self.store.window(road, start, end).records)
 
     def section(self, road, number):
-        """Points of one section."""
-        return self._with_scanner(self.store.section(road, number))
+        """Points of one section near the road's height."""
+        return self._handed_out(road, self.store.section(road, number))
 
-    def _with_scanner(self, records):
-        records = records.copy()
+    def _handed_out(self, road, records):
+        h = records["z"] * UNIT - self.road_height(road, records["s"] * UNIT)
+        records = records[(h > -BELOW) & (h < ABOVE)]
         if self.scanner_field is None:
             records["scanner"] = 0
         elif self.scanner_field == "point_source_id":
@@ -82,8 +85,7 @@ class Survey:
 
     def road_height(self, road, s):
         """(N,) local z of the road under the vehicle's track at stations of a road: a prior, good to decimetres."""
-        heights = [self.sensor_height[p.number] for p in self.frame.passes_of(road)]
-        return self.frame.track_height(road, s) - float(np.mean(heights))
+        return self.frame.track_height(road, s, self.sensor_height)
 
 
 def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress()):
@@ -124,7 +126,7 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
     if not store.count:
         raise RoadExtractionError(_no_overlap(files, frame, reader))
     scanner_field, scanners = reader.census.choose(settings.scanner_field)
-    heights = _sensor_heights(frame, store)
+    heights = sensor_heights(frame, store, reader.drop)
     survey = Survey(files, frame, store, crs, heights, scanner_field, scanners,
                     reader.brightest > 0, has_time,
                     dict(read=total, kept=store.count, outside=total - store.count))
@@ -220,58 +222,27 @@ class _Reader:
         return np.where(inside, k, -1)
 
     def _keep(self, road, records):
-        if self.drop is None:
-            self.waiting.append((road, records))
-            self._sample(road, records)
-            if sum(map(len, self.samples)) > 20000:
-                self._settle()
-            return
-        self._store(road, records)
-
-    def _sample(self, road, records):
-        s, d = records["s"] * UNIT, records["d"] * UNIT
-        for p in self.frame.passes_of(road):
-            m = (records["pass_number"] == p.number)
-            track_d, track_z = p.at_station(s[m])
-            near = np.abs(d[m] - track_d) < NEAR_TRACK
-            self.samples.append((track_z - records["z"][m] * UNIT)[near][::7])
-
-    def _settle(self):
-        drops = np.concatenate(self.samples) if self.samples else np.empty(0)
-        self.drop = float(np.median(drops)) if len(drops) > 50 else DEFAULT_HEIGHT
-        waiting, self.waiting, self.samples = self.waiting, [], []
-        for road, records in waiting:
+        if self.drop is not None:
             self._store(road, records)
+            return
+        self.waiting.append((road, records))
+        self.samples += [drops[::7] for _, drops in drops_on_track(self.frame, road, records)]
+        if sum(map(len, self.samples)) > 20000 or sum(len(kept) for _, kept in self.waiting) > WAITING:
+            self.finish()
 
     def _store(self, road, records):
         ground = self.frame.track_height(road, records["s"] * UNIT) - self.drop
         h = records["z"] * UNIT - ground
-        self.store.append(road, records[(h > -BELOW) & (h < ABOVE)])
+        self.store.append(road, records[(h > -BELOW - MARGIN) & (h < ABOVE + MARGIN)])
 
     def finish(self):
+        """Settle the rough height of the road and store what waited for it."""
         if self.drop is None:
-            self._settle()
-
-
-def _sensor_heights(frame, store):
-    """Metres from track to road per pass: the median over points on the vehicle's own track."""
-    drops = {p.number: [] for p in frame.passes}
-    for road in store.roads():
-        for number in store.sections(road):
-            points = Points(store.section(road, number))
-            s, d, z = points.s, points.d, points.z
-            for p in frame.passes_of(road):
-                m = points.pass_number == p.number
-                if m.any():
-                    track_d, track_z = p.at_station(s[m])
-                    drops[p.number].append((track_z - z[m])[np.abs(d[m] - track_d) < NEAR_TRACK][::5])
-    found = {}
-    for number, parts in drops.items():
-        values = np.concatenate(parts) if parts else np.empty(0)
-        found[number] = float(np.median(values)) if len(values) > 50 else np.nan
-    known = [h for h in found.values() if np.isfinite(h)]
-    usual = float(np.median(known)) if known else DEFAULT_HEIGHT
-    return {number: h if np.isfinite(h) else usual for number, h in found.items()}
+            drop = first_estimate(np.concatenate(self.samples)) if self.samples else None
+            self.drop = DEFAULT_HEIGHT if drop is None else drop
+            waiting, self.waiting, self.samples = self.waiting, [], []
+            for road, records in waiting:
+                self._store(road, records)
 
 
 def _match_clocks(files, trajectory, settings, progress):

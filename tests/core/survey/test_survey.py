@@ -200,3 +200,46 @@ def test_the_cloud_covers_only_part_of_a_long_drive(tmp_path):
     s = contents(survey)["s"] * 1e-4
     assert len(s) == len(points[0]) and 795 < s.min() and s.max() < 1005
     assert (EAST, NORTH) == tuple(np.floor([long_drive.x.min(), long_drive.y.min()]))
+
+
+def wooded(points, seed=6):
+    """The points with scatter from 8 m below to 8 m above the street, as of ditches, trees and ghosts."""
+    x, y, z, time = points
+    up = np.random.default_rng(seed).uniform(-8.0, 8.0, len(x) // 2)
+    rows = np.arange(len(up))
+    return np.r_[x, x[rows]], np.r_[y, y[rows]], np.r_[z, z[rows] + up], np.r_[time, time[rows]]
+
+
+def test_what_is_kept_near_the_limits_of_height_does_not_depend_on_which_file_came_first(street, tmp_path):
+    trajectory, points, _ = street
+    scattered = wooded(points)
+    order = np.argsort(scattered[2] + 0.01 * np.arange(len(scattered[2])) % 7)  # the lowest first
+    halves = [write_cloud(tmp_path / f"half{k}.laz", *(c[rows] for c in scattered), crs=CRS) for k, rows in enumerate(np.array_split(order, 2))]
+    one, other = open_survey(halves, trajectory), open_survey(halves[::-1], trajectory, SurveySettings(block=500, section_length=7.0))
+    assert one.sensor_height == other.sensor_height
+    np.testing.assert_array_equal(contents(one), contents(other))
+
+
+def test_trees_and_a_bridge_above_the_track_do_not_lift_the_road(street, tmp_path):
+    trajectory, (x, y, z, time), _ = street
+    deck = np.flatnonzero(time < np.quantile(time, 0.45))
+    cloud = write_cloud(tmp_path / "bridge.laz", np.r_[x, np.repeat(x[deck], 2)], np.r_[y, np.repeat(y[deck], 2)],
+                        np.r_[z, np.repeat(z[deck], 2) + np.random.default_rng(1).uniform(4.6, 6.5, 2 * len(deck))],
+                        np.r_[time, np.repeat(time[deck], 2)], crs=CRS)
+    assert open_survey([cloud], trajectory).sensor_height[0] == pytest.approx(2.0, abs=0.01)
+
+
+@pytest.mark.parametrize("undulation", [0.0, 46.3, -38.0])
+def test_ellipsoidal_and_orthometric_heights_may_be_mixed(street, tmp_path, undulation):
+    trajectory, (x, y, z, time), _ = street
+    survey = open_survey([write_cloud(tmp_path / "levelled.laz", x, y, z - undulation, time, crs=CRS)], trajectory)
+    assert survey.sensor_height[0] == pytest.approx(2.0 + undulation, abs=0.01)
+    assert len(contents(survey)) == len(x)
+
+
+def test_two_vehicles_of_different_height_agree_on_the_road(tmp_path):
+    van, car = drive(PATH, height=2.6), drive(PATH, height=1.7, start=3000.0)
+    both = [np.r_[a, b] for a, b in zip(surveyed_points(van), surveyed_points(car))]
+    survey = open_survey([write_cloud(tmp_path / "two.laz", *both, crs=CRS)], joined(van, car.rows(slice(0, 800))))
+    np.testing.assert_allclose([survey.sensor_height[0], survey.sensor_height[1]], [2.6, 1.7], atol=0.01)
+    np.testing.assert_allclose(survey.road_height(0, np.linspace(-5, 190, 99)) + survey.frame.origin[2], 100.0, atol=0.01)
