@@ -1,0 +1,181 @@
+"""Intensity freed of range and incidence, scanner by scanner, from the road's own asphalt."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..errors import RoadExtractionError
+from ..parallel import in_order
+from ..progress import Progress
+from ..survey.road_points import RoadPoints
+from .intensity_table import BIN, REACH, AsphaltTable, asphalt_of, count_levels, distances_from_vehicle
+
+WITHOUT_VEHICLE = 0.2   # share of points that may lack a vehicle's position before the correction is given up
+
+
+@dataclass(frozen=True)
+class IntensitySettings:
+    """How intensity is corrected.
+
+    scale : "automatic" tells linear from logarithmic intensities by the spread
+        of asphalt; "linear" multiplies, "logarithmic" adds
+    """
+
+    scale: str = "automatic"
+
+    def __post_init__(self):
+        if self.scale not in ("automatic", "linear", "logarithmic"):
+            raise RoadExtractionError(f"The intensity scale is {self.scale!r}; it is one of automatic, linear, logarithmic.")
+
+
+@dataclass
+class IntensityReport:
+    """What the correction found and did.
+
+    scale : "linear", "logarithmic", or "" where nothing was corrected
+    reference : the intensity that asphalt was brought to
+    scanners : a dict per scanner: scanner, points, nearest and farthest (m from the track), asphalt_before,
+        asphalt_after (medians over the distances), fall_before, fall_after (highest
+        over lowest asphalt), spread_before, spread_after (coefficient of variation of
+        asphalt over the distances, %)
+    between_before, between_after : highest over lowest scanner's asphalt
+    reason : why nothing was corrected, "" where it was
+    """
+
+    scale: str = ""
+    reference: float = float("nan")
+    scanners: list = field(default_factory=list)
+    between_before: float = float("nan")
+    between_after: float = float("nan")
+    spread_before: float = float("nan")
+    spread_after: float = float("nan")
+    reason: str = ""
+
+    def lines(self):
+        """Sentences for a log."""
+        if self.reason:
+            return [self.reason]
+        texts = [f"Intensity looks {self.scale}; asphalt was brought to {self.reference:.0f}. Its level varies by "
+                 f"{self.spread_after:.1f} % over distances and scanners, {self.spread_before:.1f} % before."]
+        for row in self.scanners:
+            texts.append(f"Scanner {row['scanner']}: asphalt varies by {row['spread_after']:.1f} % from {row['nearest']:.0f} to "
+                         f"{row['farthest']:.0f} m, {row['spread_before']:.1f} % before.")
+        return texts
+
+    def to_html(self):
+        """The report as a page of its own."""
+        from ..report.page import Page
+
+        page = Page("Intensity correction", "Asphalt's intensity by scanner, before and after. Distances are from the track of the vehicle.")
+        for line in self.lines()[:1]:
+            page.text(line)
+        if self.scanners:
+            page.table(("Scanner", "Points", "From (m)", "To (m)", "Asphalt before", "Asphalt after", "Variation before (%)",
+                        "Variation after (%)", "Highest/lowest before", "Highest/lowest after"),
+                       [[row[name] for name in ("scanner", "points", "nearest", "farthest", "asphalt_before", "asphalt_after",
+                                                "spread_before", "spread_after", "fall_before", "fall_after")] for row in self.scanners])
+        return page.html()
+
+
+def correct_intensity(road_points, frame, settings=IntensitySettings(), progress=Progress()):
+    """Bring asphalt to one intensity at every distance and for every scanner.
+
+    In a first round the levels of all points are counted by scanner and distance
+    from the vehicle, left and right apart; the asphalt I0 of each bin is the median of what
+    is not paint. In the second every point becomes I * reference / I0, or
+    I + reference - I0 where the intensities are logarithmic: there asphalt
+    keeps its spread while its level falls.
+
+    Parameters
+    ----------
+    road_points : RoadPoints
+    frame : RoadFrame of the same trajectory
+
+    Returns
+    -------
+    RoadPoints with `corrected` (the raw intensity stays), IntensityReport. Where
+    the vehicle's place at a point's time is not known the points come back as
+    they were, and the report says why.
+    """
+    reason = _why_not(road_points, frame)
+    if reason:
+        progress.warn(reason)
+        return road_points, IntensityReport(reason=reason)
+    sections = road_points.all_sections()
+    scanners = 1 + max(in_order(lambda key: int(road_points.section(*key).scanner.max()), sections))
+
+    def count(key):
+        points = road_points.section(*key)
+        distance = distances_from_vehicle(points, frame.passes)
+        return count_levels(points.scanner, distance, points.intensity, scanners), np.count_nonzero(np.isnan(distance[0]))
+
+    before, placeless = 0, 0
+    for counts, lost in in_order(count, sections, progress.part(0.0, 0.4)):
+        before, placeless = before + counts, placeless + lost
+    table = AsphaltTable.of(before)
+    if placeless > WITHOUT_VEHICLE * len(road_points):
+        reason = ("Intensity was left as it is: the trajectory does not say where the vehicle was when "
+                  f"{placeless:,} of {len(road_points):,} points were measured.")
+    elif table is None:
+        reason = "Intensity was left as it is: there are too few road points to learn from how asphalt looks at each distance."
+    if reason:
+        progress.warn(reason)
+        return road_points, IntensityReport(reason=reason)
+    if settings.scale != "automatic":
+        table.logarithmic = settings.scale == "logarithmic"
+
+    def correct(key):
+        points = road_points.section(*key)
+        distance = distances_from_vehicle(points, frame.passes)
+        records = points.records.copy()
+        records["corrected"] = table.correct(points.intensity, points.scanner, distance)
+        return key[0], records, count_levels(points.scanner, distance, records["corrected"], scanners)
+
+    result = RoadPoints.empty_like(road_points)
+    result.has_corrected = True
+    after = 0
+    for road, records, counts in in_order(correct, sections, progress.part(0.4, 1.0)):
+        result.store.append(road, records)
+        after = after + counts
+    report = _report(before, after, table)
+    for line in report.lines()[:1]:
+        progress.say(line)
+    return result, report
+
+
+def _why_not(road_points, frame):
+    if not len(road_points):
+        return "There are no road points whose intensity could be corrected."
+    if not frame.has_time:
+        return ("Intensity was left as it is: without gps_time in the cloud and time in the trajectory the distance "
+                "from scanner to point is not known.")
+    return ""
+
+
+def _report(before, after, table):
+    rows = table.told_by, np.arange(len(table.told_by))
+    medians = [asphalt_of(counts[rows])[0] for counts in (before, after)]
+    weight = before[rows].sum(axis=-1)
+    known = table.known & np.isfinite(medians[0]) & np.isfinite(medians[1])
+    report = IntensityReport("logarithmic" if table.logarithmic else "linear", table.reference)
+    distances = np.abs(np.arange(weight.shape[1]) * BIN + BIN / 2 - REACH)
+    for scanner in np.flatnonzero(known.any(axis=1)):
+        use = known[scanner]
+        row = dict(scanner=int(scanner), points=int(weight[scanner].sum()),
+                   nearest=float(distances[use].min()), farthest=float(distances[use].max()))
+        for name, levels in zip(("before", "after"), medians):
+            mean, variation = _variation(levels[scanner, use], weight[scanner, use])
+            row.update({f"asphalt_{name}": mean, f"spread_{name}": variation,
+                        f"fall_{name}": float(levels[scanner, use].max() / max(levels[scanner, use].min(), 1e-9))})
+        report.scanners.append(row)
+    for name, levels in zip(("before", "after"), medians):
+        means = [row[f"asphalt_{name}"] for row in report.scanners]
+        setattr(report, f"between_{name}", max(means) / max(min(means), 1e-9))
+        setattr(report, f"spread_{name}", _variation(levels[known], weight[known])[1])
+    return report
+
+
+def _variation(values, weights):
+    """Weighted mean and coefficient of variation (%)."""
+    mean = float((values * weights).sum() / weights.sum())
+    return mean, float(100.0 * np.sqrt((weights * (values - mean) ** 2).sum() / weights.sum()) / max(abs(mean), 1e-9))

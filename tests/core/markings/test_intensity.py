@@ -1,0 +1,165 @@
+"""Intensity correction: asphalt of one brightness near and far, whichever scanner saw it."""
+
+import numpy as np
+import pytest
+
+from lanewright.core.errors import RoadExtractionError
+from lanewright.core.markings.intensity import IntensitySettings, correct_intensity
+from lanewright.core.survey.points import ROAD_POINT, to_units
+from lanewright.core.survey.road_frame import build_frame
+from lanewright.core.survey.road_points import RoadPoints
+from lanewright.core.survey.section_store import SectionStore
+from lanewright.core.survey.trajectory import Trajectory
+
+LENGTH, HEIGHT = 60.0, 2.5
+
+
+def straight_drive(time=True, reverse=False):
+    along = np.linspace(0, LENGTH, 301)
+    clock = along / 10 + 1000
+    x = along[::-1] if reverse else along
+    return build_frame(Trajectory(clock, x + 500_000, np.zeros(301) + 5_400_000, np.full(301, 100 + HEIGHT), has_time=time))
+
+
+def falling(across, scanner):
+    """What asphalt returns: less with distance, each scanner on its own level and highest on its own side."""
+    return np.where(scanner == 0, 6000, 4000) / (1 + ((across - np.where(scanner == 0, 0.7, -0.7)) / 4) ** 2)
+
+
+def street(law=falling, paint=2.5, seed=7, count=120_000, line=(3.4, 3.55), logarithmic=False):
+    """Points of two scanners on a road 12 m wide, driven 2 m right of its middle; an edge line along it.
+
+    Returns the records, the offset of each point from the vehicle, and whether it is paint.
+    """
+    rng = np.random.default_rng(seed)
+    x, across = rng.uniform(0, LENGTH, count), rng.uniform(-4, 8, count)
+    scanner = rng.integers(0, 2, count)
+    painted = (across > line[0]) & (across < line[1])
+    level = law(across, scanner)
+    if logarithmic:
+        value = 150 + 40 * np.log10(level / 5000) + np.where(painted, 45, 0) + rng.normal(0, 6, count)
+    else:
+        value = level * np.where(painted, paint, 1) * rng.lognormal(0, 0.12, count)
+    records = np.zeros(count, ROAD_POINT)
+    records["x"], records["y"], records["s"], records["d"] = to_units(x), to_units(across), to_units(x), to_units(across)
+    records["time"] = x / 10 + 1000
+    records["scanner"], records["intensity"], records["corrected"] = scanner, np.rint(value), np.nan
+    return records, across, painted
+
+
+def road_points(records, section_length=20.0):
+    found = RoadPoints(SectionStore(ROAD_POINT, section_length), np.array([500_000.0, 5_400_000.0, 100.0]))
+    found.store.append(0, records)
+    return found
+
+
+def corrected(records, frame=None, settings=IntensitySettings(), section_length=20.0):
+    found, report = correct_intensity(road_points(records, section_length), frame or straight_drive(), settings)
+    return found.all_points(), report
+
+
+def levels(points, value, paint):
+    """Median of asphalt in each metre across and for each scanner, (scanners, metres)."""
+    metre = np.floor(points.d).astype(int)
+    return np.array([[np.median(value[(metre == m) & (points.scanner == k) & ~paint]) for m in range(-4, 8)] for k in (0, 1)])
+
+
+def painted_of(points):
+    return (points.d > 3.4) & (points.d < 3.55)
+
+
+def test_asphalt_is_equally_bright_near_and_far_and_for_both_scanners():
+    points, report = corrected(street()[0])
+    before = levels(points, points.intensity, painted_of(points))
+    after = levels(points, points.corrected, painted_of(points))
+    assert before.max() / before.min() > 4
+    assert after.max() / after.min() < 1.06
+    assert report.scale == "linear" and len(report.scanners) == 2
+    assert report.spread_after < 3 < 20 < report.spread_before
+
+
+def test_a_line_painted_along_the_whole_road_stays_as_bright_as_its_paint():
+    points, _ = corrected(street()[0])
+    paint = painted_of(points)
+    asphalt = np.median(points.corrected[~paint])
+    assert abs(np.median(points.corrected[paint]) / asphalt - 2.5) < 0.15
+
+
+def test_a_line_that_fills_its_distance_does_not_become_asphalt():
+    points, _ = corrected(street(line=(3.05, 3.4))[0])
+    paint = (points.d > 3.05) & (points.d < 3.4)
+    beside = (points.d > 2.6) & (points.d < 2.95)
+    assert abs(np.median(points.corrected[paint]) / np.median(points.corrected[beside]) - 2.5) < 0.25
+
+
+def test_logarithmic_intensities_are_shifted_not_scaled():
+    records, _, _ = street(logarithmic=True)
+    points, report = corrected(records)
+    paint = painted_of(points)
+    after = levels(points, points.corrected, paint)
+    assert report.scale == "logarithmic"
+    assert np.ptp(after) < 2.0
+    assert abs(np.median(points.corrected[paint]) - np.median(points.corrected[~paint]) - 45) < 3
+    far = (points.d > 6) & ~paint
+    assert abs(points.corrected[far].std() - 6) < 1.0
+
+
+def test_a_street_without_falloff_stays_as_it_is():
+    points, report = corrected(street(law=lambda across, scanner: np.full(len(across), 5000.0))[0])
+    np.testing.assert_allclose(points.corrected, points.intensity, rtol=0.03)
+    assert report.spread_before < 1.5
+
+
+def test_a_pass_driven_backwards_is_corrected_by_its_own_left_and_right():
+    forth, _, _ = street(seed=1)
+    back, across, _ = street(seed=2)
+    # the second pass meets the first's left on its right: its scanners' falloff is mirrored on the road
+    back["y"], back["d"] = -back["y"], -back["d"]
+    back["time"] = (LENGTH - back["x"] * 1e-4) / 10 + 1020
+    back["pass_number"] = 1
+    along = np.linspace(0, LENGTH, 301)
+    frame = build_frame(Trajectory(np.r_[along / 10 + 1000, along / 10 + 1020], np.r_[along, along[::-1]] + 500_000.0,
+                                   np.full(602, 5_400_000.0), np.full(602, 100 + HEIGHT)))
+    assert len(frame.passes) == 2 and len(frame.roads) == 1
+    points, report = corrected(np.concatenate([forth, back]), frame)
+    assert report.spread_after < 3
+    for number in (0, 1):
+        mine = points[points.pass_number == number]
+        assert abs(np.median(mine.corrected) / np.median(points.corrected) - 1) < 0.03
+
+
+@pytest.mark.parametrize("section_length", [7.0, 60.0])
+def test_the_correction_does_not_depend_on_the_length_of_sections(section_length):
+    records, _, _ = street(count=20_000)
+    a, _ = corrected(records)
+    b, _ = corrected(records[::-1], section_length=section_length)
+    np.testing.assert_array_equal(np.sort(a.corrected), np.sort(b.corrected))
+
+
+def test_without_time_the_intensity_is_left_raw_and_the_report_says_why():
+    points, report = corrected(street(count=5000)[0], straight_drive(time=False))
+    assert np.isnan(points.corrected).all() and "gps_time" in report.reason
+    assert report.lines() == [report.reason] and "gps_time" in report.to_html()
+
+
+def test_a_trajectory_of_another_day_leaves_the_intensity_raw():
+    records = street(count=5000)[0]
+    records["time"] += 86_400
+    points, report = corrected(records)
+    assert np.isnan(points.corrected).all() and "where the vehicle was" in report.reason
+
+
+def test_a_handful_of_points_is_too_little_to_learn_from():
+    points, report = corrected(street(count=50)[0])
+    assert np.isnan(points.corrected).all() and "too few" in report.reason
+
+
+def test_the_raw_intensity_is_kept():
+    records = street(count=20_000)[0]
+    points, _ = corrected(records)
+    np.testing.assert_array_equal(np.sort(points.intensity), np.sort(records["intensity"]))
+
+
+def test_an_unknown_scale_is_refused():
+    with pytest.raises(RoadExtractionError, match="automatic, linear, logarithmic"):
+        IntensitySettings(scale="decibel")
