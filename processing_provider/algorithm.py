@@ -1,7 +1,7 @@
 """What all algorithms share: how they are declared, guarded, run and how they fail.
 
 An algorithm says its name, adds its parameters with the helpers below and
-implements `run(call, progress)`; `call` (call.py) hands it the values.
+implements `work(call, progress)`; `call` (call.py) hands it the values.
 """
 
 from qgis.core import (
@@ -50,7 +50,7 @@ def with_help(parameter, text, advanced=False):
 
 
 class LanewrightAlgorithm(QgsProcessingAlgorithm):
-    """Base of every algorithm; subclasses set the five texts below and write `run`."""
+    """Base of every algorithm; subclasses set the five texts below and write `work`."""
 
     ID = TITLE = ROOM = SUMMARY = ""
     TAGS = ()
@@ -102,7 +102,7 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         call = Call(self, parameters, context, feedback)
         try:
             call.check_destinations()
-            results = self.run(call, FeedbackProgress(feedback))
+            results = self.work(call, FeedbackProgress(feedback))
             return call.finish(results or {})
         except RoadExtractionError as error:
             raise QgsProcessingException(str(error)) from None
@@ -119,7 +119,7 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         finally:
             call.discard_unfinished()
 
-    def run(self, call, progress):
+    def work(self, call, progress):
         """Do the work; returns further results (numbers) by output name."""
         raise NotImplementedError
 

@@ -62,7 +62,7 @@ class DrivingLines(LanewrightAlgorithm):
         self.add_sink("DRIVING_LINES", tr("Driving lines"), fields=DRIVING_LINES, geometry="LineStringZ")
         self.add_sink("CURVE_ELEMENTS", tr("Curve elements"), fields=CURVE_ELEMENTS, geometry="None", optional=True)
 
-    def run(self, call, progress):
+    def work(self, call, progress):
         from ...core.driving.lines import driving_lines
 
         marking_lines = call.features("MARKING_LINES", MARKING_LINES, "LineStringZ")

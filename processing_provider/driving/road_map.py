@@ -75,7 +75,7 @@ class RoadMap(LanewrightAlgorithm):
         self.add_raster("INTENSITY_IMAGE", tr("Intensity image"), optional=True)
         self.add_report()
 
-    def run(self, call, progress):
+    def work(self, call, progress):
         from ...core.road_map import RoadMapSettings, make_road_map
         from ...core.survey.road_points_file import write_road_points
 

@@ -33,7 +33,7 @@ class ClusterMarkings(LanewrightAlgorithm):
         self.add_sink("MARKINGS", tr("Markings"), fields=MARKINGS, geometry="PolygonZ")
         self.add_laz("CLUSTERED_POINTS", tr("Clustered points"), tr("The points with the extra field cluster."))
 
-    def run(self, call, progress):
+    def work(self, call, progress):
         from ...core.markings.clusters import cluster_markings
         from ...core.survey.road_points_file import write_road_points
 

@@ -30,7 +30,7 @@ class CorrectIntensity(LanewrightAlgorithm):
         self.add_laz("OUTPUT", tr("Corrected road points"))
         self.add_report()
 
-    def run(self, call, progress):
+    def work(self, call, progress):
         from ...core.markings.intensity import correct_intensity
         from ...core.survey.road_points_file import write_road_points
 

@@ -45,7 +45,7 @@ class ExtractMarkings(LanewrightAlgorithm):
             "MARKING_MASK", tr("Marking mask"), tr("1 where a pixel is paint, 0 where it is not."), optional=True, by_default=False
         )
 
-    def run(self, call, progress):
+    def work(self, call, progress):
         from ...core.markings.extraction import extract_markings
         from ...core.markings.image import IntensityImage
         from ...core.survey.road_points_file import write_road_points

@@ -49,7 +49,7 @@ class FitMarkingLines(LanewrightAlgorithm):
         self.add_knobs(LINE_KNOBS)
         self.add_sink("MARKING_LINES", tr("Marking lines"), fields=MARKING_LINES, geometry="LineStringZ")
 
-    def run(self, call, progress):
+    def work(self, call, progress):
         from ...core.markings.lines import fit_marking_lines
 
         markings = call.features("MARKINGS", MARKINGS, "PolygonZ")

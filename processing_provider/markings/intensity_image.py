@@ -47,7 +47,7 @@ class IntensityImage(LanewrightAlgorithm):
             optional=True, by_default=False,
         )
 
-    def run(self, call, progress):
+    def work(self, call, progress):
         from ...core.markings.image import write_intensity_image
         from ...core.markings.intensity_raster import write_display_image
 

@@ -37,7 +37,7 @@ class RemoveOutliers(LanewrightAlgorithm):
         self.add_knobs(OUTLIER_KNOBS)
         self.add_laz("OUTPUT", tr("Marking points without outliers"))
 
-    def run(self, call, progress):
+    def work(self, call, progress):
         from ...core.markings.outliers import remove_outliers
         from ...core.survey.road_points_file import write_road_points
 

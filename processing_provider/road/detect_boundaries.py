@@ -34,7 +34,7 @@ class DetectBoundaries(LanewrightAlgorithm):
         self.add_knobs(SURVEY_KNOBS)
         self.add_sink("ROAD_EDGES", tr("Road edges"), fields=ROAD_EDGES, geometry="LineStringZ")
 
-    def run(self, call, progress):
+    def work(self, call, progress):
         from ...core.road.curbs import detect_curbs
         from ...core.road.edges import fit_road_edges
 

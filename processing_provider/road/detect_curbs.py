@@ -66,7 +66,7 @@ class DetectCurbs(LanewrightAlgorithm):
             geometry="PointZ", optional=True, by_default=False,
         )
 
-    def run(self, call, progress):
+    def work(self, call, progress):
         from ...core.road.curbs import detect_curbs
 
         survey = open_survey_of(call, progress.part(0.0, 0.5))

@@ -38,7 +38,7 @@ class ExtractRoadSurface(LanewrightAlgorithm):
         )
         self.add_sink("ROAD_SURFACE", tr("Road surface"), fields=ROAD_SURFACE, geometry="PolygonZ", optional=True)
 
-    def run(self, call, progress):
+    def work(self, call, progress):
         from ...core.road.surface import extract_road_surface
         from ...core.survey.road_points_file import write_road_points
 

@@ -34,7 +34,7 @@ class FitRoadEdges(LanewrightAlgorithm):
         self.add_knobs(EDGE_KNOBS)
         self.add_sink("ROAD_EDGES", tr("Road edges"), fields=ROAD_EDGES, geometry="LineStringZ")
 
-    def run(self, call, progress):
+    def work(self, call, progress):
         from ...core.road.edges import fit_road_edges
 
         curb_points = call.features("CURB_POINTS", CURB_POINTS, "PointZ")

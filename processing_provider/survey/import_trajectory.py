@@ -45,7 +45,7 @@ class ImportTrajectory(LanewrightAlgorithm):
         self.add_sink("OUTPUT", tr("Imported trajectory"), fields=TRAJECTORY, geometry="PointZ")
         self.add_number("ROWS", tr("Positions"))
 
-    def run(self, call, progress):
+    def work(self, call, progress):
         from ...core.survey.trajectory import clean_trajectory
 
         trajectory = clean_trajectory(imported_trajectory(call, progress))

@@ -44,7 +44,7 @@ class InspectSurvey(LanewrightAlgorithm):
         for name, label in NUMBERS:
             self.add_number(name, label)
 
-    def run(self, call, progress):
+    def work(self, call, progress):
         from ...core.report.inspection import inspection_report
         from ...core.survey.density_raster import write_density
         from ...core.survey.inspection import inspect_survey

@@ -82,7 +82,7 @@ class SampleSurvey(LanewrightAlgorithm):
             self.add_sink(name, label, geometry=geometry, optional=True)
         self.add_number("POINTS", tr("Points"))
 
-    def run(self, call, progress):
+    def work(self, call, progress):
         from ...core.sample.survey import make_sample_survey
 
         settings = call.settings(SAMPLE_KNOBS, **({"crs": call.crs()} if call.crs() else {}))

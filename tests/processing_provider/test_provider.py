@@ -112,3 +112,13 @@ def test_a_knob_of_the_road_map_turns_one_thing_only():
 
 def test_settings_of_a_package_that_is_not_there_leave_the_algorithm_listed():
     assert settings_class("survey.no_such_room:Settings") is None
+
+
+def test_an_algorithm_runs_from_a_script_and_from_the_dialog(provider, tmp_path):
+    """Both go through QgsProcessingAlgorithm.run, which no method of ours may hide."""
+    import processing
+
+    results = processing.run("lanewright:samplesurvey", {
+        "LENGTH": 20, "PULSE_RATE": 20000, "POINT_CLOUD": str(tmp_path / "s.laz"), "TRAJECTORY": "TEMPORARY_OUTPUT",
+    })
+    assert results["POINTS"] > 1000 and results["TRAJECTORY"].featureCount() > 100
