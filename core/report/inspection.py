@@ -21,6 +21,7 @@ def inspection_report(found):
     _points(page, found)
     _density(page, found)
     _time(page, found)
+    _drive(page, found.drive)
     _intensity(page, found)
     page.heading("Files")
     page.table(
@@ -93,6 +94,43 @@ def _time(page, found):
         driven = float(np.hypot(np.diff(found.trajectory.x), np.diff(found.trajectory.y)).sum())
         rows.append(("Trajectory", f"{len(found.trajectory)} positions over {driven:.1f} m"))
     page.facts(rows)
+
+
+def _drive(page, drive):
+    if drive is None:
+        return
+    page.heading("Drive")
+    height = "too few points lie under the vehicle to tell" if drive.sensor_height is None else f"{drive.sensor_height:.2f} m above the road"
+    page.facts((("Driven", f"{drive.driven:.1f} m"), ("Trajectory", height),
+                ("Roads", ", ".join(f"{number}: {length:.1f} m" for number, length in enumerate(drive.roads)))))
+    page.table(
+        ("Pass", "Road", "Way", "From station (m)", "To station (m)", "Seconds", "Mean speed (km/h)"),
+        [(number, road, "along" if way > 0 else "against", round(first, 1) + 0.0, round(last, 1) + 0.0, round(end - start, 1),
+          round(3.6 * abs(last - first) / max(end - start, 1e-9), 1)) for number, road, way, first, last, start, end in drive.passes])
+    image, low, high = profile_picture(drive.profile)
+    page.picture(png(image), f"Heights along the drive, {drive.profile[-1, 0]:.0f} m from left to right, {low:.1f} m (below) to {high:.1f} m "
+                             "(above): red the trajectory, grey the road under it.")
+
+
+def profile_picture(profile, width=900, height=220):
+    """((height, width, 3) picture of the heights of track and road along the drive, lowest and highest height)."""
+    known = profile[:, 1:][np.isfinite(profile[:, 1:])]
+    low, high = float(known.min()), float(known.max())
+    spread = max(high - low, 0.1)
+    image = np.full((height, width, 3), 255, np.uint8)
+    across = profile[:, 0] / max(profile[-1, 0], 1e-9) * (width - 1)
+
+    def at(z):
+        return height - 6 - (z - low) / spread * (height - 12)
+
+    seen = np.isfinite(profile[:, 2])
+    runs = np.split(np.arange(len(profile)), np.flatnonzero(np.diff(seen.astype(int))) + 1)
+    for run in runs:
+        if seen[run[0]]:
+            line = np.rint(np.c_[across[run], at(profile[run, 2])]).astype(np.int32)
+            cv2.polylines(image, [line], False, (120, 120, 120), 2, cv2.LINE_AA)
+    cv2.polylines(image, [np.rint(np.c_[across, at(profile[:, 1])]).astype(np.int32)], False, (60, 60, 230), 2, cv2.LINE_AA)
+    return image, low, high
 
 
 def _intensity(page, found):

@@ -8,8 +8,10 @@ from scipy.spatial import cKDTree
 from ..errors import RoadExtractionError
 from ..progress import Progress
 from .crs import check_metric, horizontal, parse_crs, reproject_trajectory
+from .inspected_drive import inspect_drive
 from .point_cloud import BLOCK, read_blocks, read_headers
 from .scanners import ScannerCensus
+from .sensor_height import NEAR_TRACK
 from .survey import SurveySettings
 from .survey import _match_clocks as match_clocks
 from .trajectory import clean_trajectory
@@ -43,6 +45,7 @@ class Inspection:
         (min x, max y) of its corner)
     intensity : (65536,) counts of each value
     scanners : LAS field that tells them apart or None, and its values
+    drive : InspectedDrive: roads, passes, sensor height, height profile; None without a usable trajectory
     near_share, in_time_share : share of points measured near and during the trajectory, None without one
     """
 
@@ -64,6 +67,7 @@ class Inspection:
     near_share: float = None
     in_time_share: float = None
     trajectory: object = None
+    drive: object = None
     notes: list = field(default_factory=list)
 
 
@@ -122,6 +126,7 @@ class _Counter:
         self.census, self.time = ScannerCensus(), [np.inf, -np.inf]
         self.returns, self.classes = np.zeros(256, np.int64), np.zeros(256, np.int64)
         self.count = self.sampled = self.near = 0
+        self.trajectory, self.on_track = trajectory, []
         self.tree = None if trajectory is None else cKDTree(np.c_[trajectory.x, trajectory.y])
 
     def take(self, block):
@@ -142,7 +147,9 @@ class _Counter:
             if name in names:
                 self.census.add(name, np.asarray(block[name]), time)
         if self.tree is not None:
-            distance, _ = self.tree.query(np.c_[x, y][::SAMPLED], distance_upper_bound=NEAR)
+            distance, row = self.tree.query(np.c_[x, y][::SAMPLED], distance_upper_bound=NEAR)
+            below = distance < NEAR_TRACK
+            self.on_track.append((row[below], z[::SAMPLED][below]))
             self.sampled += len(distance)
             self.near += int(np.isfinite(distance).sum())
 
@@ -156,6 +163,8 @@ class _Counter:
             _named(self.returns), _named(self.classes), self.settings, trajectory=trajectory)
         if self.sampled:
             found.near_share = self.near / self.sampled
+        if self.near:
+            found.drive = inspect_drive(self.trajectory, *(np.concatenate(parts) for parts in zip(*self.on_track)))
         _judge_crs(found)
         if trajectory is not None:
             _judge_trajectory(found, wkt, has_time, progress)

@@ -58,6 +58,16 @@ def sensor_heights(frame, store, about):
     return {number: usual if height is None else height for number, height in found.items()}
 
 
+def height_above(drops):
+    """Height above the road of (N,) metres from the trajectory down to points on its track; None of too few points."""
+    if len(drops) <= FEWEST:
+        return None
+    origin = np.floor(np.median(drops)) - RANGE
+    size = int(2 * RANGE / STEP)
+    k = np.rint((drops - origin) / STEP).astype(np.int64)
+    return _road_height(np.bincount(k[(k >= 0) & (k < size)], minlength=size), origin)
+
+
 def _road_height(counts, origin):
     """The median about the fullest decimetre of (M,) counts per millimetre, None of too few points."""
     if counts.sum() <= FEWEST:

@@ -98,7 +98,7 @@ def test_what_the_road_map_would_stumble_over_is_noted(tmp_path):
 
 def test_the_report_tells_and_shows(tmp_path):
     report = inspection_report(inspect_survey([a_carpet(tmp_path / "a.laz")], drive()))
-    assert "12\u202f000" in report and "UTM zone 50N" in report and report.count("<img") == 1
+    assert "12\u202f000" in report and "UTM zone 50N" in report and report.count("<img") == 2, "density and height profile; one intensity makes no histogram"
 
 
 def test_two_scanners_are_told_apart_by_their_channel(tmp_path):
@@ -114,3 +114,17 @@ def test_two_scanners_are_told_apart_by_their_channel(tmp_path):
 def test_an_absurd_cell_is_refused(tmp_path):
     with pytest.raises(RoadExtractionError, match="density cell is 0.0 m"):
         InspectionSettings(cell_size=0.0)
+
+
+def test_the_drive_is_told_with_its_road_pass_and_sensor_height(tmp_path):
+    told = inspect_survey([a_carpet(tmp_path / "a.laz", per_metre=30)], drive()).drive
+    assert told.sensor_height == pytest.approx(2.5, abs=0.002) and told.driven == pytest.approx(29.5, abs=0.1)
+    (number, road, way, first, last, start, end), = told.passes
+    assert (number, road, way) == (0, 0, 1) and last - first == pytest.approx(29.5, abs=0.1) and end - start == pytest.approx(2.95)
+    seen = np.isfinite(told.profile[:, 2])
+    assert seen[3:11].all() and not seen[:2].any(), "the carpet begins 5 m into the drive"
+    np.testing.assert_allclose(told.profile[seen, 2], 20.5, atol=1e-6)
+
+
+def test_without_a_trajectory_nothing_is_told_of_the_drive(tmp_path):
+    assert inspect_survey([a_carpet(tmp_path / "a.laz")]).drive is None
