@@ -160,12 +160,13 @@ class Call:
         self._files.commit()
         for name, features in self._layers:
             self._results[name] = self._write(name, features)
+        schemas = {name: features.schema for name, features in self._layers}
         for name, dest in self._results.items():
-            style_on_load(name, dest, self.label(name), self.context)
+            style_on_load(name, dest, self.label(name), self.context, schemas.get(name, ()))
         return {**self._results, **numbers}
 
     def _write(self, name, features):
-        fields = qgis_fields(features.schema)
+        fields = qgis_fields(features.schema, with_aliases=destination_path(self._destination(name)) is not None)
         crs = QgsCoordinateReferenceSystem.fromWkt(features.crs) if features.crs else QgsCoordinateReferenceSystem()
         sink, dest = self.algorithm.parameterAsSink(
             self.parameters, name, self.context, fields, WKB_TYPES[features.geometry_type], crs

@@ -16,11 +16,13 @@ WKB_TYPES = {
 COLUMN_TYPES = {int: QMetaType.Type.LongLong, float: QMetaType.Type.Double, str: QMetaType.Type.QString}
 
 
-def qgis_fields(schema):
+def qgis_fields(schema, with_aliases=True):
+    """The columns as QGIS fields; a scratch layer takes no aliases and says so for every field."""
     fields = QgsFields()
     for column in schema:
         field = QgsField(column.name, COLUMN_TYPES[column.type])
-        field.setAlias(column.alias)
+        if with_aliases:
+            field.setAlias(column.alias)
         fields.append(field)
     return fields
 

@@ -20,13 +20,14 @@ LOOKS = {
     "DENSITY": ("density", 11),
     "ROAD_SURFACE": ("road_surface", 20),
     "MARKINGS": ("markings", 30),
-    "TRUTH_MARKINGS": ("markings", 31),
+    "TRUTH_MARKINGS": ("truth_markings", 31),
     "MARKING_LINES": ("marking_lines", 40),
     "ROAD_EDGES": ("road_edges", 50),
-    "TRUTH_BOUNDARIES": ("road_edges", 51),
+    "TRUTH_BOUNDARIES": ("truth_boundaries", 51),
     "CURB_POINTS": ("curb_points", 60),
     "DRIVING_LINES": ("driving_lines", 70),
-    "TRUTH_DRIVING_LINES": ("driving_lines", 71),
+    "TRUTH_DRIVING_LINES": ("truth_driving_lines", 71),
+    "TRUTH_SURFACE": ("truth_surface", 21),
     "TRAJECTORY": ("trajectory", 80),
     "OUTPUT": ("trajectory", 80),
 }
@@ -37,18 +38,24 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
 
     _kept = []  # QGIS keeps no reference, and Python would collect it before the layer is loaded
 
-    def __init__(self, qml):
+    def __init__(self, qml, schema):
         super().__init__()
-        self.qml = qml
+        self.qml, self.schema = qml, schema
 
     @classmethod
-    def make(cls, qml):
-        styler = cls(str(qml))
+    def make(cls, qml, schema=()):
+        styler = cls(str(qml), schema)
         cls._kept = cls._kept[-50:] + [styler]
         return styler
 
     def postProcessLayer(self, layer, context, feedback):
-        layer.loadNamedStyle(self.qml)
+        if Path(self.qml).exists():
+            layer.loadNamedStyle(self.qml)
+        for column in self.schema:
+            # A scratch layer's own fields cannot carry them
+            index = layer.fields().lookupField(column.name)
+            if index >= 0:
+                layer.setFieldAlias(index, tr(column.alias))
         if isinstance(layer, QgsRasterLayer) and isinstance(layer.renderer(), QgsSingleBandGrayRenderer):
             # Intensities have no common scale: every image is stretched to its own values
             layer.setContrastEnhancement(
@@ -58,7 +65,7 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
         layer.triggerRepaint()
 
 
-def style_on_load(name, dest, title, context, style=None):
+def style_on_load(name, dest, title, context, schema=()):
     """Name, group and style the layer `dest` where QGIS is going to load it."""
     if not dest or not context.willLoadLayerOnCompletion(dest):
         return
@@ -66,6 +73,6 @@ def style_on_load(name, dest, title, context, style=None):
     details.name, details.forceName, details.groupName = title, True, tr("Road map")
     look, order = LOOKS.get(name, (None, 90))
     details.layerSortKey = order
-    qml = STYLES / f"{style or look}.qml"
-    if qml.exists():
-        details.setPostProcessor(Styler.make(qml))
+    qml = STYLES / f"{look}.qml"
+    if schema or qml.exists():
+        details.setPostProcessor(Styler.make(qml, schema))

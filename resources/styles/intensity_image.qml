@@ -2,16 +2,16 @@
 <qgis styleCategories="Symbology" version="3.40.6-Bratislava">
   <pipe-data-defined-properties>
     <Option type="Map">
-      <Option value="" name="name" type="QString"/>
+      <Option type="QString" name="name" value=""/>
       <Option name="properties"/>
-      <Option value="collection" name="type" type="QString"/>
+      <Option type="QString" name="type" value="collection"/>
     </Option>
   </pipe-data-defined-properties>
   <pipe>
     <provider>
-      <resampling zoomedInResamplingMethod="nearestNeighbour" zoomedOutResamplingMethod="nearestNeighbour" maxOversampling="2" enabled="false"/>
+      <resampling zoomedInResamplingMethod="nearestNeighbour" maxOversampling="2" zoomedOutResamplingMethod="nearestNeighbour" enabled="false"/>
     </provider>
-    <rasterrenderer grayBand="1" gradient="BlackToWhite" alphaBand="-1" type="singlebandgray" opacity="1" nodataColor="">
+    <rasterrenderer type="singlebandgray" gradient="BlackToWhite" opacity="1" nodataColor="" grayBand="1" alphaBand="-1">
       <minMaxOrigin>
         <limits>CumulativeCut</limits>
         <extent>UpdatedCanvas</extent>
@@ -21,26 +21,26 @@
         <stdDevFactor>2</stdDevFactor>
       </minMaxOrigin>
       <contrastEnhancement>
-        <minValue>0.0196704179319553</minValue>
-        <maxValue>0.982974137651897</maxValue>
+        <minValue>0.0146452019762248</minValue>
+        <maxValue>0.976123361746652</maxValue>
         <algorithm>StretchToMinimumMaximum</algorithm>
       </contrastEnhancement>
-      <rampLegendSettings minimumLabel="" orientation="2" prefix="" useContinuousLegend="1" suffix="" direction="0" maximumLabel="">
+      <rampLegendSettings maximumLabel="" useContinuousLegend="1" prefix="" suffix="" direction="0" orientation="2" minimumLabel="">
         <numericFormat id="basic">
           <Option type="Map">
-            <Option name="decimal_separator" type="invalid"/>
-            <Option value="6" name="decimals" type="int"/>
-            <Option value="0" name="rounding_type" type="int"/>
-            <Option value="false" name="show_plus" type="bool"/>
-            <Option value="true" name="show_thousand_separator" type="bool"/>
-            <Option value="false" name="show_trailing_zeros" type="bool"/>
-            <Option name="thousand_separator" type="invalid"/>
+            <Option type="invalid" name="decimal_separator"/>
+            <Option type="int" name="decimals" value="6"/>
+            <Option type="int" name="rounding_type" value="0"/>
+            <Option type="bool" name="show_plus" value="false"/>
+            <Option type="bool" name="show_thousand_separator" value="true"/>
+            <Option type="bool" name="show_trailing_zeros" value="false"/>
+            <Option type="invalid" name="thousand_separator"/>
           </Option>
         </numericFormat>
       </rampLegendSettings>
     </rasterrenderer>
-    <brightnesscontrast gamma="1" contrast="0" brightness="0"/>
-    <huesaturation colorizeBlue="128" colorizeStrength="100" saturation="0" grayscaleMode="0" colorizeOn="0" colorizeGreen="128" colorizeRed="255" invertColors="0"/>
+    <brightnesscontrast brightness="0" contrast="0" gamma="1"/>
+    <huesaturation colorizeOn="0" invertColors="0" colorizeRed="255" colorizeBlue="128" saturation="0" grayscaleMode="0" colorizeGreen="128" colorizeStrength="100"/>
     <rasterresampler maxOversampling="2"/>
     <resamplingStage>resamplingFilter</resamplingStage>
   </pipe>
