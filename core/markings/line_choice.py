@@ -13,6 +13,8 @@ SHARED = 0.6         # of a line's paint that must have its twin beside it in a 
 SLIVER = 0.35        # of a line's length: less paint beside a line than this is no second line but its frayed edge
 SAME_OFFSET = 0.25   # m: a lone dash this near the course of a dashed line is one of its dashes
 LONE_DASH = 1.5      # m
+LONG = 15.0          # m of paint: enough to bound a road by
+NEIGHBOUR = 8.0      # m across: a line this near starts and ends where this one does
 WIDE_LANE = 2.6      # m: a solid line with less room than this to the road edge bounds the road
 
 
@@ -70,18 +72,21 @@ def choose(lines, drift, crossed, min_paint):
     painted_to = max(line.last for line in lines)
     painted_from = min(line.first for line in lines)
     frayed, double = _beside(lines, drift)
+    outside = _beyond_the_edge(lines, level)
     found = []
     for k, line in enumerate(lines):
         lone = None
         if not beats[k] and line.painted < LONGEST_DASH:
             lone = _dash_of_another(k, lines, beats, level)
-        if frayed[k] or not (line.painted >= min_paint or beats[k] or lone):
+        if frayed[k] or outside[k] or not (line.painted >= min_paint or beats[k] or lone):
             continue
         kind = _kind(line, double[k], bool(beats[k]) or lone is not None)
         drawn = pieces(line)
         if lone is not None:
             drawn = [Piece(line.first, line.last, "measured", "dashed")]
-        drawn = _extended(drawn, parts[k], lone, (painted_from, painted_to), crossed, line)
+        neighbours = np.array([(s.first, s.last) for j, other in enumerate(lines)
+                               if j != k and abs(level[j] - level[k]) <= NEIGHBOUR for s in other.strands]).reshape(-1, 2)
+        drawn = _extended(drawn, parts[k], lone, (painted_from, painted_to), crossed, neighbours, line)
         width = float(np.average([s.width for s in line.strands], weights=[s.length for s in line.strands]))
         found.append(Chosen(line, kind, bool(double[k]), drawn, width))
     return found
@@ -135,29 +140,61 @@ def _beside(lines, drift):
     return frayed, double
 
 
-def _kind(line, double, dashed):
+def _beyond_the_edge(lines, level):
+    """(N,) whether a fragment lies farther out than a long line that bounds the road there: gutter, kerb or yard."""
+    result = np.zeros(len(lines), bool)
+    bounds = [j for j, line in enumerate(lines) if line.painted >= LONG and _votes(line).get("edge", 0.0) > 0.3 * line.painted]
+    for k, line in enumerate(lines):
+        if line.painted >= LONG:
+            continue
+        for j in bounds:
+            side = np.sign(level[j])
+            shared = min(lines[j].last, line.last) - max(lines[j].first, line.first)
+            if side * (level[k] - level[j]) > TWIN[0] and side * level[k] > 0 and shared > 0.5 * (line.last - line.first):
+                result[k] = True
+    return result
+
+
+def _votes(line):
+    """Metres of paint by the class of its markings."""
     votes = {}
     for strand in line.strands:
         for name, length in strand.classes.items():
             votes[name] = votes.get(name, 0.0) + length
+    return votes
+
+
+def _kind(line, double, dashed):
     room = float(np.average([s.room for s in line.strands], weights=[s.length for s in line.strands]))
     if double:
         return "centre"
-    if votes.get("edge", 0.0) > 0.5 * line.painted or room < (LANE if dashed else WIDE_LANE):
+    if _votes(line).get("edge", 0.0) > 0.5 * line.painted or room < (LANE if dashed else WIDE_LANE):
         return "edge"
     return "lane" if dashed else "centre"
 
 
-def _extended(drawn, parts, lone, painted, crossed, line):
-    """A dashed line ends with a gap: its ends go on by one gap, but not past the paint of the road or into a crossing."""
+def _extended(drawn, parts, lone, painted, crossed, neighbours, line):
+    """A dashed line ends with a gap: its ends go on by one gap.
+
+    But not past the paint of the road, into a crossing, or past where the lines
+    beside it begin or end.
+    """
     drawn = list(drawn)
     before, after = lone or parts[0].rhythm, lone or parts[-1].rhythm
     d = float(np.median(line.places()[1]))
     beside = crossed[(crossed[:, 2] <= d + 0.5) & (crossed[:, 3] >= d - 0.5)]
     if before:
-        start = max(line.first - before.gap, painted[0], *(beside[beside[:, 1] < line.first + 0.5, 1]), )
+        limit = line.first - before.gap
+        begun = neighbours[(neighbours[:, 0] > limit) & (neighbours[:, 0] <= line.first), 0]
+        running = ((neighbours[:, 0] <= limit) & (neighbours[:, 1] > limit + 1.0)).any()
+        start = max(limit, painted[0], *beside[beside[:, 1] < line.first + 0.5, 1],
+                    *(begun[:0] if running else begun[np.argsort(begun)[:1]]))
         drawn.insert(0, Piece(min(start, line.first), line.first, "measured", "dashed"))
     if after:
-        end = min(line.last + after.gap, painted[1], *(beside[beside[:, 0] > line.last - 0.5, 0]), )
+        limit = line.last + after.gap
+        ended = neighbours[(neighbours[:, 1] < limit) & (neighbours[:, 1] >= line.last), 1]
+        running = ((neighbours[:, 1] >= limit) & (neighbours[:, 0] < limit - 1.0)).any()
+        end = min(limit, painted[1], *beside[beside[:, 0] > line.last - 0.5, 0],
+                  *(ended[:0] if running else ended[np.argsort(-ended)[:1]]))
         drawn.append(Piece(line.last, max(end, line.last), "measured", "dashed"))
     return merged(drawn)

@@ -6,13 +6,14 @@ taken out (`Drift`) a line is nearly a constant offset, so that the next dash is
 searched where the line is, not where its last metre happened to point.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 BIN = 0.5            # m, nodes of the drift
 MEMORY = 5.0         # m that slopes are averaged over
 END = 6.0            # m of a strand's end that say where it goes
+LEAST_PAINT = 3.0    # m that either side of a long gap must have
 OVERLAP = 0.6        # m that two strands of one line may overlap
 TWIN = (0.15, 0.50)  # m between the middles of the two lines of a double line
 BETWEEN = (0.25, 0.75)  # of the way from one line of a double to the other: its middle
@@ -75,7 +76,6 @@ class Line:
     """Strands of one painted line in order of station."""
 
     strands: list
-    bridged: list = field(default_factory=list)  # gaps, as (station, station), that only a period or a neighbour carries over
 
     @property
     def first(self):
@@ -224,12 +224,11 @@ def _joined(lines, follows, preceded):
     for k in range(len(lines)):
         if k in preceded:
             continue
-        strands, bridged = list(lines[k].strands), list(lines[k].bridged)
+        strands = list(lines[k].strands)
         while k in follows:
             k = follows[k]
             strands += lines[k].strands
-            bridged += lines[k].bridged
-        found.append(Line(sorted(strands, key=lambda strand: strand.first), bridged))
+        found.append(Line(sorted(strands, key=lambda strand: strand.first)))
     return sorted(found, key=lambda line: (line.first, line.strands[0].d[0]))
 
 
@@ -238,31 +237,32 @@ def link_far(lines, drift, max_gap, max_bridge, same_rhythm, allowed=0.25):
 
     Either both sides have one rhythm of dashes and the gap is a whole multiple of
     it (`same_rhythm(before, after)`), or another line runs on beside the gap
-    without one, so that the road does not end there. Such gaps are noted in `bridged`.
+    without one, so that the road does not end there.
     """
-    lines = list(lines)
     while True:
-        best = None
         ends = [line_end(line, drift, False, 3 * END) for line in lines]
         starts = [line_end(line, drift, True, 3 * END) for line in lines]
+        by_start = np.argsort([e.s for e in starts], kind="stable")
+        stations = np.array([starts[k].s for k in by_start])
+        pairs = []
         for a, before in enumerate(ends):
-            for b, after in enumerate(starts):
-                gap = after.s - before.s
-                if a == b or not max_gap - OVERLAP < gap <= max_bridge or min(lines[a].painted, lines[b].painted) < 3.0:
+            low, high = np.searchsorted(stations, [before.s + max_gap - OVERLAP, before.s + max_bridge])
+            for b in by_start[low:high]:
+                after = starts[b]
+                if min(lines[a].painted, lines[b].painted) < LEAST_PAINT or mismatch(before, after) > allowed:
                     continue
-                miss = mismatch(before, after)
-                if miss > allowed or not (same_rhythm(lines[a], lines[b])
-                                          or _runs_beside(lines, (a, b), before, after, drift)):
-                    continue
-                score = (miss / allowed) ** 2 + gap / max_bridge, before.s, a, b
-                if best is None or score < best:
-                    best = score
-        if best is None:
-            return sorted(lines, key=lambda line: (line.first, line.strands[0].d[0]))
-        _, _, a, b = best
-        joined = Line(lines[a].strands + lines[b].strands,
-                      lines[a].bridged + lines[b].bridged + [(lines[a].last, lines[b].first)])
-        lines = [line for k, line in enumerate(lines) if k not in (a, b)] + [joined]
+                if same_rhythm(lines[a], lines[b]) or _runs_beside(lines, (a, b), before, after, drift):
+                    score = (mismatch(before, after) / allowed) ** 2 + (after.s - before.s) / max_bridge
+                    pairs.append((score, before.s, a, int(b)))
+        if not pairs:
+            return lines
+        follows, preceded = {}, set()
+        for _, _, a, b in sorted(pairs):
+            if a not in follows and b not in preceded:
+                follows[a] = b
+                preceded.add(b)
+        # a longer line knows its rhythm and its course better: look again
+        lines = _joined(lines, follows, preceded)
 
 
 def _runs_beside(lines, pair, before, after, drift):

@@ -245,12 +245,9 @@ def _strands(records, rank, label):
     bounds = np.flatnonzero(np.r_[True, np.diff(label) != 0, True]) if len(label) else np.zeros(1, int)
     found = []
     for a, b in zip(bounds[:-1], bounds[1:]):
-        part = records[a:b]
-        first, last = part["s"].min() * UNIT, part["s"].max() * UNIT
-        if last - first < SHORTEST:
-            continue
-        strand = _strand(part, rank[a:b], place[a:b], float(first), float(last))
-        if strand.classes.get("mixed", 0.0) < 0.5 * strand.length or strand.length >= MIXED_SHORTEST:
+        strand = _strand(records[a:b], rank[a:b], place[a:b], *_ends(records[a:b]))
+        mixed = strand.classes.get("mixed", 0.0) > 0.5 * strand.length
+        if strand.length >= (MIXED_SHORTEST if mixed else SHORTEST):
             found.append(strand)
     return sorted(found, key=lambda strand: (strand.first, strand.d[0]))
 
@@ -258,7 +255,12 @@ def _strands(records, rank, label):
 def _strand(part, rank, place, first, last):
     starts = np.flatnonzero(np.r_[True, np.diff(place) != 0])
     count = np.diff(np.r_[starts, len(place)])
-    middle, _ = _middle_and_width(part["d"], starts)
+    middle, outer = _middle_and_width(part["d"], starts)
+    # where a line runs into other paint it is wider than itself, and its middle is not its own
+    own = outer <= 1.5 * np.median(outer) + 400
+    if not own.all():
+        inside = np.repeat(own, count)
+        return _strand(part[inside], rank[inside], place[inside], *_ends(part[inside]))
     s = np.add.reduceat(part["s"].astype(np.int64), starts) / count * UNIT
     z = np.add.reduceat(part["z"].astype(np.int64), starts) / count * UNIT
     d = middle * UNIT
@@ -268,3 +270,7 @@ def _strand(part, rank, place, first, last):
     share = np.bincount(rank, minlength=len(LINES) + 1) / len(rank) * (last - first)
     classes = {name: float(share[k]) for k, name in enumerate(LINES + ("mixed",)) if share[k] > 0}
     return Strand(first, last, s, d, z, count.astype(float), float(high - low) / 0.95, room, classes)
+
+
+def _ends(part):
+    return float(part["s"].min() * UNIT), float(part["s"].max() * UNIT)
