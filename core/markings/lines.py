@@ -93,7 +93,7 @@ def fit_marking_lines(clustered_points, markings, frame, settings=LineSettings()
             part.at(0.5 + 0.5 * (j + 1) / len(chosen))
     progress.say(f"{number} marking lines; {dropped} fragments were left out.")
     if replaced:
-        progress.warn(f"{replaced} of {number} lines cannot be a {settings.curve}; the automatic curve was used for them.")
+        progress.warn(f"{replaced} of {number} lines cannot take the curve “{settings.curve}”; the automatic curve was used for them.")
     return found
 
 

@@ -121,6 +121,8 @@ def trace(records, rank):
     -------
     list of Strand, by station
     """
+    if not len(records):
+        return []
     order = np.lexsort((records["z"], records["d"], records["s"].astype(np.int64) // BIN))
     records, rank = records[order], rank[order]
     bins, across = records["s"].astype(np.int64) // BIN, records["d"].astype(np.int64)
@@ -141,7 +143,7 @@ def trace(records, rank):
 
 def _runs(bins, across):
     """(N,) number of the run of paint each point belongs to; points sorted by bin, then across."""
-    cut = np.r_[True, (np.diff(bins) != 0) | (np.diff(across) > SPLIT)] if len(bins) else np.empty(0, bool)
+    cut = np.r_[True, (np.diff(bins) != 0) | (np.diff(across) > SPLIT)]
     starts = np.flatnonzero(cut)
     for _ in range(8):
         if len(starts) < 2:
@@ -181,8 +183,6 @@ def _part_hazy_doubles(bins, across, starts):
 
 def _without_thin(run):
     """-1 for the points of runs of too few points."""
-    if not len(run):
-        return run
     return np.where(np.bincount(run)[run] >= FEWEST, run, -1)
 
 
