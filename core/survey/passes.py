@@ -2,6 +2,7 @@
 
 from bisect import bisect_left
 from dataclasses import dataclass
+from math import hypot
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -51,12 +52,13 @@ def moving_rows(x, y, step=STANDSTILL):
     """
     count = len(x)
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))].tolist()
+    px, py = x.tolist(), y.tolist()
     keep, last = [0], 0
     while True:
         # Nothing nearer than `step` along the track can be `step` away from it
         row = bisect_left(driven, driven[last] + step, last + 1)
         reach = 64
-        while row < count:
+        while row < count and hypot(px[row] - px[last], py[row] - py[last]) < step:
             far = np.flatnonzero(np.hypot(x[row:row + reach] - x[last], y[row:row + reach] - y[last]) >= step)
             if len(far):
                 row += int(far[0])

@@ -36,7 +36,7 @@ def reference_nodes(line):
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
     unique = np.r_[True, np.diff(driven) > 0]
     driven, x, y = driven[unique], x[unique], y[unique]
-    if len(driven) < 2:
+    if driven[-1] < 1.0:
         raise RoadExtractionError("The trajectory does not move: at least 1 m of driving is needed to define a road.")
     u = np.arange(0.0, driven[-1] + NODE / 2, NODE)
     if np.median(np.diff(driven)) > SPARSE and len(driven) > 3:

@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial import cKDTree
 
-from .passes import LEVEL, moving_rows, split_into_passes, thin_by_distance
-from .reference_line import EXTENSION, NODE, continued, reference_nodes, track_line
+from .passes import LEVEL, TURN_REACH, moving_rows, split_into_passes, thin_by_distance
+from .reference_line import EXTENSION, JUNCTION, NODE, continued, reference_nodes, track_line
 from .trajectory import clean_trajectory
 
 CORRIDOR = 25.0    # m either side
@@ -238,14 +238,18 @@ def build_frame(trajectory):
     turning = np.zeros(len(track), bool)
     for piece in pieces:
         turning[piece.first:piece.line_first] = turning[piece.line_last:piece.last] = True
+    moved = np.unique(np.concatenate([piece.first + moving_rows(*track[piece.first:piece.last, :2].T) for piece in pieces]))
+    # metres driven up to the last row that moved; a jump between two pieces lies before the later one's first row
+    driven = np.r_[0.0, np.cumsum(np.hypot(*np.diff(track[moved, :2], axis=0).T))]
+    driven = driven[np.searchsorted(moved, np.arange(len(track)), side="right") - 1]
     waiting = [(piece.first, piece.last) for piece in pieces]
     roads, passes = [], []
     while waiting:
-        waiting.sort(key=lambda rows: (-_driven(track, rows), rows))
+        waiting = _longest_first(waiting, driven)
         longest = waiting[0]
-        if roads and _driven(track, longest) < JOIN_LENGTH:
+        if roads and _length(longest, driven) < JOIN_LENGTH:
             break
-        road, members, waiting = _grow_road(len(roads), track, turning, longest, waiting)
+        road, members, waiting = _grow_road(len(roads), track, turning, moved, driven, waiting)
         roads.append(road)
         passes += [_make_pass(road, trajectory.time[a:b], *track[a:b].T) for a, b in sorted(members)]
     passes.sort(key=lambda p: p.time[0])
@@ -254,9 +258,13 @@ def build_frame(trajectory):
     return RoadFrame(origin, roads, passes, trajectory.crs, trajectory.has_time, trajectory.notes)
 
 
-def _driven(track, rows):
-    line = track_line(*track[rows[0]:rows[1]].T)
-    return float(np.hypot(*np.diff(line[:, :2], axis=0).T).sum())
+def _length(rows, driven):
+    return float(driven[rows[1] - 1] - driven[rows[0]])
+
+
+def _longest_first(ranges, driven):
+    # to the centimetre: of equals the earlier comes first, whatever the rounding of coordinates
+    return sorted(ranges, key=lambda rows: (-round(_length(rows, driven), 2), rows))
 
 
 def _line_of(track, turning, rows):
@@ -267,30 +275,44 @@ def _line_of(track, turning, rows):
     return track_line(*track[rows[0]:rows[1]].T)
 
 
-def _grow_road(number, track, turning, longest, waiting):
-    """(Road, row ranges of its passes, row ranges left over), beginning with the longest range."""
-    line = _line_of(track, turning, longest)
+def _grow_road(number, track, turning, moved, driven, waiting):
+    """(Road, row ranges of its passes, row ranges left over), beginning with the first of the ranges waiting."""
+    longest, line = waiting[0], _line_of(track, turning, waiting[0])
     while True:
         road = Road(number, *reference_nodes(line), -EXTENSION)
         members, rest = [], []
         for rows in waiting:
-            shared, left = ([rows], []) if rows == longest else _shared_with(road, line, track, rows)
+            shared, left = ([rows], []) if rows == longest else _shared_with(road, line, track, moved, rows)
             members += shared
             rest += left
-        for rows in sorted(rest, key=lambda rows: (-_driven(track, rows), rows)):
-            longer = continued(line, _line_of(track, turning, rows)) if _driven(track, rows) >= JOIN_LENGTH else None
-            if longer is not None:
-                line = longer
-                break
+        for rows in _longest_first(rest, driven):
+            if _length(rows, driven) >= JOIN_LENGTH and _ends_near(line, track, rows):
+                longer = continued(line, _line_of(track, turning, rows))
+                if longer is not None:
+                    line = longer
+                    break
         else:
             return road, members, rest
 
 
-def _shared_with(road, line, track, rows):
+def _ends_near(line, track, rows):
+    """Whether a range of rows begins or ends where a line does, turns on the spot allowed for."""
+    ends = track[[rows[0], rows[1] - 1], None, :2] - line[None, [0, -1], :2]
+    return bool((np.hypot(ends[..., 0], ends[..., 1]) < JUNCTION + TURN_REACH).any())
+
+
+def _away(line, places):
+    """Whether places lie wholly outside the box about a line."""
+    return bool((places.min(axis=0) > line.max(axis=0) + JOIN_REACH).any() or (places.max(axis=0) < line.min(axis=0) - JOIN_REACH).any())
+
+
+def _shared_with(road, line, track, moved, rows):
     """The parts of a driven piece that run along a road, and the parts that do not."""
     a, b = rows
-    kept = moving_rows(*track[a:b, :2].T)
-    kept = a + kept[thin_by_distance(*track[a + kept, :2].T, 2.0)]
+    if _away(line[:, :2], track[a:b, :2]):
+        return [], [rows]
+    kept = np.unique(np.r_[a, moved[(moved >= a) & (moved < b)], b - 1])
+    kept = kept[thin_by_distance(*track[kept, :2].T, 2.0)]
     x, y, z = track[kept].T
     s, d = road.locate(x, y, corridor=JOIN_REACH)
     level = np.abs(z - line[cKDTree(line[:, :2]).query(np.c_[x, y])[1], 2]) < LEVEL

@@ -7,6 +7,8 @@ import numpy as np
 from ..errors import RoadExtractionError
 from .time_systems import unwrap_time
 
+FASTEST = 70.0  # m/s that a survey vehicle may drive
+
 
 @dataclass(frozen=True)
 class Trajectory:
@@ -78,12 +80,29 @@ def clean_trajectory(trajectory):
     if repeated.any():
         notes.append(f"{np.count_nonzero(repeated)} trajectory rows repeated an earlier time and were dropped.")
         trajectory = trajectory.rows(~repeated)
+    jumps = _stray_rows(trajectory)
+    if jumps.any():
+        notes.append(f"{np.count_nonzero(jumps)} trajectory rows lay aside of the drive, farther than a vehicle gets, and were dropped.")
+        trajectory = trajectory.rows(~jumps)
     length = float(np.hypot(np.diff(trajectory.x), np.diff(trajectory.y)).sum()) if len(trajectory) > 1 else 0.0
     if len(trajectory) < 2 or length < 1.0:
         raise RoadExtractionError(
             f"The trajectory has {len(trajectory)} usable positions over {length:.1f} m. At least two positions and "
             "1 m of driving are needed; check the time and coordinate columns of the file.")
     return replace(trajectory, notes=tuple(notes))
+
+
+def _stray_rows(trajectory):
+    """Mask of single rows that no vehicle could reach from the row before nor leave for the row after."""
+    stray = np.zeros(len(trajectory), bool)
+    if len(trajectory) < 3 or not trajectory.has_time:
+        return stray
+    seconds, dx, dy = (np.diff(a) for a in (trajectory.time, trajectory.x, trajectory.y))
+    step = np.hypot(dx, dy)
+    leap = (step > FASTEST * seconds) & (step > 2.0)
+    on = np.hypot(dx[:-1] + dx[1:], dy[:-1] + dy[1:]) <= FASTEST * (seconds[:-1] + seconds[1:])
+    stray[1:-1] = leap[:-1] & leap[1:] & on
+    return stray
 
 
 def _refuse_degrees(trajectory):

@@ -5,6 +5,7 @@ import re
 import numpy as np
 
 from ..errors import RoadExtractionError
+from .trajectory import FASTEST
 
 ROLES = ("time", "x", "y", "z", "roll", "pitch", "heading")
 
@@ -32,7 +33,6 @@ UNITS = {"deg": "degrees", "degree": "degrees", "degrees": "degrees", "°": "deg
          "m": "metres", "meter": "metres", "meters": "metres", "metre": "metres", "metres": "metres", "s": "seconds",
          "sec": "seconds", "seconds": "seconds", "ms": "milliseconds", "us": "microseconds", "ns": "nanoseconds"}
 
-FASTEST = 70.0           # m/s that a survey vehicle may drive
 METRES_PER_DEGREE = 111_000.0
 AGREES = 10.0            # degrees between a heading column and the driven course, median
 

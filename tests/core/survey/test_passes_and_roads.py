@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from drives import EAST, NORTH, ahead, bend, chain, drive, joined, standing
+from scipy.ndimage import gaussian_filter1d
 
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.survey.road_frame import build_frame
@@ -192,3 +193,38 @@ def test_a_trajectory_in_degrees_is_refused_before_it_counts_as_standing_still()
     trajectory = Trajectory(np.arange(100.0), np.linspace(8.40, 8.41, 100), np.full(100, 49.0), np.full(100, 100.0), crs="EPSG:4326")
     with pytest.raises(RoadExtractionError, match="degrees"):
         clean_trajectory(trajectory)
+
+
+def test_a_vehicle_that_only_trembled_is_refused():
+    with pytest.raises(RoadExtractionError, match="does not move"):
+        build_frame(standing(drive(STREET[:20]), 60.0, jitter=0.02))
+
+
+def test_a_stray_position_is_dropped_and_counted():
+    trajectory = drive(STREET)
+    trajectory.y[700] += 35.0
+    cleaned = clean_trajectory(trajectory)
+    assert len(cleaned) == len(trajectory) - 1 and "1 trajectory rows lay aside" in cleaned.notes[0]
+    assert np.abs(build_frame(trajectory).roads[0].curvature(np.arange(0.0, 299.0))).max() < 1e-6
+
+
+def test_a_drive_through_a_whole_town_keeps_every_row_on_some_road():
+    """400 blocks driven at random: streets are met again, crossed, and driven from either side."""
+    rng = np.random.default_rng(0)
+    corners, way = [np.zeros(2)], np.array([1.0, 0.0])
+    for _ in range(400):
+        turns = [t for t in (way, way[::-1] * [1, -1], way[::-1] * [-1, 1]) if (corners[-1] + t >= 0).all() and (corners[-1] + t < 12).all()]
+        way = turns[rng.integers(len(turns))]
+        corners.append(corners[-1] + way)
+    corners = np.array(corners) * 100.0
+    along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(corners, axis=0).T))]
+    path = np.c_[[gaussian_filter1d(np.interp(np.arange(0.0, along[-1], 0.5), along, c), 8) for c in corners.T]].T
+    trajectory = drive(path, rate=10.0)
+    frame = build_frame(trajectory)
+    covered = np.zeros(len(trajectory), bool)
+    for p in frame.passes:
+        covered |= (trajectory.time >= p.time[0]) & (trajectory.time <= p.time[-1])
+        assert (np.diff(p.s) * p.direction > -0.5).all() and np.abs(p.d).max() < 15.0
+    assert covered.mean() > 0.995
+    streets = len({tuple(sorted((tuple(a), tuple(b)))) for a, b in zip(corners[:-1].tolist(), corners[1:].tolist())})
+    assert sum(road.length for road in frame.roads) == pytest.approx(100.0 * streets, rel=0.15), "each street is one road's, however often driven"
