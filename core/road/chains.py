@@ -16,11 +16,12 @@ LINK_REACH = 1.0       # m along the road that a link may span
 DRIFT = 0.25           # m across per m along, beyond which neighbours are not one line
 SLACK = 0.05           # m across that two steps of one line may differ anyway
 HEIGHT_SLACK = 0.03    # m that bottom heights of neighbours may differ
-SHORTEST = 1.5         # m of a chain that counts
+SHORTEST = 0.75        # m of a chain that counts
+WHOLE = 4.0            # m of chains that lie in one line and make a curb
+REACH_ON = 8.0         # m between chains of one line
 DENSEST = 0.5          # share of its profiles in which a chain must be seen
 WANDER = 0.02          # m, scatter about its own running line beyond the scanner's noise
-ROUGH_ROAD = 0.012     # m about the road side's line beyond the scanner's noise
-WIDEST_FACE = 0.10     # m across, beyond the scanner's noise
+ROUGH_ROAD = 0.010     # m about the road side's line, if the scanner's noise is less than half of it
 JUMP_COST = 4.0        # m of curb that a lateral jump of 1 m must bring to pay
 CLIMB_COST = 60.0      # the same for 1 m of height: ground behind a curb is higher
 JUMP_CAP = 10.0        # m of curb that any jump costs at most
@@ -103,15 +104,15 @@ def curb_chains(steps, label, profile_width, least, slope):
         if length < SHORTEST or len(members) * profile_width < DENSEST * length:
             continue
         height, usual = np.median(steps.height[members]), np.median(steps.usual[members])
-        run = np.median(steps.run[members])
-        if height < least or np.arctan2(height, run) < slope and run > 2 * usual:
+        # blur widens a face and never narrows it, so the sharper profiles tell
+        if height < least or np.arctan2(height, np.quantile(steps.run[members], 0.3)) < slope:
             continue
-        if run > WIDEST_FACE + 2 * usual or np.median(steps.noise[members]) > ROUGH_ROAD + 1.5 * usual:
+        if np.median(steps.noise[members]) > max(ROUGH_ROAD, 2 * usual):
             continue
         if np.mean(steps.behind[members] >= 2) < 0.5:
             continue
         u = steps.u[members]
-        if len(u) > 2 and np.median(np.abs(u[1:-1] - 0.5 * (u[2:] + u[:-2]))) > WANDER + 0.7 * usual:
+        if len(u) > 2 and np.median(np.abs(u[1:-1] - 0.5 * (u[2:] + u[:-2]))) > WANDER + usual:
             continue
         chains.append(Chain(members, float(s[0]), float(s[-1])))
     return sorted(chains, key=lambda c: (c.start, c.end))
@@ -165,6 +166,33 @@ def choose_along(chains, steps, near):
         path.append(old_way[:3])
         old_way = old_way[3]
     return _merged(path[::-1])
+
+
+def long_enough(chosen, chains, steps):
+    """Chosen chains that make a curb: those in line with each other add up to a length that counts.
+
+    A curb between parked cars is seen in pieces; a piece with nothing in line with it may be anything.
+    """
+    kept, group, covered, last = [], [], 0.0, None
+    for piece in chosen + [None]:
+        if piece is not None:
+            members = chains[piece[0]].steps
+            members = members[(steps.s[members] >= piece[1]) & (steps.s[members] <= piece[2])]
+            first = members[0]
+        if piece is None or last is not None and not _in_line(steps, last, first):
+            kept += group if covered >= WHOLE else []
+            group, covered = [], 0.0
+        if piece is not None:
+            group.append(piece)
+            covered += piece[2] - piece[1]
+            last = members[-1]
+    return kept
+
+
+def _in_line(steps, a, b):
+    gap = steps.s[b] - steps.s[a]
+    return gap <= REACH_ON and abs(steps.u[b] - steps.u[a]) <= 0.15 + 0.15 * gap \
+        and abs(steps.h[b] - steps.h[a]) <= HEIGHT_SLACK + 0.02 * gap
 
 
 def _merged(path):

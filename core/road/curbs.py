@@ -10,7 +10,7 @@ from ..features import Features
 from ..parallel import in_order
 from ..progress import Progress
 from ..schemas import CURB_POINTS
-from .chains import choose_along, curb_chains, link_chains
+from .chains import choose_along, curb_chains, link_chains, long_enough
 from .profiles import pseudo_scan_lines
 from .shadows import Sight
 from .steps import Steps, find_steps
@@ -19,6 +19,7 @@ SECTION = 20.0          # m of road worked at a time
 SIDES = {"left": 1, "right": -1}
 VEHICLE_HALF = 0.6      # m from the track: no curb nearer
 REACH = 20.0            # m from the reference line beyond which no curb is sought
+BESIDE = 4.0            # m along the road, and as much again as across, from which a point is used
 MERGE_ACROSS = 0.12     # m between the same step seen in two passes
 MERGE_UP = 0.10
 DROPPED = 0.5           # a lower curb counts where it continues a full one: share of MIN_HEIGHT
@@ -120,8 +121,11 @@ def _steps_of_road(survey, road, settings, progress):
         a, b = section
         points = survey.window(road, a * width, b * width)
         s, d = points.s, points.d
-        h = points.z - survey.road_height(road, s)
-        return [(side, _steps_of_section(sign * d, s, h, points.pass_number, (a, b), tracks[side], sight[side], settings))
+        along = _ahead_of_vehicle(survey, points, s)
+        near = np.flatnonzero(np.abs(along) < BESIDE + np.abs(d))
+        points, s, d = points[near], s[near], d[near]
+        seen = s, points.z - survey.road_height(road, s), along[near] > 0, points.pass_number
+        return [(side, _steps_of_section(sign * d, *seen, (a, b), tracks[side], sight[side], settings))
                 for side, sign in SIDES.items()]
 
     parts = {side: [] for side in SIDES}
@@ -132,16 +136,30 @@ def _steps_of_road(survey, road, settings, progress):
     return {side: Steps.join(parts[side]) if parts[side] else None for side in SIDES}, sight
 
 
-def _steps_of_section(u, s, h, pass_number, profiles, track, sight, settings):
+def _ahead_of_vehicle(survey, points, s):
+    """(N,) metres along the road from the vehicle to the point when it was measured (0 without times).
+
+    What is seen from far behind or ahead lies at a flat angle and carries the drift
+    of the positions since; a spinning scanner sees every place from both.
+    """
+    along = np.zeros(len(points))
+    if survey.has_time:
+        for p in survey.frame.passes:
+            own = np.flatnonzero(points.pass_number == p.number)
+            along[own] = s[own] - p.station_at(points.time[own])
+    return along
+
+
+def _steps_of_section(u, s, h, ahead, pass_number, profiles, track, sight, settings):
     width = settings.profile_width
     stations = (np.arange(profiles[0], profiles[1]) + 0.5) * width
     origin = np.floor(track(stations).min())
     outward = np.flatnonzero((u > origin) & (u < REACH))
-    u, s, h, pass_number = u[outward], s[outward], h[outward], pass_number[outward]
+    u, s, h, ahead, pass_number = u[outward], s[outward], h[outward], ahead[outward], pass_number[outward]
     found = []
     for number in np.unique(pass_number):
         own = pass_number == number
-        lines = pseudo_scan_lines(u[own], s[own], h[own], profiles, width, settings.point_spacing,
+        lines = pseudo_scan_lines(u[own], s[own], h[own], ahead[own], profiles, width, settings.point_spacing,
                                   settings.layer_jump, origin, REACH)
         sight.look(u[own], s[own], h[own], profiles, lines)
         steps = find_steps(lines, DROPPED * settings.min_height, settings.max_height)
@@ -175,7 +193,7 @@ def _report_side(found, survey, road, side, steps, sight, settings):
     track = Track(frame, road, sign)
     label = link_chains(steps, settings.profile_width)
     chains = curb_chains(steps, label, settings.profile_width, settings.min_height, np.radians(settings.slope))
-    chosen = choose_along(chains, steps, track)
+    chosen = long_enough(choose_along(chains, steps, track), chains, steps)
     edges = block_edges(frame.road(road), *survey.store.span(road), settings.block_length)
     rows = []
     for number, (chain, a, b) in enumerate(chosen):

@@ -34,6 +34,7 @@ class PseudoScanLines:
     width, spacing : metres
     u, s, h : (N,) the points, sorted by profile, cell and height; u is the outward
         offset, h the height above the expected road, which takes the grade out
+    ahead : (N,) bool, seen while the vehicle was still before the point
     ground : (N,) bool, points of the lowest layer
     starts : (P * C + 1,) index of the first point of every cell
     low, high : (P, C) median and high quantile of the lowest layer, m; NaN where no point lies
@@ -47,6 +48,7 @@ class PseudoScanLines:
     u: np.ndarray
     s: np.ndarray
     h: np.ndarray
+    ahead: np.ndarray
     ground: np.ndarray
     starts: np.ndarray
     low: np.ndarray
@@ -62,12 +64,13 @@ class PseudoScanLines:
         return self.origin + (np.asarray(cell) + 0.5) * self.spacing
 
 
-def pseudo_scan_lines(u, s, h, profiles, width, spacing, layer_jump, origin, reach):
+def pseudo_scan_lines(u, s, h, ahead, profiles, width, spacing, layer_jump, origin, reach):
     """Cut points of one side into profiles and cells and find the ground in each.
 
     Parameters
     ----------
     u, s, h : (N,) outward offset, station, and height above the expected road, metres
+    ahead : (N,) bool
     profiles : (first, last + 1) numbers of the profiles
     width, spacing, layer_jump : metres
     origin, reach : nearest and farthest outward offset, metres
@@ -96,7 +99,7 @@ def pseudo_scan_lines(u, s, h, profiles, width, spacing, layer_jump, origin, rea
     low.flat[owner], high.flat[owner] = middle, top
     many = count >= 4
     noise.flat[owner[many]] = (top - middle)[many] / HIGH_SIGMA
-    return PseudoScanLines(first, width, spacing, origin, u, s, h, ground, starts, low, high, _profile_noise(noise))
+    return PseudoScanLines(first, width, spacing, origin, u, s, h, ahead[kept], ground, starts, low, high, _profile_noise(noise))
 
 
 def _lowest_layers(place, h, layer_jump):

@@ -16,9 +16,12 @@ ROAD_SIDE = 0.40    # m of road before the face that give the road's line
 CLEARANCE = 0.05    # m next to the face left out of it: a blurred face begins there
 BEHIND = 0.40       # m behind the face where the ground must stay up
 WINDOW = 0.15       # m across within which the whole rise must lie
-STEEPEST_ROAD = 0.25  # rise over run of the road side; ditches are steeper
+STEEPEST_ROAD = 0.15  # rise over run of the road side; ditches are steeper
+WIDEST_FACE = 0.10   # m across
+NOISE_RUN = 4.0      # sigmas by which noise widens a face
 SIGMAS = 4.0        # a step must stand this far above the noise of its road side
-FACE_LOW, FACE_HIGH = 0.15, 0.85  # part of the height that counts as face
+FACE_LOW, FACE_HIGH = 0.15, 0.70  # part of the height that counts as face: grass hangs over the top
+LEAST_SHARE = 0.5    # noise brings points from above and below into a thinner part
 FACE_PRIOR = 2e-4   # m²: keeps a face seen in few points upright
 
 
@@ -28,7 +31,7 @@ class Steps:
 
     profile : (M,) number of the profile; s, u, h : (M,) station, outward offset and height
     above the expected road of the bottom corner; height : (M,) m of the step; run : (M,) m
-    across of the face; noise : (M,) m, heights about the road side's line; usual : (M,) m, the
+    across of the face, less what noise adds; noise : (M,) m, heights about the road side's line; usual : (M,) m, the
     scanner's own noise there; support : (M,) points of road side and face; behind : (M,) points
     of the raised ground
     """
@@ -73,7 +76,8 @@ def _rising_cells(lines, least, highest):
     span = max(int(round(WINDOW / spacing)), 2)
     noise = lines.noise[:, None]
     top = _max_ahead(high, span) - HIGH_SIGMA * noise
-    step = top - base
+    with np.errstate(invalid="ignore"):
+        step = top - base
     # the cell before must still be road: the last occupied one within the window
     before = _last_before(low, span)
     middle = base + 0.5 * step
@@ -139,6 +143,12 @@ def _measure(lines, rows, cells, least, highest):
     owner, index = _expand(start, end)
     ground = lines.ground[index]
     owner, index = owner[ground], index[ground]
+    # each step is measured from all points, and from those seen from before and from behind
+    # alone: positions that drifted in between blur a face that each of the two shows sharp
+    candidates = len(rows)
+    owner = np.concatenate([owner, owner + candidates * (1 + lines.ahead[index])])
+    index = np.concatenate([index, index])
+    rows, cells = np.tile(rows, 3), np.tile(cells, 3)
     count, edge = len(rows), lines.offset(cells)
     u, h, s = lines.u[index] - edge[owner], lines.h[index], lines.s[index]
     usual = lines.noise[rows]
@@ -164,24 +174,41 @@ def _measure(lines, rows, cells, least, highest):
     fallen = (u > 0.10) & (u < BEHIND) & (rise < 0.35 * height[owner])
     n_fallen = total(fallen)
 
-    face = (np.abs(u) < WINDOW) & (rise > FACE_LOW * height[owner]) & (rise < FACE_HIGH * height[owner])
-    mid = _mean(total(face, u), total(face))
-    face &= np.abs(u - mid[owner]) < 0.08
+    # the part of the height that is surely neither road nor raised ground
+    scatter = np.maximum(noise, usual)
+    lower = np.minimum(np.maximum(FACE_LOW * height, 2 * scatter), 0.45 * height)
+    upper = np.maximum(np.minimum(FACE_HIGH * height, height - 2 * scatter), 0.55 * height)
+    face = (np.abs(u) < WINDOW) & (rise > lower[owner]) & (rise < upper[owner])
+    mid, spread = _median_and_spread(owner, u, face, count)
+    face &= np.abs(u - mid[owner]) < 0.05 + 2 * scatter[owner]
     n_face = total(face)
     mid, up, at = (_mean(total(face, v), n_face) for v in (u, rise, s))
-    var_u = _mean(total(face, (u - mid[owner]) ** 2), n_face)
     var_up = total(face, (rise - up[owner]) ** 2)
     lean = total(face, (u - mid[owner]) * (rise - up[owner])) / (var_up + n_face * FACE_PRIOR + 1e-9)
     lean = np.clip(lean, -0.2, 0.8)
     seen = n_face >= 1
+    height = np.maximum(height, 0.0)
     corner = np.where(seen, mid - lean * up, 0.0)
-    run = np.sqrt(12 * np.maximum(np.where(n_face >= 3, var_u, 0.0) - np.maximum(noise, usual) ** 2, 0.0)) / (FACE_HIGH - FACE_LOW)
+    # half the points of an even face lie within half its run; noise widens that
+    share = np.maximum((upper - lower) / np.maximum(height, 1e-3), LEAST_SHARE)
+    run = 2 * np.sqrt(np.maximum(spread**2 - (1.35 * scatter) ** 2, 0.0)) / share
+    run = np.where(n_face < 3, 0.0, np.maximum(run - NOISE_RUN * scatter, 0.0))
     station = np.where(seen, at, (lines.first + rows + 0.5) * lines.width)
     good = (np.isfinite(level) & (n_road >= 4) & (height >= least) & (height <= highest)
-            & (height >= SIGMAS * noise) & (np.abs(slope) <= STEEPEST_ROAD) & (n_fallen <= n_behind) & seen)
+            & (height >= SIGMAS * noise) & (np.abs(slope) <= STEEPEST_ROAD) & (n_fallen <= n_behind) & seen
+            & (run <= WIDEST_FACE))
     steps = Steps(lines.first + rows, station, edge + corner, level + slope * corner, height, run, noise, usual,
                   n_road + n_face, n_behind)
-    return steps[good]
+    return _best_view(steps, good, candidates)
+
+
+def _best_view(steps, good, count):
+    """Of three measurements of each step the first that is good: from all points, or the view with more of them."""
+    single = good[count:].reshape(2, count)
+    support = np.where(single, steps.support[count:].reshape(2, count), 0)
+    view = np.where(good[:count], 0, 1 + np.argmax(support, axis=0))
+    chosen = np.flatnonzero(good[:count] | single.any(0))
+    return steps[chosen + count * view[chosen]]
 
 
 def _expand(start, end):
@@ -190,6 +217,23 @@ def _expand(start, end):
     owner = np.repeat(np.arange(len(start)), length)
     index = np.arange(length.sum()) - np.repeat(np.cumsum(length) - length, length) + np.repeat(start, length)
     return owner, index
+
+
+def _median_and_spread(owner, values, mask, count):
+    """Median and interquartile range of the masked values of each owner (0 where it has none)."""
+    owner, values = owner[mask], values[mask]
+    order = np.lexsort((values, owner))
+    values = np.r_[values[order], 0.0]
+    n = np.bincount(owner, minlength=count)
+    first = np.cumsum(n) - n
+
+    def quantile(q):
+        at = q * np.maximum(n - 1, 0)
+        k = np.floor(at).astype(np.int64)
+        low, high = values[first + k], values[np.minimum(first + k + 1, len(values) - 1)]
+        return np.where(n > 0, np.where(n > k + 1, low + (at - k) * (high - low), low), 0.0)
+
+    return quantile(0.5), quantile(0.75) - quantile(0.25)
 
 
 def _mean(total, count):
