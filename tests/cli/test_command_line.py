@@ -177,3 +177,48 @@ def test_a_setting_beyond_reason_is_refused(survey, tmp_path):
         "--MIN_HEIGHT=0.3", "--MAX_HEIGHT=0.1", "--CURB_POINTS=curbs.gpkg", folder=tmp_path,
     )
     assert "curb" in one_sentence(run).lower()
+
+
+@pytest.fixture(scope="session")
+def street(tmp_path_factory):
+    """A sample survey dense enough for the whole chain, its cloud in two files."""
+    folder = tmp_path_factory.mktemp("street")
+    run = qgis_process(
+        "run", "lanewright:samplesurvey", "--LENGTH=50", "--PULSE_RATE=100000", "--POINT_CLOUD=all.laz", "--TRAJECTORY=drive.gpkg",
+        folder=folder,
+    )
+    assert run.returncode == 0, run.stderr
+    for name, first in (("odd.laz", 1), ("even.laz", 0)):
+        cloud = laspy.read(folder / "all.laz")
+        cloud.points = cloud.points[np.arange(first, len(cloud.points), 2)]
+        cloud.write(str(folder / name))
+    return folder
+
+
+def test_the_readme_command_makes_driving_lines(street, tmp_path):
+    run = qgis_process(
+        "run", "lanewright:roadmap", f"--POINT_CLOUDS={street / 'odd.laz'}", f"--POINT_CLOUDS={street / 'even.laz'}",
+        f"--TRAJECTORY={street / 'drive.gpkg'}", "--DRIVING_LINES=lines.gpkg", folder=tmp_path,
+    )
+    assert run.returncode == 0, run.stderr
+    assert feature_count(tmp_path / "lines.gpkg") > 0
+
+
+def test_the_model_file_runs_without_a_desktop(street, tmp_path):
+    results = ("road_edges", "road_surface", "markings", "marking_lines", "driving_lines", "curve_elements")
+    run = qgis_process(
+        "run", str(ROOT / "resources" / "models" / "road_map.model3"), f"--POINT_CLOUDS={street / 'all.laz'}",
+        f"--TRAJECTORY={street / 'drive.gpkg'}", "--road_points=road.laz", "--intensity_image=image.tif",
+        *(f"--{name}={name}.gpkg" for name in results), folder=tmp_path,
+    )
+    assert run.returncode == 0, run.stderr
+    for name in results[:-1]:
+        assert feature_count(tmp_path / f"{name}.gpkg") > 0, name
+    assert laspy.read(tmp_path / "road.laz").header.point_count > 10000
+
+
+def feature_count(path):
+    from osgeo import ogr
+
+    source = ogr.Open(str(path))
+    return source.GetLayer(0).GetFeatureCount()
