@@ -4,14 +4,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..curves.arcs import fit_circle, fit_line
+from ..curves.choice import BIC_MARGIN
 from ..curves.curve import Arc
 from ..curves.segments import segment_line
+from ..curves.transitions import fit_clothoid
 from .boundaries import STEP
 from .track import BRIDGED
 
 PARALLEL = 0.06     # m: 95 % of a lane's places are nearer than this to a parallel of the others
 LEAST_SHARED = 10.0  # m that a lane must share with others to be compared
 LEAST_PLACES = 8
+SHORT_ARC = 25.0     # m: a shorter arc may be a stair of a transition
+STAIRCASE = 0.02     # m
+SPACING = 1.0        # m between places that are divided: fitted lines err alike over metres
 
 
 @dataclass(frozen=True)
@@ -96,29 +102,67 @@ def _parallel_lanes(tracks):
 
 
 def _divided(axis, first, s, road):
-    """[(start, end, Segment)] of the axis, stations."""
+    """[(start station, end station, curve)] of the axis."""
     at = s[first:first + len(axis)]
     if len(axis) < LEAST_PLACES:
         return []
     x, y = road.to_map(at, axis)
     u = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
-    return [(float(a), float(b), segment) for segment in segment_line(x, y)
-            for a, b in [np.interp([segment.first, segment.last], u, at)]]
+    thin = np.unique(np.r_[np.arange(0, len(x), int(SPACING / STEP)), len(x) - 1])
+    bounds = [(segment.first, segment.last) for segment in segment_line(x[thin], y[thin])]
+
+    def fit(first, last, make=_simplest):
+        inside = (u >= first) & (u <= last)
+        return make(x[inside], y[inside])
+
+    found = _without_steps([(first, last, fit(first, last)) for first, last in bounds], fit)
+    return [(*map(float, np.interp([first, last], u, at)), best.curve) for first, last, best in found]
+
+
+def _without_steps(found, fit):
+    """Divisions in which no transition is a staircase of short arcs.
+
+    A short arc and its neighbour make way for one clothoid where that keeps within
+    2 cm of the places: on the road an arc this short, with no straight around it, is
+    half a transition.
+    """
+    while True:
+        merged = []
+        for k in range(len(found) - 1):
+            (first, middle, a), (_, last, b) = found[k:k + 2]
+            arcs = [q for q, length in ((a, middle - first), (b, last - middle))
+                    if q.curve.kind == "circle" and length < SHORT_ARC]
+            if not arcs or {a.curve.kind, b.curve.kind} == {"circle", "line"} and last - first > 2 * SHORT_ARC:
+                continue
+            joint = fit(first, last, fit_clothoid)
+            if joint.worst < STAIRCASE:
+                merged.append((joint.worst, k, joint))
+        if not merged:
+            return found
+        _, k, joint = min(merged, key=lambda m: m[:2])
+        found = found[:k] + [(found[k][0], found[k + 1][1], joint)] + found[k + 2:]
+
+
+def _simplest(x, y):
+    """The simplest of straight, arc and clothoid by BIC."""
+    fits = [make(x, y) for make, least in ((fit_line, 2), (fit_circle, 4), (fit_clothoid, 8)) if len(x) >= least]
+    best = min(fit.bic for fit in fits)
+    return next(fit for fit in fits if fit.bic <= best + BIC_MARGIN)
 
 
 def _of_lane(track, offset, divided, s, road):
     at = s[track.first:track.last + 1]
     x, y = road.to_map(at, track.d)
     elements = []
-    for k, (start, end, segment) in enumerate(divided):
-        if not isinstance(segment.fit.curve, Arc):
+    for k, (start, end, curve) in enumerate(divided):
+        if not isinstance(curve, Arc):
             continue
         a, b = max(start, at[0]), min(end, at[-1])
         inside = (at >= a) & (at <= b)
         if inside.sum() < LEAST_PLACES:
             continue
-        u, e = segment.fit.curve.parallel(offset).foot(x[inside], y[inside])
-        arc = segment.fit.curve.parallel(offset + float(np.median(e)))
+        u, e = curve.parallel(offset).foot(x[inside], y[inside])
+        arc = curve.parallel(offset + float(np.median(e)))
         u, e = arc.foot(x[inside], y[inside])
         complete = 0 < k < len(divided) - 1 and start >= at[0] and end <= at[-1]
         elements.append(Element(a, b, _cut(arc, float(u[0]), float(u[-1])), float(np.sqrt(np.mean(e**2))), complete))

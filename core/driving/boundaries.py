@@ -159,12 +159,12 @@ def _lengthen_dashed(lines):
                 continue
             ahead = end + step * np.arange(1, reach + 1)
             ahead = ahead[(ahead >= 0) & (ahead < len(lines.s))]
-            go = present[left, ahead] & present[right, ahead]
+            go = present[left, ahead] & present[right, ahead] & lines.seen[left, ahead] & lines.seen[right, ahead]
             ahead = ahead[:len(go) if go.all() else int(np.argmin(go))]
             share = (lines.d[k, end] - lines.d[right, end]) / (lines.d[left, end] - lines.d[right, end])
             lines.d[k, ahead] = lines.d[right, ahead] + share * (lines.d[left, ahead] - lines.d[right, ahead])
             lines.z[k, ahead] = lines.z[right, ahead] + share * (lines.z[left, ahead] - lines.z[right, ahead])
-            lines.seen[k, ahead] = lines.seen[left, ahead] & lines.seen[right, ahead]
+            lines.seen[k, ahead] = True
 
 
 def _nearest(which, distance):

@@ -142,8 +142,8 @@ def _share(lines, left, right, first, last, place, count):
     """The lane number `place` (from the right) of `count` equal ones in a strip."""
     window = slice(first, last + 1)
     dl, dr = lines.d[left, window], lines.d[right, window]
-    seen = lines.seen[left, window] & lines.seen[right, window]
-    status = np.where(seen, MEASURED if count == 1 else INFERRED, BRIDGED)
+    seen = lines.seen[left, window].astype(int) + lines.seen[right, window]
+    status = np.choose(seen, [BRIDGED, INFERRED, MEASURED if count == 1 else INFERRED])
     size = last - first + 1
     return Track(first, dr + (dl - dr) * (place + 0.5) / count, (dl - dr) / count, status, np.zeros(size, bool),
                  np.full(size, left if place == count - 1 else -1), np.full(size, right if place == 0 else -1))
@@ -165,6 +165,8 @@ def divided_strips(lines, all_strips, tracks, driven, lane_width, room):
             for i, j in true_runs(free):
                 i, j = a + i, a + j
                 dl, dr = lines.d[left, i:j + 1], lines.d[right, i:j + 1]
+                if (lines.seen[left, i:j + 1] & lines.seen[right, i:j + 1]).mean() < 0.5:
+                    continue
                 inside = ((driven[:, i:j + 1] < dl) & (driven[:, i:j + 1] > dr)).any(0) if len(driven) else np.zeros(1)
                 count = lane_count(float(np.median(dl - dr)), lane_width)
                 if inside.mean() < 0.5 or not count:
@@ -197,10 +199,11 @@ def seen_width(tracks):
 
 
 def lone_lanes(lines, kept, tracks, driven, half, room):
-    """Lanes beside a line without partner, where the vehicle drove or the line is no edge line.
+    """Lanes beside a line without partner: where the vehicle drove, and on both sides of a centre line that is alone.
 
     half : distance of the driving line from the painted one
     """
+    alone = (kept.sum(0) == 1)
     found = []
     for k in range(len(lines.d)):
         for side in (1, -1):
@@ -218,7 +221,7 @@ def lone_lanes(lines, kept, tracks, driven, half, room):
             for a, b in true_runs(free):
                 window = slice(a, b + 1)
                 there = np.abs(driven[:, window] - d[window]) < half if len(driven) else np.zeros((1, 1), bool)
-                if there.any(0).mean() < 0.5 and lines.kinds[k] not in ("centre", "lane"):
+                if there.any(0).mean() < 0.5 and not (lines.kinds[k] == "centre" and alone[window].mean() > 0.5):
                     continue
                 size = b - a + 1
                 near = np.full(size, k)

@@ -82,6 +82,7 @@ def road_lanes(lines, driven, settings, curbs=None):
     tracks = [track for track in tracks if len(track) * STEP >= settings.shortest]
     tracks = connect(tracks, lines, 0.0, settings.max_inferred)
     tracks = extend(tracks, lines, kept, room, settings.max_bridge)
+    tracks = connect(tracks, lines, *gaps)
     tracks = connect(tracks + divided_strips(lines, all_strips, tracks, driven, lane_width, room), lines, *gaps)
     half = settings.line_distance or lane_width / 2
     tracks = connect(tracks + lone_lanes(lines, kept, tracks, driven, half, room), lines, *gaps)

@@ -8,7 +8,7 @@ from ..curves.choice import fit_curve
 from .boundaries import STEP
 from .track import BRIDGED
 
-SHORT_PIECE = 2.0   # m: a shorter change of status is not worth a piece
+SHORT_PIECE = 5.0   # m: a shorter change of status is not worth a piece
 MOST_OF_IT = 0.9    # share of a piece that one element must cover to give it its name
 LEAST_PLACES = 8
 
@@ -55,7 +55,7 @@ def lane_course(track, s, road):
 
 
 def settled(status):
-    """Status along a lane without changes shorter than 2 m: these take the worse of their neighbours."""
+    """Status along a lane without changes shorter than 5 m: these take the worse of their neighbours."""
     status = status.copy()
     shortest = int(SHORT_PIECE / STEP)
     while True:

@@ -74,24 +74,34 @@ def connect(tracks, lines, most_bridged, most_inferred):
     """Join lanes end to start, one to one.
 
     Without a gap they are joined where they meet; across a gap where one lane faces
-    exactly one other: never across a split or merge. Where a measured line leads
-    through the gap, its course is followed (inferred), elsewhere the gap is bridged.
+    exactly one other: never across a split or merge. Where a measured line or another
+    lane leads through the gap its course is followed (inferred, or as the other lane
+    was found), elsewhere the gap is bridged.
     """
+    while True:
+        count = len(tracks)
+        tracks = _connected(tracks, lines, most_bridged, most_inferred)
+        # a lane that is whole now may guide another
+        if len(tracks) == count:
+            return tracks
+
+
+def _connected(tracks, lines, most_bridged, most_inferred):
     tracks = sorted(tracks, key=lambda t: (t.first, float(t.d[0])))
-    reach = max(most_bridged, most_inferred)
+    reach = int(max(most_bridged, most_inferred) / STEP)
+    firsts = np.array([track.first for track in tracks])
     pairs = []
     for i, a in enumerate(tracks):
-        for j, b in enumerate(tracks):
-            gap = (b.first - a.last - 1) * STEP
-            if i == j or not 0 <= gap <= reach:
-                continue
-            join = _join(a, b, gap, tracks, lines, most_bridged, most_inferred)
+        low, high = np.searchsorted(firsts, [a.last + 1, a.last + 1 + reach + 1])
+        for j in range(low, high):
+            join = _join(a, tracks[j], tracks, lines, most_bridged, most_inferred)
             if join is not None:
-                pairs.append((gap, abs(join[0]), i, j, join[1]))
-    after, before, fill = {}, {}, {}
+                pairs.append((tracks[j].first - a.last, abs(join[0]), i, j, join[1]))
+    after, before, fill = {}, set(), {}
     for _, _, i, j, middle in sorted(pairs, key=lambda p: p[:4]):
         if i not in after and j not in before:
-            after[i], before[j], fill[i] = j, i, middle
+            after[i], fill[i] = j, middle
+            before.add(j)
     joined = []
     for i in range(len(tracks)):
         if i in before:
@@ -106,29 +116,27 @@ def connect(tracks, lines, most_bridged, most_inferred):
     return joined
 
 
-def _join(a, b, gap, tracks, lines, most_bridged, most_inferred):
+def _join(a, b, tracks, lines, most_bridged, most_inferred):
     """(lateral jump, the Track between or None), or None where a and b are not one lane."""
     count = b.first - a.last - 1
     wa, wb = a.end_width(False), b.end_width(True)
-    guide = _guide(a, b, lines) if gap else None
-    if gap > (most_bridged if guide is None else most_inferred):
+    course, status = _guide(a, b, lines, [t for t in tracks if t is not a and t is not b]) if count else (None, None)
+    if count * STEP > (most_bridged if course is None else most_inferred):
         return None
-    course = lines.d[guide, a.last:b.first + 1] if guide is not None else np.full(count + 2, 0.0)
-    jump = (b.d[0] - course[-1]) - (a.d[-1] - course[0])
-    if abs(jump) > SAME_LANE * min(wa, wb):
+    path = course if course is not None else np.zeros(count + 2)
+    jump = (b.d[0] - path[-1]) - (a.d[-1] - path[0])
+    if abs(jump) > SAME_LANE * min(wa, wb) or abs(wa - wb) > 2 * SAME_LANE * max(wa, wb):
         return None
-    if gap and not _one_to_one(a, b, wa, wb, tracks):
+    if not _one_to_one(a, b, wa, wb, tracks):
         return None
     if not count:
         return jump, None
     share = np.arange(1, count + 1) / (count + 1)
-    offset = a.d[-1] - course[0] + jump * share
-    status = BRIDGED if guide is None else INFERRED
-    if guide is None:
-        # the road's own shape is in the frame; the line only has to leave and arrive smoothly
-        offset = _hermite(a, b, count)
-    between = Track(a.last + 1, *_filler(count, offset + course[1:-1] * (guide is not None), wa + (wb - wa) * share,
-                                         status, True))
+    # the road's own shape is in the frame; a bridge only has to leave and arrive smoothly
+    d = _hermite(a, b, count) if course is None else a.d[-1] - path[0] + jump * share + path[1:-1]
+    between = Track(a.last + 1, *_filler(count, d, wa + (wb - wa) * share, BRIDGED, True))
+    if course is not None:
+        between.status[:] = status[1:-1]
     if any(_crowded(between, t) for t in tracks if t is not a and t is not b):
         return None
     return jump, between
@@ -143,22 +151,27 @@ def _hermite(a, b, count):
             + span * (slopes[0] * t * (1 - t) ** 2 - slopes[1] * t**2 * (1 - t)))
 
 
-def _guide(a, b, lines):
-    """The nearest line that was measured all through the gap."""
+def _guide(a, b, lines, others):
+    """Course (N,) and status (N,) of what leads through a gap: the nearest measured line, else the nearest lane; or None."""
     window = slice(a.last, b.first + 1)
-    through = (np.isfinite(lines.d[:, window]) & lines.seen[:, window]).all(1)
-    if not through.any():
-        return None
-    rows = np.flatnonzero(through)
-    return int(rows[np.argmin(np.abs(lines.d[rows, a.last] - a.d[-1]))])
+    through = np.flatnonzero((np.isfinite(lines.d[:, window]) & lines.seen[:, window]).all(1))
+    if len(through):
+        nearest = through[np.argmin(np.abs(lines.d[through, a.last] - a.d[-1]))]
+        return lines.d[nearest, window], np.full(b.first + 1 - a.last, INFERRED)
+    through = [t for t in others if t.first <= a.last and t.last >= b.first]
+    if not through:
+        return None, None
+    nearest = min(through, key=lambda t: abs(t.at(a.last)[0] - a.d[-1]))
+    rows = slice(a.last - nearest.first, b.first + 1 - nearest.first)
+    return nearest.d[rows], np.maximum(nearest.status[rows], INFERRED)
 
 
 def _one_to_one(a, b, wa, wb, tracks):
     near = int(NEAR_END / STEP)
     starts = [t.d[max(b.first - t.first, 0)] for t in tracks
-              if t is not a and t.first <= b.first + near and t.last >= b.first and t.first > a.last]
+              if t is not a and a.last < t.first <= b.first + near and t.last >= b.first]
     ends = [t.d[min(a.last - t.first, len(t) - 1)] for t in tracks
-            if t is not b and t.last >= a.last - near and t.first <= a.last and t.last < b.first]
+            if t is not b and a.last - near <= t.last < b.first and t.first <= a.last]
     faced = sum(abs(d - a.d[-1]) < 0.5 * wa + 0.2 for d in starts)
     facing = sum(abs(d - b.d[0]) < 0.5 * wb + 0.2 for d in ends)
     return faced == 1 and facing == 1
