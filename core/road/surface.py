@@ -1,0 +1,209 @@
+"""The road surface: the points between the road edges, or as far as the ground stays a road, and their outline."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import RoadExtractionError
+from ..features import Features
+from ..parallel import in_order
+from ..progress import Progress
+from ..schemas import ROAD_SURFACE
+from ..survey.points import ROAD_POINT, UNIT
+from ..survey.road_frame import CORRIDOR
+from ..survey.road_points import RoadPoints
+from .surface_cells import COLUMN, ROW, Cells, ground_cells
+from .surface_growth import follow_road, smooth_road
+from .surface_limits import edge_offsets
+from .surface_outline import add_outlines
+from .surface_verge import grown_offsets
+
+WINDOW_ROWS = 40      # rows of cells made at a time: 20 m
+TOLERANCE_FLOOR = 0.03  # m
+TOLERANCE_SIGMAS = 4.0
+
+
+@dataclass(frozen=True)
+class SurfaceSettings:
+    """What counts as road surface.
+
+    max_width : m from the vehicle's track that a surface without an edge grows at most
+    height_tolerance : m about the road's own height that a point may lie at most;
+        where the scanner's noise allows, less is taken
+    """
+
+    max_width: float = 12.0
+    height_tolerance: float = 0.15
+
+    def __post_init__(self):
+        if not 0.5 <= self.max_width <= 100.0:
+            raise RoadExtractionError(
+                f"The farthest surface from the trajectory is {self.max_width} m; it must be between 0.5 and 100 m.")
+        if not 0.01 <= self.height_tolerance <= 1.0:
+            raise RoadExtractionError(f"The height tolerance is {self.height_tolerance} m; it must be between 0.01 and 1 m.")
+
+
+@dataclass
+class Carriageway:
+    """One road's surface in rows of stations.
+
+    cells, height : the grid (height is the smoothed road's, (rows, columns))
+    right, left : (rows,) offsets of its limits; NaN in rows without road
+    right_measured, left_measured : (rows,) whether an edge was measured there
+    tolerance : m about the height
+    """
+
+    cells: Cells
+    height: np.ndarray
+    ground: np.ndarray
+    right: np.ndarray
+    left: np.ndarray
+    right_measured: np.ndarray
+    left_measured: np.ndarray
+    tolerance: float
+
+
+def extract_road_surface(survey, edges=None, settings=SurfaceSettings(), progress=Progress()):
+    """Keep the points of the road surface.
+
+    Between road edges everything belongs that lies on the road's own height,
+    which is followed from under the vehicle outward: parked cars, people and
+    islands do not. On a side, or a stretch of it, without an edge the surface
+    ends where the ground stops being a road (a step, another slope, rough or
+    differently bright ground), at most `max_width` from the track. Across an
+    opening up to 30 m long the line from edge to edge bounds it.
+
+    Parameters
+    ----------
+    survey : Survey
+    edges : Features ROAD_EDGES in map coordinates, or None
+
+    Returns
+    -------
+    RoadPoints with `half_width`, and Features ROAD_SURFACE: PolygonZ, `status`
+    measured where both sides have a measured edge, grown elsewhere.
+
+    Raises
+    ------
+    RoadExtractionError
+        If no road surface is found.
+    """
+    road_points = RoadPoints.empty_like(origin=survey.frame.origin, crs=survey.crs)
+    surface = Features("PolygonZ", list(ROAD_SURFACE), crs=survey.crs)
+    roads = survey.store.roads()
+    for k, road in enumerate(roads):
+        part = progress.part(k / len(roads), (k + 1) / len(roads))
+        carriageway = find_carriageway(survey, road, edges, settings, part.part(0.0, 0.5))
+        if carriageway is None:
+            progress.warn(f"Road {road}: nothing was scanned near the track, so it has no surface.")
+            continue
+        per_row = _take_points(survey, road, carriageway, road_points, part.part(0.5, 1.0))
+        add_outlines(surface, survey.frame, road, carriageway, per_row)
+    if not len(road_points):
+        raise RoadExtractionError("No road surface was found: nothing was scanned under or beside the trajectory at the height "
+                                  "of the road. Check that the trajectory belongs to the point cloud.")
+    grown = sum(g.area for g, r in surface if r["status"] == "grown")
+    progress.say(f"Road surface: {len(road_points):,} points, {sum(g.area for g in surface.geometries):.0f} m², "
+                 f"{grown:.0f} m² of it grown without an edge.")
+    return road_points, surface
+
+
+def find_carriageway(survey, road, edges, settings, progress=Progress()):
+    """Height and limits of one road, row by row; None where nothing lies near its track."""
+    start, end = survey.store.span(road)
+    first = int(np.floor(start / ROW))
+    windows = range(first, int(np.ceil(end / ROW)), WINDOW_ROWS)
+
+    def cells_of(row):
+        points = survey.window(road, row * ROW, (row + WINDOW_ROWS) * ROW)
+        return ground_cells(points, row, WINDOW_ROWS, CORRIDOR, lambda s: survey.road_height(road, s))
+
+    cells = Cells.joined(list(in_order(cells_of, windows, progress.part(0.0, 0.6))))
+    stations = cells.stations
+    followed = follow_road(cells, survey.road_height(road, stations))
+    if followed is None:
+        return None
+    height = smooth_road(followed, cells)
+    measured = edge_offsets(edges, survey.frame, road, stations)
+    tracks = np.array([p.at_station(stations)[0] for p in survey.frame.passes_of(road)])
+    limits = {}
+    for side, sign, track in (("left", 1.0, tracks.max(axis=0)), ("right", -1.0, tracks.min(axis=0))):
+        offset, seen = measured[side]
+        missing = np.isnan(offset)
+        if missing.any():
+            grown = grown_offsets(survey, road, cells, height, followed.noise, sign, track, missing, settings.max_width,
+                                  progress.part(0.6 if sign > 0 else 0.8, 0.8 if sign > 0 else 1.0))
+            offset = np.where(missing, grown, offset)
+        limits[side] = offset, seen
+    there = _has_road(followed.ground, cells.offsets) & (limits["left"][0] > limits["right"][0] + 0.5)
+    tolerance = float(np.clip(TOLERANCE_FLOOR + TOLERANCE_SIGMAS * followed.noise, 0.0, settings.height_tolerance))
+    return Carriageway(cells, height, followed.ground, np.where(there, limits["right"][0], np.nan),
+                       np.where(there, limits["left"][0], np.nan), limits["right"][1], limits["left"][1], tolerance)
+
+
+def _has_road(ground, offsets):
+    """Rows that show ground near the reference line, or lie within 2.5 m of such."""
+    seen = ground[:, np.abs(offsets) < 1.5].any(axis=1)
+    return np.convolve(seen, np.ones(11), "same") > 0
+
+
+def _take_points(survey, road, carriageway, road_points, progress):
+    """Append one road's points; returns how many lie in each row of cells."""
+    per_row = np.zeros(len(carriageway.height), np.int64)
+    sections = survey.store.sections(road)
+
+    def take(number):
+        points = survey.section(road, number)
+        on_road, half_width = select_points(points, carriageway)
+        records = points.records[on_road]
+        found = np.zeros(len(records), ROAD_POINT)
+        for name in records.dtype.names:
+            found[name] = records[name]
+        found["corrected"] = np.nan
+        found["half_width"] = np.clip(np.rint(half_width * 1e3), 0, 65535)
+        return found
+
+    for records in in_order(take, sections, progress):
+        road_points.store.append(road, records)
+        row = np.floor(records["s"] * UNIT / ROW).astype(np.int64) - carriageway.cells.first_row
+        per_row += np.bincount(np.clip(row, 0, len(per_row) - 1), minlength=len(per_row))
+    return per_row
+
+
+def select_points(points, carriageway):
+    """Indices of the points on the road surface, and the half width of the road on each one's side.
+
+    Returns
+    -------
+    (M,) indices; (M,) metres from the reference line to the limit of the point's side
+    """
+    cells = carriageway.cells
+    s, d = points.s, points.d
+    row = np.clip(s / ROW - cells.first_row - 0.5, 0, len(cells.height) - 1)
+    left, right = _at_rows(carriageway.left, row), _at_rows(carriageway.right, row)
+    with np.errstate(invalid="ignore"):
+        inside = np.flatnonzero((d < left) & (d > right))
+    row, column = row[inside], d[inside] / COLUMN - cells.first_column - 0.5
+    column = np.clip(column, 0, cells.height.shape[1] - 1)
+    height = _bilinear(carriageway.height, row, column)
+    near = np.abs(points.records["z"][inside] * UNIT - height) < carriageway.tolerance
+    kept = inside[near]
+    half_width = np.where(d[kept] >= 0, left[kept], -right[kept])
+    return kept, np.maximum(half_width, np.abs(d[kept]))
+
+
+def _at_rows(values, row):
+    """Values of rows at fractional rows; NaN beside a row without one."""
+    k = np.minimum(row.astype(np.int64), len(values) - 2) if len(values) > 1 else np.zeros(len(row), np.int64)
+    after = np.minimum(k + 1, len(values) - 1)
+    f = row - k
+    found = (1 - f) * values[k] + f * values[after]
+    # at the first and last row of a road the nearer one counts
+    return np.where(np.isfinite(found), found, np.where(f < 0.5, values[k], values[after]))
+
+
+def _bilinear(grid, row, column):
+    i = np.minimum(row.astype(np.int64), grid.shape[0] - 2)
+    j = np.minimum(column.astype(np.int64), grid.shape[1] - 2)
+    u, v = row - i, column - j
+    return ((1 - u) * ((1 - v) * grid[i, j] + v * grid[i, j + 1]) + u * ((1 - v) * grid[i + 1, j] + v * grid[i + 1, j + 1]))

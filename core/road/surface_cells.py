@@ -1,0 +1,140 @@
+"""The ground in cells of station and offset: how high the lowest layer lies, how it tilts, how rough it is."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+ROW, COLUMN = 0.5, 0.25   # m along and across the road
+LAYER_JUMP = 0.06         # m between two layers: ground below, a car's sill above
+LAYER_DEPTH = 0.12        # m of the lowest layer that count as ground: a wall has no upper end
+SHARE = 0.08              # of a cell's points that the lowest layer holds at least: less is multipath below the road
+FEWEST_LAYER = 3          # points of a layer
+FEWEST_TILT = 6           # points from which a cell's tilt and roughness are taken
+NEAR, PER_METRE = 0.7, 0.12  # m about the vehicle's road height, and per metre beside the track, where ground may lie
+
+
+@dataclass
+class Cells:
+    """(rows, columns) float32 arrays, NaN where there is no ground: `height` (local z of a cell's middle),
+    `tilt` across (m per m to the left), `rough` (m about the cell's own plane), `brightness` (median intensity), and `count`.
+
+    Row k reaches from row_size * (first_row + k), column j from column_size * (first_column + j).
+    """
+
+    first_row: int
+    first_column: int
+    row_size: float
+    column_size: float
+    height: np.ndarray
+    tilt: np.ndarray
+    rough: np.ndarray
+    brightness: np.ndarray
+    count: np.ndarray
+
+    NAMES = ("height", "tilt", "rough", "brightness", "count")
+
+    @classmethod
+    def joined(cls, parts):
+        """The cells of windows that follow on each other."""
+        return cls(parts[0].first_row, parts[0].first_column, parts[0].row_size, parts[0].column_size,
+                   *(np.concatenate([getattr(part, name) for part in parts]) for name in cls.NAMES))
+
+    @property
+    def stations(self):
+        """Middles of the rows."""
+        return (self.first_row + np.arange(len(self.height)) + 0.5) * self.row_size
+
+    @property
+    def offsets(self):
+        """Middles of the columns."""
+        return (self.first_column + np.arange(self.height.shape[1]) + 0.5) * self.column_size
+
+
+def ground_cells(points, first_row, rows, reach, road_height, row_size=ROW, column_size=COLUMN):
+    """Cells of a window of the road.
+
+    Parameters
+    ----------
+    points : Points of the window
+    first_row, rows : which rows to make
+    reach : m either side
+    road_height : function of stations, local z of the road under the vehicle, good to decimetres
+    row_size, column_size : m along and across
+
+    Returns
+    -------
+    Cells
+    """
+    half = int(np.ceil(reach / column_size))
+    columns = 2 * half
+    s, d, z = points.s, points.d, points.z
+    row, column = np.floor(s / row_size).astype(np.int64) - first_row, np.floor(d / column_size).astype(np.int64) + half
+    stations = (first_row + np.arange(rows) + 0.5) * row_size
+    prior = road_height(stations)
+    inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
+    inside[inside] &= np.abs(z[inside] - prior[row[inside]]) < NEAR + PER_METRE * np.abs(d[inside])
+    kept = np.flatnonzero(inside)
+    cell = row[kept] * columns + column[kept]
+    up = points.records["z"][kept].astype(np.int64)
+    order = np.argsort(cell * 2**22 + (up - (up.min() if len(up) else 0)), kind="stable")
+    kept, cell = kept[order], cell[order]
+    total = np.bincount(cell, minlength=rows * columns)
+    low = kept[_in_lowest_layer(cell, z[kept], total)]
+    at = row[low] * columns + column[low]
+    u = d[low] - (column[low] - half + 0.5) * column_size
+    v = s[low] - (row[low] + first_row + 0.5) * row_size
+    height, tilt, rough = _planes(at, u, v, z[low], rows * columns)
+    brightness = _medians(at, points.intensity[low].astype(float), rows * columns)
+    shape = rows, columns
+    count = np.bincount(at, minlength=rows * columns)
+    return Cells(first_row, -half, row_size, column_size,
+                 *(values.reshape(shape).astype(np.float32) for values in (height, tilt, rough, brightness, count)))
+
+
+def _in_lowest_layer(cell, z, total):
+    """Mask of points, sorted by cell and height, that belong to the lowest layer of their cell that is no stray."""
+    if not len(cell):
+        return np.zeros(0, bool)
+    begins = np.r_[True, (np.diff(cell) > 0) | (np.diff(z) > LAYER_JUMP)]
+    layer = np.cumsum(begins) - 1
+    size = np.bincount(layer)
+    of_cell = cell[begins]
+    solid = size >= np.maximum(FEWEST_LAYER, SHARE * total[of_cell])
+    chosen = np.full(len(total), -1)
+    numbers = np.flatnonzero(solid)[::-1]
+    chosen[of_cell[numbers]] = numbers
+    lowest = z[begins]
+    return (chosen[cell] == layer) & (z - lowest[layer] < LAYER_DEPTH)
+
+
+def _planes(at, u, v, z, cells):
+    """Height at the middle, tilt across and roughness of the plane through each cell's points."""
+    n = np.bincount(at, minlength=cells).astype(float)
+
+    def mean(values):
+        return np.bincount(at, values, cells) / np.maximum(n, 1)
+
+    mu, mv, mz = mean(u), mean(v), mean(z)
+    du, dv, dz = u - mu[at], v - mv[at], z - mz[at]
+    uu, uv, vv, uz, vz, zz = mean(du * du), mean(du * dv), mean(dv * dv), mean(du * dz), mean(dv * dz), mean(dz * dz)
+    # a little ridge keeps cells whose points lie on one line from tilting at will
+    uu, vv = uu + 1e-4, vv + 1e-4
+    determinant = uu * vv - uv * uv
+    across, along = (uz * vv - vz * uv) / determinant, (vz * uu - uz * uv) / determinant
+    rest = np.maximum(zz - across * uz - along * vz, 0.0)
+    enough, any_ground = n >= FEWEST_TILT, n >= FEWEST_LAYER
+    with np.errstate(invalid="ignore", divide="ignore"):
+        rough = np.sqrt(rest * n / np.maximum(n - 3, 1))
+    height = np.where(enough, mz - across * mu - along * mv, mz)
+    return (np.where(any_ground, height, np.nan), np.where(enough, across, np.nan), np.where(enough, rough, np.nan))
+
+
+def _medians(at, values, cells):
+    order = np.lexsort((values, at))
+    at, values = at[order], values[order]
+    count = np.bincount(at, minlength=cells)
+    start = np.r_[0, np.cumsum(count)[:-1]]
+    found = np.full(cells, np.nan)
+    filled = count >= FEWEST_LAYER
+    found[filled] = values[(start + count // 2)[filled]]
+    return found

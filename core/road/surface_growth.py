@@ -1,0 +1,116 @@
+"""The road's own height, followed outward from the vehicle's track, and where it ends when no edge says so."""
+
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d, uniform_filter1d
+
+from .surface_cells import COLUMN, ROW
+
+STEP = 0.035          # m off the height that the road promised: a curb, a car, an island
+TRACK = 0.6           # m either side of the reference line from which the road starts
+FOLLOW, TURN = 0.5, 0.15   # how fast height and tilt follow what is seen
+STEEPEST = 0.12       # m per m across a road
+ALONG = 1.0           # m, sigma: neighbouring rows are one road
+
+
+@dataclass
+class RoadHeight:
+    """`height` (rows, columns): the road's local z, also under what stands on it; `ground` where the cell shows it;
+    `noise` (m): the usual scatter of a cell's points about the road."""
+
+    height: np.ndarray
+    ground: np.ndarray
+    noise: float
+
+
+def follow_road(cells, prior):
+    """Follow the road outward from the reference line, column by column.
+
+    A cell that lies where its inner neighbours point belongs to the road and
+    teaches the next ones; one that does not (a car, an island, nothing at all)
+    is passed over on the way they point. Rows learn from the rows beside them.
+
+    Parameters
+    ----------
+    cells : Cells of a road
+    prior : (rows,) the road's local z under the vehicle, good to decimetres
+
+    Returns
+    -------
+    RoadHeight, or None where nothing lies near the track
+    """
+    offsets = cells.offsets
+    track = np.abs(offsets) < TRACK
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # rows without points
+        base = np.nanmedian(cells.height[:, track] - prior[:, None], axis=1)
+        noise = float(np.nanmedian(cells.rough[:, np.abs(offsets) < 3.0]))
+    if not np.isfinite(base).any():
+        return None
+    noise = noise if np.isfinite(noise) else 0.01
+    base = prior + _running_median(base, 5)
+    relative = cells.height - base[:, None]
+    height, ground = np.full(relative.shape, np.nan), np.zeros(relative.shape, bool)
+    middle = int(np.flatnonzero(offsets > 0)[0])
+    start = _starting_tilt(relative, offsets)
+    for columns, direction in ((range(middle, len(offsets)), 1.0), (range(middle - 1, -1, -1), -1.0)):
+        _walk(relative, cells.count, columns, direction, start, noise, height, ground)
+    return RoadHeight((height + base[:, None]).astype(np.float32), ground, noise)
+
+
+def _running_median(values, reach):
+    """Median over 2 reach + 1 rows; gaps are filled from the nearest rows."""
+    rows = np.arange(len(values))
+    known = np.isfinite(values)
+    filled = np.interp(rows, rows[known], values[known])
+    padded = np.pad(filled, reach, mode="edge")
+    return np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1), axis=1)
+
+
+def _starting_tilt(relative, offsets):
+    """Tilt across under the vehicle, (rows,)."""
+    near = np.abs(offsets) < 2 * TRACK
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)
+        left = np.nanmedian(relative[:, near & (offsets > 0)], axis=1)
+        right = np.nanmedian(relative[:, near & (offsets < 0)], axis=1)
+    tilt = (left - right) / (2 * TRACK)
+    return np.clip(_running_median(tilt, 5), -STEEPEST, STEEPEST) if np.isfinite(tilt).any() else np.zeros(len(tilt))
+
+
+def _walk(relative, count, columns, direction, start, noise, height, ground):
+    """Follow one side; fills `height` and `ground` in place."""
+    z, tilt = np.zeros(len(start)), start * direction
+    sigma = ALONG / ROW
+    for k, j in enumerate(columns):
+        promised = z + tilt * (0.5 * COLUMN if k == 0 else COLUMN)
+        off = relative[:, j] - promised
+        tolerance = STEP + 2.0 * noise
+        seen = np.isfinite(off) & (np.abs(off) < tolerance)
+        weight = np.where(seen, np.minimum(count[:, j], 20.0), 0.0)
+        # what the rows around see, weighed by their points: one row's gap is filled by its neighbours
+        total = gaussian_filter1d(weight, sigma, mode="nearest")
+        around = gaussian_filter1d(np.where(seen, off, 0.0) * weight, sigma, mode="nearest") / np.maximum(total, 1e-9)
+        told = np.clip(total / 3.0, 0.0, 1.0)
+        z = promised + FOLLOW * told * around
+        tilt = np.clip(tilt + TURN * told * around / COLUMN, -STEEPEST, STEEPEST)
+        tilt = gaussian_filter1d(tilt, sigma, mode="nearest")
+        height[:, j] = z
+        ground[:, j] = np.isfinite(relative[:, j]) & (np.abs(relative[:, j] - z) < tolerance)
+
+
+def smooth_road(road, cells):
+    """The road's height where ground is seen, smoothed over the cells around; elsewhere as it was followed.
+
+    Following lags behind on a crown; with the ground known, a mean of plain cells does not.
+    """
+    weight = np.where(road.ground, np.minimum(cells.count, 20.0), 0.0)
+    off = np.where(road.ground, np.nan_to_num(cells.height - road.height), 0.0)
+
+    def blurred(values):
+        return uniform_filter1d(uniform_filter1d(values, 5, axis=0, mode="nearest"), 3, axis=1, mode="nearest")
+
+    total = blurred(weight)
+    return road.height + np.where(total > 1e-6, blurred(off * weight) / np.maximum(total, 1e-9), 0.0)
