@@ -7,18 +7,23 @@ so that "along the road" is an axis of the array and a bend is straight.
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import ndimage
 
 from ..errors import RoadExtractionError
 from ..parallel import in_order
 from ..progress import Progress
-from ..survey.points import UNIT
+from ..survey.points import UNIT, Points
 from ..survey.road_points import RoadPoints
 from .gutters import gutter_cells, rim_distance
 from .polygons import fill_gaps
-from .thresholds import FEWEST, WIDEST, asphalt_bins, background, bin_edges, split_bins
+from .shapes import measure
+from .thresholds import FEWEST, WIDEST, asphalt, asphalt_bins, background, bin_edges, split_bins
 
 RIM = 0.60        # m from the rim of the road where gutters end and asphalt is asphalt
 BRIGHT = 2.5      # spreads: what is brighter is no background
+NOISY = 0.40      # of asphalt's level: single points that scatter more are averaged (multi-beam scanners)
+AVERAGE = 2.0     # cells, sigma of the average
+STRIP_AREA, STRIP_LENGTH, STRIP_ELONGATION = 0.12, 0.80, 3.5  # m2, m: least of a stroke of paint where single points are noisy
 METHODS = ("multi-threshold",)
 CELL = 400        # units of 0.1 mm: the grid in (s, d) has cells of 4 cm
 WINDOW = 500      # cells: thresholds are taken from 20 m of road
@@ -33,6 +38,8 @@ class MarkingSettings:
     separation : spreads of asphalt between the mean of paint and the mean of
         asphalt, below which a bin has no paint
     lowest, highest : limits of the threshold in spreads above the median of asphalt
+    alone : spreads, the threshold where neither a bin nor its neighbours show two materials
+    faint : spreads, the highest threshold on averages of noisy points, where shape must speak too
     close, shortest : m, gaps along the road that are closed, and pieces shorter than that are dropped
     """
 
@@ -40,6 +47,8 @@ class MarkingSettings:
     separation: float = 4.0
     lowest: float = 3.0
     highest: float = 8.0
+    alone: float = 5.0
+    faint: float = 3.5
     close: float = 0.20
     shortest: float = 0.20
 
@@ -97,7 +106,12 @@ def extract_markings(road_points, image, frame, settings=MarkingSettings(), prog
         part = progress.part(k / len(roads), (k + 1) / len(roads))
         look = _Look(road_points, image, frame, road, settings)
         windows = look.windows()
-        bins = dict(zip(windows, in_order(look.bins, windows, part.part(0.0, 0.5))))
+        scatter = [value for value in in_order(look.scatter, windows, part.part(0.0, 0.1)) if value is not None]
+        look.noisy = bool(scatter) and float(np.median(scatter)) > NOISY
+        if look.noisy:
+            progress.say(f"Intensities scatter by {100 * np.median(scatter):.0f} % about asphalt: paint is sought in averages "
+                         "over a decimetre, and markings smaller than that are not seen.")
+        bins = dict(zip(windows, in_order(look.bins, windows, part.part(0.1, 0.5))))
         levels = Levels({w: found for w, found in bins.items() if found}, settings)
         for records in in_order(lambda w: look.paint(w, levels), windows, part.part(0.5, 1.0)):
             kept.store.append(road, records)
@@ -110,10 +124,19 @@ class _Look:
 
     def __init__(self, road_points, image, frame, road, settings):
         self.road_points, self.image, self.frame, self.road, self.settings = road_points, image, frame, road, settings
+        self.noisy = False
 
     def windows(self):
         start, end = self.road_points.store.span(self.road)
         return list(range(int(np.floor(start / UNIT / CELL / WINDOW)), int(np.floor(end / UNIT / CELL / WINDOW)) + 1))
+
+    def scatter(self, window):
+        """Spread of the intensity of single asphalt points in a window, as a share of their median."""
+        points = self.road_points.window(self.road, window * WINDOW * CELL * UNIT, (window + 1) * WINDOW * CELL * UNIT)
+        if len(points) < FEWEST:
+            return None
+        median, spread = asphalt(points.value)
+        return spread / max(abs(median), 1e-6)
 
     def _grid(self, window):
         """The grid of a window with its halo, the records in it with row and column, brightness and rim distance."""
@@ -131,7 +154,11 @@ class _Look:
         grid = RoadGrid(first, last, low, high)
         occupied = np.zeros(grid.shape, bool)
         occupied[row, column] = True
-        return grid, records, row, column, own, grid.read(self.image, self.frame, self.road), rim_distance(occupied)
+        if self.noisy:
+            brightness = averaged(row * grid.shape[1] + column, Points(records).value, grid.shape)
+        else:
+            brightness = grid.read(self.image, self.frame, self.road)
+        return grid, records, row, column, own, brightness, rim_distance(occupied)
 
     def bins(self, window):
         """Bins of asphalt and Otsu's splits of one window; an empty list where there is nothing to see."""
@@ -163,14 +190,33 @@ class _Look:
         grid, records, row, column, own, brightness, rim = found
         median, spread, scale, threshold = levels.at(grid)
         z, gutter = flatten(brightness, median, spread, rim)
-        with np.errstate(invalid="ignore"):
-            mask = morphology((z > threshold * scale) & ~gutter, self.settings)
+        if self.noisy:
+            with np.errstate(invalid="ignore"):
+                mask = strips((z > np.minimum(threshold, self.settings.faint) * scale) & ~gutter, grid)
+        else:
+            with np.errstate(invalid="ignore"):
+                mask = morphology((z > threshold * scale) & ~gutter, self.settings)
         records, row, column = records[own], row[own], column[own]
-        value = np.where(np.isnan(records["corrected"]), records["intensity"].astype(np.float32), records["corrected"])
+        if self.noisy:  # a single point says nothing
+            return records[mask[row, column]]
         unit = (spread * scale)[row, column]
         # what was taken from the cell as background is taken from the point as well
         ground = brightness[row, column] - z[row, column] * spread[row, column]
-        return records[mask[row, column] & (value > ground + (threshold[row, column] - 0.5) * unit)]
+        return records[mask[row, column] & (Points(records).value > ground + (threshold[row, column] - 0.5) * unit)]
+
+
+def averaged(cell, value, shape):
+    """(rows, columns) float32 mean of the points about each cell; NaN where there are none.
+
+    cell : (N,) flat cell number of each point; value : (N,) its brightness
+    """
+    size = shape[0] * shape[1]
+    count = np.bincount(cell, minlength=size).reshape(shape).astype(float)
+    # brightness in whole 64ths sums exactly, in any order
+    total = np.bincount(cell, np.rint(value.astype(float) * 64), size).reshape(shape) / 64
+    count, total = (ndimage.gaussian_filter(a, AVERAGE, mode="constant", truncate=3.0) for a in (count, total))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.where(count > 0.05, total / count, np.nan).astype(np.float32)
 
 
 def flatten(brightness, median, spread, rim):
@@ -208,7 +254,7 @@ class Levels:
             value = split.threshold
             if not split.accepted:
                 beside = [other.threshold for other in near if abs(other.middle - split.middle) < WIDEST]
-                value = float(np.median(beside)) if beside else self.settings.highest
+                value = float(np.median(beside)) if beside else self.settings.alone
             limits.append(float(np.clip(value, self.settings.lowest, self.settings.highest)))
         return limits
 
@@ -241,6 +287,19 @@ def morphology(mask, settings):
     length = int(round(settings.shortest / (CELL * UNIT)))
     closed = fill_gaps(mask, int(round(settings.close / (CELL * UNIT))), 0)
     return mask & (runs(closed, 0) >= length) | mask & (runs(closed, 1) >= length)
+
+
+def strips(mask, grid):
+    """Only the connected pieces that are long for their width, as strokes of paint are and blotches are not."""
+    labels, count = ndimage.label(mask, np.ones((3, 3), bool))
+    kept = np.zeros(count + 1, bool)
+    large = np.bincount(labels.ravel(), minlength=count + 1) * (CELL * UNIT) ** 2 >= STRIP_AREA
+    for number, box in enumerate(ndimage.find_objects(labels), start=1):
+        if large[number]:
+            row, column = np.nonzero(labels[box] == number)
+            shape = measure((row + box[0].start + grid.first) * CELL, (column + box[1].start + grid.low) * CELL)
+            kept[number] = shape.length >= STRIP_LENGTH and shape.elongation >= STRIP_ELONGATION
+    return kept[labels]
 
 
 def runs(mask, axis):
