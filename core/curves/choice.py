@@ -56,7 +56,7 @@ def fit_curve(x, y, curve="automatic", degree=2, along=None):
 
 
 def candidates(x, y, along=None):
-    """Fits of line, circle, clothoid, ellipse and B-spline, simplest first; those the points cannot carry are missing."""
+    """Fits of line, circle, clothoid, ellipse and B-spline, simplest first, without those the points cannot carry."""
     found = [fit_line(x, y)]
     if len(x) >= 4:
         found.append(fit_circle(x, y))

@@ -70,8 +70,7 @@ class Curve:
 
     def params(self):
         """The curve's numbers as a dict that JSON can hold; `curve_of` makes the curve again."""
-        numbers = {key: value.tolist() if isinstance(value, np.ndarray) else value for key, value in asdict(self).items()}
-        return {"curve": self.kind, **numbers}
+        return {"curve": self.kind, **asdict(self)}
 
     def moved(self, dx, dy):
         """The same curve shifted by (dx, dy): from local to map coordinates."""

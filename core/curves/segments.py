@@ -99,7 +99,8 @@ def _divide(curve, u, e, sigma, length):
         window = slice(begin[i], begin[np.searchsorted(nodes, nodes[i] + LONGEST, "right") - 1])
         t = u[window] - nodes[i]
         # less its own Taylor parabola the shape stays small, and sums keep their digits
-        value = e[window] + shape(u[window]) - shape(nodes[i]) - heading(nodes[i]) * t - 0.5 * curvature(nodes[i]) * t * t
+        parabola = shape(nodes[i]) + heading(nodes[i]) * t + 0.5 * curvature(nodes[i]) * t * t
+        value = e[window] + shape(u[window]) - parabola
         ends = [j for j in range(i + shortest, count + 1) if nodes[j] <= nodes[i] + LONGEST + 1e-9
                 and (j == count or count - j >= shortest)]
         if not ends:

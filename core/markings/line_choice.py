@@ -27,6 +27,7 @@ class Chosen:
     double: bool
     pieces: list
     width: float
+    level: float   # offset less the drift common to the road's lines, metres
 
     @property
     def span(self):
@@ -84,12 +85,18 @@ def choose(lines, drift, crossed, min_paint):
         drawn = pieces(line)
         if lone is not None:
             drawn = [Piece(line.first, line.last, "measured", "dashed")]
-        neighbours = np.array([(s.first, s.last) for j, other in enumerate(lines)
-                               if j != k and abs(level[j] - level[k]) <= NEIGHBOUR for s in other.strands]).reshape(-1, 2)
+        neighbours = _painted_beside(k, lines, level)
         drawn = _extended(drawn, parts[k], lone, (painted_from, painted_to), crossed, neighbours, line)
         width = float(np.average([s.width for s in line.strands], weights=[s.length for s in line.strands]))
-        found.append(Chosen(line, kind, bool(double[k]), drawn, width))
+        found.append(Chosen(line, kind, bool(double[k]), drawn, width, level[k]))
+    _one_centre(found)
     return found
+
+
+def _painted_beside(k, lines, level):
+    """(M, 2) stations between which the lines beside line k are painted."""
+    near = [line for j, line in enumerate(lines) if j != k and abs(level[j] - level[k]) <= NEIGHBOUR]
+    return np.array([(strand.first, strand.last) for line in near for strand in line.strands]).reshape(-1, 2)
 
 
 def _level(line, drift):
@@ -108,7 +115,8 @@ def _dash_of_another(k, lines, beats, level):
     for j, rhythms in enumerate(beats):
         apart = lines[j].last < lines[k].first or lines[j].first > lines[k].last
         for beat in rhythms if apart and abs(level[j] - level[k]) <= SAME_OFFSET else ():
-            if len(lines[j].strands) >= 3 and abs(lines[k].last - lines[k].first - beat.dash) <= max(0.6, 0.25 * beat.dash):
+            differs = abs(lines[k].last - lines[k].first - beat.dash)
+            if len(lines[j].strands) >= 3 and differs <= max(0.6, 0.25 * beat.dash):
                 return beat
     return None
 
@@ -143,14 +151,16 @@ def _beside(lines, drift):
 def _beyond_the_edge(lines, level):
     """(N,) whether a fragment lies farther out than a long line that bounds the road there: gutter, kerb or yard."""
     result = np.zeros(len(lines), bool)
-    bounds = [j for j, line in enumerate(lines) if line.painted >= LONG and _votes(line).get("edge", 0.0) > 0.3 * line.painted]
+    bounds = [j for j, line in enumerate(lines)
+              if line.painted >= LONG and _votes(line).get("edge", 0.0) > 0.3 * line.painted]
     for k, line in enumerate(lines):
         if line.painted >= LONG:
             continue
         for j in bounds:
-            side = np.sign(level[j])
+            # the vehicle drove between the edge lines
+            farther = np.sign(np.median(lines[j].places()[1])) * (level[k] - level[j])
             shared = min(lines[j].last, line.last) - max(lines[j].first, line.first)
-            if side * (level[k] - level[j]) > TWIN[0] and side * level[k] > 0 and shared > 0.5 * (line.last - line.first):
+            if farther > TWIN[0] and shared > 0.5 * (line.last - line.first):
                 result[k] = True
     return result
 
@@ -171,6 +181,41 @@ def _kind(line, double, dashed):
     if _votes(line).get("edge", 0.0) > 0.5 * line.painted or room < (LANE if dashed else WIDE_LANE):
         return "edge"
     return "lane" if dashed else "centre"
+
+
+def _one_centre(chosen):
+    """A road has one centre line at a place.
+
+    Where it is double, solid lines beside it are lane lines; of two solid lines the
+    one nearer the middle of what is painted is the centre line. A dashed line on the
+    course of a centre line is that line's dashed part.
+    """
+    inner = [one for one in chosen if one.kind == "centre" and not one.double]
+    for one in inner:
+        if _shared(one, [other for other in chosen if other.double]) > 0.5:
+            one.kind = "lane"
+    rest = [one for one in inner if one.kind == "centre"]
+    for one in sorted(rest, key=lambda one: -_off_centre(one, chosen)):
+        if _shared(one, [other for other in rest if other is not one and other.kind == "centre"]) > 0.5:
+            one.kind = "lane"
+    central = [one for one in chosen if one.kind == "centre"]
+    for one in chosen:
+        on_course = any(abs(other.level - one.level) <= SAME_OFFSET for other in central if not other.double)
+        if one.kind == "lane" and on_course and not _shared(one, central):
+            one.kind = "centre"
+
+
+def _shared(one, others):
+    """Share of a line's stations beside any of the others."""
+    first, last = one.span
+    together = max((min(last, other.span[1]) - max(first, other.span[0]) for other in others), default=0.0)
+    return max(together, 0.0) / max(last - first, 1e-6)
+
+
+def _off_centre(one, chosen):
+    """Metres between a line and the middle of the outermost lines beside it."""
+    beside = [other.level for other in chosen if _shared(one, [other]) > 0.3]
+    return abs(one.level - (max(beside) + min(beside)) / 2) if beside else 0.0
 
 
 def _extended(drawn, parts, lone, painted, crossed, neighbours, line):

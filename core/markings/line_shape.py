@@ -34,7 +34,7 @@ class LineShape:
         """Arc length on the curve at stations s, going on evenly beyond the ends."""
         stations, lengths = self._station_to_u
         inside = np.interp(s, stations, lengths)
-        return inside + np.where(s < stations[0], s - stations[0], np.where(s > stations[-1], s - stations[-1], 0.0))
+        return inside + np.minimum(s - stations[0], 0.0) + np.maximum(s - stations[-1], 0.0)
 
     def draw(self, first, last):
         """(M, 3) local places from station `first` to `last`, at most half a metre apart."""
@@ -42,8 +42,7 @@ class LineShape:
         count = max(2, int(np.ceil((ends[1] - ends[0]) / STEP - 1e-9)) + 1)
         u = np.linspace(ends[0], ends[1], count)
         stations, lengths = self._station_to_u
-        s = np.interp(u, lengths, stations)
-        s = np.where(u < lengths[0], stations[0] + u - lengths[0], np.where(u > lengths[-1], stations[-1] + u - lengths[-1], s))
+        s = np.interp(u, lengths, stations) + np.minimum(u - lengths[0], 0.0) + np.maximum(u - lengths[-1], 0.0)
         return np.c_[self.fit.curve.at(u), self._height(s)]
 
 
@@ -97,7 +96,7 @@ def _fitted(x, y, settings):
 
 
 def _guides(s, level, drift, span):
-    """Places in long gaps and beyond the ends where nothing is painted: straight from end to end beside the other lines."""
+    """Places in long gaps and beyond the ends, where nothing is painted: parallel to the other lines."""
     gaps = [(a, b) for a, b in zip(s[:-1], s[1:]) if b - a > GUIDED_GAP]
     stations, offsets = [], []
     for a, b in gaps:

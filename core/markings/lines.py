@@ -13,7 +13,7 @@ from ..progress import Progress
 from ..schemas import MARKING_LINES
 from . import line_choice
 from .line_shape import shape_of
-from .linking import Drift, Line, link, link_far
+from .linking import Drift, Line, link, link_far, without_strays
 from .patterns import same_rhythm
 from .tracing import line_paint, trace
 
@@ -68,7 +68,7 @@ def fit_marking_lines(clustered_points, markings, frame, settings=LineSettings()
     """
     if not clustered_points.has_cluster:
         raise RoadExtractionError(
-            "The points have no field “cluster”. Give the file written by “Cluster markings” together with its layer.")
+            "The points have no field “cluster”. Give the file that “Cluster markings” wrote, together with its layer.")
     found = Features("LineStringZ", MARKING_LINES, crs=clustered_points.crs)
     number, replaced, dropped = 0, 0, 0
     roads = clustered_points.roads()
@@ -81,6 +81,7 @@ def fit_marking_lines(clustered_points, markings, frame, settings=LineSettings()
         drift = Drift(strands)
         lines = link([Line([strand]) for strand in strands], drift, settings.max_gap)
         lines = link_far(lines, drift, settings.max_gap, settings.max_bridge, same_rhythm)
+        lines = [without_strays(line, drift) for line in lines]
         part.at(0.5)
         chosen = line_choice.choose(lines, drift, line_choice.crossings(markings, road, frame), settings.min_paint)
         dropped += len(lines) - len(chosen)
@@ -93,7 +94,8 @@ def fit_marking_lines(clustered_points, markings, frame, settings=LineSettings()
             part.at(0.5 + 0.5 * (j + 1) / len(chosen))
     progress.say(f"{number} marking lines; {dropped} fragments were left out.")
     if replaced:
-        progress.warn(f"{replaced} of {number} lines cannot take the curve “{settings.curve}”; the automatic curve was used for them.")
+        progress.warn(f"{replaced} of {number} lines cannot take the curve “{settings.curve}”; "
+                      "the automatic curve was used for them.")
     return found
 
 
@@ -129,5 +131,5 @@ def _add(found, one, shape, number, road, origin):
 
 def _rounded(numbers):
     """Long lists to 0.1 mm: a spline of a long road stays readable."""
-    return {key: [round(v, 4) for v in value] if isinstance(value, list) and key.startswith(("control", "knots")) else value
-            for key, value in numbers.items()}
+    long = ("knots", "control_x", "control_y")
+    return {key: [round(v, 4) for v in value] if key in long else value for key, value in numbers.items()}

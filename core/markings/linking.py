@@ -15,6 +15,9 @@ MEMORY = 5.0         # m that slopes are averaged over
 END = 6.0            # m of a strand's end that say where it goes
 LEAST_PAINT = 3.0    # m that either side of a long gap must have
 OVERLAP = 0.6        # m that two strands of one line may overlap
+VIEW = 20.0          # m before and after a strand that say where it should lie
+SHORT = 4.0          # m: longer strands make their own case
+STRAY = 0.10         # m across
 TWIN = (0.15, 0.50)  # m between the middles of the two lines of a double line
 BETWEEN = (0.25, 0.75)  # of the way from one line of a double to the other: its middle
 TURN = np.tan(np.radians(10.0))   # across per along by which two strands may differ
@@ -191,7 +194,7 @@ def link(lines, drift, max_gap, allowed=0.30):
 
 
 def twins(lines, drift, at_start):
-    """(N,) signed distance across to the other line of a double line at each line's start (or end); 0 where there is none."""
+    """(N,) signed distance across to the other line of a double line at each start (or end); 0 where there is none."""
     tips = [line_end(line, drift, at_start) for line in lines]
     spans = np.array([(line.first, line.last) for line in lines]).reshape(-1, 2)
     result = np.zeros(len(lines))
@@ -210,7 +213,10 @@ def twins(lines, drift, at_start):
 
 
 def _between_twins(twin_before, twin_after, before, after):
-    """Whether a double line meets a single one in its middle: it ends there. (Where wear hides a twin, the other goes straight on.)"""
+    """Whether a double line meets a single one in its middle: it ends there.
+
+    Where only wear hides a twin, the other goes straight on and is no line between the two.
+    """
     if (twin_before == 0.0) == (twin_after == 0.0):
         return False
     middle = (before.s + after.s) / 2
@@ -263,6 +269,38 @@ def link_far(lines, drift, max_gap, max_bridge, same_rhythm, allowed=0.25):
                 preceded.add(b)
         # a longer line knows its rhythm and its course better: look again
         lines = _joined(lines, follows, preceded)
+
+
+def without_strays(line, drift):
+    """The line less short strands that lie off the course of the paint before and after them."""
+    if len(line.strands) < 3:
+        return line
+    s, d, _, weight = line.places()
+    level = d - drift.at(s)
+    owner = np.repeat(np.arange(len(line.strands)), [len(strand.s) for strand in line.strands])
+    kept = []
+    for k, strand in enumerate(line.strands):
+        middle = (strand.first + strand.last) / 2
+        others = (owner != k) & (np.abs(s - middle) <= VIEW)
+        both = (s[others] < middle).any() and (s[others] > middle).any()
+        if strand.length > SHORT and strand.length > 0.1 * line.painted or not both:
+            kept.append(strand)
+            continue
+        expected = _robust_level(s[others] - middle, level[others], np.minimum(weight[others], 10.0))
+        if abs(np.median(level[owner == k]) - expected) <= STRAY:
+            kept.append(strand)
+    return Line(kept)
+
+
+def _robust_level(s, level, weight):
+    """Value at 0 of a straight line through (s, level), strays counting little."""
+    base = weight
+    design = np.c_[np.ones(len(s)), s / VIEW]
+    for _ in range(6):
+        root = np.sqrt(weight)
+        found = np.linalg.lstsq(design * root[:, None], level * root, rcond=None)[0]
+        weight = base / np.sqrt(1.0 + ((level - design @ found) / 0.03) ** 2)
+    return found[0]
 
 
 def _runs_beside(lines, pair, before, after, drift):

@@ -7,6 +7,7 @@ import numpy as np
 WEAR = 0.8           # m: a shorter hole is wear within a dash
 LONGEST_DASH = 10.5  # m: longer paint is solid line
 LEAST_GAP = 0.4      # of the dash: road markings leave gaps of half a dash (6 m and 3 m) or more
+PAIR = (1.5, 8.0)    # m: dashes of which two alone are taken for a dashed line
 ALIKE = 0.16         # of the period: how evenly dashes must follow each other
 SOLID_GAP = 2.5      # m: a longer hole in a solid line is bridged, not measured
 
@@ -81,7 +82,9 @@ def rhythm(spans):
     alike = np.abs(length - dash) <= max(0.5, 0.2 * dash)
     if len(spans) == 2:
         gap = float(spans[1, 0] - spans[0, 1])
-        even = alike.all() and dash <= 8.0 and max(LEAST_GAP * dash, 1.5) <= gap <= 13.0
+        # two pieces may be alike by chance: they must be as long as dashes are, and equally long
+        even = np.ptp(length) <= max(0.4, 0.12 * dash) and PAIR[0] <= dash <= PAIR[1] \
+            and max(LEAST_GAP * dash, 1.5) <= gap <= 13.0
         return Rhythm(dash, float(steps[0])) if even else None
     period = _period(steps)
     if period is None or period - dash < LEAST_GAP * dash or alike.mean() < 0.55:
@@ -97,9 +100,10 @@ def _period(steps):
             continue
         times = np.maximum(np.round(steps / start), 1.0)
         good = (np.abs(steps / start - times) <= ALIKE) & (times <= 4)
-        if not good.any() or (times[good] == 1).sum() < 0.4 * len(steps):
+        share, single = good.mean(), (times[good] == 1).sum()
+        # many steps over missing dashes are believed where nearly all fit
+        if single < 0.4 * len(steps) and not (single >= 2 and len(steps) >= 5 and share >= 0.85):
             continue
-        share = good.mean()
         if share > best_share + 1e-9:
             best, best_share = float(np.sum(steps[good]) / np.sum(times[good])), share
     return best if best_share >= 0.65 else None

@@ -211,6 +211,19 @@ def test_a_dashed_line_that_becomes_solid_is_cut_where_it_changes():
     assert lines.rows[1]["length_m"] == pytest.approx(36.0, abs=0.7)
 
 
+def test_the_dashed_part_of_a_centre_line_is_centre_line_too():
+    """Beyond a junction, 35 m on, the only line between the edges goes on solid."""
+    street = Street(length=200.0).dashes(5.0, 5.0, 0.0, last=90.0).paint(125, 200, 0.0, kind="centre")
+    assert set(told(street.lines(), "line", "kind", "pattern")) == {(1, "centre", "dashed"), (2, "centre", "solid")}
+
+
+def test_solid_lane_lines_beside_a_double_line_are_no_centre_lines():
+    street = Street().paint(0, 120, 0.15, kind="centre").paint(0, 120, -0.15, kind="centre")
+    street.paint(80, 110, -2.2, kind="centre")
+    assert sorted(told(street.lines(), "kind", "pattern")) == [
+        ("centre", "double-solid"), ("centre", "double-solid"), ("lane", "solid")]
+
+
 def test_a_worn_solid_line_is_not_called_dashed():
     street = Street(length=200.0, seed=5)
     for first, last in ((0, 14), (14.9, 22), (24, 31), (32.2, 38), (43, 46), (47.5, 56), (58.1, 75), (77, 83), (84, 90),
