@@ -108,6 +108,7 @@ def _on_grid(road, lines):
         kinds.append(longest["kind"])
         patterns.append(longest["pattern"])
     found = _joined(Boundaries(s, d, z, seen, [key[1] for key in order], kinds, patterns))
+    _even_doubles(found)
     _lengthen_dashed(found)
     return found
 
@@ -135,6 +136,32 @@ def _joined(lines):
         rows.remove(k)
     return Boundaries(lines.s, lines.d[rows], lines.z[rows], lines.seen[rows], [lines.numbers[k] for k in rows],
                       [lines.kinds[k] for k in rows], [lines.patterns[k] for k in rows])
+
+
+def _even_doubles(lines):
+    """The two lines of a double line begin and end together: the shorter goes on beside the longer, a dash gap at most.
+
+    Else a lane would reach for the farther of the two where the nearer is worn away.
+    """
+    present = np.isfinite(lines.d)
+    reach = int(DASH_GAP / STEP)
+    for k in np.flatnonzero(["double" in pattern for pattern in lines.patterns]):
+        columns = np.flatnonzero(present[k])
+        if not len(columns):
+            continue
+        for end, step in ((columns[-1], 1), (columns[0], -1)):
+            beside = np.abs(np.where(present[:, end], lines.d[:, end], np.nan) - lines.d[k, end])
+            beside[k] = np.nan
+            twin = _nearest(beside < DOUBLE, beside)
+            if twin is None:
+                continue
+            ahead = end + step * np.arange(1, reach + 1)
+            ahead = ahead[(ahead >= 0) & (ahead < len(lines.s))]
+            go = present[twin, ahead] & ~present[k, ahead]
+            ahead = ahead[:len(go) if go.all() else int(np.argmin(go))]
+            for values in (lines.d, lines.z):
+                values[k, ahead] = values[twin, ahead] + (values[k, end] - values[twin, end])
+            lines.seen[k, ahead] = lines.seen[twin, ahead]
 
 
 def _lengthen_dashed(lines):

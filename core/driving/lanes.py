@@ -11,6 +11,7 @@ SQUEEZE = 0.5      # what two lines too near for a lane between them cost, in li
 STRADDLED = 0.5    # what a line costs that the vehicle drove along, astride
 MOST_LANES = 4     # between two outer lines
 RESTLESS = 0.8     # m of change of width beyond which a strip is classed place by place
+SHORT_LANE = 2.0   # m: shorter, it is where lines end unevenly
 SHORT_CLASS = 5.0  # m: a shorter change of class is noise of the width
 
 
@@ -133,7 +134,7 @@ def paired_lanes(lines, all_strips, room):
     tracks = []
     for left, right, first, last in all_strips:
         for what, a, b in classed(lines, (left, right, first, last)):
-            if what == "lane":
+            if what == "lane" and b - a + 1 >= SHORT_LANE / STEP:
                 tracks.append(_share(lines, left, right, a, b, 0, 1))
     return [track for track in tracks if room(track)]
 
@@ -198,10 +199,11 @@ def seen_width(tracks):
     return float(np.median(widths)) if len(widths) else USUAL
 
 
-def lone_lanes(lines, kept, tracks, driven, half, room):
+def lone_lanes(lines, kept, tracks, driven, half, shortest, room):
     """Lanes beside a line without partner: where the vehicle drove, and on both sides of a centre line that is alone.
 
     half : distance of the driving line from the painted one
+    shortest : metres; less is a gap between lanes that are known, left open for a reason
     """
     alone = (kept.sum(0) == 1)
     found = []
@@ -219,6 +221,8 @@ def lone_lanes(lines, kept, tracks, driven, half, room):
                 window = slice(track.first, track.last + 1)
                 free[window] &= np.abs(track.d - d[window]) > 0.8 * half + 0.4 * track.width
             for a, b in true_runs(free):
+                if b - a + 1 < shortest / STEP:
+                    continue
                 window = slice(a, b + 1)
                 there = np.abs(driven[:, window] - d[window]) < half if len(driven) else np.zeros((1, 1), bool)
                 if there.any(0).mean() < 0.5 and not (lines.kinds[k] == "centre" and alone[window].mean() > 0.5):

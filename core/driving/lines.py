@@ -14,13 +14,12 @@ from .direction import divide, driven_offsets, lane_directions, side_votes
 from .elements import element_row
 from .heights import lane_heights
 from .lanes import chosen_lines, divided_strips, lone_lanes, paired_lanes, seen_width, strips
+from .room import Room
 from .settings import DrivingSettings
 from .shape import element_of, lane_course, pieces, settled
 from .track import STATUS, connect, extend
 
 __all__ = ["DrivingSettings", "driving_lines"]
-
-ON_CURB = 0.3   # share of a lane's width: where a curb is this near the lane's middle there is no lane
 
 
 def driving_lines(marking_lines, frame, settings=DrivingSettings(), progress=Progress(),
@@ -36,7 +35,7 @@ def driving_lines(marking_lines, frame, settings=DrivingSettings(), progress=Pro
     ----------
     marking_lines : Features MARKING_LINES
     frame : RoadFrame
-    markings : Features MARKINGS or None
+    markings : Features MARKINGS or None: no lane leads along a hatched area
     edges : Features ROAD_EDGES or None: no lane leads over a curb
     road_points : RoadPoints or None: the heights of the road
 
@@ -45,7 +44,8 @@ def driving_lines(marking_lines, frame, settings=DrivingSettings(), progress=Pro
     lines : Features DRIVING_LINES, digitised in the direction of travel. Lanes are
         numbered from 1 on every road by where they begin, from right to left. A lane is cut into pieces
         by `status`; pieces of one lane touch. `radius_m` and `curve` are the piece's
-        own, `params` the function of the piece's element, in map coordinates.
+        own, `params` the function of the arc, the straight or the
+        whole lane that the piece is on, in map coordinates, along the road.
     elements : Features CURVE_ELEMENTS, a row per arc of every lane
     """
     lines = Features("LineStringZ", DRIVING_LINES, crs=marking_lines.crs)
@@ -55,7 +55,8 @@ def driving_lines(marking_lines, frame, settings=DrivingSettings(), progress=Pro
     boundaries = road_boundaries(marking_lines, frame)
     for count, (number, road_lines) in enumerate(boundaries.items()):
         driven, directions = driven_offsets(frame, number, road_lines.s)
-        tracks = road_lanes(road_lines, driven, settings, curbs.get(number))
+        room = Room(road_lines, frame, number, curbs.get(number), markings)
+        tracks = road_lanes(road_lines, driven, settings, room.clear)
         found[number] = road_lines, tracks, driven, directions, divide(road_lines, tracks, driven, directions)
         progress.at(0.4 * (count + 1) / len(boundaries))
     side = _traffic_side(found, settings, progress)
@@ -70,9 +71,15 @@ def driving_lines(marking_lines, frame, settings=DrivingSettings(), progress=Pro
     return lines, elements
 
 
-def road_lanes(lines, driven, settings, curbs=None):
-    """The lanes of one road as a list of Track, by first station, then from right to left."""
-    room = _room(lines, curbs)
+def road_lanes(lines, driven, settings, room=lambda track: True):
+    """The lanes of one road as a list of Track, by first station, then from right to left.
+
+    Parameters
+    ----------
+    lines : Boundaries
+    driven : (P, K) offset of the passes on the grid, NaN where they were not
+    room : a function that says whether a Track is where a lane can be
+    """
     kept = chosen_lines(lines, driven)
     all_strips = strips(lines, kept)
     tracks = paired_lanes(lines, all_strips, room)
@@ -85,23 +92,10 @@ def road_lanes(lines, driven, settings, curbs=None):
     tracks = connect(tracks, lines, *gaps)
     tracks = connect(tracks + divided_strips(lines, all_strips, tracks, driven, lane_width, room), lines, *gaps)
     half = settings.line_distance or lane_width / 2
-    tracks = connect(tracks + lone_lanes(lines, kept, tracks, driven, half, room), lines, *gaps)
+    tracks = connect(tracks + lone_lanes(lines, kept, tracks, driven, half, settings.max_bridge, room), lines, *gaps)
     tracks = [track.without_bridged_ends() for track in tracks]
     tracks = [track for track in tracks if track is not None and len(track) * STEP >= settings.shortest]
     return sorted(tracks, key=lambda track: (track.first, float(track.d[0])))
-
-
-def _room(lines, curbs):
-    """A function that says whether a lane is clear of curbs."""
-    if curbs is None:
-        return lambda track: True
-    at = np.array([np.interp(lines.s, curbs.s, row, left=np.nan, right=np.nan) for row in curbs.d])
-
-    def clear(track):
-        near = np.abs(at[:, track.first:track.last + 1] - track.d)
-        with np.errstate(invalid="ignore"):
-            return (near < ON_CURB * track.width).any(0).mean() < 0.5
-    return clear
 
 
 def _traffic_side(found, settings, progress):
@@ -136,7 +130,7 @@ def _write_lane(lines, lane, track, way, elements, road_lines, frame, number, ro
                   source="offset" if track.offset[rows].mean() > 0.5 else "pair", status=STATUS[code], curve=curve.kind,
                   radius_m=float(curve.radius) if np.isfinite(curve.radius) else None, rmse_m=float(course.rmse),
                   station_m=start, end_m=end, offset_m=float(np.median(track.d[rows])), length_m=length,
-                  width_m=float(np.median(track.width[rows])), params=json.dumps(curve.moved(*origin[:2]).params()))
+                  width_m=float(np.median(track.width[rows])), params=_function(curve.moved(*origin[:2])))
 
 
 def _between(course, start, end, code_first, code_last):
@@ -146,6 +140,12 @@ def _between(course, start, end, code_first, code_last):
     at = np.r_[s[0] if code_first else start, s[inside], s[-1] if code_last else end]
     at = at[np.r_[True, np.diff(at) > 0]]
     return np.interp(at, s, course.x), np.interp(at, s, course.y), at
+
+
+def _function(curve):
+    """The numbers of a curve as JSON, those of long splines to 0.1 mm."""
+    return json.dumps({name: [round(v, 4) for v in value] if isinstance(value, list) and len(value) > 4 else value
+                       for name, value in curve.params().items()})
 
 
 def _write_elements(elements, lane, way, found, number, origin):

@@ -1,0 +1,76 @@
+"""Which way the lanes of a street are driven."""
+
+import numpy as np
+import pytest
+from painted_streets import Street, middle
+from shapely.geometry import Point
+
+
+def two_lanes(**drive):
+    return Street(**drive).paint(3.5, kind="edge").paint(0.0, pattern="dashed").paint(-3.5, kind="edge")
+
+
+def ways(street, **settings):
+    lines, _ = street.lanes(**settings)
+    for line, row in lines:
+        x = np.asarray(line.coords)[:, 0]
+        heads_east = x[-1] > x[0]
+        assert heads_east == (row["direction"] > 0)
+    return dict(zip(middle(street, lines), [row["direction"] for row in lines.rows]))
+
+
+def test_a_vehicle_right_of_the_centre_line_means_right_hand_traffic():
+    assert ways(two_lanes(vehicle=-1.75)) == {-1.75: 1, 1.75: -1}
+
+
+def test_a_vehicle_left_of_the_centre_line_means_left_hand_traffic():
+    assert ways(two_lanes(vehicle=1.75)) == {-1.75: -1, 1.75: 1}
+
+
+def test_left_hand_traffic_swaps_the_directions_of_right_hand_traffic():
+    street = two_lanes(vehicle=-1.75)
+    right, left = ways(street, traffic_side="right"), ways(street, traffic_side="left")
+    assert right == {lane: -way for lane, way in left.items()} == {-1.75: 1, 1.75: -1}
+
+
+def test_four_lanes_part_at_the_double_line_even_if_it_is_not_in_the_middle():
+    street = Street(vehicle=-1.75).paint(3.5, kind="edge").paint(-3.5, pattern="dashed").paint(-7.0, pattern="dashed")
+    street.paint(-10.5, kind="edge").paint(0.15, pattern="double-solid").paint(-0.15, pattern="double-solid")
+    lines, _ = street.lanes()
+    assert [row["direction"] for row in lines.rows] == [1, 1, 1, -1]
+
+
+def test_passes_in_both_directions_part_the_lanes_without_a_centre_line():
+    street = Street(vehicle=-1.75, again=(1.75,))
+    for offset in (7.0, 3.5, 0.0, -3.5):
+        street.paint(offset, pattern="dashed" if abs(offset) < 3.5 else "solid")
+    assert ways(street) == {-1.75: 1, 1.75: -1, 5.25: -1}
+
+
+def test_a_lane_alone_on_its_road_is_driven_as_the_vehicle_drove():
+    assert ways(Street(vehicle=-1.75).paint(0.0).paint(-3.5)) == {-1.75: 1}
+
+
+def test_driving_the_street_backwards_gives_the_same_lines():
+    there = Street(length=90.0, radius=100.0, vehicle=-1.75)
+    back = Street(length=90.0, radius=100.0, vehicle=1.75, backwards=True)
+    results = []
+    for street in (there, back):
+        for offset in (3.5, 0.0, -3.5):
+            street.paint(offset, 5, 38).paint(offset, 48, 85)
+        results.append(street.lanes())
+    # the frame's reference runs the other way, so rows and directions are turned, the map is not
+    (lines, elements), (turned, turned_elements) = results
+    assert len(lines) == len(turned)
+    for line, row in lines:
+        same = [(other, r) for other, r in turned if other.distance(line.interpolate(0.5, normalized=True)) < 0.01
+                and r["status"] == row["status"]]
+        assert len(same) == 1
+        (other, other_row), = same
+        # ends fall on the half metres of either frame, the lines between them on each other
+        near, far = np.asarray(line.coords)[[0, -1], :2], np.asarray(other.coords)[[0, -1], :2]
+        assert np.hypot(*(near - far).T).max() < 1.01
+        inner = line.segmentize(0.5).coords[3:-3]
+        assert max(other.distance(Point(place)) for place in inner) < 0.005
+        assert other_row["direction"] == -row["direction"]
+    assert sorted(r["radius_m"] for r in elements.rows) == pytest.approx(sorted(r["radius_m"] for r in turned_elements.rows), rel=2e-3)

@@ -1,0 +1,217 @@
+"""Streets with painted lines, and where one drives on them."""
+
+import numpy as np
+import pytest
+from painted_streets import HEIGHT, Street, middle
+from shapely.geometry import LineString, Polygon
+
+from lanewright.core.driving.lines import DrivingSettings, driving_lines
+from lanewright.core.errors import RoadExtractionError
+from lanewright.core.features import Features
+from lanewright.core.schemas import MARKING_LINES, MARKINGS, ROAD_EDGES
+from lanewright.core.survey.points import ROAD_POINT, to_units
+from lanewright.core.survey.road_points import RoadPoints
+
+
+def test_two_lines_three_and_a_half_metres_apart_give_one_driving_line_in_their_middle():
+    street = Street(vehicle=-1.75).paint(0.0).paint(-3.5)
+    lines, _ = street.lanes()
+    assert len(lines) == 1
+    np.testing.assert_allclose(street.offsets(lines.geometries[0]), -1.75, atol=0.005)
+    row = lines.rows[0]
+    assert (row["status"], row["source"], row["curve"], row["direction"]) == ("measured", "pair", "line", 1)
+    assert row["width_m"] == pytest.approx(3.5, abs=0.01)
+    assert row["length_m"] == pytest.approx(110.0, abs=0.6)
+
+
+def test_a_lane_ends_at_the_nearer_line_of_a_double_line():
+    street = Street(vehicle=-1.9).paint(3.65).paint(0.15, kind="centre", pattern="double-solid")
+    street.paint(-0.15, kind="centre", pattern="double-solid").paint(-3.65)
+    lines, _ = street.lanes()
+    assert middle(street, lines) == [pytest.approx(-1.9, abs=0.005), pytest.approx(1.9, abs=0.005)]
+
+
+def test_lines_of_a_bend_give_the_arc_between_them_about_the_same_centre():
+    street = Street(length=90.0, radius=100.0, vehicle=-1.75).paint(0.0).paint(-3.5)
+    lines, elements = street.lanes()
+    assert len(lines) == len(elements) == 1
+    np.testing.assert_allclose(street.offsets(lines.geometries[0]), -1.75, atol=0.005)
+    assert lines.rows[0]["curve"] == "circle"
+    assert lines.rows[0]["radius_m"] == pytest.approx(101.75, rel=1e-3)
+    assert elements.rows[0]["radius_m"] == pytest.approx(101.75, rel=1e-3)
+    assert elements.rows[0]["turn"] == "left"
+
+
+def test_outer_lines_seven_metres_apart_give_two_inferred_lanes():
+    street = Street(vehicle=-1.75).paint(3.5, kind="edge").paint(-3.5, kind="edge")
+    lines, _ = street.lanes()
+    assert [row["status"] for row in lines.rows] == ["inferred"] * 2
+    assert middle(street, lines) == [pytest.approx(-1.75, abs=0.005), pytest.approx(1.75, abs=0.005)]
+    assert [row["direction"] for row in lines.rows] == [1, -1]
+
+
+@pytest.mark.parametrize("lane_width, lanes", [(3.5, 3), (2.6, 4), (4.9, 2)])
+def test_the_number_of_inferred_lanes_follows_from_the_lane_width(lane_width, lanes):
+    street = Street(vehicle=-1.75).paint(5.0).paint(-5.0)
+    lines, _ = street.lanes(lane_width=lane_width)
+    assert len(lines) == lanes
+
+
+def test_a_verge_between_two_carriageways_is_no_pair_of_lanes():
+    street = Street(vehicle=-1.75).paint(0.0).paint(-3.5).paint(7.0).paint(10.5)
+    lines, _ = street.lanes()
+    assert middle(street, lines) == [pytest.approx(-1.75, abs=0.01), pytest.approx(8.75, abs=0.01)]
+
+
+def test_a_zebra_gap_is_bridged_and_flagged_and_the_pieces_touch():
+    street = Street(vehicle=-1.75)
+    for first, last in ((5, 55), (67, 115)):
+        street.paint(0.0, first, last).paint(-3.5, first, last)
+    lines, _ = street.lanes()
+    assert [row["status"] for row in lines.rows] == ["measured", "bridged", "measured"]
+    assert len({row["lane"] for row in lines.rows}) == 1
+    for one, two in zip(lines.geometries, lines.geometries[1:]):
+        assert one.coords[-1] == two.coords[0]
+    np.testing.assert_allclose(street.offsets(lines.geometries[1]), -1.75, atol=0.01)
+    assert lines.rows[1]["station_m"] == pytest.approx(55, abs=0.6) and lines.rows[1]["end_m"] == pytest.approx(67, abs=0.6)
+
+
+def test_a_bridge_through_a_bend_follows_the_bend():
+    street = Street(length=90.0, radius=60.0, vehicle=-1.75)
+    for first, last in ((5, 38), (54, 85)):
+        street.paint(0.0, first, last).paint(-3.5, first, last)
+    lines, _ = street.lanes()
+    assert [row["status"] for row in lines.rows] == ["measured", "bridged", "measured"]
+    np.testing.assert_allclose(street.offsets(lines.geometries[1]), -1.75, atol=0.02)
+
+
+def test_a_junction_longer_than_a_bridge_stays_open():
+    street = Street(length=150.0, vehicle=-1.75)
+    for first, last in ((5, 55), (85, 145)):
+        street.paint(0.0, first, last).paint(-3.5, first, last)
+    lines, _ = street.lanes()
+    assert [row["status"] for row in lines.rows] == ["measured", "measured"]
+    assert len({row["lane"] for row in lines.rows}) == 2
+
+
+def test_a_lane_that_splits_behind_a_crossing_is_not_bridged_across():
+    street = Street(vehicle=-2.4).paint(0.0, 5, 55).paint(-4.8, 5, 55)
+    street.paint(0.0, 67, 115).paint(-2.4, 67, 115).paint(-4.8, 67, 115)
+    lines, _ = street.lanes()
+    assert [row["status"] for row in lines.rows] == ["measured"] * 3
+    assert middle(street, lines) == [pytest.approx(d, abs=0.01) for d in (-2.4, -3.6, -1.2)]
+
+
+@pytest.mark.parametrize("status", ["measured", "bridged"])
+def test_outer_lines_that_lead_past_a_split_do_not_lead_the_lane_into_it(status):
+    street = Street(vehicle=-2.4).paint(0.0, 5, 55).paint(0.0, 67, 115)
+    street.paint(-4.8, 5, 55, line=9).paint(-4.8, 55, 67, line=9, status=status).paint(-4.8, 67, 115, line=9)
+    street.paint(-2.4, 67, 115)
+    lines, _ = street.lanes()
+    assert middle(street, lines) == [pytest.approx(d, abs=0.01) for d in (-2.4, -3.6, -1.2)]
+
+
+def test_where_the_centre_line_pauses_the_lanes_go_on_beside_the_edge_lines():
+    street = Street(vehicle=-1.75, length=160.0).paint(3.5).paint(-3.5)
+    street.paint(0.0, 5, 60).paint(0.0, 100, 155)
+    lines, _ = street.lanes()
+    by_lane = {}
+    for line, row in lines:
+        by_lane.setdefault(row["lane"], []).append(row["status"])
+        np.testing.assert_allclose(np.abs(street.offsets(line)), 1.75, atol=0.01)
+    assert list(by_lane.values()) == [["measured", "inferred", "measured"]] * 2
+
+
+def test_a_lane_narrows_where_its_line_comes_nearer():
+    street = Street(vehicle=-1.75).paint(0.0).paint(lambda s: -4.5 + np.clip((s - 40) / 40, 0, 1))
+    lines, _ = street.lanes()
+    assert len(lines) == 1
+    offsets = street.offsets(lines.geometries[0])
+    assert offsets[0] == pytest.approx(-2.25, abs=0.02) and offsets[-1] == pytest.approx(-1.75, abs=0.02)
+
+
+def test_the_stroke_of_a_symbol_does_not_cut_a_lane_in_two():
+    street = Street(vehicle=-1.2).paint(0.0).paint(-3.5).paint(-1.8, 40, 45)
+    lines, _ = street.lanes()
+    assert len(lines) == 1
+    np.testing.assert_allclose(street.offsets(lines.geometries[0]), -1.75, atol=0.01)
+
+
+def test_beside_a_centre_line_alone_there_is_a_lane_each_way_at_the_distance_asked_for():
+    street = Street(vehicle=-1.6).paint(0.0, kind="centre", pattern="dashed")
+    lines, _ = street.lanes(line_distance=1.6)
+    assert middle(street, lines) == [pytest.approx(-1.6, abs=0.005), pytest.approx(1.6, abs=0.005)]
+    assert [row["source"] for row in lines.rows] == ["offset"] * 2
+    assert [row["direction"] for row in lines.rows] == [1, -1]
+
+
+def test_beyond_the_edge_line_nobody_drives():
+    street = Street(vehicle=-1.75).paint(0.0, kind="edge").paint(-3.5, kind="edge")
+    lines, _ = street.lanes()
+    assert len(lines) == 1
+
+
+def test_no_lane_runs_along_a_curb_or_over_a_hatched_area():
+    street = Street(vehicle=-1.75).paint(0.0).paint(-3.5).paint(3.5)
+    assert len(street.lanes()[0]) == 2
+    edges = Features("LineStringZ", ROAD_EDGES)
+    edges.add(LineString(np.c_[street.places(np.arange(0.0, 120.0), 1.5), np.full(120, HEIGHT)]), road=0, side="left")
+    assert middle(street, street.lanes(edges=edges)[0]) == [pytest.approx(-1.75, abs=0.01)]
+    stripes = Features("PolygonZ", MARKINGS)
+    for s in range(5, 115, 2):
+        corners = street.places([s, s + 1, s + 1, s], [0.3, 0.3, 3.2, 3.2])
+        stripes.add(Polygon(np.c_[corners, np.full(4, HEIGHT)]), **{"road": 0, "class": "hatch", "use": "other"})
+    assert middle(street, street.lanes(markings=stripes)[0]) == [pytest.approx(-1.75, abs=0.01)]
+
+
+def test_neither_the_order_of_rows_nor_the_drawing_of_lines_changes_the_result():
+    street = Street(length=90.0, radius=100.0, vehicle=-1.75)
+    for first, last in ((5, 38), (48, 85)):
+        street.paint(3.5, first, last).paint(0.0, first, last, pattern="dashed").paint(-3.5, first, last)
+    lines, _ = street.lanes()
+    turned = Features("LineStringZ", MARKING_LINES, [line.reverse() for line in street.lines.geometries[::-1]],
+                      street.lines.rows[::-1])
+    again, _ = driving_lines(turned, street.frame)
+    assert [dict(row) for row in again.rows] == [dict(row) for row in lines.rows]
+    for one, two in zip(lines.geometries, again.geometries):
+        np.testing.assert_allclose(np.asarray(one.coords), np.asarray(two.coords), atol=1e-6)
+
+
+def test_lines_drawn_by_hand_with_no_fields_at_all_serve_too():
+    street = Street(vehicle=-1.75).paint(0.0).paint(-3.5)
+    bare = Features("LineStringZ", MARKING_LINES, [LineString([line.coords[0], line.coords[-1]])
+                                                   for line in street.lines.geometries], [{}, {}])
+    lines, _ = driving_lines(bare, street.frame)
+    assert middle(street, lines) == [pytest.approx(-1.75, abs=0.005)]
+
+
+def test_height_is_the_road_s_own_where_it_was_scanned():
+    street = Street(vehicle=-1.75).paint(0.0, z=HEIGHT + 0.3).paint(-3.5, z=HEIGHT + 0.3)
+    rng = np.random.default_rng(3)
+    s, d = rng.uniform(0, 120, 20_000), rng.uniform(-4, 0.5, 20_000)
+    x, y = street.frame.to_local(*street.places(s, d).T)
+    records = np.zeros(len(s), ROAD_POINT)
+    station, offset = street.frame.roads[0].locate(x, y)
+    z = HEIGHT - street.frame.origin[2] + 0.02 * s + rng.normal(0, 0.005, len(s))
+    for name, values in zip("xyzsd", (x, y, z, station, offset)):
+        records[name] = to_units(values)
+    points = RoadPoints.empty_like(origin=street.frame.origin)
+    points.store.append(0, records[np.argsort(station, kind="stable")])
+    lines, _ = street.lanes(road_points=points)
+    x, _, z = np.asarray(lines.geometries[0].coords).T
+    np.testing.assert_allclose(z, HEIGHT + 0.02 * (x - 500_000.0), atol=0.01)
+    lines, _ = street.lanes()
+    np.testing.assert_allclose(np.asarray(lines.geometries[0].coords)[:, 2], HEIGHT + 0.3, atol=1e-6)
+
+
+def test_a_street_without_paint_has_no_driving_lines_and_says_so():
+    street = Street()
+    lines, elements = street.lanes()
+    assert len(lines) == len(elements) == 0
+
+
+@pytest.mark.parametrize("wrong", [dict(lane_width=9.0), dict(line_distance=-1.0), dict(traffic_side="middle"),
+                                   dict(max_bridge=-1.0)])
+def test_settings_out_of_range_are_refused_in_a_sentence(wrong):
+    with pytest.raises(RoadExtractionError, match="must|Choose|are"):
+        DrivingSettings(**wrong)
