@@ -16,7 +16,7 @@ from .surface_cells import COLUMN, ROW, Cells, ground_cells
 from .surface_growth import follow_road, smooth_road
 from .surface_limits import edge_offsets
 from .surface_outline import add_outlines
-from .surface_verge import grown_offsets
+from .surface_verge import Profiles, grown_offsets
 
 WINDOW_ROWS = 40      # rows of cells made at a time: 20 m
 TOLERANCE_FLOOR = 0.03  # m
@@ -111,30 +111,39 @@ def extract_road_surface(survey, edges=None, settings=SurfaceSettings(), progres
 def find_carriageway(survey, road, edges, settings, progress=Progress()):
     """Height and limits of one road, row by row; None where nothing lies near its track."""
     start, end = survey.store.span(road)
-    first = int(np.floor(start / ROW))
-    windows = range(first, int(np.ceil(end / ROW)), WINDOW_ROWS)
+    windows = [WINDOW_ROWS * k for k in range(int(np.floor(start / ROW / WINDOW_ROWS)), int(np.ceil(end / ROW / WINDOW_ROWS)))]
 
-    def cells_of(row):
+    stations = (windows[0] + np.arange(WINDOW_ROWS * len(windows)) + 0.5) * ROW
+    measured = edge_offsets(edges, survey.frame, road, stations)
+    missing = np.isnan(measured["left"][0]) | np.isnan(measured["right"][0])
+
+    def look(row):
         points = survey.window(road, row * ROW, (row + WINDOW_ROWS) * ROW)
-        return ground_cells(points, row, WINDOW_ROWS, CORRIDOR, lambda s: survey.road_height(road, s))
+        profiles = None
+        if missing[row - windows[0]:row - windows[0] + WINDOW_ROWS].any():
+            profiles = Profiles.of(points, row * ROW, WINDOW_ROWS * ROW, CORRIDOR, road_height)
+        return ground_cells(points, row, WINDOW_ROWS, CORRIDOR, road_height), profiles
 
-    cells = Cells.joined(list(in_order(cells_of, windows, progress.part(0.0, 0.6))))
-    stations = cells.stations
-    followed = follow_road(cells, survey.road_height(road, stations))
+    def road_height(s):
+        return survey.road_height(road, s)
+
+    seen = list(in_order(look, windows, progress))
+    cells = Cells.joined([part for part, _ in seen])
+    profiles = [part for _, part in seen if part is not None]
+    prior = road_height(stations)
+    followed = follow_road(cells, prior)
     if followed is None:
         return None
     height = smooth_road(followed, cells)
-    measured = edge_offsets(edges, survey.frame, road, stations)
     tracks = np.array([p.at_station(stations)[0] for p in survey.frame.passes_of(road)])
     limits = {}
     for side, sign, track in (("left", 1.0, tracks.max(axis=0)), ("right", -1.0, tracks.min(axis=0))):
-        offset, seen = measured[side]
-        missing = np.isnan(offset)
-        if missing.any():
-            grown = grown_offsets(survey, road, cells, height, followed.noise, sign, track, missing, settings.max_width,
-                                  progress.part(0.6 if sign > 0 else 0.8, 0.8 if sign > 0 else 1.0))
-            offset = np.where(missing, grown, offset)
-        limits[side] = offset, seen
+        offset, known = measured[side]
+        if np.isnan(offset).any():
+            grown = grown_offsets(Profiles.joined(profiles), cells, height - prior[:, None], followed.noise, sign, track,
+                                  settings.max_width)
+            offset = np.where(np.isnan(offset), grown, offset)
+        limits[side] = offset, known
     there = _has_road(followed.ground, cells.offsets) & (limits["left"][0] > limits["right"][0] + 0.5)
     tolerance = float(np.clip(TOLERANCE_FLOOR + TOLERANCE_SIGMAS * followed.noise, 0.0, settings.height_tolerance))
     return Carriageway(cells, height, followed.ground, np.where(there, limits["right"][0], np.nan),

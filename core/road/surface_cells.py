@@ -16,7 +16,7 @@ NEAR, PER_METRE = 0.7, 0.12  # m about the vehicle's road height, and per metre 
 @dataclass
 class Cells:
     """(rows, columns) float32 arrays, NaN where there is no ground: `height` (local z of a cell's middle),
-    `tilt` across (m per m to the left), `rough` (m about the cell's own plane), `brightness` (median intensity), and `count`.
+    `tilt` across (m per m to the left), `rough` (m about the cell's own plane), `brightness` (median intensity), `scatter` (its lower spread as a sigma), and `count`.
 
     Row k reaches from row_size * (first_row + k), column j from column_size * (first_column + j).
     """
@@ -29,9 +29,10 @@ class Cells:
     tilt: np.ndarray
     rough: np.ndarray
     brightness: np.ndarray
+    scatter: np.ndarray
     count: np.ndarray
 
-    NAMES = ("height", "tilt", "rough", "brightness", "count")
+    NAMES = ("height", "tilt", "rough", "brightness", "scatter", "count")
 
     @classmethod
     def joined(cls, parts):
@@ -48,6 +49,15 @@ class Cells:
     def offsets(self):
         """Middles of the columns."""
         return (self.first_column + np.arange(self.height.shape[1]) + 0.5) * self.column_size
+
+
+def known_median(values, axis):
+    """Median of what is not NaN along an axis; NaN where nothing is known (and no warning in some thread)."""
+    ordered = np.sort(values, axis=axis)
+    count = np.isfinite(ordered).sum(axis=axis, keepdims=True)
+    low = np.take_along_axis(ordered, np.maximum(count - 1, 0) // 2, axis)
+    high = np.take_along_axis(ordered, count // 2 * (count > 0) - (count // 2 >= ordered.shape[axis]), axis)
+    return np.squeeze(0.5 * (low + high), axis)
 
 
 def ground_cells(points, first_row, rows, reach, road_height, row_size=ROW, column_size=COLUMN):
@@ -84,11 +94,11 @@ def ground_cells(points, first_row, rows, reach, road_height, row_size=ROW, colu
     u = d[low] - (column[low] - half + 0.5) * column_size
     v = s[low] - (row[low] + first_row + 0.5) * row_size
     height, tilt, rough = _planes(at, u, v, z[low], rows * columns)
-    brightness = _medians(at, points.intensity[low].astype(float), rows * columns)
+    brightness, scatter = _medians(at, points.intensity[low].astype(float), rows * columns)
     shape = rows, columns
     count = np.bincount(at, minlength=rows * columns)
     return Cells(first_row, -half, row_size, column_size,
-                 *(values.reshape(shape).astype(np.float32) for values in (height, tilt, rough, brightness, count)))
+                 *(values.reshape(shape).astype(np.float32) for values in (height, tilt, rough, brightness, scatter, count)))
 
 
 def _in_lowest_layer(cell, z, total):
@@ -130,11 +140,13 @@ def _planes(at, u, v, z, cells):
 
 
 def _medians(at, values, cells):
+    """Median of each cell's values and the lower spread about it."""
     order = np.lexsort((values, at))
     at, values = at[order], values[order]
     count = np.bincount(at, minlength=cells)
     start = np.r_[0, np.cumsum(count)[:-1]]
-    found = np.full(cells, np.nan)
     filled = count >= FEWEST_LAYER
-    found[filled] = values[(start + count // 2)[filled]]
-    return found
+    median, spread = np.full(cells, np.nan), np.full(cells, np.nan)
+    median[filled] = values[(start + count // 2)[filled]]
+    spread[filled] = (median[filled] - values[(start + count // 4)[filled]]) / 0.6745
+    return median, spread

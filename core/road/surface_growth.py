@@ -1,12 +1,11 @@
 """The road's own height, followed outward from the vehicle's track, and where it ends when no edge says so."""
 
-import warnings
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d, uniform_filter1d
 
-from .surface_cells import COLUMN, ROW
+from .surface_cells import COLUMN, ROW, known_median
 
 STEP = 0.035          # m off the height that the road promised: a curb, a car, an island
 TRACK = 0.6           # m either side of the reference line from which the road starts
@@ -43,10 +42,8 @@ def follow_road(cells, prior):
     """
     offsets = cells.offsets
     track = np.abs(offsets) < TRACK
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # rows without points
-        base = np.nanmedian(cells.height[:, track] - prior[:, None], axis=1)
-        noise = float(np.nanmedian(cells.rough[:, np.abs(offsets) < 3.0]))
+    base = known_median(cells.height[:, track] - prior[:, None], 1)
+    noise = float(known_median(cells.rough[:, np.abs(offsets) < 3.0].ravel(), 0))
     if not np.isfinite(base).any():
         return None
     noise = noise if np.isfinite(noise) else 0.01
@@ -72,10 +69,8 @@ def _running_median(values, reach):
 def _starting_tilt(relative, offsets):
     """Tilt across under the vehicle, (rows,)."""
     near = np.abs(offsets) < 2 * TRACK
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)
-        left = np.nanmedian(relative[:, near & (offsets > 0)], axis=1)
-        right = np.nanmedian(relative[:, near & (offsets < 0)], axis=1)
+    left = known_median(relative[:, near & (offsets > 0)], 1)
+    right = known_median(relative[:, near & (offsets < 0)], 1)
     tilt = (left - right) / (2 * TRACK)
     return np.clip(_running_median(tilt, 5), -STEEPEST, STEEPEST) if np.isfinite(tilt).any() else np.zeros(len(tilt))
 

@@ -1,16 +1,13 @@
 """Where a road without a curb ends: its edge towards verge, ditch or yard, told from height, roughness and brightness."""
 
-import warnings
+from dataclasses import dataclass
 
 import numpy as np
 
-from ..parallel import in_order
-from ..progress import Progress
-from .surface_cells import Cells, ground_cells
+from .surface_cells import ground_cells, known_median
 
 ALONG, ACROSS = 1.0, 0.1   # m, cells of the profile across the side
 STRETCH = 5                # rows that make one profile: 5 m
-WINDOW = 20                # rows read at a time
 SURE = 1.2                 # m beside the track that are road in any case: the vehicle drove there
 PERSISTS = 4               # cells over which a change must last
 STEP, STEP_NOISE = 0.035, 2.0  # m, and times the noise, off the road's height
@@ -18,13 +15,48 @@ ROUGHER, ROUGH_FLOOR = 1.6, 0.0025  # times the road's roughness, and m on top
 TURN = 0.10                # change of tilt that begins a bank or a ditch
 EMPTY = 5                  # cells without a point at which the road is lost sight of
 STRIP = 8                  # cells before the verge in which a strip of gravel is looked for
-INSIDE = 6                 # cells of road that such a strip is compared with
-BRIGHTER, STANDS_OUT = 0.03, 4.0  # share, and times the scatter, by which its brightness differs
+INSIDE = 3                 # cells of road that such a strip is compared with
+DIFFERS, PAINTED = 0.4, 2.0  # times the points' scatter by which its brightness differs at least; at most, or it is paint
 INSET = 0.05               # m kept off a limit: too wide a road takes verge for paint, too narrow a one loses nothing
-SMOOTH = 2                 # profiles either side of the running median
+AROUND, RANK = 2, 1        # profiles either side, the second nearest of which counts: a missed verge is no wider road
 
 
-def grown_offsets(survey, road, cells, height, noise, sign, track, missing, max_width, progress=Progress()):
+@dataclass
+class Profiles:
+    """What the ground is like across the road, one row for 5 m, one column for 0.1 m.
+
+    stations : (P,) middles; offsets : (K,) middles, ascending
+    height : (P, K) m above the road's height under the vehicle as known beforehand
+    tilt, rough, brightness, scatter : (P, K) as in Cells; all NaN where nothing is seen
+    """
+
+    stations: np.ndarray
+    offsets: np.ndarray
+    height: np.ndarray
+    tilt: np.ndarray
+    rough: np.ndarray
+    brightness: np.ndarray
+    scatter: np.ndarray
+
+    NAMES = ("height", "tilt", "rough", "brightness", "scatter")
+
+    @classmethod
+    def of(cls, points, start, length, reach, road_height):
+        """Profiles of a window of the road from station `start` on, both whole metres and a multiple of 5 m long."""
+        cells = ground_cells(points, int(round(start / ALONG)), int(round(length / ALONG)), reach, road_height, ALONG, ACROSS)
+        above = cells.height - road_height(cells.stations)[:, None]
+        pooled = (known_median(values.reshape(-1, STRETCH, values.shape[1]), 1)
+                  for values in (above, cells.tilt, cells.rough, cells.brightness, cells.scatter))
+        return cls(cells.stations.reshape(-1, STRETCH).mean(axis=1), cells.offsets, *(v.astype(np.float32) for v in pooled))
+
+    @classmethod
+    def joined(cls, parts):
+        """The profiles of several windows."""
+        return cls(np.concatenate([part.stations for part in parts]), parts[0].offsets,
+                   *(np.concatenate([getattr(part, name) for part in parts]) for name in cls.NAMES))
+
+
+def grown_offsets(profiles, cells, above, noise, sign, track, max_width):
     """How far the road reaches on a side where no edge says so.
 
     Profiles of 5 m are followed outward from the track. The road ends where for
@@ -34,10 +66,12 @@ def grown_offsets(survey, road, cells, height, noise, sign, track, missing, max_
 
     Parameters
     ----------
-    cells, height, noise : of the followed road
+    profiles : Profiles
+    cells : Cells of the road, whose rows the result has
+    above : (rows, columns) the followed road's height above its height known beforehand
+    noise : m, usual roughness of the road
     sign : 1 for the left side, -1 for the right
     track : (rows,) offset of the outermost track on that side
-    missing : (rows,) where an offset is needed
     max_width : m from the track
 
     Returns
@@ -45,72 +79,45 @@ def grown_offsets(survey, road, cells, height, noise, sign, track, missing, max_
     (rows,) offsets
     """
     stations = cells.stations
-    rows_per_window = int(round(WINDOW / cells.row_size))
-    first = int(np.floor(stations[0] / ALONG))
-    windows = [first + WINDOW * k for k in range(int(np.ceil(len(stations) / rows_per_window)))
-               if missing[k * rows_per_window:(k + 1) * rows_per_window].any()]
-
-    def profiles(first_row):
-        points = survey.window(road, first_row * ALONG, (first_row + WINDOW) * ALONG)
-        fine = ground_cells(points, first_row, WINDOW, -cells.first_column * cells.column_size,
-                            lambda s: survey.road_height(road, s), ALONG, ACROSS)
-        return _profile_ends(fine, cells, height, noise, sign, track, max_width)
-
-    at, ends = [], []
-    for found in in_order(profiles, windows, progress):
-        at += [s for s, _ in found]
-        ends += [end for _, end in found]
+    u = sign * profiles.offsets
+    outward = np.argsort(u, kind="stable")[np.count_nonzero(u < 0):]
+    off = profiles.height - _at(above, cells, profiles.stations, profiles.offsets)
+    beside = sign * np.interp(profiles.stations, stations, track)
+    ends = np.full(len(off), np.nan)
+    for k in range(len(off)):
+        profile = Profile(u[outward], off[k, outward], sign * profiles.tilt[k, outward], profiles.rough[k, outward],
+                          profiles.brightness[k, outward], profiles.scatter[k, outward])
+        ends[k] = profile.end(beside[k], max_width, noise)
     known = np.isfinite(ends)
     if not known.any():
         return track + sign * max_width
-    at, ends = np.array(at)[known], _running_median(np.array(ends)[known], SMOOTH)
-    return sign * (np.interp(stations, at, ends) - INSET)
+    return sign * (np.interp(stations, profiles.stations[known], _running_rank(ends[known])) - INSET)
 
 
-def _running_median(values, reach):
-    padded = np.pad(values, reach, mode="edge")
-    return np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1), axis=1)
+def _running_rank(values):
+    padded = np.pad(values, AROUND, mode="reflect") if len(values) > AROUND else np.pad(values, AROUND, mode="edge")
+    return np.sort(np.lib.stride_tricks.sliding_window_view(padded, 2 * AROUND + 1), axis=1)[:, RANK]
 
 
-def _profile_ends(fine, cells, height, noise, sign, track, max_width):
-    """(station, outward distance from the reference line) of each profile of a window; NaN where nothing is seen."""
-    u = sign * fine.offsets
-    outward = np.argsort(u)[np.sort(u) > 0]
-    off = fine.height - _height_at(cells, height, fine.stations, fine.offsets)
-    found = []
-    for row in range(0, WINDOW, STRETCH):
-        rows = slice(row, row + STRETCH)
-        station = (fine.first_row + row + STRETCH / 2) * ALONG
-        beside = sign * float(np.interp(station, cells.stations, track))
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", RuntimeWarning)  # cells without points
-            profile = Profile(u[outward], np.nanmedian(off[rows][:, outward], axis=0),
-                              sign * np.nanmedian(fine.tilt[rows][:, outward], axis=0),
-                              np.nanmedian(fine.rough[rows][:, outward], axis=0),
-                              np.nanmedian(fine.brightness[rows][:, outward], axis=0))
-        found.append((station, profile.end(beside, max_width, noise)))
-    return found
-
-
-def _height_at(cells, height, stations, offsets):
-    """The followed road's height at the middles of finer cells."""
-    row = np.clip((stations / cells.row_size - cells.first_row - 0.5), 0, len(height) - 1)
-    column = np.clip(offsets / cells.column_size - cells.first_column - 0.5, 0, height.shape[1] - 1)
-    i, j = np.minimum(row.astype(int), len(height) - 2), np.minimum(column.astype(int), height.shape[1] - 2)
+def _at(grid, cells, stations, offsets):
+    """A grid of cells at the middles of finer ones."""
+    row = np.clip(stations / cells.row_size - cells.first_row - 0.5, 0, len(grid) - 1)
+    column = np.clip(offsets / cells.column_size - cells.first_column - 0.5, 0, grid.shape[1] - 1)
+    i, j = np.minimum(row.astype(int), len(grid) - 2), np.minimum(column.astype(int), grid.shape[1] - 2)
     a, b = (row - i)[:, None], (column - j)[None, :]
-    at = height[np.ix_(i, j)], height[np.ix_(i, j + 1)], height[np.ix_(i + 1, j)], height[np.ix_(i + 1, j + 1)]
-    return (1 - a) * ((1 - b) * at[0] + b * at[1]) + a * ((1 - b) * at[2] + b * at[3])
+    return ((1 - a) * ((1 - b) * grid[np.ix_(i, j)] + b * grid[np.ix_(i, j + 1)])
+            + a * ((1 - b) * grid[np.ix_(i + 1, j)] + b * grid[np.ix_(i + 1, j + 1)]))
 
 
 class Profile:
     """Cells of ACROSS metres from the reference line outward.
 
     u : middles, ascending; off : height off the followed road; tilt : outward;
-    rough; brightness: NaN where a cell shows nothing
+    rough; brightness and the scatter of single points about it: NaN where a cell shows nothing
     """
 
-    def __init__(self, u, off, tilt, rough, brightness):
-        self.u, self.off, self.tilt, self.rough, self.brightness = u, off, tilt, rough, brightness
+    def __init__(self, u, off, tilt, rough, brightness, scatter):
+        self.u, self.off, self.tilt, self.rough, self.brightness, self.scatter = u, off, tilt, rough, brightness, scatter
 
     def end(self, beside, max_width, noise):
         """Distance at which the road ends, at most `max_width` beyond `beside`, the track's own distance."""
@@ -153,19 +160,20 @@ class Profile:
         return abs(slope) > TURN
 
     def _before_strip(self, k):
-        """The near side of a strip of another brightness that ends at cell k, or k itself."""
+        """The near side of a strip of another brightness that ends at cell k, or k itself.
+
+        It is told from asphalt by less than paint is: a line painted along the verge stays on the road.
+        """
         best, at = 0.0, k
+        scatter = self.scatter[max(k - 20, 0):k]
+        scatter = np.median(scatter[np.isfinite(scatter)]) if np.isfinite(scatter).any() else np.nan
         for first in range(max(k - STRIP, INSIDE), k - 1):
             inside, strip = self.brightness[first - INSIDE:first], self.brightness[first:k]
-            inside, strip = inside[np.isfinite(inside)], strip[np.isfinite(strip)]
-            if len(inside) < 4 or len(strip) < 2:
+            if not (np.isfinite(inside).all() and np.isfinite(strip).all()):
                 continue
-            level = np.median(inside)
-            scatter = 1.4826 * np.median(np.abs(inside - level))
-            differs = strip - level
-            limit = max(BRIGHTER * level, STANDS_OUT * scatter)
-            # all of the strip, one way
-            least = min(differs.min(), differs.max(), key=abs) if differs.min() * differs.max() > 0 else 0.0
-            if abs(least) > limit and abs(least) / limit > best:
-                best, at = abs(least) / limit, first
+            differs = (strip - np.median(inside)) / max(scatter, 1e-6)
+            contrast = abs(np.median(differs))
+            one_way = (np.sign(differs) == np.sign(np.median(differs))).all()
+            if one_way and DIFFERS < contrast < PAINTED and contrast > best:
+                best, at = contrast, first
         return self.u[at] - ACROSS / 2
