@@ -14,6 +14,7 @@ SLIVER = 0.35        # of a line's length: less paint beside a line than this is
 SAME_OFFSET = 0.25   # m: a lone dash this near the course of a dashed line is one of its dashes
 LONE_DASH = 1.5      # m
 LONG = 15.0          # m of paint: enough to bound a road by
+TWO_LANES = 5.0      # m between the outer lines of a road of two lanes
 NEIGHBOUR = 8.0      # m across: a line this near starts and ends where this one does
 WIDE_LANE = 2.6      # m: a solid line with less room than this to the road edge bounds the road
 
@@ -89,6 +90,7 @@ def choose(lines, drift, crossed, min_paint):
         drawn = _extended(drawn, parts[k], lone, (painted_from, painted_to), crossed, neighbours, line)
         width = float(np.average([s.width for s in line.strands], weights=[s.length for s in line.strands]))
         found.append(Chosen(line, kind, bool(double[k]), drawn, width, level[k]))
+    _outer_lines_alone(found)
     _one_centre(found)
     return found
 
@@ -181,6 +183,20 @@ def _kind(line, double, dashed):
     if _votes(line).get("edge", 0.0) > 0.5 * line.painted or room < (LANE if dashed else WIDE_LANE):
         return "edge"
     return "lane" if dashed else "centre"
+
+
+def _outer_lines_alone(chosen):
+    """Two solid lines with room for two lanes and no line between them are the road's edge lines.
+
+    The road's own edge is no help there: where there is no curb, a smooth verge may pass for carriageway.
+    """
+    solid = [one for one in chosen if not one.double and all(piece.pattern == "solid" for piece in one.pieces)]
+    pairs = [(one, other) for one in solid for other in solid
+             if TWO_LANES <= other.level - one.level and max(_shared(one, [other]), _shared(other, [one])) > 0.5]
+    for one, other in pairs:
+        between = [inner for inner in chosen if one.level + TWIN[1] < inner.level < other.level - TWIN[1]]
+        if not _shared(one, between) and not _shared(other, between):
+            one.kind = other.kind = "edge"
 
 
 def _one_centre(chosen):

@@ -217,6 +217,13 @@ def test_the_dashed_part_of_a_centre_line_is_centre_line_too():
     assert set(told(street.lines(), "line", "kind", "pattern")) == {(1, "centre", "dashed"), (2, "centre", "solid")}
 
 
+def test_two_solid_lines_with_two_lanes_between_are_edge_lines_however_wide_the_verge(monkeypatch):
+    """The verge is smooth, so that the carriageway seems to go on for metres beyond either line."""
+    monkeypatch.setitem(globals(), "HALF_WIDTH", 9.0)
+    outer = Street().paint(0, 120, 2.8, kind="centre").paint(0, 120, -2.8, kind="centre")
+    assert told(outer.lines(), "kind") == [("edge",)] * 2
+
+
 def test_solid_lane_lines_beside_a_double_line_are_no_centre_lines():
     street = Street().paint(0, 120, 0.15, kind="centre").paint(0, 120, -0.15, kind="centre")
     street.paint(80, 110, -2.2, kind="centre")
