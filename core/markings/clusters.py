@@ -21,6 +21,7 @@ from ..survey.points import ROAD_POINT, UNIT
 from ..survey.road_points import RoadPoints
 from . import polygons
 from .classes import LINES, NOT_PAINT, ClassSettings, classify
+from .compounds import split_compounds
 from .shapes import CELL, measure
 
 WINDOW = 500     # cells of 4 cm: 20 m of station are linked at a time
@@ -70,7 +71,7 @@ def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress
     for k, road in enumerate(roads):
         part = progress.part(k / len(roads), (k + 1) / len(roads))
         records, labels = group(marking_points, road, settings.distance, part.part(0, 0.4))
-        records, starts = _by_cluster(records, labels, settings.min_points)
+        records, starts = _by_cluster(records, split_compounds(records, labels), settings.min_points)
         rows = list(zip(starts[:-1], starts[1:]))
         shapes = [measure(records["s"][a:b], records["d"][a:b]) for a, b in rows]
         half_widths = [float(np.median(records["half_width"][a:b])) * 1e-3 for a, b in rows]
