@@ -4,6 +4,7 @@ Importing this package loads nothing, so the `core` works without QGIS; the
 plugin itself begins in `classFactory`.
 """
 
+import importlib
 import os
 import sys
 
@@ -40,9 +41,30 @@ def _qpip_folders(plugin_folder):
     ]
 
 
+def load_shapely():
+    """Import shapely so that it calls the GEOS it came with.
+
+    A shapely from PyPI carries its own GEOS. The programs qgis and qgis_process are linked to
+    the system's, and on Linux the symbols of a program win over those of a library loaded
+    later: shapely would call into another version of GEOS and crash, in prepared geometries
+    for one. Bound deeply, a library looks among its own symbols first.
+    """
+    if "shapely" in sys.modules or not hasattr(os, "RTLD_DEEPBIND"):
+        return
+    flags = sys.getdlopenflags()
+    sys.setdlopenflags(flags | os.RTLD_DEEPBIND)
+    try:
+        importlib.import_module("shapely")
+    except ImportError:
+        return  # every algorithm says so when it is started
+    finally:
+        sys.setdlopenflags(flags)
+
+
 def classFactory(iface):
     """Called by QGIS with its interface, which is None in qgis_process."""
     add_library_folders()
+    load_shapely()
     from .plugin import LanewrightPlugin
 
     return LanewrightPlugin(iface)

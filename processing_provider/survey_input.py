@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from ..core.errors import RoadExtractionError
 from .knobs import Knob
 from .texts import tr
 
@@ -73,7 +74,7 @@ def _on_clock_of(road_points, trajectory, progress):
         if first < last and trajectory.time.min() <= first and last <= trajectory.time.max():
             return trajectory, True
     if not first < last:
-        return trajectory, False
+        return trajectory, not len(road_points)
     offset, note = align_time(trajectory.time, (first, last))
     if note:
         progress.say(note)
@@ -81,10 +82,34 @@ def _on_clock_of(road_points, trajectory, progress):
 
 
 def road_points_of(call, name, progress):
-    """A LAZ file made by Extract road surface or a stage after it, as RoadPoints."""
+    """A LAZ file made by Extract road surface or Correct intensity, as RoadPoints."""
     from ..core.survey.road_points_file import read_road_points
 
     return read_road_points(call.cloud(name), progress)
+
+
+def bright_road_points_of(call, name, progress):
+    """The same for stages that look at intensity; refused where there is none."""
+    road_points = road_points_of(call, name, progress)
+    if not any(road_points.section(*key).intensity.any() for key in road_points.all_sections()):
+        raise RoadExtractionError(
+            tr("{path} has no intensity (all values are 0), so paint cannot be told from asphalt. Road edges and surface "
+               "need none; for markings, export the point clouds with intensity.").format(path=call.cloud(name))
+        )
+    return road_points
+
+
+def paint_of(call, name, progress):
+    """A LAZ file of marking points; a road without paint gives one without points, and that is a result too."""
+    from ..core.survey.point_cloud import open_cloud
+    from ..core.survey.road_points import RoadPoints
+
+    with open_cloud(call.cloud(name)) as reader:
+        if reader.header.point_count:
+            return road_points_of(call, name, progress)
+        crs = reader.header.parse_crs()
+        progress.warn(tr("{label} holds no points: no paint was found on this road.").format(label=call.label(name)))
+        return RoadPoints.empty_like(origin=reader.header.offsets, crs="" if crs is None else crs.to_wkt())
 
 
 def imported_trajectory(call, progress):

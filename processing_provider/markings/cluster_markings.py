@@ -3,7 +3,7 @@
 from ...core.schemas import MARKINGS
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob
-from ..survey_input import frame_of, road_points_of
+from ..survey_input import frame_of, paint_of
 from ..texts import tr
 
 CLUSTERS = "markings.clusters:ClusterSettings"
@@ -37,7 +37,7 @@ class ClusterMarkings(LanewrightAlgorithm):
         from ...core.markings.clusters import cluster_markings
         from ...core.survey.road_points_file import write_road_points
 
-        points = road_points_of(call, "MARKING_POINTS", progress.part(0.0, 0.2))
+        points = paint_of(call, "MARKING_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, points.crs, progress, points)
         markings, clustered = cluster_markings(points, frame, call.settings(CLUSTER_KNOBS), progress.part(0.2, 0.9))
         write_road_points(clustered, call.new_file("CLUSTERED_POINTS"), progress.part(0.9, 1.0))

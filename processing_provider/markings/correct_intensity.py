@@ -2,7 +2,7 @@
 
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob
-from ..survey_input import frame_of, road_points_of
+from ..survey_input import bright_road_points_of, frame_of
 from ..texts import tr
 
 INTENSITY = "markings.intensity:IntensitySettings"
@@ -34,7 +34,7 @@ class CorrectIntensity(LanewrightAlgorithm):
         from ...core.markings.intensity import correct_intensity
         from ...core.survey.road_points_file import write_road_points
 
-        road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
+        road_points = bright_road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, road_points.crs, progress, road_points)
         corrected, report = correct_intensity(road_points, frame, call.settings(INTENSITY_KNOBS), progress.part(0.2, 0.8))
         write_road_points(corrected, call.new_file("OUTPUT"), progress.part(0.8, 1.0))

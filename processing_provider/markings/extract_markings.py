@@ -2,7 +2,7 @@
 
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob
-from ..survey_input import frame_of, road_points_of
+from ..survey_input import bright_road_points_of, frame_of
 from ..texts import tr
 
 EXTRACTION = "markings.extraction:MarkingSettings"
@@ -50,7 +50,7 @@ class ExtractMarkings(LanewrightAlgorithm):
         from ...core.markings.image import IntensityImage
         from ...core.survey.road_points_file import write_road_points
 
-        road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
+        road_points = bright_road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, road_points.crs, progress, road_points)
         image = IntensityImage.open(call.raster("INTENSITY_IMAGE"))
         markings = extract_markings(

@@ -3,7 +3,7 @@
 from ...core.schemas import MARKING_LINES, MARKINGS
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob
-from ..survey_input import frame_of, road_points_of
+from ..survey_input import frame_of, paint_of
 from ..texts import tr
 
 LINES = "markings.lines:LineSettings"
@@ -53,6 +53,6 @@ class FitMarkingLines(LanewrightAlgorithm):
         from ...core.markings.lines import fit_marking_lines
 
         markings = call.features("MARKINGS", MARKINGS, "PolygonZ")
-        points = road_points_of(call, "CLUSTERED_POINTS", progress.part(0.0, 0.2))
+        points = paint_of(call, "CLUSTERED_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, points.crs, progress, points)
         call.layer("MARKING_LINES", fit_marking_lines(points, markings, frame, call.settings(LINE_KNOBS), progress.part(0.2, 1.0)))

@@ -2,7 +2,7 @@
 
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob
-from ..survey_input import road_points_of
+from ..survey_input import bright_road_points_of
 from ..texts import tr
 
 IMAGE = "markings.image:ImageSettings"
@@ -51,7 +51,7 @@ class IntensityImage(LanewrightAlgorithm):
         from ...core.markings.image import write_intensity_image
         from ...core.markings.intensity_raster import write_display_image
 
-        road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
+        road_points = bright_road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
         path = call.new_file("INTENSITY_IMAGE")
         write_intensity_image(road_points, path, call.settings(IMAGE_KNOBS), progress.part(0.2, 0.9))
         if call.wants("DISPLAY_IMAGE"):

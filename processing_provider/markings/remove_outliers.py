@@ -2,7 +2,7 @@
 
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob
-from ..survey_input import road_points_of
+from ..survey_input import paint_of
 from ..texts import tr
 
 OUTLIERS = "markings.outliers:OutlierSettings"
@@ -41,6 +41,7 @@ class RemoveOutliers(LanewrightAlgorithm):
         from ...core.markings.outliers import remove_outliers
         from ...core.survey.road_points_file import write_road_points
 
-        points = road_points_of(call, "INPUT", progress.part(0.0, 0.3))
-        kept = remove_outliers(points, call.settings(OUTLIER_KNOBS), progress.part(0.3, 0.8))
+        points = paint_of(call, "INPUT", progress.part(0.0, 0.3))
+        settings = call.settings(OUTLIER_KNOBS)
+        kept = remove_outliers(points, settings, progress.part(0.3, 0.8)) if len(points) else points
         write_road_points(kept, call.new_file("OUTPUT"), progress.part(0.8, 1.0))

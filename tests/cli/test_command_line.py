@@ -222,3 +222,43 @@ def feature_count(path):
 
     source = ogr.Open(str(path))
     return source.GetLayer(0).GetFeatureCount()
+
+
+def test_without_intensity_edges_are_drawn_and_markings_say_why_not(street, tmp_path):
+    cloud = laspy.read(street / "all.laz")
+    cloud.intensity = np.zeros(len(cloud.points), np.uint16)
+    cloud.write(str(tmp_path / "dark.laz"))
+    run = qgis_process(
+        "run", "lanewright:roadmap", "--POINT_CLOUDS=dark.laz", f"--TRAJECTORY={street / 'drive.gpkg'}", "--ROAD_EDGES=edges.gpkg",
+        "--ROAD_POINTS=road.laz", "--MARKINGS=markings.gpkg", "--INTENSITY_IMAGE=image.tif", folder=tmp_path,
+    )
+    assert run.returncode == 0, run.stderr
+    assert "no intensity" in run.stdout + run.stderr
+    assert feature_count(tmp_path / "edges.gpkg") > 0 and feature_count(tmp_path / "markings.gpkg") == 0
+    assert not (tmp_path / "image.tif").exists()
+    for stage in (
+        ("correctintensity", "--ROAD_POINTS=road.laz", f"--TRAJECTORY={street / 'drive.gpkg'}", "--OUTPUT=bright.laz"),
+        ("intensityimage", "--ROAD_POINTS=road.laz", "--INTENSITY_IMAGE=image.tif"),
+    ):
+        assert "no intensity" in one_sentence(qgis_process("run", f"lanewright:{stage[0]}", *stage[1:], folder=tmp_path))
+
+
+def test_a_road_without_paint_gives_empty_layers_stage_by_stage(street, tmp_path):
+    road = qgis_process(
+        "run", "lanewright:roadmap", f"--POINT_CLOUDS={street / 'all.laz'}", f"--TRAJECTORY={street / 'drive.gpkg'}",
+        "--ROAD_POINTS=road.laz", folder=tmp_path,
+    )
+    assert road.returncode == 0, road.stderr
+    paint = laspy.read(tmp_path / "road.laz")
+    paint.points = paint.points[:0]
+    paint.write(str(tmp_path / "paint.laz"))
+    drive = f"--TRAJECTORY={street / 'drive.gpkg'}"
+    for stage in (
+        ("removeoutliers", "--INPUT=paint.laz", "--OUTPUT=kept.laz"),
+        ("clustermarkings", "--MARKING_POINTS=kept.laz", drive, "--MARKINGS=markings.gpkg", "--CLUSTERED_POINTS=clusters.laz"),
+        ("fitmarkinglines", "--CLUSTERED_POINTS=clusters.laz", "--MARKINGS=markings.gpkg", drive, "--MARKING_LINES=lines.gpkg"),
+        ("drivinglines", "--MARKING_LINES=lines.gpkg", drive, "--DRIVING_LINES=driving.gpkg", "--CURVE_ELEMENTS=curves.gpkg"),
+    ):
+        run = qgis_process("run", f"lanewright:{stage[0]}", *stage[1:], folder=tmp_path)
+        assert run.returncode == 0, run.stderr
+    assert feature_count(tmp_path / "driving.gpkg") == feature_count(tmp_path / "lines.gpkg") == 0
