@@ -11,6 +11,10 @@ SQUEEZE = 0.5      # what two lines too near for a lane between them cost, in li
 STRADDLED = 0.5    # what a line costs that the vehicle drove along, astride
 MOST_LANES = 4     # between two outer lines
 RESTLESS = 0.8     # m of change of width beyond which a strip is classed place by place
+SAME_PLACE = 0.25  # share of a lane's width by which a known lane may lie beside its place in a division
+FLOATING = 15.0    # m: a shorter line between two that go on both ways needs a reason to part them
+BESIDE = 5.0       # m that they go on
+OFF_PLACE = 0.5    # m from where the line between two lanes of a strip should be
 SHORT_LANE = 2.0   # m: shorter, it is where lines end unevenly
 SHORT_CLASS = 5.0  # m: a shorter change of class is noise of the width
 
@@ -33,7 +37,7 @@ def chosen_lines(lines, driven):
     -------
     (L, K) bool
     """
-    present = np.isfinite(lines.d)
+    present = np.isfinite(lines.d) & ~floating_lines(lines)[:, None]
     kept = np.zeros_like(present)
     trust = np.clip(lines.seen_length / TRUSTED, 0.02, 1.0)
     for first, last in runs_of_columns(present):
@@ -51,6 +55,30 @@ def chosen_lines(lines, driven):
             weight = np.maximum(weight - STRADDLED * (astride.mean(1) > 0.8), 0.01)
         kept[active[_cheapest(d, weight)], window] = True
     return kept
+
+
+def floating_lines(lines):
+    """(L,) True for short lines between two longer ones that do not part the road as lanes would."""
+    present = np.isfinite(lines.d)
+    found = np.zeros(len(present), bool)
+    more = int(BESIDE / STEP)
+    for k in np.flatnonzero(lines.seen_length < FLOATING):
+        columns = np.flatnonzero(present[k])
+        if not len(columns):
+            continue
+        first, last = columns[0] - more, columns[-1] + more
+        if first < 0 or last >= len(lines.s):
+            continue
+        longer = np.flatnonzero(present[:, first:last + 1].all(1))
+        apart = np.median(lines.d[longer][:, columns] - lines.d[k, columns], axis=1)
+        left, right = apart[apart > DOUBLE], apart[apart < -DOUBLE]
+        if not len(left) or not len(right) or (np.abs(apart) <= DOUBLE).any():
+            continue
+        width = left.min() - right.max()
+        count = lane_count(width, USUAL)
+        places = width * np.arange(1, count) / max(count, 1)
+        found[k] = count > 0 and not (np.abs(places + right.max()) < OFF_PLACE).any()
+    return found
 
 
 def _cheapest(d, weight):
@@ -153,8 +181,8 @@ def _share(lines, left, right, first, last, place, count):
 def divided_strips(lines, all_strips, tracks, driven, lane_width, room):
     """Lanes where only the outer lines are painted: their number follows from the distance and the lane width.
 
-    Only where no lane is known already and the vehicle drove: a verge between two
-    carriageways has lines on both sides too.
+    Only where the vehicle drove (a verge between two carriageways has lines on both
+    sides too), and only beside lanes that are known to lie as such a division has them.
     """
     found = []
     for left, right, first, last in all_strips:
@@ -162,18 +190,33 @@ def divided_strips(lines, all_strips, tracks, driven, lane_width, room):
             if what != "wide":
                 continue
             window = slice(a, b + 1)
-            free = ~_occupied(lines.d[left, window], lines.d[right, window], tracks, a, b)
-            for i, j in true_runs(free):
-                i, j = a + i, a + j
-                dl, dr = lines.d[left, i:j + 1], lines.d[right, i:j + 1]
-                if (lines.seen[left, i:j + 1] & lines.seen[right, i:j + 1]).mean() < 0.5:
-                    continue
-                inside = ((driven[:, i:j + 1] < dl) & (driven[:, i:j + 1] > dr)).any(0) if len(driven) else np.zeros(1)
-                count = lane_count(float(np.median(dl - dr)), lane_width)
-                if inside.mean() < 0.5 or not count:
-                    continue
-                found += [_share(lines, left, right, i, j, place, count) for place in range(count)]
+            dl, dr = lines.d[left, window], lines.d[right, window]
+            count = lane_count(float(np.median(dl - dr)), lane_width)
+            inside = ((driven[:, window] < dl) & (driven[:, window] > dr)).any(0) if len(driven) else np.zeros(1)
+            if not count or inside.mean() < 0.5 or (lines.seen[left, window] & lines.seen[right, window]).mean() < 0.5:
+                continue
+            shares = [_share(lines, left, right, a, b, place, count) for place in range(count)]
+            for share, free in zip(shares, _free(shares, dl, dr, tracks)):
+                found += [share.part(i, j + 1) for i, j in true_runs(free)]
     return [track for track in found if room(track)]
+
+
+def _free(shares, dl, dr, tracks):
+    """(C, N) where each of the lanes of a divided strip is not yet known, and what is known fits the division."""
+    d = np.array([share.d for share in shares])
+    width = shares[0].width
+    taken, foreign = np.zeros(d.shape, bool), np.zeros(d.shape[1], bool)
+    for track in tracks:
+        a, b = max(track.first, shares[0].first), min(track.last, shares[0].last)
+        if a > b:
+            continue
+        here = slice(a - shares[0].first, b - shares[0].first + 1)
+        known = track.d[a - track.first:b - track.first + 1]
+        inside = (known < dl[here]) & (known > dr[here])
+        same = np.abs(d[:, here] - known) < SAME_PLACE * width[here]
+        taken[:, here] |= same & inside
+        foreign[here] |= inside & ~same.any(0)
+    return ~taken & ~foreign
 
 
 def lane_count(width, lane_width):
@@ -182,19 +225,9 @@ def lane_count(width, lane_width):
     return min(likely, key=lambda n: (abs(width / n - lane_width), n)) if likely else 0
 
 
-def _occupied(dl, dr, tracks, first, last):
-    taken = np.zeros(last - first + 1, bool)
-    for track in tracks:
-        a, b = max(track.first, first), min(track.last, last)
-        if a <= b:
-            d = track.d[a - track.first:b - track.first + 1]
-            taken[a - first:b - first + 1] |= (d < dl[a - first:b - first + 1]) & (d > dr[a - first:b - first + 1])
-    return taken
-
-
-def seen_width(tracks):
-    """The median width of lanes between two painted lines, 3.5 m where there is none."""
-    widths = [track.width[track.status == MEASURED] for track in tracks]
+def usual_width(tracks, painted=True):
+    """The median width of lanes (of those between two painted lines), 3.5 m where there is none."""
+    widths = [track.width[track.status == MEASURED] if painted else track.width for track in tracks]
     widths = np.concatenate(widths) if widths else np.empty(0)
     return float(np.median(widths)) if len(widths) else USUAL
 

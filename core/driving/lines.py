@@ -13,7 +13,7 @@ from .boundaries import STEP, road_boundaries
 from .direction import divide, driven_offsets, lane_directions, side_votes
 from .elements import element_row
 from .heights import lane_heights
-from .lanes import chosen_lines, divided_strips, lone_lanes, paired_lanes, seen_width, strips
+from .lanes import chosen_lines, divided_strips, lone_lanes, paired_lanes, strips, usual_width
 from .room import Room
 from .settings import DrivingSettings
 from .shape import element_of, lane_course, pieces, settled
@@ -83,15 +83,16 @@ def road_lanes(lines, driven, settings, room=lambda track: True):
     kept = chosen_lines(lines, driven)
     all_strips = strips(lines, kept)
     tracks = paired_lanes(lines, all_strips, room)
-    lane_width = settings.lane_width or seen_width(tracks)
+    lane_width = settings.lane_width or usual_width(tracks)
     gaps = settings.max_bridge, settings.max_inferred
     tracks = connect(tracks, lines, 0.0, 0.0)
     tracks = [track for track in tracks if len(track) * STEP >= settings.shortest]
     tracks = connect(tracks, lines, 0.0, settings.max_inferred)
-    tracks = extend(tracks, lines, kept, room, settings.max_bridge)
+    tracks = connect(extend(tracks, lines, kept, room, settings.max_bridge), lines, *gaps)
+    tracks += divided_strips(lines, all_strips, tracks, driven, lane_width, room)
     tracks = connect(tracks, lines, *gaps)
-    tracks = connect(tracks + divided_strips(lines, all_strips, tracks, driven, lane_width, room), lines, *gaps)
-    half = settings.line_distance or lane_width / 2
+    tracks = connect(extend(tracks, lines, kept, room, settings.max_bridge), lines, *gaps)
+    half = settings.line_distance or (usual_width(tracks, painted=False) if tracks else lane_width) / 2
     tracks = connect(tracks + lone_lanes(lines, kept, tracks, driven, half, settings.max_bridge, room), lines, *gaps)
     tracks = [track.without_bridged_ends() for track in tracks]
     tracks = [track for track in tracks if track is not None and len(track) * STEP >= settings.shortest]

@@ -12,6 +12,7 @@ SAME_LANE = 0.35      # share of a lane's width by which it may jump from one st
 NEAR_END = 10.0       # m around a gap within which other lanes tell of a split or merge
 CROWDED = 0.6         # share of a lane's width that lanes keep from each other
 INTRUDED = 0.3        # share of a lane's width within which a line makes it another lane
+FAR = 4               # times its own length that a lane is led on beside one line
 END_WIDTH = 10.0      # m over which a lane's width at its end is taken
 
 
@@ -215,6 +216,8 @@ def _extension(track, others, lines, kept, head, most_bridged):
             best, best_line = length, line
     if best_line is None:
         return None
+    # a short stretch of lane does not rule a long road
+    best = min(best, int(max(most_bridged / STEP, FAR * np.count_nonzero(track.status != BRIDGED))))
     ahead = ahead[:best]
     # the lane keeps its place beside the line; half its width to the side it was on
     beside = track.d[tip] - lines.d[best_line, start]
