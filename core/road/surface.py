@@ -140,8 +140,7 @@ def find_carriageway(survey, road, edges, settings, progress=Progress()):
     for side, sign, track in (("left", 1.0, tracks.max(axis=0)), ("right", -1.0, tracks.min(axis=0))):
         offset, known = measured[side]
         if np.isnan(offset).any():
-            grown = grown_offsets(Profiles.joined(profiles), cells, height - prior[:, None], followed.noise, sign, track,
-                                  settings.max_width)
+            grown = grown_offsets(Profiles.joined(profiles), cells, height - prior[:, None], sign, track, settings.max_width)
             offset = np.where(np.isnan(offset), grown, offset)
         limits[side] = offset, known
     there = _has_road(followed.ground, cells.offsets) & (limits["left"][0] > limits["right"][0] + 0.5)

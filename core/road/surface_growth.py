@@ -8,6 +8,8 @@ from scipy.ndimage import gaussian_filter1d, uniform_filter1d
 from .surface_cells import COLUMN, ROW, known_median
 
 STEP = 0.035          # m off the height that the road promised: a curb, a car, an island
+NOISE = 2.0           # times the error of a cell's height on top
+FOUND_AGAIN, MOST = 0.02, 0.05  # m on top per metre passed over unseen, at most: behind an island the promise is less sure
 TRACK = 0.6           # m either side of the reference line from which the road starts
 FOLLOW, TURN = 0.5, 0.15   # how fast height and tilt follow what is seen
 STEEPEST = 0.12       # m per m across a road
@@ -77,21 +79,27 @@ def _starting_tilt(relative, offsets):
 
 def _walk(relative, count, columns, direction, start, noise, height, ground):
     """Follow one side; fills `height` and `ground` in place."""
-    z, tilt = np.zeros(len(start)), start * direction
+    z, tilt, unseen = np.zeros(len(start)), start * direction, np.zeros(len(start))
     sigma = ALONG / ROW
     for k, j in enumerate(columns):
         promised = z + tilt * (0.5 * COLUMN if k == 0 else COLUMN)
         off = relative[:, j] - promised
-        tolerance = STEP + 2.0 * noise
+        error = NOISE * noise / np.sqrt(np.clip(count[:, j], 1.0, 25.0))
+        tolerance = STEP + error + np.minimum(FOUND_AGAIN * np.maximum(unseen - 0.5, 0.0), MOST)
         seen = np.isfinite(off) & (np.abs(off) < tolerance)
-        weight = np.where(seen, np.minimum(count[:, j], 20.0), 0.0)
+        # what is nearly off the road teaches little: a low curb must not be climbed
+        trust = np.where(seen, (1.0 - (np.nan_to_num(off) / tolerance) ** 2) ** 2, 0.0)
+        weight = trust * np.minimum(np.nan_to_num(count[:, j]), 20.0)
         # what the rows around see, weighed by their points: one row's gap is filled by its neighbours
         total = gaussian_filter1d(weight, sigma, mode="nearest")
         around = gaussian_filter1d(np.where(seen, off, 0.0) * weight, sigma, mode="nearest") / np.maximum(total, 1e-9)
         told = np.clip(total / 3.0, 0.0, 1.0)
-        z = promised + FOLLOW * told * around
+        # found again behind something, the height is taken as it is seen
+        follow = np.where(unseen > 0.5, 1.0, FOLLOW)
+        z = promised + follow * told * around
         tilt = np.clip(tilt + TURN * told * around / COLUMN, -STEEPEST, STEEPEST)
         tilt = gaussian_filter1d(tilt, sigma, mode="nearest")
+        unseen = np.where(told > 0.5, 0.0, unseen + COLUMN)
         height[:, j] = z
         ground[:, j] = np.isfinite(relative[:, j]) & (np.abs(relative[:, j] - z) < tolerance)
 

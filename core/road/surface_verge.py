@@ -10,7 +10,8 @@ ALONG, ACROSS = 1.0, 0.1   # m, cells of the profile across the side
 STRETCH = 5                # rows that make one profile: 5 m
 SURE = 1.2                 # m beside the track that are road in any case: the vehicle drove there
 PERSISTS = 4               # cells over which a change must last
-STEP, STEP_NOISE = 0.035, 2.0  # m, and times the noise, off the road's height
+STEP, LEDGE = 0.035, 0.025  # m off the followed road's height; m off within 0.2 m
+UNEVEN = 2.0               # times the road's own unevenness on top of either
 ROUGHER, ROUGH_FLOOR = 1.6, 0.0025  # times the road's roughness, and m on top
 TURN = 0.10                # change of tilt that begins a bank or a ditch
 EMPTY = 5                  # cells without a point at which the road is lost sight of
@@ -56,7 +57,7 @@ class Profiles:
                    *(np.concatenate([getattr(part, name) for part in parts]) for name in cls.NAMES))
 
 
-def grown_offsets(profiles, cells, above, noise, sign, track, max_width):
+def grown_offsets(profiles, cells, above, sign, track, max_width):
     """How far the road reaches on a side where no edge says so.
 
     Profiles of 5 m are followed outward from the track. The road ends where for
@@ -69,7 +70,6 @@ def grown_offsets(profiles, cells, above, noise, sign, track, max_width):
     profiles : Profiles
     cells : Cells of the road, whose rows the result has
     above : (rows, columns) the followed road's height above its height known beforehand
-    noise : m, usual roughness of the road
     sign : 1 for the left side, -1 for the right
     track : (rows,) offset of the outermost track on that side
     max_width : m from the track
@@ -87,7 +87,7 @@ def grown_offsets(profiles, cells, above, noise, sign, track, max_width):
     for k in range(len(off)):
         profile = Profile(u[outward], off[k, outward], sign * profiles.tilt[k, outward], profiles.rough[k, outward],
                           profiles.brightness[k, outward], profiles.scatter[k, outward])
-        ends[k] = profile.end(beside[k], max_width, noise)
+        ends[k] = profile.end(beside[k], max_width)
     known = np.isfinite(ends)
     if not known.any():
         return track + sign * max_width
@@ -119,27 +119,32 @@ class Profile:
     def __init__(self, u, off, tilt, rough, brightness, scatter):
         self.u, self.off, self.tilt, self.rough, self.brightness, self.scatter = u, off, tilt, rough, brightness, scatter
 
-    def end(self, beside, max_width, noise):
+    def end(self, beside, max_width):
         """Distance at which the road ends, at most `max_width` beyond `beside`, the track's own distance."""
         reach = beside + max_width
         start = int(np.searchsorted(self.u, beside + SURE))
         stop = min(int(np.searchsorted(self.u, reach)), len(self.u))
         if not np.isfinite(self.off[:stop]).any():
             return np.nan
+        inside = np.diff(self.off[:max(start, 8)])
+        inside = inside[np.isfinite(inside)]
+        uneven = float(np.median(np.abs(inside))) if len(inside) else 0.0
         for k in range(start, stop):
             ahead = slice(k, k + PERSISTS)
             if np.isnan(self.off[k:k + EMPTY]).all():
                 return self.u[k] - ACROSS / 2
-            if self._differs(k, ahead, noise):
+            if self._differs(k, ahead, uneven):
                 return self._before_strip(k)
         return reach
 
-    def _differs(self, k, ahead, noise):
+    def _differs(self, k, ahead, uneven):
         """Whether from cell k on the ground is no longer the road's."""
-        off = self.off[ahead]
-        seen = np.isfinite(off)
-        if seen.any() and abs(self.off[k]) > STEP + STEP_NOISE * noise \
-                and (np.abs(off[seen]) > STEP + STEP_NOISE * noise).mean() > 0.7:
+        off, before = self.off[ahead], self.off[max(k - PERSISTS, 0):k]
+        off, before = off[np.isfinite(off)], before[np.isfinite(before)]
+        if len(off) > 1 and abs(self.off[k]) > STEP + UNEVEN * uneven and (np.abs(off) > STEP + UNEVEN * uneven).mean() > 0.7:
+            return True
+        # the first cell may lie half on the step
+        if len(off) > 2 and len(before) > 2 and (np.abs(off[1:] - np.median(before)) > LEDGE + UNEVEN * uneven).all():
             return True
         inner = slice(max(k - 15, 0), k)
         rough, usual = self.rough[ahead], self.rough[inner]
