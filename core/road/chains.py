@@ -13,12 +13,13 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 LINK_REACH = 1.0       # m along the road that a link may span
-DRIFT = 0.25           # m across per m along, beyond which neighbours are not one line
+DRIFT = 0.20           # m across per m along that a link may differ from the faces' own direction
 SLACK = 0.05           # m across that two steps of one line may differ anyway
 HEIGHT_SLACK = 0.03    # m that bottom heights of neighbours may differ
 SHORTEST = 0.75        # m of a chain that counts
 WHOLE = 4.0            # m of chains that lie in one line and make a curb
 REACH_ON = 8.0         # m between chains of one line
+TURN_REACH = 3.0       # m that a chain is drawn on in its own direction
 DENSEST = 0.5          # share of its profiles in which a chain must be seen
 WANDER = 0.02          # m, scatter about its own running line beyond the scanner's noise
 ROUGH_ROAD = 0.010     # m about the road side's line, if the scanner's noise is less than half of it
@@ -48,9 +49,9 @@ def link_chains(steps, profile_width):
     if not count:
         return np.empty(0, np.int64)
     order = np.lexsort((steps.u, steps.profile))
-    profile, u, h, s = steps.profile[order], steps.u[order], steps.h[order], steps.s[order]
-    ahead, cost_ahead = _best_partner(profile, u, h, s, profile_width, 1)
-    behind, _ = _best_partner(profile, u, h, s, profile_width, -1)
+    sorted_steps = steps[order]
+    ahead = _best_partner(sorted_steps, profile_width, 1)
+    behind = _best_partner(sorted_steps, profile_width, -1)
     rows = np.flatnonzero(ahead >= 0)
     rows = rows[behind[ahead[rows]] == rows]
     graph = coo_matrix((np.ones(len(rows)), (rows, ahead[rows])), shape=(count, count))
@@ -60,25 +61,31 @@ def link_chains(steps, profile_width):
     return found
 
 
-def _best_partner(profile, u, h, s, width, direction):
-    """Index of the cheapest step in the following (or preceding) profiles, -1 where none fits."""
+def _best_partner(steps, width, direction):
+    """Index of the cheapest step in the following (or preceding) profiles, -1 where none fits.
+
+    The steps are sorted by profile, then outward.
+    """
+    profile, u, h, s = steps.profile, steps.u, steps.h, steps.s
     count = len(u)
     span = u.max() - u.min() + 1000.0
     key = profile * span + (u - u.min())
     best, cheapest = np.full(count, -1), np.full(count, np.inf)
     for gap in range(1, max(int(round(LINK_REACH / width)), 1) + 1):
-        wanted = (profile + direction * gap) * span + (u - u.min())
+        on = u + steps.skew * direction * gap * width
+        wanted = (profile + direction * gap) * span + (on - u.min())
         right = np.searchsorted(key, wanted)
         for candidate in (right - 1, right):
             k = np.clip(candidate, 0, count - 1)
             along = np.abs(s[k] - s)
-            across, up = np.abs(u[k] - u), np.abs(h[k] - h)
+            turn = 0.5 * (steps.skew + steps.skew[k]) * (s[k] - s)
+            across, up = np.abs(u[k] - u - turn), np.abs(h[k] - h)
             fits = (profile[k] == profile + direction * gap) & (across <= SLACK + DRIFT * along) \
                 & (up <= HEIGHT_SLACK + 0.05 * along)
             cost = np.where(fits, (across / SLACK) ** 2 + (up / HEIGHT_SLACK) ** 2 + (gap - 1), np.inf)
             better = cost < cheapest
             best[better], cheapest[better] = k[better], cost[better]
-    return best, cheapest
+    return best
 
 
 def curb_chains(steps, label, profile_width, least, slope):
@@ -95,13 +102,13 @@ def curb_chains(steps, label, profile_width, least, slope):
     -------
     list of Chain, sorted by start
     """
-    order = np.lexsort((steps.s, label))
+    order = np.lexsort((steps.profile, label))
     cuts = np.flatnonzero(np.diff(label[order])) + 1
     chains = []
     for members in np.split(order, cuts):
         s = steps.s[members]
-        length = s[-1] - s[0] + profile_width
-        if length < SHORTEST or len(members) * profile_width < DENSEST * length:
+        length = (steps.profile[members[-1]] - steps.profile[members[0]] + 1) * profile_width
+        if length < SHORTEST - 1e-9 or len(members) * profile_width < DENSEST * length:
             continue
         height, usual = np.median(steps.height[members]), np.median(steps.usual[members])
         # blur widens a face and never narrows it, so the sharper profiles tell
@@ -133,6 +140,7 @@ def choose_along(chains, steps, near):
     places = [(steps.s[c.steps], steps.u[c.steps], steps.h[c.steps]) for c in chains]
     starts, ends = np.array([c.start for c in chains]), np.array([c.end for c in chains])
     cuts = np.unique(np.r_[starts, ends])
+    tips = np.array([_directions(steps, c.steps) for c in chains]).reshape(-1, 2)
     worth = np.full(len(chains), -np.inf)  # of the best way that is on this chain, or was on it last
     way = [None] * len(chains)             # that way: (chain, from, to, way before)
     old_worth, old_way = 0.0, None         # the best of what is forgotten; at first, no curb at all
@@ -149,7 +157,9 @@ def choose_along(chains, steps, near):
             u, h = (np.interp(middle, places[c][0], v) for v in places[c][1:])
             gain = (b - a) * max(1.0 - NEARNESS * max(u - near(middle), 0.0), 0.1)
             gap = np.maximum(a - ends[known], 0.0)
-            jump = np.maximum(np.abs(u - there[:, 0]) - 0.05 - 0.1 * gap, 0.0)
+            # a gap is crossed in the direction in which the one ended and the other begins
+            turn = np.minimum(gap, TURN_REACH) * 0.5 * (tips[known, 1] + (tips[c, 0] if a <= starts[c] else 0.0))
+            jump = np.maximum(np.abs(u - there[:, 0] - np.where(gap > 0, turn, 0.0)) - 0.05 - 0.1 * gap, 0.0)
             climb = np.maximum(np.abs(h - there[:, 1]) - 0.03 - 0.003 * gap, 0.0)
             value = worth[known] - np.where(known == c, 0.0, np.minimum(JUMP_COST * jump + CLIMB_COST * climb, JUMP_CAP))
             best, before = old_worth - (JUMP_CAP / 2 if old_way else 0.0), old_way
@@ -175,24 +185,32 @@ def long_enough(chosen, chains, steps):
     """
     kept, group, covered, last = [], [], 0.0, None
     for piece in chosen + [None]:
+        members = None
         if piece is not None:
             members = chains[piece[0]].steps
             members = members[(steps.s[members] >= piece[1]) & (steps.s[members] <= piece[2])]
-            first = members[0]
-        if piece is None or last is not None and not _in_line(steps, last, first):
+        if piece is None or last is not None and not _in_line(steps, last, members):
             kept += group if covered >= WHOLE else []
             group, covered = [], 0.0
         if piece is not None:
             group.append(piece)
             covered += piece[2] - piece[1]
-            last = members[-1]
+            last = members
     return kept
 
 
-def _in_line(steps, a, b):
+def _in_line(steps, before, after):
+    """Does one run of steps go on in the other?"""
+    a, b = before[-1], after[0]
     gap = steps.s[b] - steps.s[a]
-    return gap <= REACH_ON and abs(steps.u[b] - steps.u[a]) <= 0.15 + 0.15 * gap \
+    turn = min(gap, TURN_REACH) * 0.5 * (_directions(steps, before)[1] + _directions(steps, after)[0])
+    return gap <= REACH_ON and abs(steps.u[b] - steps.u[a] - turn) <= 0.15 + 0.15 * gap \
         and abs(steps.h[b] - steps.h[a]) <= HEIGHT_SLACK + 0.02 * gap
+
+
+def _directions(steps, members):
+    """How a run of steps begins and ends: m outward per m along."""
+    return float(np.median(steps.skew[members[:5]])), float(np.median(steps.skew[members[-5:]]))
 
 
 def _merged(path):

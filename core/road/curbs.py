@@ -11,20 +11,18 @@ from ..parallel import in_order
 from ..progress import Progress
 from ..schemas import CURB_POINTS
 from .chains import choose_along, curb_chains, link_chains, long_enough
-from .profiles import pseudo_scan_lines
+from .corners import Steps
 from .shadows import Sight
-from .steps import Steps, find_steps
+from .sides import REACH, SECTION, SIDES, Track, profiles_beside, sections_of
+from .steps import find_steps
 
-SECTION = 20.0          # m of road worked at a time
-SIDES = {"left": 1, "right": -1}
 VEHICLE_HALF = 0.6      # m from the track: no curb nearer
-REACH = 20.0            # m from the reference line beyond which no curb is sought
-BESIDE = 4.0            # m along the road, and as much again as across, from which a point is used
 MERGE_ACROSS = 0.12     # m between the same step seen in two passes
 MERGE_UP = 0.10
 DROPPED = 0.5           # a lower curb counts where it continues a full one: share of MIN_HEIGHT
 STRAIGHT_BLOCK, SHARP_BLOCK = 2.0, 0.5  # m
 TURN_PER_BLOCK = np.radians(1.0)        # a block of road turns no more than this
+BENT = 0.015            # m off its own straight line beyond which a block is cut shorter
 END_STEPS = 3           # profiles that give the end point of a chain
 HIDDEN_STEP = 0.5       # m between rows of hidden curb
 HIDDEN_REACH = 25.0     # m between curbs within which hidden curb is reported
@@ -91,80 +89,27 @@ def detect_curbs(survey, settings=CurbSettings(), progress=Progress()):
     return found
 
 
-class Track:
-    """Outward offset of the outermost driven track of one side."""
-
-    def __init__(self, frame, road, sign):
-        self.passes, self.sign = frame.passes_of(road), sign
-
-    def __call__(self, s):
-        s = np.asarray(s, float)
-        offsets = np.full(s.shape, -np.inf)
-        for p in self.passes:
-            first, last = p.span
-            there = (s >= first - 5.0) & (s <= last + 5.0)
-            offsets = np.where(there, np.maximum(offsets, self.sign * p.at_station(s)[0]), offsets)
-        return np.where(np.isfinite(offsets), offsets, 0.0)
-
-
 def _steps_of_road(survey, road, settings, progress):
     """Steps of each side, passes merged, and what was seen beside the road."""
     width = settings.profile_width
-    start, end = survey.store.span(road)
-    first, last = int(np.floor(start / width)), int(np.ceil(end / width))
+    sections = sections_of(survey, road, width)
+    first, last = sections[0][0], sections[-1][1]
     sight = {side: Sight(width, first, last - first, REACH) for side in SIDES}
     tracks = {side: Track(survey.frame, road, sign) for side, sign in SIDES.items()}
-    count = max(int(np.ceil((end - start) / SECTION)), 1)
-    bounds = np.unique(np.rint(np.linspace(first, last, count + 1)).astype(int))
 
     def work(section):
-        a, b = section
-        points = survey.window(road, a * width, b * width)
-        s, d = points.s, points.d
-        along = _ahead_of_vehicle(survey, points, s)
-        near = np.flatnonzero(np.abs(along) < BESIDE + np.abs(d))
-        points, s, d = points[near], s[near], d[near]
-        seen = s, points.z - survey.road_height(road, s), along[near] > 0, points.pass_number
-        return [(side, _steps_of_section(sign * d, *seen, (a, b), tracks[side], sight[side], settings))
-                for side, sign in SIDES.items()]
+        found = {side: [] for side in SIDES}
+        for side, _, beside, lines in profiles_beside(survey, road, section, tracks, settings):
+            sight[side].look(*beside, section, lines)
+            steps = find_steps(lines, DROPPED * settings.min_height, settings.max_height)
+            found[side].append(steps[steps.u > tracks[side](steps.s) + VEHICLE_HALF])
+        return {side: _merge_passes(steps) for side, steps in found.items() if steps}
 
     parts = {side: [] for side in SIDES}
-    for results in in_order(work, list(zip(bounds[:-1], bounds[1:])), progress):
-        for side, steps in results:
-            if steps is not None:
-                parts[side].append(steps)
+    for found in in_order(work, sections, progress):
+        for side, steps in found.items():
+            parts[side].append(steps)
     return {side: Steps.join(parts[side]) if parts[side] else None for side in SIDES}, sight
-
-
-def _ahead_of_vehicle(survey, points, s):
-    """(N,) metres along the road from the vehicle to the point when it was measured (0 without times).
-
-    What is seen from far behind or ahead lies at a flat angle and carries the drift
-    of the positions since; a spinning scanner sees every place from both.
-    """
-    along = np.zeros(len(points))
-    if survey.has_time:
-        for p in survey.frame.passes:
-            own = np.flatnonzero(points.pass_number == p.number)
-            along[own] = s[own] - p.station_at(points.time[own])
-    return along
-
-
-def _steps_of_section(u, s, h, ahead, pass_number, profiles, track, sight, settings):
-    width = settings.profile_width
-    stations = (np.arange(profiles[0], profiles[1]) + 0.5) * width
-    origin = np.floor(track(stations).min())
-    outward = np.flatnonzero((u > origin) & (u < REACH))
-    u, s, h, ahead, pass_number = u[outward], s[outward], h[outward], ahead[outward], pass_number[outward]
-    found = []
-    for number in np.unique(pass_number):
-        own = pass_number == number
-        lines = pseudo_scan_lines(u[own], s[own], h[own], ahead[own], profiles, width, settings.point_spacing,
-                                  settings.layer_jump, origin, REACH)
-        sight.look(u[own], s[own], h[own], profiles, lines)
-        steps = find_steps(lines, DROPPED * settings.min_height, settings.max_height)
-        found.append(steps[steps.u > track(steps.s) + VEHICLE_HALF])
-    return _merge_passes(found) if found else None
 
 
 def _merge_passes(found):
@@ -179,7 +124,7 @@ def _merge_passes(found):
     weight = np.sqrt(steps.support)
     total = np.bincount(group, weight)
     values = {name: np.bincount(group, weight * getattr(steps, name)) / total
-              for name in ("s", "u", "h", "height", "run", "noise", "usual")}
+              for name in ("s", "u", "h", "skew", "height", "run", "noise", "usual")}
     return Steps(profile=steps.profile[np.r_[True, apart]], **values,
                  support=np.bincount(group, steps.support).astype(np.int64),
                  behind=np.bincount(group, steps.behind).astype(np.int64))
@@ -233,7 +178,7 @@ def _block_points(steps, edges, chain):
     """One point per block from the steps of a chain: their line, read at the middle of what was seen."""
     if not len(steps):
         return []
-    block = 2 * np.searchsorted(edges, steps.s, side="right")
+    block = _block_numbers(steps, edges)
     # a chain's ends stand for themselves, not for the middle of their blocks
     if len(steps) > 2 * END_STEPS:
         block[:END_STEPS] = block[0] - 1
@@ -250,6 +195,20 @@ def _block_points(steps, edges, chain):
     return [dict(s=float(s[k]), u=float(u[k]), h=float(h[k]),
                  fields=dict(status="measured", height_m=round(float(height[k]), 4), chain=chain,
                              residual_m=round(float(residual[k]), 4), support=int(support[k]))) for k in range(len(names))]
+
+
+def _block_numbers(steps, edges):
+    """(M,) number of the block of each step, even numbers; blocks in which the curb bends are cut in four."""
+    block = np.searchsorted(edges, steps.s, side="right")
+    names, member = np.unique(block, return_inverse=True)
+    n = np.bincount(member)
+    ds = steps.s - (np.bincount(member, steps.s) / n)[member]
+    du = steps.u - (np.bincount(member, steps.u) / n)[member]
+    slope = np.bincount(member, ds * du) / (np.bincount(member, ds * ds) + 1e-3)
+    off = np.sqrt(np.bincount(member, (du - slope[member] * ds) ** 2) / n)
+    start, length = edges[names - 1], np.diff(edges)[np.minimum(names, len(edges) - 1) - 1]
+    quarter = np.clip(np.floor(4 * (steps.s - start[member]) / length[member]), 0, 3).astype(np.int64)
+    return 8 * block + 2 * np.where(off[member] > BENT, quarter, 0)
 
 
 def _hidden_points(measured, sight, track):

@@ -17,6 +17,7 @@ MEDIAN_WINDOW = 5.0    # m of running median
 OUTLIER_MADS, OUTLIER_FLOOR = 3.0, 0.05  # MAD; m
 HIDDEN_STEP = 0.5      # m that a row of hidden curb stands for
 HIDDEN_SHARE = 0.5     # share of a gap that must be hidden for a bridge
+GAP_ENDS = 1.0         # m of a gap next to its ends, half in view, of which nothing is asked
 SHARPEST = 1.0         # m across per m along that a joined edge may run
 STEP_ACROSS = 0.25     # m across that two joined points may differ at any distance
 VERTEX = 0.5           # m between vertices
@@ -94,7 +95,7 @@ def _pieces(rows, max_gap):
     across = np.abs(np.diff(points["d"]))
     joined = (gap <= CONNECT) & (across <= STEP_ACROSS + SHARPEST * gap)
     covered = HIDDEN_STEP * (np.searchsorted(hidden, points["s"][1:]) - np.searchsorted(hidden, points["s"][:-1], side="right"))
-    bridged = (gap > CONNECT) & (gap <= max_gap) & (covered >= HIDDEN_SHARE * gap) & (across <= STEP_ACROSS + 0.1 * gap)
+    bridged = (gap > CONNECT) & (gap <= max_gap) & (covered >= HIDDEN_SHARE * (gap - GAP_ENDS)) & (across <= STEP_ACROSS + 0.1 * gap)
     breaks = np.flatnonzero(~(joined | bridged)) + 1
     pieces = []
     for part, flags in zip(np.split(points, breaks), np.split(np.r_[bridged, False], breaks)):
@@ -113,9 +114,10 @@ def _without_outliers(points):
         s, d = points["s"][rows], points["d"][rows]
         spacing = np.median(np.diff(s))
         window = int(np.clip(2 * round(0.5 * MEDIAN_WINDOW / max(spacing, 0.05)) + 1, 3, len(rows) | 1))
-        # a median over an edge that drifts is right only where its window is even-handed
-        trend = np.polyval(np.polyfit(s - s.mean(), d, 1), s - s.mean())
-        away = np.abs(d - trend - median_filter(d - trend, window, mode="nearest"))
+        # an edge that turns away is no outlier: its own running direction is taken out first
+        direction = median_filter(np.diff(d) / np.maximum(np.diff(s), 0.05), window, mode="nearest")
+        off = d - np.r_[0.0, np.cumsum(direction * np.diff(s))]
+        away = np.abs(off - median_filter(off, window, mode="nearest"))
         limit = max(OUTLIER_MADS * 1.4826 * np.median(away), OUTLIER_FLOOR)
         kept[rows] = away <= limit
     return points[kept]

@@ -6,8 +6,7 @@ from ..features import Features
 from ..parallel import in_order
 from ..progress import Progress
 from ..schemas import HEIGHT, OFFSET, PASS, ROAD, SIDE, STATION
-from .curbs import REACH, SECTION, SIDES, Track, _seen_from_beside
-from .profiles import pseudo_scan_lines
+from .sides import SIDES, Track, profiles_beside, sections_of
 
 PRINCIPAL_POINTS = [ROAD, PASS, SIDE, STATION, OFFSET, HEIGHT]
 
@@ -44,35 +43,15 @@ def principal_points(survey, settings, progress=Progress()):
 
 def _points_of_road(survey, road, settings, progress):
     """(pass, side, stations, outward offsets, heights) of one section and side after the other."""
-    width = settings.profile_width
-    start, end = survey.store.span(road)
-    first, last = int(np.floor(start / width)), int(np.ceil(end / width))
     tracks = {side: Track(survey.frame, road, sign) for side, sign in SIDES.items()}
-    bounds = np.unique(np.rint(np.linspace(first, last, max(int(np.ceil((end - start) / SECTION)), 1) + 1)).astype(int))
 
     def work(section):
-        points = survey.window(road, section[0] * width, section[1] * width)
-        s, d = points.s, points.d
-        near = np.flatnonzero(_seen_from_beside(survey, points, s, d))
-        points, s, d = points[near], s[near], d[near]
-        h = points.z - survey.road_height(road, s)
-        return [
-            (int(number), side, *_of_side(sign * d[own], s[own], h[own], section, tracks[side], settings))
-            for side, sign in SIDES.items()
-            for number in np.unique(points.pass_number)
-            for own in [points.pass_number == number]
-        ]
+        found = []
+        for side, number, _, lines in profiles_beside(survey, road, section, tracks, settings):
+            profile, cell = np.nonzero(np.isfinite(lines.high))
+            stations = (lines.first + profile + 0.5) * lines.width
+            found.append((number, side, stations, lines.offset(cell), lines.high[profile, cell]))
+        return found
 
-    for results in in_order(work, list(zip(bounds[:-1], bounds[1:])), progress):
+    for results in in_order(work, sections_of(survey, road, settings.profile_width), progress):
         yield from results
-
-
-def _of_side(u, s, h, profiles, track, settings):
-    width = settings.profile_width
-    stations = (np.arange(*profiles) + 0.5) * width
-    origin = np.floor(track(stations).min())
-    outward = np.flatnonzero((u > origin) & (u < REACH))
-    lines = pseudo_scan_lines(
-        u[outward], s[outward], h[outward], profiles, width, settings.point_spacing, settings.layer_jump, origin, REACH)
-    profile, cell = np.nonzero(np.isfinite(lines.high))
-    return stations[profile], lines.offset(cell), lines.high[profile, cell]

@@ -1,0 +1,242 @@
+"""Bottom corners of curbs, measured from the raw points about a rising cell.
+
+The corner is where the road's line meets the line of the face. Road, face and the
+raised ground behind are told apart by height over the road's own line, so the
+corner does not carry the grain of the cells.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .profiles import HIGH_SIGMA
+
+ROAD_SIDE = 0.40    # m of road before the face that give the road's line
+CLEARANCE = 0.05    # m next to the face left out of it: a blurred face begins there
+BEHIND = 0.40       # m behind the face where the ground must stay up
+FACE_WINDOW = 0.15  # m either side of the rising cell within which the face lies
+STEEPEST_ROAD = 0.15  # rise over run of the road side; ditches are steeper
+WIDEST_FACE = 0.10   # m across
+NOISE_RUN = 4.0      # sigmas by which noise widens a face
+SIGMAS = 4.0        # a step must stand this far above the noise of its road side
+FACE_LOW, FACE_HIGH = 0.15, 0.70  # part of the height that counts as face: grass hangs over the top
+LEAST_SHARE = 0.5    # noise brings points from above and below into a thinner part
+TURNED = 0.1         # m outward per m along beyond which a face is measured again, turned straight
+MOST_SKEW = 1.0      # m outward per m along
+SKEW_PRIOR = 3e-3    # m²: keeps a face seen in one scan line along the road
+FACE_PRIOR = 2e-4   # m²: keeps a face seen in few points upright
+
+
+@dataclass
+class Steps:
+    """Bottom corners found on profiles, one entry each.
+
+    profile : (M,) number of the profile; s, u, h : (M,) station, outward offset and height
+    above the expected road of the bottom corner; skew : (M,) m outward per m along of the face; height : (M,) m of the step; run : (M,) m
+    across of the face, less what noise adds; noise : (M,) m, heights about the road side's line; usual : (M,) m, the
+    scanner's own noise there; support : (M,) points of road side and face; behind : (M,) points
+    of the raised ground
+    """
+
+    profile: np.ndarray
+    s: np.ndarray
+    u: np.ndarray
+    h: np.ndarray
+    skew: np.ndarray
+    height: np.ndarray
+    run: np.ndarray
+    noise: np.ndarray
+    usual: np.ndarray
+    support: np.ndarray
+    behind: np.ndarray
+
+    def __len__(self):
+        return len(self.s)
+
+    def __getitem__(self, which):
+        return Steps(*(getattr(self, name)[which] for name in self.__dataclass_fields__))
+
+    @staticmethod
+    def join(parts):
+        return Steps(*(np.concatenate([getattr(p, name) for p in parts]) for name in Steps.__dataclass_fields__))
+
+
+def measure_corners(lines, rows, cells, least, highest):
+    """The step at each rising cell, where it proves to be one.
+
+    Parameters
+    ----------
+    lines : PseudoScanLines
+    rows, cells : (M,) rising cells
+    least, highest : metres, heights of a step
+
+    Returns
+    -------
+    Steps, at most M, in the order of the cells
+    """
+    cell_count = lines.shape[1]
+    reach = int(round(max(ROAD_SIDE + CLEARANCE, BEHIND) / lines.spacing)) + 2
+    start = lines.starts[rows * cell_count + np.maximum(cells - reach, 0)]
+    end = lines.starts[rows * cell_count + np.minimum(cells + reach + 1, cell_count)]
+    owner, index = _expand(start, end)
+    ground = lines.ground[index]
+    owner, index = owner[ground], index[ground]
+    # each step is measured from all points, and from those seen from before and from behind
+    # alone: positions that drifted in between blur a face that each of the two shows sharp
+    candidates = len(rows)
+    owner = np.concatenate([owner, owner + candidates * (1 + lines.ahead[index])])
+    index = np.concatenate([index, index])
+    rows, cells = np.tile(rows, 3), np.tile(cells, 3)
+    edge, middle = lines.offset(cells), (lines.first + rows + 0.5) * lines.width
+    near = _Near(owner, lines.u[index] - edge[owner], lines.s[index] - middle[owner], lines.h[index],
+                 lines.noise[rows], least, highest)
+    found = near.corners()
+    skewed = np.flatnonzero(np.abs(found["skew"]) > TURNED)
+    if len(skewed):
+        again = near.turned(skewed, found["skew"][skewed]).corners()
+        again["skew"] = again["skew"] + found["skew"][skewed]
+        for name, values in again.items():
+            found[name][skewed] = values
+    good = found.pop("good")
+    found["u"] = found["u"] + edge
+    found["s"] = found["s"] + middle
+    return _best_view(Steps(profile=lines.first + rows, usual=lines.noise[rows], **found), good, candidates)
+
+
+class _Near:
+    """Ground points about candidate steps: offset and station from each one's own place, outward and along."""
+
+    def __init__(self, owner, u, s, h, usual, least, highest):
+        self.owner, self.u, self.s, self.h = owner, u, s, h
+        self.usual, self.least, self.highest, self.count = usual, least, highest, len(usual)
+
+    def turned(self, which, skew):
+        """The candidates `which` alone, with the direction of each face taken out of the offsets."""
+        number = np.full(self.count, -1)
+        number[which] = np.arange(len(which))
+        own = np.flatnonzero(number[self.owner] >= 0)
+        owner = number[self.owner[own]]
+        near = _Near(owner, self.u[own] - skew[owner] * self.s[own], self.s[own], self.h[own], self.usual[which],
+                     self.least, self.highest)
+        near.turn = skew
+        return near
+
+    turn = 0.0
+
+    def total(self, mask, values=None):
+        return np.bincount(self.owner[mask], None if values is None else values[mask], minlength=self.count)
+
+    def corners(self):
+        """Everything a Steps holds, as a dict of (count,) arrays, and `good`: is it a step?"""
+        owner, u, s, h, count, total = self.owner, self.u, self.s, self.h, self.count, self.total
+        road = (u < -CLEARANCE) & (u > -ROAD_SIDE - CLEARANCE)
+        level, slope, noise, n_road = _line_per_owner(owner, u, h, road, count)
+        keep = road & (np.abs(h - level[owner] - slope[owner] * u) < np.maximum(2.5 * noise, 0.01)[owner])
+        level, slope, noise, n_road = _line_per_owner(owner, u, h, keep, count)
+        rise = h - level[owner] - slope[owner] * u
+        height, n_behind, n_fallen = self._raised(rise)
+        scatter = np.maximum(noise, self.usual)
+        # the part of the height that is surely neither road nor raised ground
+        lower = np.minimum(np.maximum(FACE_LOW * height, 2 * scatter), 0.45 * height)
+        upper = np.maximum(np.minimum(FACE_HIGH * height, height - 2 * scatter), 0.55 * height)
+        face = (np.abs(u) < FACE_WINDOW) & (rise > lower[owner]) & (rise < upper[owner])
+        skew, straight = _skew(owner, u, s, face, scatter, count)
+        mid, _ = _median_and_spread(owner, straight, face, count)
+        face &= np.abs(straight - mid[owner]) < 0.05 + 2 * scatter[owner]
+        skew, straight = _skew(owner, u, s, face, scatter, count)
+        _, spread = _median_and_spread(owner, straight, face, count)
+        n_face = total(face)
+        mid, up, at = (_mean(total(face, v), n_face) for v in (straight, rise, s))
+        var_up = total(face, (rise - up[owner]) ** 2)
+        lean = total(face, (straight - mid[owner]) * (rise - up[owner])) / (var_up + n_face * FACE_PRIOR + 1e-9)
+        corner = mid - np.clip(lean, -0.2, 0.8) * up
+        # half the points of an even face lie within half its run; noise widens that
+        share = np.maximum((upper - lower) / np.maximum(height, 1e-3), LEAST_SHARE)
+        run = 2 * np.sqrt(np.maximum(spread**2 - (1.35 * scatter) ** 2, 0.0)) / share
+        run = np.where(n_face < 3, 0.0, np.maximum(run - NOISE_RUN * scatter, 0.0))
+        good = (np.isfinite(level) & (n_road >= 4) & (height >= self.least) & (height <= self.highest)
+                & (height >= SIGMAS * noise) & (np.abs(slope) <= STEEPEST_ROAD) & (n_fallen <= n_behind)
+                & (n_face >= 1) & (run <= WIDEST_FACE))
+        return dict(s=at, u=corner + self.turn * at, h=level + slope * corner, skew=skew, height=height, run=run,
+                    noise=noise, support=n_road + n_face, behind=n_behind, good=good)
+
+    def _raised(self, rise):
+        """Height of the ground behind the face, how many points lie there, and how many lie low again."""
+        u, owner, total = self.u, self.owner, self.total
+        raised = (u > 0.03) & (u < BEHIND) & (rise > 0.4 * self.least) & (rise < self.highest + 0.1)
+        first = _mean(total(raised, rise), total(raised))
+        raised &= np.abs(rise - first[owner]) < 0.05
+        n_behind = total(raised)
+        peak = np.zeros(self.count)
+        near = (u > -0.03) & (u < FACE_WINDOW)
+        np.maximum.at(peak, owner[near], rise[near])
+        height = np.where(n_behind >= 2, _mean(total(raised, rise), n_behind),
+                          np.maximum(peak - HIGH_SIGMA * self.usual, 0.0))
+        fallen = (u > 0.10) & (u < BEHIND) & (rise < 0.35 * height[owner])
+        return height, n_behind, total(fallen)
+
+
+def _best_view(steps, good, count):
+    """Of three measurements of each step the first that is good: from all points, or the view with more of them."""
+    single = good[count:].reshape(2, count)
+    support = np.where(single, steps.support[count:].reshape(2, count), 0)
+    view = np.where(good[:count], 0, 1 + np.argmax(support, axis=0))
+    chosen = np.flatnonzero(good[:count] | single.any(0))
+    return steps[chosen + count * view[chosen]]
+
+
+def _expand(start, end):
+    """Every index of ragged ranges, and which range it belongs to."""
+    length = np.maximum(end - start, 0)
+    owner = np.repeat(np.arange(len(start)), length)
+    index = np.arange(length.sum()) - np.repeat(np.cumsum(length) - length, length) + np.repeat(start, length)
+    return owner, index
+
+
+def _skew(owner, u, s, mask, scatter, count):
+    """How far the face turns away from the road's direction, and offsets with that taken out.
+
+    Returns (count,) metres outward per metre along, drawn to 0 where few points or a
+    short stretch cannot tell, and (N,) offsets moved along the face to its mean station.
+    """
+    n = np.bincount(owner[mask], minlength=count)
+    at, out = (_mean(np.bincount(owner[mask], v[mask], count), n) for v in (s, u))
+    ds, du = s - at[owner], u - out[owner]
+    along = np.bincount(owner[mask], ds[mask] ** 2, count)
+    skew = np.bincount(owner[mask], (ds * du)[mask], count) / (along + SKEW_PRIOR + (5 * scatter) ** 2)
+    skew = np.clip(skew, -MOST_SKEW, MOST_SKEW)
+    return skew, u - skew[owner] * ds
+
+
+def _median_and_spread(owner, values, mask, count):
+    """Median and interquartile range of the masked values of each owner (0 where it has none)."""
+    owner, values = owner[mask], values[mask]
+    order = np.lexsort((values, owner))
+    values = np.r_[values[order], 0.0]
+    n = np.bincount(owner, minlength=count)
+    first = np.cumsum(n) - n
+
+    def quantile(q):
+        at = q * np.maximum(n - 1, 0)
+        k = np.floor(at).astype(np.int64)
+        low, high = values[first + k], values[np.minimum(first + k + 1, len(values) - 1)]
+        return np.where(n > 0, np.where(n > k + 1, low + (at - k) * (high - low), low), 0.0)
+
+    return quantile(0.5), quantile(0.75) - quantile(0.25)
+
+
+def _mean(total, count):
+    return total / np.maximum(count, 1)
+
+
+def _line_per_owner(owner, u, h, mask, count):
+    """Least-squares line h = level + slope * u for each owner: level, slope, scatter, points."""
+    owner, u, h = owner[mask], u[mask], h[mask]
+    n = np.bincount(owner, minlength=count)
+    mu, mh = _mean(np.bincount(owner, u, count), n), _mean(np.bincount(owner, h, count), n)
+    du, dh = u - mu[owner], h - mh[owner]
+    suu, suh, shh = (np.bincount(owner, v, count) for v in (du * du, du * dh, dh * dh))
+    # points that all lie at one offset do not give a slope
+    slope = np.where(suu > n * 0.03**2, suh / np.maximum(suu, 1e-12), 0.0)
+    scatter = np.sqrt(np.maximum(shh - slope * (2 * suh - slope * suu), 0.0) / np.maximum(n - 2, 1))
+    return np.where(n > 0, mh - slope * mu, np.nan), slope, scatter, n
