@@ -112,7 +112,7 @@ def _traffic_side(found, settings, progress):
 
 def _write_lane(lines, lane, track, way, elements, road_lines, frame, number, road_points):
     road, origin = frame.roads[number], frame.origin
-    course = lane_course(track, road_lines.s, road)
+    course = lane_course(track, road_lines.s, road, elements)
     grid = road_lines.s[track.first:track.last + 1]
     z = lane_heights(road_lines, road_points, number, track.first, grid, track.d)
     status = settled(track.status)

@@ -11,6 +11,8 @@ from .track import BRIDGED
 SHORT_PIECE = 5.0   # m: a shorter change of status is not worth a piece
 MOST_OF_IT = 0.9    # share of a piece that one element must cover to give it its name
 LEAST_PLACES = 8
+BLEND = 5.0         # m at its ends over which an arc passes into what comes before and after
+TRUE_ARC = 0.02     # m: RMSE below which a lane is taken to be the arc it shares with its neighbours
 
 
 @dataclass
@@ -28,7 +30,7 @@ class Course:
     rmse: float
 
 
-def lane_course(track, s, road):
+def lane_course(track, s, road, elements=()):
     """Fit the course of a lane.
 
     Parameters
@@ -36,6 +38,8 @@ def lane_course(track, s, road):
     track : Track
     s : (K,) grid stations
     road : Road
+    elements : Elements of the lane; on them the course is the arc or straight itself, so
+        that lanes of one bend are concentric
 
     Returns
     -------
@@ -51,7 +55,29 @@ def lane_course(track, s, road):
     station, _ = road.locate(places[:, 0], places[:, 1])
     good = np.isfinite(station)
     good[good] &= station[good] > np.r_[-np.inf, np.maximum.accumulate(station[good])[:-1]]
-    return Course(places[good, 0], places[good, 1], station[good], fit.curve, fit.rmse)
+    places, station = places[good], station[good]
+    for element in elements:
+        if element.rmse < TRUE_ARC:
+            places = _drawn_to(element, places, station)
+    return Course(places[:, 0], places[:, 1], station, fit.curve, fit.rmse)
+
+
+def _drawn_to(element, places, station):
+    """Places moved onto an element, less and less towards its ends unless the lane ends there."""
+    inside = (station >= element.start) & (station <= element.end)
+    if not inside.any():
+        return places
+    share = np.ones(inside.sum())
+    at = station[inside]
+    if element.start - station[0] > STEP:
+        share = np.minimum(share, (at - element.start) / BLEND)
+    if station[-1] - element.end > STEP:
+        share = np.minimum(share, (element.end - at) / BLEND)
+    u, e = element.arc.foot(places[inside, 0], places[inside, 1])
+    heading = element.arc.heading(u)
+    moved = places.copy()
+    moved[inside] -= (np.clip(share, 0.0, 1.0) * e)[:, None] * np.c_[-np.sin(heading), np.cos(heading)]
+    return moved
 
 
 def settled(status):
