@@ -107,9 +107,11 @@ def paint_of(call, name, progress):
     with open_cloud(call.cloud(name)) as reader:
         if reader.header.point_count:
             return road_points_of(call, name, progress)
-        crs = reader.header.parse_crs()
+        crs, columns = reader.header.parse_crs(), set(reader.header.point_format.dimension_names)
+        points = RoadPoints.empty_like(origin=reader.header.offsets, crs="" if crs is None else crs.to_wkt())
+        points.has_corrected, points.has_cluster = "intensity_corrected" in columns, "cluster" in columns
         progress.warn(tr("{label} holds no points: no paint was found on this road.").format(label=call.label(name)))
-        return RoadPoints.empty_like(origin=reader.header.offsets, crs="" if crs is None else crs.to_wkt())
+        return points
 
 
 def imported_trajectory(call, progress):

@@ -16,7 +16,7 @@ def survey(provider, tmp_path_factory):
 
     folder = tmp_path_factory.mktemp("survey")
     return processing.run("lanewright:samplesurvey", {
-        "LENGTH": 60, "PULSE_RATE": 120000, "POINT_CLOUD": str(folder / "s.laz"), "TRAJECTORY": str(folder / "drive.gpkg"),
+        "LENGTH": 80, "RADIUS": 60, "PULSE_RATE": 120000, "POINT_CLOUD": str(folder / "s.laz"), "TRAJECTORY": str(folder / "drive.gpkg"),
     })
 
 
