@@ -151,18 +151,21 @@ def _beside(lines, drift):
 
 
 def _beyond_the_edge(lines, level):
-    """(N,) whether a fragment lies farther out than a long line that bounds the road there: gutter, kerb or yard."""
+    """(N,) whether a fragment lies farther out than a long line that bounds the road there: gutter, verge or yard.
+
+    With less than a lane's room between the two, what is much shorter than the edge
+    line is no line of its own; farther out, what is short.
+    """
     result = np.zeros(len(lines), bool)
     bounds = [j for j, line in enumerate(lines)
               if line.painted >= LONG and _votes(line).get("edge", 0.0) > 0.3 * line.painted]
     for k, line in enumerate(lines):
-        if line.painted >= LONG:
-            continue
         for j in bounds:
             # the vehicle drove between the edge lines
             farther = np.sign(np.median(lines[j].places()[1])) * (level[k] - level[j])
             shared = min(lines[j].last, line.last) - max(lines[j].first, line.first)
-            if farther > TWIN[0] and shared > 0.5 * (line.last - line.first):
+            least = SLIVER * lines[j].painted if farther < LANE else 0.0
+            if j != k and farther > TWIN[0] and shared > 0.5 * (line.last - line.first) and line.painted < max(least, LONG):
                 result[k] = True
     return result
 

@@ -193,6 +193,16 @@ def test_specks_and_gutter_pieces_are_no_lines():
     assert told(street.lines(), "kind", "line") == [("edge", 1)]
 
 
+def test_a_bright_strip_of_verge_beside_the_edge_line_is_no_second_line():
+    street = Street().paint(0, 120, 4.0, kind="edge").paint(40, 58, 4.5, kind="edge")
+    assert told(street.lines(), "kind", "pattern", "line") == [("edge", "solid", 1)]
+
+
+def test_the_outer_line_of_a_lay_by_is_a_line():
+    street = Street().paint(0, 120, 2.0, kind="edge").paint(40, 80, 4.7, kind="edge")
+    assert sorted(told(street.lines(), "kind", "line")) == [("edge", 1), ("edge", 2)]
+
+
 def test_lines_3_m_apart_are_never_linked_across():
     lines = Street().paint(0, 50, 1.5, kind="centre").paint(52, 120, -1.5, kind="centre").lines()
     assert sorted(told(lines, "line", "status")) == [(1, "measured"), (2, "measured")]
