@@ -25,8 +25,11 @@ from .compounds import split_compounds
 from .shapes import CELL, measure
 
 WINDOW = 500     # cells of 4 cm: 20 m of station are linked at a time
+FRAGMENT = 3     # points: the smallest worn rest that a line may be joined from
+WORN_GAP, OVERLAP, SAME_LINE = 0.9, 0.2, 0.08  # m along, along, across
 STRIPS = LINES + ("zebra", "stop")  # drawn as even strips, the others cell by cell
-STRETCH = 2.0    # neighbours may be this times the distance apart along the road, and across it the distance over this
+STRETCH = 2.5    # neighbours may be this times the distance apart along the road,
+SQUEEZE = 2.0    # and across it the distance over this
 
 
 @dataclass(frozen=True)
@@ -71,9 +74,11 @@ def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress
     for k, road in enumerate(roads):
         part = progress.part(k / len(roads), (k + 1) / len(roads))
         records, labels = group(marking_points, road, settings.distance, part.part(0, 0.4))
-        records, starts = _by_cluster(records, split_compounds(records, labels), settings.min_points)
+        records, starts = _by_cluster(records, split_compounds(records, labels), FRAGMENT)
+        number_of = join_fragments(_measured(records, starts), settings.classes.max_width)
+        records, starts = _by_cluster(records, _relabelled(records, starts, number_of), settings.min_points)
         rows = list(zip(starts[:-1], starts[1:]))
-        shapes = [measure(records["s"][a:b], records["d"][a:b]) for a, b in rows]
+        shapes = _measured(records, starts)
         half_widths = [float(np.median(records["half_width"][a:b])) * 1e-3 for a, b in rows]
         kinds = classify(shapes, half_widths, settings.classes)
         for i in sorted(range(len(rows)), key=lambda i: (shapes[i].s0, shapes[i].d0, shapes[i].s1)):
@@ -88,6 +93,46 @@ def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress
         clustered.store.append(road, records)
     progress.say(f"{number} markings found; {refused} clusters were left out as gutters, covers or specks.")
     return markings, clustered
+
+
+def _measured(records, starts):
+    return [measure(records["s"][a:b], records["d"][a:b]) for a, b in zip(starts[:-1], starts[1:])]
+
+
+def join_fragments(shapes, max_width):
+    """Which narrow pieces along the road continue each other over a worn spot.
+
+    Pieces are joined where one begins up to 0.9 m after the end of another, on
+    the same line: no painted gap is shorter, and paint wears through.
+
+    Returns
+    -------
+    (N,) int, the same number for pieces of one marking
+    """
+    number = np.arange(len(shapes))
+    narrow = np.array([k for k, shape in enumerate(shapes) if _narrow(shape, max_width)], np.int64)
+    if len(narrow) < 2:
+        return number
+    begins = np.array([(shapes[k].s0, shapes[k].begin) for k in narrow])
+    ends = np.array([(shapes[k].s1, shapes[k].finish) for k in narrow])
+    # a box of -0.2 to 0.9 m along and 8 cm either way across about each end
+    scale = np.array([(WORN_GAP + OVERLAP) / 2, SAME_LINE])
+    about = (ends + np.array([(WORN_GAP - OVERLAP) / 2, 0.0])) / scale
+    near = cKDTree(begins / scale).query_ball_point(about, 1.0, p=np.inf)
+    pairs = np.array([(a, b) for a, found in enumerate(near) for b in found if a != b], np.int64).reshape(-1, 2)
+    graph = coo_matrix((np.ones(len(pairs), bool), (narrow[pairs[:, 0]], narrow[pairs[:, 1]])), shape=(len(shapes),) * 2)
+    return connected_components(graph, directed=False)[1]
+
+
+def _narrow(shape, max_width):
+    return shape.width <= max_width and shape.along or shape.d1 - shape.d0 <= max_width
+
+
+def _relabelled(records, starts, number):
+    """Label of every record after joining; records of no cluster get labels of their own."""
+    labels = np.repeat(number, np.diff(starts))
+    rest = len(records) - len(labels)
+    return np.r_[labels, len(number) + np.arange(rest)]
 
 
 def group(marking_points, road, distance, progress=Progress()):
@@ -145,7 +190,7 @@ def _components(records, distance):
     d = np.zeros(len(cells), np.int64)
     np.add.at(s, member, records["s"])
     np.add.at(d, member, records["d"])
-    places = np.c_[s / size / STRETCH, d / size * STRETCH] * UNIT
+    places = np.c_[s / size / STRETCH, d / size * SQUEEZE] * UNIT
     pairs = cKDTree(places).query_pairs(distance, output_type="ndarray")
     graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(len(cells), len(cells)))
     return cells, member, connected_components(graph, directed=False)[1]

@@ -4,6 +4,7 @@ The image is looked at in the road's own frame, station along and offset across,
 so that "along the road" is an axis of the array and a bend is straight.
 """
 
+from contextlib import nullcontext
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +16,7 @@ from ..progress import Progress
 from ..survey.points import UNIT, Points
 from ..survey.road_points import RoadPoints
 from .gutters import gutter_cells, rim_distance
+from .mask import marking_mask
 from .polygons import fill_gaps
 from .shapes import measure
 from .thresholds import FEWEST, WIDEST, asphalt, asphalt_bins, background, bin_edges, split_bins
@@ -100,6 +102,13 @@ def extract_markings(road_points, image, frame, settings=MarkingSettings(), prog
     -------
     RoadPoints
     """
+    with marking_mask(mask_path, image, frame.origin) if mask_path else nullcontext(lambda x, y: None) as burn:
+        kept = _extract(road_points, image, frame, settings, progress, burn)
+    progress.say(f"{len(kept):,} of {len(road_points):,} road points lie on paint.")
+    return kept
+
+
+def _extract(road_points, image, frame, settings, progress, burn):
     kept = RoadPoints.empty_like(road_points)
     roads = road_points.roads()
     for k, road in enumerate(roads):
@@ -113,9 +122,9 @@ def extract_markings(road_points, image, frame, settings=MarkingSettings(), prog
                          "over a decimetre, and markings smaller than that are not seen.")
         bins = dict(zip(windows, in_order(look.bins, windows, part.part(0.1, 0.5))))
         levels = Levels({w: found for w, found in bins.items() if found}, settings)
-        for records in in_order(lambda w: look.paint(w, levels), windows, part.part(0.5, 1.0)):
+        for records, s, d in in_order(lambda w: look.paint(w, levels), windows, part.part(0.5, 1.0)):
             kept.store.append(road, records)
-    progress.say(f"{len(kept):,} of {len(road_points):,} road points lie on paint.")
+            burn(*frame.road(road).to_map(s, d))
     return kept
 
 
@@ -183,10 +192,10 @@ class _Look:
         return list(zip(bins, split_bins(z[rows][counted], offsets[rows][counted], bins, self.settings.separation)))
 
     def paint(self, window, levels):
-        """Records of one window that lie on paint."""
+        """Records of one window that lie on paint; station and offset of spots in every painted cell."""
         found = self._grid(window)
-        if found is None:
-            return self.road_points.window(self.road, 0, 0).records
+        if found is None or not len(levels.numbers):
+            return self.road_points.window(self.road, 0, 0).records, np.empty(0), np.empty(0)
         grid, records, row, column, own, brightness, rim = found
         median, spread, scale, threshold = levels.at(grid)
         z, gutter = flatten(brightness, median, spread, rim)
@@ -196,13 +205,22 @@ class _Look:
         else:
             with np.errstate(invalid="ignore"):
                 mask = morphology((z > threshold * scale) & ~gutter, self.settings)
+        spots = _spots(mask, grid)
         records, row, column = records[own], row[own], column[own]
         if self.noisy:  # a single point says nothing
-            return records[mask[row, column]]
+            return records[mask[row, column]], *spots
         unit = (spread * scale)[row, column]
         # what was taken from the cell as background is taken from the point as well
         ground = brightness[row, column] - z[row, column] * spread[row, column]
-        return records[mask[row, column] & (Points(records).value > ground + (threshold[row, column] - 0.5) * unit)]
+        return records[mask[row, column] & (Points(records).value > ground + (threshold[row, column] - 0.5) * unit)], *spots
+
+
+def _spots(mask, grid):
+    """Station and offset of four spots in every painted cell of the window itself: no pixel between is left out."""
+    row, column = np.nonzero(mask[HALO:HALO + WINDOW])
+    quarter = np.array([[-0.25, -0.25], [-0.25, 0.25], [0.25, -0.25], [0.25, 0.25]])
+    s, d = grid.stations()[HALO + row], grid.offsets()[column]
+    return (s[:, None] + quarter[:, 0] * CELL * UNIT).ravel(), (d[:, None] + quarter[:, 1] * CELL * UNIT).ravel()
 
 
 def averaged(cell, value, shape):

@@ -17,7 +17,8 @@ class Shape:
     """What a cluster looks like in (s, d); metres, radians.
 
     direction is 0 along the road, pi/2 across it, within (-pi/2, pi/2].
-    s0, s1, d0, d1 bound it; `offset` is the median offset, `area` that of its 4 cm cells.
+    s0, s1, d0, d1 bound it; `offset` is the median offset, `area` that of its 4 cm cells;
+    `begin` and `finish` are the offsets of its middle line at s0 and s1 (the median for what is not along the road).
     """
 
     s0: float
@@ -30,6 +31,8 @@ class Shape:
     direction: float
     area: float
     points: int
+    begin: float
+    finish: float
 
     @property
     def elongation(self):
@@ -62,14 +65,17 @@ def measure(s, d):
     s0, s1, d0, d1 = s.min(), s.max(), d.min(), d.max()
     if abs(direction) <= ALONG and s1 - s0 > 2 * BIN:
         length = (s1 - s0) * UNIT
-        across = d - np.interp(s, *middle(s, d))
+        nodes, offsets = middle(s, d)
+        across = d - np.interp(s, nodes, offsets)
+        begin, finish = offsets[0] * UNIT, offsets[-1] * UNIT
     else:
         c, n = np.cos(direction), np.sin(direction)
         along = s * c + d * n
         length = np.ptp(along) * UNIT
         across = d * c - s * n
+        begin = finish = float(np.median(d)) * UNIT
     return Shape(s0 * UNIT, s1 * UNIT, d0 * UNIT, d1 * UNIT, float(np.median(d)) * UNIT, float(length),
-                 spread(across) * UNIT, direction, len(cells) * (CELL * UNIT) ** 2, len(s))
+                 spread(across) * UNIT, direction, len(cells) * (CELL * UNIT) ** 2, len(s), float(begin), float(finish))
 
 
 def spread(across):
