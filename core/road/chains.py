@@ -19,6 +19,7 @@ HEIGHT_SLACK = 0.03    # m that bottom heights of neighbours may differ
 SHORTEST = 0.75        # m of a chain that counts
 WHOLE = 4.0            # m of chains that lie in one line and make a curb
 REACH_ON = 8.0         # m between chains of one line
+TIP_STEPS = 5          # at the end of a chain that give its direction
 TURN_REACH = 3.0       # m that a chain is drawn on in its own direction
 DENSEST = 0.5          # share of its profiles in which a chain must be seen
 WANDER = 0.02          # m, scatter about its own running line beyond the scanner's noise
@@ -118,8 +119,7 @@ def curb_chains(steps, label, profile_width, least, slope):
             continue
         if np.mean(steps.behind[members] >= 2) < 0.5:
             continue
-        u = steps.u[members]
-        if len(u) > 2 and np.median(np.abs(u[1:-1] - 0.5 * (u[2:] + u[:-2]))) > WANDER + usual:
+        if len(members) > 2 and _wander(s, steps.u[members]) > WANDER + usual:
             continue
         chains.append(Chain(members, float(s[0]), float(s[-1])))
     return sorted(chains, key=lambda c: (c.start, c.end))
@@ -154,8 +154,9 @@ def choose_along(chains, steps, near):
         there = np.array([[np.interp(a, places[k][0], v) for v in places[k][1:]] for k in known]).reshape(-1, 2)
         middle, found = 0.5 * (a + b), []
         for c in active:
-            u, h = (np.interp(middle, places[c][0], v) for v in places[c][1:])
-            gain = (b - a) * max(1.0 - NEARNESS * max(u - near(middle), 0.0), 0.1)
+            farther = max(np.interp(middle, *places[c][:2]) - near(middle), 0.0)
+            gain = (b - a) * max(1.0 - NEARNESS * farther, 0.1)
+            u, h = (np.interp(a, places[c][0], v) for v in places[c][1:])
             gap = np.maximum(a - ends[known], 0.0)
             # a gap is crossed in the direction in which the one ended and the other begins
             turn = np.minimum(gap, TURN_REACH) * 0.5 * (tips[known, 1] + (tips[c, 0] if a <= starts[c] else 0.0))
@@ -209,8 +210,18 @@ def _in_line(steps, before, after):
 
 
 def _directions(steps, members):
-    """How a run of steps begins and ends: m outward per m along."""
-    return float(np.median(steps.skew[members[:5]])), float(np.median(steps.skew[members[-5:]]))
+    """How a run of steps begins and ends: m outward per m along, over its outermost metre or so."""
+    found = []
+    for tip in (members[:TIP_STEPS], members[-TIP_STEPS:]):
+        ds = steps.s[tip] - steps.s[tip].mean()
+        found.append(float(ds @ steps.u[tip] / (ds @ ds + 0.05)))
+    return found
+
+
+def _wander(s, u):
+    """Median distance of the steps of a chain from the chord of their neighbours."""
+    f = (s[1:-1] - s[:-2]) / np.maximum(s[2:] - s[:-2], 1e-6)
+    return np.median(np.abs(u[1:-1] - u[:-2] - f * (u[2:] - u[:-2])))
 
 
 def _merged(path):
