@@ -101,8 +101,9 @@ def _guides(s, level, drift, span):
     stations, offsets = [], []
     for a, b in gaps:
         at = np.linspace(a, b, int(np.ceil((b - a) / GUIDE)) + 1)[1:-1]
-        before = np.median(level[(s <= a) & (s >= a - LEVEL)])
-        after = np.median(level[(s >= b) & (s <= b + LEVEL)])
+        start, stop = np.searchsorted(s, a, "right"), np.searchsorted(s, b)
+        before = np.median(level[np.searchsorted(s, a - LEVEL):start])
+        after = np.median(level[stop:np.searchsorted(s, b + LEVEL, "right")])
         stations.append(at)
         offsets.append(np.interp(at, [a, b], [before, after]) + drift.at(at))
     for tip, end in ((s[0], span[0]), (s[-1], span[1])):

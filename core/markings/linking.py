@@ -278,16 +278,19 @@ def without_strays(line, drift):
     s, d, _, weight = line.places()
     level = d - drift.at(s)
     owner = np.repeat(np.arange(len(line.strands)), [len(strand.s) for strand in line.strands])
+    order = np.argsort(s, kind="stable")
+    s, level, weight, owner = s[order], level[order], weight[order], owner[order]
     kept = []
     for k, strand in enumerate(line.strands):
         middle = (strand.first + strand.last) / 2
-        others = (owner != k) & (np.abs(s - middle) <= VIEW)
+        window = np.arange(*np.searchsorted(s, [middle - VIEW, middle + VIEW]))
+        others, own = window[owner[window] != k], window[owner[window] == k]
         both = (s[others] < middle).any() and (s[others] > middle).any()
         if strand.length > SHORT and strand.length > 0.1 * line.painted or not both:
             kept.append(strand)
             continue
         expected = _robust_level(s[others] - middle, level[others], np.minimum(weight[others], 10.0))
-        if abs(np.median(level[owner == k]) - expected) <= STRAY:
+        if abs(np.median(level[own]) - expected) <= STRAY:
             kept.append(strand)
     return Line(kept)
 
