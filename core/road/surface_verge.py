@@ -153,16 +153,20 @@ class Profile:
             limit = ROUGHER * np.median(usual) + ROUGH_FLOOR
             if self.rough[k] > limit and (rough > limit).mean() > 0.7:
                 return True
-        return self._turns(k)
+        return self._turns(k, uneven)
 
-    def _turns(self, k):
-        """Whether the ground tilts away from here on, over 0.5 m, against the metre before."""
-        after, before = self.off[k:k + 6], self.off[max(k - 10, 0):k]
+    def _turns(self, k, uneven):
+        """Whether the ground tilts away from cell k on, over 0.6 m, against the metre before."""
+        inner = slice(max(k - 10, 0), k)
+        after, before = self.off[k:k + 6], self.off[inner]
         a, b = np.isfinite(after), np.isfinite(before)
-        if a.sum() < 4 or b.sum() < 5:
+        if a.sum() < 4 or b.sum() < 5 or not a[0]:
             return False
-        slope = np.polyfit(self.u[k:k + 6][a], after[a], 1)[0] - np.polyfit(self.u[max(k - 10, 0):k][b], before[b], 1)[0]
-        return abs(slope) > TURN
+        line = np.polyfit(self.u[inner][b], before[b], 1)
+        # a bank that begins further out has not begun here
+        if abs(after[0] - np.polyval(line, self.u[k])) < 0.5 * TURN * ACROSS + UNEVEN * uneven:
+            return False
+        return abs(np.polyfit(self.u[k:k + 6][a], after[a], 1)[0] - line[0]) > TURN
 
     def _before_strip(self, k):
         """The near side of a strip of another brightness that ends at cell k, or k itself.
