@@ -85,8 +85,8 @@ if [ -z "$installed" ] || ! have_python_packages; then
     stop "No apt-get here: install QGIS $OLDEST or newer and, for its Python, ${PACKAGES[*]#python3-}, then run this again."
   choose_release
   lines="$(install_script "$release")"
-  echo "Installing QGIS and the Python packages (some minutes, about 2 GB)"
   as_root true || stop "$(printf 'Installing needs root and there is no sudo for you here. Run this as root, then start again:\n\n%s' "$lines")"
+  echo "Installing QGIS and the Python packages (some minutes, about 2 GB)"
   as_root sh -c "$lines"
   installed="$(qgis_version)"
   at_least "${installed:-0}" "$OLDEST" ||
@@ -98,7 +98,7 @@ chmod 0700 "$XDG_RUNTIME_DIR"
 # A checkout that was moved, or a new Python, leaves a virtual environment that points nowhere.
 "$LANEWRIGHT_BUILD/venv/bin/python" -c "import sys; sys.exit(sys.prefix != '$LANEWRIGHT_BUILD/venv')" 2>/dev/null ||
   { rm -rf "$LANEWRIGHT_BUILD/venv"; "$PY" -m venv --system-site-packages "$LANEWRIGHT_BUILD/venv"; }
-"$LANEWRIGHT_BUILD/venv/bin/python" -m pip install -q --disable-pip-version-check --no-deps -r requirements-dev.txt
+"$LANEWRIGHT_BUILD/venv/bin/python" -m pip install -q --disable-pip-version-check --cache-dir "$LANEWRIGHT_BUILD/pip" --no-deps -r requirements-dev.txt
 LANEWRIGHT_LIBS="$(echo "$LANEWRIGHT_BUILD"/venv/lib/python3*/site-packages)"
 "$LANEWRIGHT_BUILD/venv/bin/python" -c 'import laspy, lazrs, pytest_qgis, shapely; assert shapely.geos_version' ||
   stop "The Python packages of requirements-dev.txt were installed but cannot be imported; the lines above say why."
