@@ -49,7 +49,7 @@ class Carriageway:
 
     cells, height : the grid (height is the smoothed road's, (rows, columns))
     right, left : (rows,) offsets of its limits; NaN in rows without road
-    right_measured, left_measured : (rows,) whether an edge was measured there
+    right_bounded, left_bounded : (rows,) whether an edge bounds it there
     tolerance : m about the height
     """
 
@@ -58,8 +58,8 @@ class Carriageway:
     ground: np.ndarray
     right: np.ndarray
     left: np.ndarray
-    right_measured: np.ndarray
-    left_measured: np.ndarray
+    right_bounded: np.ndarray
+    left_bounded: np.ndarray
     tolerance: float
 
 
@@ -81,7 +81,7 @@ def extract_road_surface(survey, edges=None, settings=SurfaceSettings(), progres
     Returns
     -------
     RoadPoints with `half_width`, and Features ROAD_SURFACE: PolygonZ, `status`
-    measured where both sides have a measured edge, grown elsewhere.
+    measured where both sides have an edge (measured or bridged), grown elsewhere.
 
     Raises
     ------

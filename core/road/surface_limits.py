@@ -19,13 +19,14 @@ def edge_offsets(edges, frame, road, stations):
 
     Returns
     -------
-    dict side -> (offset (N,), measured (N,)): offset is NaN where no edge tells it,
-    `measured` is False where it was bridged or carried on across an opening.
+    dict side -> (offset (N,), seen (N,)): offset is NaN where no edge tells it,
+    `seen` is where a measured or bridged edge does: not an inferred one, and not
+    one carried on across an opening.
     """
     found = {}
     for side, sign in (("left", 1.0), ("right", -1.0)):
         offset = np.full(len(stations), np.nan)
-        measured = np.zeros(len(stations), bool)
+        seen = np.zeros(len(stations), bool)
         for geometry, row in edges or ():
             if row.get("side") != side or row.get("part", "bottom") == "top" or (row.get("road") or 0) != road:
                 continue
@@ -37,8 +38,8 @@ def edge_offsets(edges, frame, road, stations):
             # where two lines run side by side the outer one bounds the road
             take = inside & ~(sign * offset > sign * here)
             offset[take] = here[take]
-            measured[take] = row.get("status") == "measured"
-        found[side] = _carried_on(stations, offset), measured
+            seen[take] = row.get("status") != "inferred"
+        found[side] = _carried_on(stations, offset), seen
     return found
 
 

@@ -15,7 +15,7 @@ def add_outlines(surface, frame, road, carriageway, points_per_row):
     """
     cells = carriageway.cells
     there = np.isfinite(carriageway.left) & np.isfinite(carriageway.right)
-    measured = _without_short_runs(carriageway.left_measured & carriageway.right_measured, int(SHORTEST / ROW))
+    measured = _without_short_runs(carriageway.left_bounded & carriageway.right_bounded, int(SHORTEST / ROW))
     kind = np.where(there, np.where(measured, 2, 1), 0)
     cuts = np.r_[0, np.flatnonzero(np.diff(kind)) + 1, len(kind)]
     for a, b in zip(cuts[:-1], cuts[1:]):

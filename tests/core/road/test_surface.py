@@ -238,3 +238,11 @@ def test_a_cloud_high_above_the_track_is_no_road():
 def test_settings_that_leave_no_road_are_refused(wrong):
     with pytest.raises(RoadExtractionError):
         SurfaceSettings(**wrong)
+
+
+def test_an_edge_bridged_behind_parked_cars_bounds_the_road_and_one_drawn_by_guess_does_not_count_as_measured():
+    edges = road_edges()
+    edges.rows[0]["status"] = "bridged"
+    assert "measured" in {row["status"] for row in taken(survey(curbs()), edges)[1].rows}
+    edges.rows[0]["status"] = "inferred"
+    assert {row["status"] for row in taken(survey(curbs()), edges)[1].rows} == {"grown"}
