@@ -11,26 +11,34 @@ SMOOTHING = 2.0    # m: a car does not follow a pothole
 WINDOW = 200.0     # m of road points in memory at a time
 
 
-def road_heights(road_points, road, s, d):
-    """Median height of road points within 0.3 m of places along a lane.
+def road_heights(road_points, road, s, tracks):
+    """Median height of road points within 0.3 m of the places along lanes.
 
     Parameters
     ----------
-    road_points : RoadPoints
+    road_points : RoadPoints; every point is read once for all lanes
     road : number
-    s, d : (N,) places along a lane, s rising in steps of STEP
+    s : (K,) grid stations
+    tracks : list of Track
 
     Returns
     -------
-    (N,) z, NaN where there are fewer than 3 points
+    list of (N,) z, NaN where there are fewer than 3 points, one array per track
     """
-    z = np.full(len(s), np.nan)
-    for first in range(0, len(s), int(WINDOW / STEP)):
-        rows = slice(first, min(first + int(WINDOW / STEP), len(s)))
-        points = road_points.window(road, s[rows][0] - STEP / 2, s[rows][-1] + STEP / 2)
-        if len(points):
-            z[rows] = _medians(points.s, points.d, points.z, s[rows], d[rows])
-    return z
+    found = [np.full(len(track), np.nan) for track in tracks]
+    size = int(WINDOW / STEP)
+    for first in range(0, len(s), size):
+        last = min(first + size, len(s)) - 1
+        inside = [(z, track, max(first, track.first), min(last, track.last)) for z, track in zip(found, tracks)]
+        inside = [row for row in inside if row[2] <= row[3]]
+        points = road_points.window(road, s[first] - STEP / 2, s[last] + STEP / 2) if inside else ()
+        if not len(points):
+            continue
+        ps, pd, pz = points.s, points.d, points.z
+        for z, track, a, b in inside:
+            rows = slice(a - track.first, b - track.first + 1)
+            z[rows] = _medians(ps, pd, pz, s[a:b + 1], track.d[rows])
+    return found
 
 
 def _medians(ps, pd, pz, s, d):
@@ -81,15 +89,18 @@ def smooth_heights(z):
     return gaussian_filter1d(np.r_[head, z, tail], SMOOTHING / STEP)[pad:pad + len(z)]
 
 
-def lane_heights(lines, road_points, road, first, s, d):
-    """(N,) local z along a lane: from road points where there are any, else from the marking lines beside it."""
-    painted = line_heights(lines, first, d)
-    if road_points is None:
+def lane_heights(lines, road_points, road, tracks):
+    """Local z along every lane, (N,) each: from road points where there are any, else from the marking lines beside it."""
+    measured = road_heights(road_points, road, lines.s, tracks) if road_points is not None else [None] * len(tracks)
+    return [_height(z, line_heights(lines, track.first, track.d)) for z, track in zip(measured, tracks)]
+
+
+def _height(measured, painted):
+    if measured is None:
         return smooth_heights(painted)
-    measured = road_heights(road_points, road, s, d)
     both = np.isfinite(measured) & np.isfinite(painted)
     # where the road was not scanned the lines' height serves, shifted to what the road says nearby
     if both.any():
-        rows = np.arange(len(s))
+        rows = np.arange(len(measured))
         painted = painted + np.interp(rows, rows[both], (measured - painted)[both])
     return smooth_heights(np.where(np.isfinite(measured), measured, painted))

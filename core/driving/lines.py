@@ -63,8 +63,12 @@ def driving_lines(marking_lines, frame, settings=DrivingSettings(), progress=Pro
     for count, (number, (road_lines, tracks, driven, directions, middle)) in enumerate(found.items()):
         ways = lane_directions(tracks, middle, driven, directions, side, settings.traffic_side != "automatic")
         alignment = lane_elements(tracks, road_lines.s, frame.roads[number])
-        for lane, (track, way, found_elements) in enumerate(zip(tracks, ways, alignment), start=1):
-            _write_lane(lines, lane, track, way, found_elements, road_lines, frame, number, road_points)
+        heights = lane_heights(road_lines, road_points, number, tracks)
+        if any(np.isnan(z).any() for z in heights):
+            progress.warn("Neither the marking lines nor road points have heights; the trajectory's are used.")
+            heights = [frame.track_height(number, road_lines.s[t.first:t.last + 1]) for t in tracks]
+        for lane, (track, way, found_elements, z) in enumerate(zip(tracks, ways, alignment, heights), start=1):
+            _write_lane(lines, lane, track, way, found_elements, road_lines.s, z, frame, number)
             _write_elements(elements, lane, way, found_elements, number, frame.origin)
         progress.at(0.4 + 0.6 * (count + 1) / len(found))
     _say(lines, side, progress)
@@ -110,18 +114,17 @@ def _traffic_side(found, settings, progress):
     return "left" if left > right else "right"
 
 
-def _write_lane(lines, lane, track, way, elements, road_lines, frame, number, road_points):
-    road, origin = frame.roads[number], frame.origin
-    course = lane_course(track, road_lines.s, road, elements)
-    grid = road_lines.s[track.first:track.last + 1]
-    z = lane_heights(road_lines, road_points, number, track.first, grid, track.d)
+def _write_lane(lines, lane, track, way, elements, s, z, frame, number):
+    origin = frame.origin
+    course = lane_course(track, s, frame.roads[number], elements)
+    grid = s[track.first:track.last + 1]
     status = settled(track.status)
-    for code, start, end in pieces(status, track.first, road_lines.s):
+    for code, start, end in pieces(status, track.first, s):
         rows = slice(np.searchsorted(grid, start), np.searchsorted(grid, end) + 1)
-        x, y, s = _between(course, start, end, code_first=start == grid[0], code_last=end == grid[-1])
+        x, y, at = _between(course, start, end, code_first=start == grid[0], code_last=end == grid[-1])
         if len(x) < 2:
             continue
-        places = np.c_[x + origin[0], y + origin[1], np.interp(s, grid, z) + origin[2]]
+        places = np.c_[x + origin[0], y + origin[1], np.interp(at, grid, z) + origin[2]]
         if way < 0:
             places = places[::-1]
         element = element_of(elements, start, end)

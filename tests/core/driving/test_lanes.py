@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from painted_streets import HEIGHT, Street, middle
+from shapely import force_2d
 from shapely.geometry import LineString, Polygon
 
 from lanewright.core.driving.lines import DrivingSettings, driving_lines
@@ -183,6 +184,13 @@ def test_lines_drawn_by_hand_with_no_fields_at_all_serve_too():
                                                    for line in street.lines.geometries], [{}, {}])
     lines, _ = driving_lines(bare, street.frame)
     assert middle(street, lines) == [pytest.approx(-1.75, abs=0.005)]
+
+
+def test_flat_lines_without_road_points_take_the_trajectory_s_height():
+    street = Street(vehicle=-1.75).paint(0.0).paint(-3.5)
+    flat = Features("LineStringZ", MARKING_LINES, [force_2d(line) for line in street.lines.geometries], street.lines.rows)
+    lines, _ = driving_lines(flat, street.frame)
+    np.testing.assert_allclose(np.asarray(lines.geometries[0].coords)[:, 2], HEIGHT + 2.5, atol=1e-6)
 
 
 def test_height_is_the_road_s_own_where_it_was_scanned():
