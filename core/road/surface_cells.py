@@ -1,4 +1,4 @@
-"""The ground in cells of station and offset: how high the lowest layer lies, how it tilts, how rough it is."""
+"""The ground in cells of station and offset: how high the lowest layer lies, how rough and how bright it is."""
 
 from dataclasses import dataclass
 
@@ -9,14 +9,14 @@ LAYER_JUMP = 0.06         # m between two layers: ground below, a car's sill abo
 LAYER_DEPTH = 0.12        # m of the lowest layer that count as ground: a wall has no upper end
 SHARE = 0.08              # of a cell's points that the lowest layer holds at least: less is multipath below the road
 FEWEST_LAYER = 3          # points of a layer
-FEWEST_TILT = 6           # points from which a cell's tilt and roughness are taken
+FEWEST_TILT = 6           # points from which a cell's plane and roughness are taken
 NEAR, PER_METRE = 0.7, 0.12  # m about the vehicle's road height, and per metre beside the track, where ground may lie
 
 
 @dataclass
 class Cells:
     """(rows, columns) float32 arrays, NaN where there is no ground: `height` (local z of a cell's middle),
-    `tilt` across (m per m to the left), `rough` (m about the cell's own plane), `brightness` (median intensity), `scatter` (its lower spread as a sigma), and `count`.
+    `rough` (m about the cell's own plane), `brightness` (median intensity), `scatter` (its lower spread as a sigma), and `count`.
 
     Row k reaches from row_size * (first_row + k), column j from column_size * (first_column + j).
     """
@@ -26,13 +26,12 @@ class Cells:
     row_size: float
     column_size: float
     height: np.ndarray
-    tilt: np.ndarray
     rough: np.ndarray
     brightness: np.ndarray
     scatter: np.ndarray
     count: np.ndarray
 
-    NAMES = ("height", "tilt", "rough", "brightness", "scatter", "count")
+    NAMES = ("height", "rough", "brightness", "scatter", "count")
 
     @classmethod
     def joined(cls, parts):
@@ -93,12 +92,12 @@ def ground_cells(points, first_row, rows, reach, road_height, row_size=ROW, colu
     at = row[low] * columns + column[low]
     u = d[low] - (column[low] - half + 0.5) * column_size
     v = s[low] - (row[low] + first_row + 0.5) * row_size
-    height, tilt, rough = _planes(at, u, v, z[low], rows * columns)
+    height, rough = _planes(at, u, v, z[low], rows * columns)
     brightness, scatter = _medians(at, points.intensity[low].astype(float), rows * columns)
     shape = rows, columns
     count = np.bincount(at, minlength=rows * columns)
     return Cells(first_row, -half, row_size, column_size,
-                 *(values.reshape(shape).astype(np.float32) for values in (height, tilt, rough, brightness, scatter, count)))
+                 *(values.reshape(shape).astype(np.float32) for values in (height, rough, brightness, scatter, count)))
 
 
 def _in_lowest_layer(cell, z, total):
@@ -118,7 +117,7 @@ def _in_lowest_layer(cell, z, total):
 
 
 def _planes(at, u, v, z, cells):
-    """Height at the middle, tilt across and roughness of the plane through each cell's points."""
+    """Height at the middle and roughness of the plane through each cell's points."""
     n = np.bincount(at, minlength=cells).astype(float)
 
     def mean(values):
@@ -136,7 +135,7 @@ def _planes(at, u, v, z, cells):
     with np.errstate(invalid="ignore", divide="ignore"):
         rough = np.sqrt(rest * n / np.maximum(n - 3, 1))
     height = np.where(enough, mz - across * mu - along * mv, mz)
-    return (np.where(any_ground, height, np.nan), np.where(enough, across, np.nan), np.where(enough, rough, np.nan))
+    return np.where(any_ground, height, np.nan), np.where(enough, rough, np.nan)
 
 
 def _medians(at, values, cells):

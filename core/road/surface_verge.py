@@ -28,18 +28,17 @@ class Profiles:
 
     stations : (P,) middles; offsets : (K,) middles, ascending
     height : (P, K) m above the road's height under the vehicle as known beforehand
-    tilt, rough, brightness, scatter : (P, K) as in Cells; all NaN where nothing is seen
+    rough, brightness, scatter : (P, K) as in Cells; all NaN where nothing is seen
     """
 
     stations: np.ndarray
     offsets: np.ndarray
     height: np.ndarray
-    tilt: np.ndarray
     rough: np.ndarray
     brightness: np.ndarray
     scatter: np.ndarray
 
-    NAMES = ("height", "tilt", "rough", "brightness", "scatter")
+    NAMES = ("height", "rough", "brightness", "scatter")
 
     @classmethod
     def of(cls, points, start, length, reach, road_height):
@@ -47,7 +46,7 @@ class Profiles:
         cells = ground_cells(points, int(round(start / ALONG)), int(round(length / ALONG)), reach, road_height, ALONG, ACROSS)
         above = cells.height - road_height(cells.stations)[:, None]
         pooled = (known_median(values.reshape(-1, STRETCH, values.shape[1]), 1)
-                  for values in (above, cells.tilt, cells.rough, cells.brightness, cells.scatter))
+                  for values in (above, cells.rough, cells.brightness, cells.scatter))
         return cls(cells.stations.reshape(-1, STRETCH).mean(axis=1), cells.offsets, *(v.astype(np.float32) for v in pooled))
 
     @classmethod
@@ -85,7 +84,7 @@ def grown_offsets(profiles, cells, above, sign, track, max_width):
     beside = sign * np.interp(profiles.stations, stations, track)
     ends = np.full(len(off), np.nan)
     for k in range(len(off)):
-        profile = Profile(u[outward], off[k, outward], sign * profiles.tilt[k, outward], profiles.rough[k, outward],
+        profile = Profile(u[outward], off[k, outward], profiles.rough[k, outward],
                           profiles.brightness[k, outward], profiles.scatter[k, outward])
         ends[k] = profile.end(beside[k], max_width)
     known = np.isfinite(ends)
@@ -112,12 +111,11 @@ def _at(grid, cells, stations, offsets):
 class Profile:
     """Cells of ACROSS metres from the reference line outward.
 
-    u : middles, ascending; off : height off the followed road; tilt : outward;
-    rough; brightness and the scatter of single points about it: NaN where a cell shows nothing
+    u : middles, ascending; off : height off the followed road; rough; brightness and the scatter of single points about it: NaN where a cell shows nothing
     """
 
-    def __init__(self, u, off, tilt, rough, brightness, scatter):
-        self.u, self.off, self.tilt, self.rough, self.brightness, self.scatter = u, off, tilt, rough, brightness, scatter
+    def __init__(self, u, off, rough, brightness, scatter):
+        self.u, self.off, self.rough, self.brightness, self.scatter = u, off, rough, brightness, scatter
 
     def end(self, beside, max_width):
         """Distance at which the road ends, at most `max_width` beyond `beside`, the track's own distance."""
