@@ -16,7 +16,7 @@ from ..progress import Progress
 from ..survey.points import UNIT, Points
 from ..survey.road_points import RoadPoints
 from .gutters import gutter_cells, rim_distance
-from .mask import marking_mask
+from .mask import marking_mask, pixel_centres
 from .polygons import fill_gaps
 from .shapes import measure
 from .thresholds import FEWEST, WIDEST, asphalt, asphalt_bins, background, bin_edges, split_bins
@@ -102,7 +102,7 @@ def extract_markings(road_points, image, frame, settings=MarkingSettings(), prog
     -------
     RoadPoints
     """
-    with marking_mask(mask_path, image, frame.origin) if mask_path else nullcontext(lambda x, y: None) as burn:
+    with marking_mask(mask_path, image, frame.origin) if mask_path else nullcontext() as burn:
         kept = _extract(road_points, image, frame, settings, progress, burn)
     progress.say(f"{len(kept):,} of {len(road_points):,} road points lie on paint.")
     return kept
@@ -113,7 +113,7 @@ def _extract(road_points, image, frame, settings, progress, burn):
     roads = road_points.roads()
     for k, road in enumerate(roads):
         part = progress.part(k / len(roads), (k + 1) / len(roads))
-        look = _Look(road_points, image, frame, road, settings)
+        look = _Look(road_points, image, frame, road, settings, burn is not None)
         windows = look.windows()
         scatter = [value for value in in_order(look.scatter, windows, part.part(0.0, 0.1)) if value is not None]
         look.noisy = bool(scatter) and float(np.median(scatter)) > NOISY
@@ -122,18 +122,20 @@ def _extract(road_points, image, frame, settings, progress, burn):
                          "over a decimetre, and markings smaller than that are not seen.")
         bins = dict(zip(windows, in_order(look.bins, windows, part.part(0.1, 0.5))))
         levels = Levels({w: found for w, found in bins.items() if found}, settings)
-        for records, s, d in in_order(lambda w: look.paint(w, levels), windows, part.part(0.5, 1.0)):
+        for records, x, y in in_order(lambda w: look.paint(w, levels), windows, part.part(0.5, 1.0)):
             kept.store.append(road, records)
-            burn(*frame.road(road).to_map(s, d))
+            if burn is not None:
+                burn(x, y)
     return kept
 
 
 class _Look:
     """One road's windows, looked at twice: for the level of asphalt, and for what is brighter."""
 
-    def __init__(self, road_points, image, frame, road, settings):
+    def __init__(self, road_points, image, frame, road, settings, masked=False):
         self.road_points, self.image, self.frame, self.road, self.settings = road_points, image, frame, road, settings
         self.noisy = False
+        self.masked = masked
 
     def windows(self):
         start, end = self.road_points.store.span(self.road)
@@ -191,8 +193,25 @@ class _Look:
         counted = (seen & ~gutter)[rows]
         return list(zip(bins, split_bins(z[rows][counted], offsets[rows][counted], bins, self.settings.separation)))
 
+    def _pixels(self, mask, grid):
+        """Local x, y of the centres of the image's pixels that lie in painted cells of the window itself."""
+        row, column = np.nonzero(mask[HALO:HALO + WINDOW])
+        quarter = np.array([[-0.25, -0.25], [-0.25, 0.25], [0.25, -0.25], [0.25, 0.25]]) * CELL * UNIT
+        s = (grid.stations()[HALO + row][:, None] + quarter[:, 0]).ravel()
+        d = (grid.offsets()[column][:, None] + quarter[:, 1]).ravel()
+        road = self.frame.road(self.road)
+        x, y, near = pixel_centres(self.image, *road.to_map(s, d), self.frame.origin)
+        s, d = road.locate(x, y, s[near], np.inf)
+        known = np.isfinite(s)
+        x, y, s, d = x[known], y[known], s[known], d[known]
+        row = np.floor(s / UNIT / CELL).astype(np.int64) - grid.first
+        column = np.floor(d / UNIT / CELL).astype(np.int64) - grid.low
+        inside = (row >= HALO) & (row < HALO + WINDOW) & (column >= 0) & (column < grid.shape[1])
+        inside[inside] = mask[row[inside], column[inside]]
+        return x[inside], y[inside]
+
     def paint(self, window, levels):
-        """Records of one window that lie on paint; station and offset of spots in every painted cell."""
+        """Records of one window that lie on paint; local x, y of the mask's pixels where one is asked for."""
         found = self._grid(window)
         if found is None or not len(levels.numbers):
             return self.road_points.window(self.road, 0, 0).records, np.empty(0), np.empty(0)
@@ -200,28 +219,22 @@ class _Look:
         median, spread, scale, threshold = levels.at(grid)
         z, gutter = flatten(brightness, median, spread, rim)
         if self.noisy:
-            with np.errstate(invalid="ignore"):
-                mask = strips((z > np.minimum(threshold, self.settings.faint) * scale) & ~gutter, grid)
+            mask = strips(z / scale, np.minimum(threshold, self.settings.faint), gutter, grid)
         else:
             with np.errstate(invalid="ignore"):
                 mask = morphology((z > threshold * scale) & ~gutter, self.settings)
-        spots = _spots(mask, grid)
         records, row, column = records[own], row[own], column[own]
-        if self.noisy:  # a single point says nothing
-            return records[mask[row, column]], *spots
-        unit = (spread * scale)[row, column]
-        # what was taken from the cell as background is taken from the point as well
-        ground = brightness[row, column] - z[row, column] * spread[row, column]
-        return records[mask[row, column] & (Points(records).value > ground + (threshold[row, column] - 0.5) * unit)], *spots
-
-
-def _spots(mask, grid):
-    """Station and offset of four spots in every painted cell of the window itself: no pixel between is left out."""
-    row, column = np.nonzero(mask[HALO:HALO + WINDOW])
-    quarter = np.array([[-0.25, -0.25], [-0.25, 0.25], [0.25, -0.25], [0.25, 0.25]])
-    s, d = grid.stations()[HALO + row], grid.offsets()[column]
-    return (s[:, None] + quarter[:, 0] * CELL * UNIT).ravel(), (d[:, None] + quarter[:, 1] * CELL * UNIT).ravel()
-
+        kept = mask[row, column]
+        if not self.noisy:  # else a single point says nothing
+            # what was taken from the cell as background is taken from the point as well
+            ground = (brightness - z * spread)[row, column]
+            kept &= Points(records).value > ground + (threshold[row, column] - 0.5) * (spread * scale)[row, column]
+        if not self.masked:
+            return records[kept], np.empty(0), np.empty(0)
+        # the image spreads a point over its neighbours: a cell whose own points are dark is no marking
+        mask[row, column] = False
+        mask[row[kept], column[kept]] = True
+        return records[kept], *self._pixels(mask, grid)
 
 def averaged(cell, value, shape):
     """(rows, columns) float32 mean of the points about each cell; NaN where there are none.
@@ -307,17 +320,26 @@ def morphology(mask, settings):
     return mask & (runs(closed, 0) >= length) | mask & (runs(closed, 1) >= length)
 
 
-def strips(mask, grid):
-    """Only the connected pieces that are long for their width, as strokes of paint are and blotches are not."""
+def strips(z, threshold, gutter, grid):
+    """Only connected pieces that are long for their width, as strokes of paint are and blotches are not.
+
+    An average blurs the rim of a stroke over its surroundings; half of the
+    stroke's own height above asphalt is where the rim was.
+    """
+    with np.errstate(invalid="ignore"):
+        mask = (z > threshold) & ~gutter
     labels, count = ndimage.label(mask, np.ones((3, 3), bool))
-    kept = np.zeros(count + 1, bool)
+    result = np.zeros(z.shape, bool)
     large = np.bincount(labels.ravel(), minlength=count + 1) * (CELL * UNIT) ** 2 >= STRIP_AREA
     for number, box in enumerate(ndimage.find_objects(labels), start=1):
-        if large[number]:
-            row, column = np.nonzero(labels[box] == number)
-            shape = measure((row + box[0].start + grid.first) * CELL, (column + box[1].start + grid.low) * CELL)
-            kept[number] = shape.length >= STRIP_LENGTH and shape.elongation >= STRIP_ELONGATION
-    return kept[labels]
+        if not large[number]:
+            continue
+        piece = labels[box] == number
+        row, column = np.nonzero(piece)
+        shape = measure((row + box[0].start + grid.first) * CELL, (column + box[1].start + grid.low) * CELL)
+        if shape.length >= STRIP_LENGTH and shape.elongation >= STRIP_ELONGATION:
+            result[box] |= piece & (z[box] > 0.5 * np.percentile(z[box][piece], 90))
+    return result
 
 
 def runs(mask, axis):

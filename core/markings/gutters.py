@@ -25,8 +25,13 @@ GAP_ALONG, GAP_ACROSS = 15, 10   # cells: smaller gaps between points are road a
 def rim_distance(occupied):
     """(rows, columns) metres from each cell of road inwards from its rim; 0 outside the road.
 
-    `occupied` are the cells that road points lie in. Beyond the first and last row the road goes on.
+    `occupied` are the cells that road points lie in. Where the points end along the road, the road goes on.
     """
+    rows = np.flatnonzero(occupied.any(axis=1))
+    occupied = occupied.copy()
+    if len(rows):
+        occupied[:rows[0]] = occupied[rows[0]:rows[0] + GAP_ALONG].any(axis=0)
+        occupied[rows[-1] + 1:] = occupied[max(rows[-1] + 1 - GAP_ALONG, 0):rows[-1] + 1].any(axis=0)
     road = fill_gaps(fill_gaps(occupied, GAP_ACROSS, 1), GAP_ALONG, 0)
     return ndimage.distance_transform_edt(road) * CELL
 

@@ -38,3 +38,17 @@ def marking_mask(path, image, origin):
                 band.WriteRaster(c0, r0, width, height, pixels.tobytes(), buf_type=gdal.GDT_Byte)
 
         yield burn
+
+
+def pixel_centres(image, x, y, origin):
+    """The pixels that local places lie in.
+
+    Returns
+    -------
+    x, y : (M,) local centres of the pixels, each once
+    first : (M,) index of a place in each
+    """
+    column, row = (np.floor(c).astype(np.int64) for c in image.pixel_of(x, y, origin))
+    _, first = np.unique(row * (image.width + 1) + column, return_index=True)
+    left, size, _, top, _, _ = image.geotransform
+    return (left - origin[0]) + (column[first] + 0.5) * size, (top - origin[1]) - (row[first] + 0.5) * size, first

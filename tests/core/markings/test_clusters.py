@@ -1,0 +1,134 @@
+"""Paint points become markings: how large, of what kind, and what is none."""
+
+import numpy as np
+import pytest
+import shapely
+from painted_streets import assert_same_points, disc, drive, paint, road_points, shuffled, strip
+
+from lanewright.core.errors import RoadExtractionError
+from lanewright.core.markings.clusters import ClusterSettings, cluster_markings
+
+FRAME = drive()
+
+
+def markings_of(marks, frame=FRAME, **kind):
+    return cluster_markings(road_points(paint(frame, marks, **kind), frame), frame)[0]
+
+
+def classes(markings):
+    return sorted(markings.column("class"))
+
+
+@pytest.mark.parametrize("width", [0.10, 0.15, 0.30])
+@pytest.mark.parametrize("radius", [np.inf, 60.0])
+def test_a_line_has_its_width_to_2_cm_and_its_length_to_5_cm_on_straights_and_bends(width, radius):
+    frame = drive(radius=radius)
+    markings = markings_of([strip(10, 50, 3.0, 3.0 + width)], frame)
+    assert len(markings) == 1
+    row = markings.rows[0]
+    assert row["width_m"] == pytest.approx(width, abs=0.02)
+    assert row["length_m"] == pytest.approx(40.0, abs=0.05)
+    stretched = 1.0 if np.isinf(radius) else 1 - (3.0 + width / 2) / radius
+    assert row["area_m2"] == pytest.approx(40.0 * width * stretched, rel=0.2 if width == 0.10 else 0.1)
+    assert (row["use"], row["road"], row["cluster"]) == ("keep", 0, 1)
+
+
+def test_the_outline_lies_on_the_road_at_the_height_of_its_points():
+    markings = markings_of([strip(10, 50, 3.0, 3.15)])
+    z = shapely.get_coordinates(markings.geometries[0], include_z=True)[:, 2]
+    np.testing.assert_allclose(z, FRAME.origin[2] + 0.02 * 3.07, atol=0.01)
+
+
+def test_the_outline_covers_the_paint_and_little_else():
+    mark = strip(10, 40, -2.0, -1.85)
+    shape = markings_of([mark]).geometries[0]
+    s, d = (axis.ravel() for axis in np.meshgrid(np.arange(9, 41, 0.02), np.arange(-2.2, -1.6, 0.01)))
+    covered = shapely.contains_xy(shape, *FRAME.to_map(0, s, d))
+    assert covered[mark(s, d)].mean() > 0.95
+    assert mark(s, d)[covered].mean() > 0.95
+
+
+def test_the_two_lines_of_a_double_line_are_two_markings_and_centre_lines():
+    markings = markings_of([strip(10, 50, 0.0, 0.12), strip(10, 50, 0.24, 0.36)])
+    assert classes(markings) == ["centre", "centre"]
+
+
+def test_a_line_near_the_road_edge_is_an_edge_line_and_a_dash_in_the_road_a_lane_line():
+    assert classes(markings_of([strip(10, 50, 5.5, 5.65)])) == ["edge"]
+    assert classes(markings_of([strip(10, 16, 0.5, 0.65)])) == ["lane"]
+
+
+def test_dashes_stay_apart_and_a_worn_line_holds_together():
+    dashes = [strip(s, s + 4, 0.5, 0.65) for s in (10, 18, 26)]
+    assert len(markings_of(dashes)) == 3
+    worn = [strip(s, s + 2.3, 0.5, 0.65) for s in np.arange(10, 40, 3.0)]  # 0.7 m worn off every 3 m
+    markings = markings_of(worn)
+    assert len(markings) == 1
+    assert markings.rows[0]["length_m"] == pytest.approx(29.3, abs=0.1)
+
+
+def test_a_zebra_crossing_keeps_its_stripes():
+    stripes = [strip(20, 24, d, d + 0.45) for d in np.arange(-4.0, 4.0, 1.0)]
+    markings = markings_of(stripes)
+    assert classes(markings) == ["zebra"] * 8
+    assert set(markings.column("use")) == {"other"}
+    for area in markings.column("area_m2"):
+        assert area == pytest.approx(4 * 0.45, rel=0.08)
+
+
+def test_a_stop_line_is_a_stop_line_also_where_it_is_narrow():
+    for depth in (0.30, 0.50):
+        markings = markings_of([strip(20, 20 + depth, -3.5, -0.2)])
+        assert classes(markings) == ["stop"]
+        assert markings.rows[0]["use"] == "other"
+        assert markings.rows[0]["width_m"] == pytest.approx(depth, abs=0.03)
+
+
+@pytest.mark.parametrize("diameter", [0.40, 0.60, 0.90])
+def test_a_manhole_cover_is_no_marking(diameter):
+    points = road_points(paint(FRAME, [disc(30, 1.5, diameter), strip(10, 20, 0.0, 0.15)]), FRAME)
+    markings, clustered = cluster_markings(points, FRAME)
+    assert len(markings) == 1
+    found = clustered.all_points()
+    assert (found.cluster[found.s > 25] == 0).all() and (found.cluster[found.s < 25] == 1).all()
+
+
+def test_specks_are_no_markings():
+    specks = [disc(s, d, 0.15) for s, d in ((12, 1.0), (30, -2.0), (47, 0.3))]
+    assert len(markings_of(specks)) == 0
+
+
+def test_bright_concrete_along_the_road_edge_is_no_marking():
+    assert len(markings_of([strip(10, 60, 5.55, 6.0)])) == 0
+
+
+def test_neither_the_order_of_points_nor_the_length_of_sections_matters():
+    marks = [strip(5, 70, 3.0, 3.15), strip(38, 42, 0, 0.45), strip(38, 42, 1, 1.45), strip(38, 42, -1, -0.55)]
+    records = paint(FRAME, marks)
+    plain, points = cluster_markings(road_points(records, FRAME), FRAME)
+    other, others = cluster_markings(road_points(shuffled(records), FRAME, section_length=7.0), FRAME)
+    assert plain.rows == other.rows
+    assert all(a.equals_exact(b, 0.0) for a, b in zip(plain.geometries, other.geometries))
+    assert_same_points(points.all_points().records, others.all_points().records)
+
+
+def test_500_km_to_the_east_the_markings_are_the_same():
+    marks = [strip(5, 60, 3.0, 3.15), strip(30, 30.4, -3, 0)]
+    here = markings_of(marks)
+    there = markings_of(marks, drive(east=1_000_000.0))
+    for a, b in zip(here.geometries, there.geometries):
+        moved = shapely.transform(a, lambda xyz: xyz + np.array([500_000.0, 0.0, 0.0]), include_z=True)
+        assert moved.equals_exact(b, 1e-6)
+    assert here.rows == [dict(row, area_m2=pytest.approx(row["area_m2"])) for row in there.rows]
+
+
+def test_where_there_is_no_paint_there_are_no_markings():
+    points = road_points(paint(FRAME, [strip(10, 20, 0, 0.15)])[:0], FRAME)
+    markings, clustered = cluster_markings(points, FRAME)
+    assert len(markings) == 0 and len(clustered) == 0
+
+
+@pytest.mark.parametrize("wrong", [dict(distance=0.0), dict(distance=5.0), dict(min_points=0)])
+def test_settings_without_sense_are_refused(wrong):
+    with pytest.raises(RoadExtractionError):
+        ClusterSettings(**wrong)

@@ -1,0 +1,112 @@
+"""Which points of a street are paint."""
+
+import numpy as np
+import pytest
+from painted_streets import ASPHALT, assert_same_points, drive, records_at, road_points, shuffled, street, strewn, strip
+
+from lanewright.core.errors import RoadExtractionError
+from lanewright.core.markings.extraction import MarkingSettings, extract_markings
+from lanewright.core.markings.image import IntensityImage, write_intensity_image
+
+gdal = pytest.importorskip("osgeo.gdal")
+
+FRAME = drive()
+
+
+def found_on(records, folder, frame=FRAME, section_length=20.0, mask=None):
+    points = road_points(records, frame, section_length)
+    path = folder / "image.tif"
+    write_intensity_image(points, path)
+    return extract_markings(points, IntensityImage.open(path), frame, mask_path=mask).all_points()
+
+
+@pytest.mark.parametrize("radius", [np.inf, 80.0])
+def test_a_painted_strip_is_found_with_its_width_to_2_cm(tmp_path, radius):
+    frame = drive(radius=radius)
+    paint = found_on(street(frame, [strip(10, 70, 1.0, 1.15)]), tmp_path, frame)
+    low, high = np.percentile(paint.d, [2.5, 97.5])
+    assert (high - low) / 0.95 == pytest.approx(0.15, abs=0.02)
+    assert (low + high) / 2 == pytest.approx(1.075, abs=0.01)
+    assert paint.s.min() == pytest.approx(10, abs=0.1) and paint.s.max() == pytest.approx(70, abs=0.1)
+
+
+def test_asphalt_without_paint_yields_nothing(tmp_path):
+    assert len(found_on(street(FRAME), tmp_path)) < 20
+
+
+def test_patches_seams_and_worn_tracks_are_not_paint(tmp_path):
+    def level(s, d):
+        patch = (s > 30) & (s < 36) & (d > -2) & (d < 1)
+        return np.where(patch, 1.35, 1.0) * (1 + 0.15 * np.cos(3 * d)) * np.where(np.abs(s - 50) < 0.03, 0.5, 1.0)
+
+    assert len(found_on(street(FRAME, level=level), tmp_path)) < 40
+
+
+def test_brightness_that_falls_with_distance_hides_no_line(tmp_path):
+    lines = [strip(10, 70, d, d + 0.15) for d in (-3.5, 0.0, 3.5)]
+
+    def fall(d):
+        return 1.6 / (1 + 0.15 * (d + 4))
+
+    records = street(FRAME, lines, noise=0.25)
+    records["intensity"] = records["intensity"] * fall(records["d"] * 1e-4)
+    paint = found_on(records, tmp_path)
+    for line in lines:
+        assert line(paint.s, paint.d).sum() > 0.9 * line(records["s"] * 1e-4, records["d"] * 1e-4).sum()
+
+
+def test_a_zebra_crossing_and_a_stop_line_are_not_erased(tmp_path):
+    marks = [strip(30, 34, d, d + 0.5) for d in np.arange(-3.5, 3.5, 1.0)] + [strip(27.0, 27.3, -3.5, -0.2)]
+    records = street(FRAME, marks)
+    paint = found_on(records, tmp_path)
+    for mark in marks:
+        assert mark(paint.s, paint.d).sum() > 0.9 * mark(records["s"] * 1e-4, records["d"] * 1e-4).sum()
+    assert np.any([mark(paint.s, paint.d) for mark in marks], axis=0).mean() > 0.95
+
+
+def test_a_concrete_gutter_is_left_out_and_the_edge_line_beside_it_kept(tmp_path):
+    line = strip(5, 75, 3.2, 3.35)
+    paint = found_on(street(FRAME, [line, strip(0, 80, 3.6, 4.0), strip(0, 80, -4.0, -3.6)]), tmp_path)
+    assert line(paint.s, paint.d).mean() > 0.97
+    assert np.count_nonzero(line(paint.s, paint.d)) > 0.9 * 70 * 0.15 * 1500
+
+
+def test_noisy_multi_beam_intensities_show_bars_of_paint_and_stay_silent_without(tmp_path):
+    bar = strip(30, 34, 1.0, 1.3)
+    s, d = strewn(80, 4, -4, 3000)
+    rng = np.random.default_rng(9)
+
+    def seen(painted):
+        level = np.where(painted, 2.2 * ASPHALT, ASPHALT)
+        return found_on(records_at(FRAME, s, d, np.abs(level + rng.normal(0, 0.55 * ASPHALT, len(s))), 4.0), tmp_path)
+
+    paint = seen(bar(s, d))
+    assert np.count_nonzero(bar(paint.s, paint.d)) > 0.8 * np.count_nonzero(bar(s, d))
+    assert bar(paint.s, paint.d).mean() > 0.75
+    assert len(seen(np.zeros(len(s), bool))) == 0
+
+
+def test_neither_the_order_of_points_nor_the_length_of_sections_matters(tmp_path):
+    records = street(FRAME, [strip(10, 70, 1.0, 1.15), strip(39, 43, -2, -1.5)], density=500)
+    plain = found_on(records, tmp_path).records
+    other = found_on(shuffled(records), tmp_path, section_length=7.0).records
+    assert_same_points(plain, other)
+
+
+def test_the_mask_lies_on_the_image_and_covers_the_paint(tmp_path):
+    line = strip(10, 70, 1.0, 1.15)
+    frame = drive(radius=80.0)
+    records = street(frame, [line])
+    found_on(records, tmp_path, frame, mask=tmp_path / "mask.tif")
+    image, mask = IntensityImage.open(tmp_path / "image.tif"), IntensityImage.open(tmp_path / "mask.tif")
+    assert (mask.geotransform, mask.width, mask.height) == (image.geotransform, image.width, image.height)
+    covered = mask.sample(records["x"] * 1e-4, records["y"] * 1e-4, frame.origin) == 1
+    painted = line(records["s"] * 1e-4, records["d"] * 1e-4)
+    assert covered[painted].mean() > 0.90
+    assert painted[covered].mean() > 0.85
+
+
+@pytest.mark.parametrize("wrong", [dict(method="magic"), dict(lowest=0.0), dict(lowest=6.0, highest=5.0), dict(close=-1.0)])
+def test_settings_without_sense_are_refused(wrong):
+    with pytest.raises(RoadExtractionError):
+        MarkingSettings(**wrong)
