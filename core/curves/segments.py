@@ -98,14 +98,16 @@ def _divide(curve, u, e, sigma, length):
             continue
         window = slice(begin[i], begin[np.searchsorted(nodes, nodes[i] + LONGEST, "right") - 1])
         t = u[window] - nodes[i]
-        # less its own Taylor parabola the shape stays small, and sums keep their digits
-        parabola = shape(nodes[i]) + heading(nodes[i]) * t + 0.5 * curvature(nodes[i]) * t * t
-        value = e[window] + shape(u[window]) - parabola
+        bend = 0.5 * curvature(nodes[i]) * t * t
+        value = e[window] + shape(u[window]) - shape(nodes[i]) - heading(nodes[i]) * t
+        # less its own bend, which arc and clothoid can take up and a straight cannot, the
+        # shape stays small and sums keep their digits
+        values = {kind: value if ORDER[kind] < 2 else value - bend for kind in ORDER}
         ends = [j for j in range(i + shortest, count + 1) if nodes[j] <= nodes[i] + LONGEST + 1e-9
                 and (j == count or count - j >= shortest)]
         if not ends:
             continue
-        cost = _costs(t, value, begin[ends] - begin[i], nodes[ends] - nodes[i], sigma)
+        cost = _costs(t, values, begin[ends] - begin[i], nodes[ends] - nodes[i], sigma)
         for kind, costs in cost.items():
             total = best[i] + costs + price * (ORDER[kind] + 2)
             for j, value_j in zip(ends, total):
@@ -129,14 +131,15 @@ def _integrated(curve, u, nodes):
     return tuple((lambda v: lambda at: np.interp(at, fine, v))(v) for v in (k, turn, area))
 
 
-def _costs(t, value, counts, spans, sigma):
+def _costs(t, values, counts, spans, sigma):
     """Residual sums over sigma^2 of polynomials of degree 1 to 3 through the first `counts` points, per kind."""
     powers = np.cumsum(np.vander(t, 7, increasing=True), axis=0)
-    mixed = np.cumsum(np.vander(t, 4, increasing=True) * value[:, None], axis=0)
-    squares = np.cumsum(value**2)
     rows = np.maximum(counts - 1, 0)
     out = {}
     for kind, degree in ORDER.items():
+        value = values[kind]
+        mixed = np.cumsum(np.vander(t, 4, increasing=True) * value[:, None], axis=0)
+        squares = np.cumsum(value**2)
         grid = np.add.outer(np.arange(degree + 1), np.arange(degree + 1))
         scale = spans[:, None] ** -np.arange(degree + 1.0)
         normal = powers[rows][:, grid] * scale[:, :, None] * scale[:, None, :]
