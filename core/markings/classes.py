@@ -18,6 +18,9 @@ STRIPES = 3
 STOP_WIDTH = (0.18, 0.90)
 STOP_LENGTH = 1.5
 COVER = (0.30, 1.15)  # m, diameter of manhole covers
+RIM = 0.60            # m from the road edge where verge, gutter and curb may look like paint
+BEYOND = 0.80         # m outside an edge line that strips are mistrusted
+LONGER = 2.0          # times as long as them is the line that says so
 SPECK = 0.30          # m: what is not longer than this and has no companion is no marking
 SPECK_AREA = 0.03     # m2
 
@@ -62,10 +65,11 @@ def classify(shapes, half_widths, settings=ClassSettings()):
     line = _is_line(column, settings)
     zebra = _zebra_stripes(column)
     line &= ~zebra
+    scrap = _beyond_the_edge_line(column, line, room)
     found = []
     doubles = _has_partner(column, line)
     for k, shape in enumerate(shapes):
-        if room[k] < -settings.margin or _speck(shape) or _round_cover(shape) or _gutter(shape, room[k], line[k], zebra[k]):
+        if room[k] < -settings.margin or _speck(shape) or scrap[k] or _round_cover(shape) or _gutter(shape, room[k], line[k], zebra[k]):
             kind = NOT_PAINT
         elif zebra[k]:
             kind = "zebra"
@@ -115,6 +119,21 @@ def _has_partner(column, line):
     near = np.abs(d[:, None] - d) <= DOUBLE
     np.fill_diagonal(near, False)
     result[rows] = (near & (overlap > 0.5 * (s1 - s0)[:, None])).any(axis=1)
+    return result
+
+
+def _beyond_the_edge_line(column, line, room):
+    """Short strips between a line and the rim of the road: verge, gutter or curb, where nothing is painted."""
+    short = column["along"] & (column["s1"] - column["s0"] > column["d1"] - column["d0"])
+    rows, lines = np.flatnonzero(short & (room < RIM)), np.flatnonzero(line)
+    result = np.zeros(len(short), bool)
+    if not len(rows) or not len(lines):
+        return result
+    outward = np.sign(column["offset"][rows])[:, None] * (column["offset"][rows][:, None] - column["offset"][lines])
+    overlap = np.minimum(column["s1"][rows][:, None], column["s1"][lines]) - np.maximum(column["s0"][rows][:, None], column["s0"][lines])
+    # a double line is as long on either side
+    longer = column["length"][lines] > LONGER * column["length"][rows][:, None]
+    result[rows] = ((outward > 0.1) & (outward < BEYOND) & (overlap > 0) & longer).any(axis=1)
     return result
 
 

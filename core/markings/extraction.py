@@ -8,24 +8,20 @@ from contextlib import nullcontext
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import ndimage
 
 from ..errors import RoadExtractionError
 from ..parallel import in_order
 from ..progress import Progress
 from ..survey.points import UNIT, Points
 from ..survey.road_points import RoadPoints
-from .gutters import gutter_cells, rim_distance
+from .gutters import rim_distance
+from .levels import Levels, asphalt_profile, flatten
 from .mask import marking_mask, pixel_centres
-from .polygons import fill_gaps
-from .shapes import measure
-from .thresholds import FEWEST, WIDEST, asphalt, asphalt_bins, background, bin_edges, split_bins
+from .morphology import averaged, morphology, strips
+from .thresholds import FEWEST, asphalt, asphalt_bins, bin_edges, split_bins
 
 RIM = 0.60        # m from the rim of the road where gutters end and asphalt is asphalt
-BRIGHT = 2.5      # spreads: what is brighter is no background
 NOISY = 0.40      # of asphalt's level: single points that scatter more are averaged (multi-beam scanners)
-AVERAGE = 2.0     # cells, sigma of the average
-STRIP_AREA, STRIP_LENGTH, STRIP_ELONGATION = 0.12, 0.80, 3.5  # m2, m: least of a stroke of paint where single points are noisy
 METHODS = ("multi-threshold",)
 CELL = 400        # units of 0.1 mm: the grid in (s, d) has cells of 4 cm
 WINDOW = 500      # cells: thresholds are taken from 20 m of road
@@ -115,13 +111,15 @@ def _extract(road_points, image, frame, settings, progress, burn):
         part = progress.part(k / len(roads), (k + 1) / len(roads))
         look = _Look(road_points, image, frame, road, settings, burn is not None)
         windows = look.windows()
-        scatter = [value for value in in_order(look.scatter, windows, part.part(0.0, 0.1)) if value is not None]
+        # a scanner is noisy or it is not: every fourth window tells
+        scatter = [value for value in in_order(look.scatter, [w for w in windows if w % 4 == 0] or windows, part.part(0.0, 0.1))
+                   if value is not None]
         look.noisy = bool(scatter) and float(np.median(scatter)) > NOISY
         if look.noisy:
             progress.say(f"Intensities scatter by {100 * np.median(scatter):.0f} % about asphalt: paint is sought in averages "
                          "over a decimetre, and markings smaller than that are not seen.")
         bins = dict(zip(windows, in_order(look.bins, windows, part.part(0.1, 0.5))))
-        levels = Levels({w: found for w, found in bins.items() if found}, settings)
+        levels = Levels({w: found for w, found in bins.items() if found}, WINDOW * CELL * UNIT, settings)
         for records, x, y in in_order(lambda w: look.paint(w, levels), windows, part.part(0.5, 1.0)):
             kept.store.append(road, records)
             if burn is not None:
@@ -189,7 +187,7 @@ class _Look:
             return []
         edges = bin_edges(records["d"][own] * UNIT, offsets[interior].min(), offsets[interior].max())
         bins = asphalt_bins(brightness[interior], offsets[interior], edges)
-        z, gutter = flatten(brightness, *_profile(bins, grid.offsets()), rim)
+        z, gutter = flatten(brightness, *asphalt_profile(bins, grid.offsets()), rim)
         counted = (seen & ~gutter)[rows]
         return list(zip(bins, split_bins(z[rows][counted], offsets[rows][counted], bins, self.settings.separation)))
 
@@ -219,7 +217,7 @@ class _Look:
         median, spread, scale, threshold = levels.at(grid)
         z, gutter = flatten(brightness, median, spread, rim)
         if self.noisy:
-            mask = strips(z / scale, np.minimum(threshold, self.settings.faint), gutter, grid)
+            mask = strips(z / scale, np.minimum(threshold, self.settings.faint), gutter, rim, grid)
         else:
             with np.errstate(invalid="ignore"):
                 mask = morphology((z > threshold * scale) & ~gutter, self.settings)
@@ -235,117 +233,3 @@ class _Look:
         mask[row, column] = False
         mask[row[kept], column[kept]] = True
         return records[kept], *self._pixels(mask, grid)
-
-def averaged(cell, value, shape):
-    """(rows, columns) float32 mean of the points about each cell; NaN where there are none.
-
-    cell : (N,) flat cell number of each point; value : (N,) its brightness
-    """
-    size = shape[0] * shape[1]
-    count = np.bincount(cell, minlength=size).reshape(shape).astype(float)
-    # brightness in whole 64ths sums exactly, in any order
-    total = np.bincount(cell, np.rint(value.astype(float) * 64), size).reshape(shape) / 64
-    count, total = (ndimage.gaussian_filter(a, AVERAGE, mode="constant", truncate=3.0) for a in (count, total))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return np.where(count > 0.05, total / count, np.nan).astype(np.float32)
-
-
-def flatten(brightness, median, spread, rim):
-    """Brightness in spreads above the asphalt about each cell, and the cells of gutters."""
-    z = (brightness - median) / spread
-    gutter = gutter_cells(z, rim)
-    with np.errstate(invalid="ignore"):
-        even = (z < BRIGHT) & (z > -2 * BRIGHT) & ~gutter
-    return z - background(z, even), gutter
-
-
-def _profile(bins, offsets):
-    middles = [b.middle for b in bins]
-    return (np.interp(offsets, middles, [b.median for b in bins]).astype(np.float32),
-            np.interp(offsets, middles, [b.spread for b in bins]).astype(np.float32))
-
-
-class Levels:
-    """Asphalt and threshold at any place, between the bins of all windows.
-
-    windows : dict of window number to list of (Bin, Split)
-    """
-
-    def __init__(self, windows, settings):
-        self.windows = windows
-        self.settings = settings
-        self.numbers = np.array(sorted(windows))
-        self._limits = {w: self._thresholds(w) for w in windows}
-
-    def _thresholds(self, w):
-        """Threshold in z of each bin: Otsu's where there is paint, else the neighbours', else the highest."""
-        near = [split for n in (w - 1, w, w + 1) for _, split in self.windows.get(n, ()) if split.accepted]
-        limits = []
-        for _, split in self.windows[w]:
-            value = split.threshold
-            if not split.accepted:
-                beside = [other.threshold for other in near if abs(other.middle - split.middle) < WIDEST]
-                value = float(np.median(beside)) if beside else self.settings.alone
-            limits.append(float(np.clip(value, self.settings.lowest, self.settings.highest)))
-        return limits
-
-    def at(self, grid):
-        """median, spread, scale, threshold as (rows, columns) arrays: a cell is bright beyond threshold * scale."""
-        numbers = self.numbers
-        position = grid.stations() / (WINDOW * CELL * UNIT) - 0.5
-        before = np.clip(np.searchsorted(numbers, np.floor(position), side="right") - 1, 0, len(numbers) - 1)
-        after = np.minimum(before + 1, len(numbers) - 1)
-        gap = np.maximum(numbers[after] - numbers[before], 1)
-        share = np.clip((position - numbers[before]) / gap, 0.0, 1.0)[:, None].astype(np.float32)
-        needed = np.unique(np.r_[before, after])
-        profiles = np.stack([self._profile(numbers[k], grid.offsets()) for k in needed])
-        a, b = np.searchsorted(needed, before), np.searchsorted(needed, after)
-        return [(1 - share) * profiles[a, q] + share * profiles[b, q] for q in range(4)]
-
-    def _profile(self, w, offsets):
-        pairs = self.windows[w]
-        middles = [b.middle for b, _ in pairs]
-        columns = ([b.median for b, _ in pairs], [b.spread for b, _ in pairs], [split.spread for _, split in pairs], self._limits[w])
-        return np.stack([np.interp(offsets, middles, column) for column in columns]).astype(np.float32)
-
-
-def morphology(mask, settings):
-    """Close gaps along the road, then drop what is short both along and across it.
-
-    A stop line is short along the road and a lane line across it: a cell stays
-    where either run through it is long enough.
-    """
-    length = int(round(settings.shortest / (CELL * UNIT)))
-    closed = fill_gaps(mask, int(round(settings.close / (CELL * UNIT))), 0)
-    return mask & (runs(closed, 0) >= length) | mask & (runs(closed, 1) >= length)
-
-
-def strips(z, threshold, gutter, grid):
-    """Only connected pieces that are long for their width, as strokes of paint are and blotches are not.
-
-    An average blurs the rim of a stroke over its surroundings; half of the
-    stroke's own height above asphalt is where the rim was.
-    """
-    with np.errstate(invalid="ignore"):
-        mask = (z > threshold) & ~gutter
-    labels, count = ndimage.label(mask, np.ones((3, 3), bool))
-    result = np.zeros(z.shape, bool)
-    large = np.bincount(labels.ravel(), minlength=count + 1) * (CELL * UNIT) ** 2 >= STRIP_AREA
-    for number, box in enumerate(ndimage.find_objects(labels), start=1):
-        if not large[number]:
-            continue
-        piece = labels[box] == number
-        row, column = np.nonzero(piece)
-        shape = measure((row + box[0].start + grid.first) * CELL, (column + box[1].start + grid.low) * CELL)
-        if shape.length >= STRIP_LENGTH and shape.elongation >= STRIP_ELONGATION:
-            result[box] |= piece & (z[box] > 0.5 * np.percentile(z[box][piece], 90))
-    return result
-
-
-def runs(mask, axis):
-    """Length of the run of on cells through each cell along one axis, in cells; 0 where off."""
-    on = np.moveaxis(mask, axis, 0)
-    index = np.arange(len(on)).reshape(-1, 1)
-    before = np.maximum.accumulate(np.where(on, -1, index), axis=0)
-    after = np.minimum.accumulate(np.where(on, len(on), index)[::-1], axis=0)[::-1]
-    return np.moveaxis(np.where(on, after - before - 1, 0), 0, axis)

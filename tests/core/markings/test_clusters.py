@@ -102,6 +102,12 @@ def test_bright_concrete_along_the_road_edge_is_no_marking():
     assert len(markings_of([strip(10, 60, 5.55, 6.0)])) == 0
 
 
+def test_a_strip_of_verge_outside_an_edge_line_is_no_marking():
+    edge = strip(5, 70, 5.3, 5.42)
+    assert classes(markings_of([edge, strip(30, 36, 5.75, 5.95)])) == ["edge"]
+    assert len(markings_of([strip(30, 36, 5.75, 5.95)])) == 1, "alone it may be the edge line itself"
+
+
 def test_neither_the_order_of_points_nor_the_length_of_sections_matters():
     marks = [strip(5, 70, 3.0, 3.15), strip(38, 42, 0, 0.45), strip(38, 42, 1, 1.45), strip(38, 42, -1, -0.55)]
     records = paint(FRAME, marks)
