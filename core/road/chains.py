@@ -113,7 +113,8 @@ def curb_chains(steps, label, profile_width, least, slope):
             continue
         height, usual = np.median(steps.height[members]), np.median(steps.usual[members])
         # blur widens a face and never narrows it, so the sharper profiles tell
-        if height < least or np.arctan2(height, np.quantile(steps.run[members], 0.3)) < slope:
+        sharp = max(np.quantile(steps.run[members], 0.3) - 2 * usual, 0.0)
+        if height < least or np.arctan2(height, sharp) < slope:
             continue
         if np.median(steps.noise[members]) > max(ROUGH_ROAD, 2 * usual):
             continue

@@ -14,6 +14,8 @@ from .profiles import HIGH_SIGMA
 ROAD_SIDE = 0.40    # m of road before the face that give the road's line
 CLEARANCE = 0.05    # m next to the face left out of it: a blurred face begins there
 BEHIND = 0.40       # m behind the face where the ground must stay up
+NOISE_CLIMB = 6.0    # per m: heights that scatter tilt the short line behind a face
+LOW_SHARE = 0.15     # share of the points behind that may lie below half the height; a verge has more
 FACE_WINDOW = 0.15  # m either side of the rising cell within which the face lies
 STEEPEST_ROAD = 0.15  # rise over run of the road side; ditches are steeper
 WIDEST_FACE = 0.10   # m across
@@ -32,7 +34,8 @@ class Steps:
     """Bottom corners found on profiles, one entry each.
 
     profile : (M,) number of the profile; s, u, h : (M,) station, outward offset and height
-    above the expected road of the bottom corner; skew : (M,) m outward per m along of the face; height : (M,) m of the step; run : (M,) m
+    above the expected road of the bottom corner; skew : (M,) m outward per m along of the
+    face; height : (M,) m of the step; run : (M,) m
     across of the face, less what noise adds; noise : (M,) m, heights about the road side's line; usual : (M,) m, the
     scanner's own noise there; support : (M,) points of road side and face; behind : (M,) points
     of the raised ground
@@ -134,17 +137,16 @@ class _Near:
         keep = road & (np.abs(h - level[owner] - slope[owner] * u) < np.maximum(2.5 * noise, 0.01)[owner])
         level, slope, noise, n_road = _line_per_owner(owner, u, h, keep, count)
         rise = h - level[owner] - slope[owner] * u
-        height, n_behind, n_fallen = self._raised(rise)
+        height, n_behind, stays = self._raised(rise)
         scatter = np.maximum(noise, self.usual)
         # the part of the height that is surely neither road nor raised ground
         lower = np.minimum(np.maximum(FACE_LOW * height, 2 * scatter), 0.45 * height)
         upper = np.maximum(np.minimum(FACE_HIGH * height, height - 2 * scatter), 0.55 * height)
         face = (np.abs(u) < FACE_WINDOW) & (rise > lower[owner]) & (rise < upper[owner])
         skew, straight = _skew(owner, u, s, face, scatter, count)
-        mid, _ = _median_and_spread(owner, straight, face, count)
+        mid, spread = _median_and_spread(owner, straight, face, count)
         face &= np.abs(straight - mid[owner]) < 0.05 + 2 * scatter[owner]
         skew, straight = _skew(owner, u, s, face, scatter, count)
-        _, spread = _median_and_spread(owner, straight, face, count)
         n_face = total(face)
         mid, up, at = (_mean(total(face, v), n_face) for v in (straight, rise, s))
         var_up = total(face, (rise - up[owner]) ** 2)
@@ -155,25 +157,29 @@ class _Near:
         run = 2 * np.sqrt(np.maximum(spread**2 - (1.35 * scatter) ** 2, 0.0)) / share
         run = np.where(n_face < 3, 0.0, np.maximum(run - NOISE_RUN * scatter, 0.0))
         good = (np.isfinite(level) & (n_road >= 4) & (height >= self.least) & (height <= self.highest)
-                & (height >= SIGMAS * noise) & (np.abs(slope) <= STEEPEST_ROAD) & (n_fallen <= n_behind)
+                & (height >= SIGMAS * noise) & (np.abs(slope) <= STEEPEST_ROAD) & stays
                 & (n_face >= 1) & (run <= WIDEST_FACE))
         return dict(s=at, u=corner + self.turn * at, h=level + slope * corner, skew=skew, height=height, run=run,
                     noise=noise, support=n_road + n_face, behind=n_behind, good=good)
 
     def _raised(self, rise):
-        """Height of the ground behind the face, how many points lie there, and how many lie low again."""
+        """Height of the ground behind the face, how many points lie there, and whether it stays up and level."""
         u, owner, total = self.u, self.owner, self.total
         raised = (u > 0.03) & (u < BEHIND) & (rise > 0.4 * self.least) & (rise < self.highest + 0.1)
         first = _mean(total(raised, rise), total(raised))
         raised &= np.abs(rise - first[owner]) < 0.05
         n_behind = total(raised)
+        # a ramp goes on rising where the ground behind a curb is as level as a road
+        _, climb, _, _ = _line_per_owner(owner, u, rise, raised, self.count)
+        level = (n_behind < 4) | (np.abs(climb) <= STEEPEST_ROAD + NOISE_CLIMB * self.usual)
         peak = np.zeros(self.count)
         near = (u > -0.03) & (u < FACE_WINDOW)
         np.maximum.at(peak, owner[near], rise[near])
         height = np.where(n_behind >= 2, _mean(total(raised, rise), n_behind),
                           np.maximum(peak - HIGH_SIGMA * self.usual, 0.0))
-        fallen = (u > 0.10) & (u < BEHIND) & (rise < 0.35 * height[owner])
-        return height, n_behind, total(fallen)
+        beyond = (u > 0.10) & (u < BEHIND)
+        low = total(beyond & (rise < 0.5 * height[owner]))
+        return height, n_behind, level & (low <= np.maximum(LOW_SHARE * total(beyond), 1))
 
 
 def _best_view(steps, good, count):

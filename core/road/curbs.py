@@ -13,7 +13,7 @@ from ..schemas import CURB_POINTS
 from .chains import choose_along, curb_chains, link_chains, long_enough
 from .corners import Steps
 from .shadows import Sight
-from .sides import REACH, SECTION, SIDES, Track, profiles_beside, sections_of
+from .sides import REACH, SECTION, SIDES, Track, expected_height, profiles_beside, sections_of
 from .steps import find_steps
 
 VEHICLE_HALF = 0.6      # m from the track: no curb nearer
@@ -151,7 +151,7 @@ def _report_side(found, survey, road, side, steps, sight, settings):
     if not rows:
         return
     s, u, h = (np.array([r[name] for r in rows]) for name in ("s", "u", "h"))
-    x, y, z = frame.to_map(road, s, sign * u, h + survey.road_height(road, s))
+    x, y, z = frame.to_map(road, s, sign * u, h + expected_height(survey, road, s))
     for point, row in zip(shapely.points(np.round(x, 4), np.round(y, 4), np.round(z, 4)), rows):
         found.add(point, road=road, side=side, station_m=round(row["s"], 4), offset_m=round(sign * row["u"], 4),
                   part="bottom", **row["fields"])

@@ -22,7 +22,7 @@ SHARPEST = 1.0         # m across per m along that a joined edge may run
 STEP_ACROSS = 0.25     # m across that two joined points may differ at any distance
 VERTEX = 0.5           # m between vertices
 SHORTEST = 2.0         # m of a piece with curb points
-LEAST_SIGMA = 0.003    # m, noise of a curb point at least
+LEAST_SIGMA = 0.001    # m, noise of a curb point at least: more would let the spline cut bends
 
 
 @dataclass(frozen=True)
@@ -94,8 +94,10 @@ def _pieces(rows, max_gap):
     gap = np.diff(points["s"])
     across = np.abs(np.diff(points["d"]))
     joined = (gap <= CONNECT) & (across <= STEP_ACROSS + SHARPEST * gap)
-    covered = HIDDEN_STEP * (np.searchsorted(hidden, points["s"][1:]) - np.searchsorted(hidden, points["s"][:-1], side="right"))
-    bridged = (gap > CONNECT) & (gap <= max_gap) & (covered >= HIDDEN_SHARE * (gap - GAP_ENDS)) & (across <= STEP_ACROSS + 0.1 * gap)
+    start, end = points["s"][:-1], points["s"][1:]
+    covered = HIDDEN_STEP * (np.searchsorted(hidden, end) - np.searchsorted(hidden, start, side="right"))
+    bridged = (gap > CONNECT) & (gap <= max_gap) & (covered >= HIDDEN_SHARE * (gap - GAP_ENDS)) \
+        & (across <= STEP_ACROSS + 0.1 * gap)
     breaks = np.flatnonzero(~(joined | bridged)) + 1
     pieces = []
     for part, flags in zip(np.split(points, breaks), np.split(np.r_[bridged, False], breaks)):

@@ -6,7 +6,7 @@ from ..features import Features
 from ..parallel import in_order
 from ..progress import Progress
 from ..schemas import HEIGHT, OFFSET, PASS, ROAD, SIDE, STATION
-from .sides import SIDES, Track, profiles_beside, sections_of
+from .sides import SIDES, Track, expected_height, profiles_beside, sections_of
 
 PRINCIPAL_POINTS = [ROAD, PASS, SIDE, STATION, OFFSET, HEIGHT]
 
@@ -32,7 +32,7 @@ def principal_points(survey, settings, progress=Progress()):
         part = progress.part(i / len(roads), (i + 1) / len(roads))
         for pass_number, side, s, u, h in _points_of_road(survey, road, settings, part):
             d = SIDES[side] * u
-            x, y, z = survey.frame.to_map(road, s, d, h + survey.road_height(road, s))
+            x, y, z = survey.frame.to_map(road, s, d, h + expected_height(survey, road, s))
             found.geometries += list(shapely.points(np.c_[x, y, z]))
             found.rows += [
                 {"road": road, "pass": pass_number, "side": side, "station_m": station, "offset_m": offset, "height_m": height}

@@ -7,6 +7,7 @@ from .profiles import pseudo_scan_lines
 SIDES = {"left": 1, "right": -1}
 SECTION = 20.0  # m of road worked at a time
 REACH = 20.0    # m from the reference line beyond which no curb is sought
+NODE = 0.25     # m between the nodes of the expected height
 BESIDE = 4.0    # m along the road, and as much again as across, from which a point is used
 
 
@@ -54,7 +55,7 @@ def profiles_beside(survey, road, section, tracks, settings):
     along = _ahead_of_vehicle(survey, points, s)
     near = np.flatnonzero(np.abs(along) < BESIDE + np.abs(d))
     points, s, d, ahead = points[near], s[near], d[near], along[near] > 0
-    h = points.z - survey.road_height(road, s)
+    h = points.z - expected_height(survey, road, s)
     stations = (np.arange(*section) + 0.5) * width
     for side, sign in SIDES.items():
         u = sign * d
@@ -66,6 +67,18 @@ def profiles_beside(survey, road, section, tracks, settings):
             lines = pseudo_scan_lines(*beside, ahead[own], section, width, settings.point_spacing,
                                       settings.layer_jump, origin, REACH)
             yield side, int(number), beside, lines
+
+
+def expected_height(survey, road, s):
+    """(N,) local z at which the road is expected, from nodes at fixed stations, so that many points cost little."""
+    if not len(s):
+        return np.empty(0)
+    first = int(np.floor(np.min(s) / NODE))
+    last = int(np.floor(np.max(s) / NODE)) + 1
+    nodes = survey.road_height(road, np.arange(first, last + 1) * NODE)
+    at = s / NODE - first
+    k = np.floor(at).astype(np.int64)
+    return nodes[k] + (at - k) * (nodes[k + 1] - nodes[k])
 
 
 def _ahead_of_vehicle(survey, points, s):

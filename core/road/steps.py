@@ -1,7 +1,7 @@
 """Steps on pseudo scan-lines: where the road ends against a face, profile by profile.
 
 A step is sought outward from the vehicle: a smooth road side, a rise within
-`window`, ground that stays up behind it. The bottom corner is then measured from
+WINDOW, ground that stays up behind it. The bottom corner is then measured from
 the raw points, where the road's line meets the line of the face, so that it does
 not carry the grain of the cells.
 """
@@ -42,7 +42,9 @@ def _rising_cells(lines, least, highest):
                  & (step <= highest + 0.05) & (high >= middle) & (before < middle))
     score = np.where(found, step - 2 * rough, -np.inf)
     # one of a cluster: the best within the window
-    best = score >= np.maximum(_max_ahead(score, span, inclusive=False), _max_ahead(score[:, ::-1], span, inclusive=False)[:, ::-1])
+    beyond = _max_ahead(score, span, inclusive=False)
+    nearer = _max_ahead(score[:, ::-1], span, inclusive=False)[:, ::-1]
+    best = score >= np.maximum(beyond, nearer)
     return np.nonzero(found & best)
 
 
