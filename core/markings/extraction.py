@@ -217,7 +217,7 @@ class _Look:
         median, spread, scale, threshold = levels.at(grid)
         z, gutter = flatten(brightness, median, spread, rim)
         if self.noisy:
-            mask = strips(z / scale, np.minimum(threshold, self.settings.faint), gutter, rim, grid)
+            mask = strips(z / scale, np.minimum(threshold, self.settings.faint), gutter, rim)
         else:
             with np.errstate(invalid="ignore"):
                 mask = morphology((z > threshold * scale) & ~gutter, self.settings)

@@ -37,7 +37,7 @@ def morphology(mask, settings):
     return mask & (runs(closed, 0) >= length) | mask & (runs(closed, 1) >= length)
 
 
-def strips(z, threshold, gutter, rim, grid):
+def strips(z, threshold, gutter, rim):
     """Only connected pieces that are long for their width, as strokes of paint are and blotches are not.
 
     An average blurs the rim of a stroke over its surroundings; half of the
@@ -53,11 +53,19 @@ def strips(z, threshold, gutter, rim, grid):
         if not large[number]:
             continue
         piece = labels[box] == number
-        row, column = np.nonzero(piece)
-        shape = measure((row + box[0].start + grid.first) * CELL, (column + box[1].start + grid.low) * CELL)
-        if shape.length >= STRIP_LENGTH and shape.elongation >= STRIP_ELONGATION and np.median(rim[box][piece]) > CURB_FACE:
+        if _long_stroke(piece) and np.median(rim[box][piece]) > CURB_FACE:
             result[box] |= piece & (z[box] > 0.5 * np.percentile(z[box][piece], 90))
     return result
+
+
+def _long_stroke(piece):
+    """Whether a piece is long for its width: as a whole, or branched as hatching is, area over thickness."""
+    row, column = np.nonzero(piece)
+    shape = measure(row * CELL, column * CELL)
+    if shape.length >= STRIP_LENGTH and shape.elongation >= STRIP_ELONGATION:
+        return True
+    thickness = 2.0 * CELL * UNIT * ndimage.distance_transform_edt(np.pad(piece, 1)).max()
+    return len(row) * (CELL * UNIT) ** 2 / thickness >= max(STRIP_LENGTH, STRIP_ELONGATION * thickness)
 
 
 def runs(mask, axis):
