@@ -32,7 +32,7 @@ class SurfaceSettings:
         where the scanner's noise allows, less is taken
     """
 
-    max_width: float = 12.0
+    max_width: float = 17.0
     height_tolerance: float = 0.15
 
     def __post_init__(self):
