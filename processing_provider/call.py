@@ -12,7 +12,7 @@ from qgis.core import (
 )
 
 from ..core.errors import RoadExtractionError
-from .destinations import UnfinishedFiles, check_writable, destination_path
+from .destinations import UnfinishedFiles, check_suffix, check_writable, destination_path
 from .knobs import settings_class
 from .layers import WKB_TYPES, crs_text, qgis_fields, read_features, write_features
 from .styling import style_on_load
@@ -49,8 +49,14 @@ class Call:
         return existing_file(path, self.label(name)) if path else ""
 
     def crs(self, name="CRS"):
-        """WKT, or "" where none was chosen."""
-        return crs_text(self.algorithm.parameterAsCrs(self.parameters, name, self.context))
+        """WKT, or "" where none was chosen; refuses a CRS that QGIS does not know, which it would pass over."""
+        crs = self.algorithm.parameterAsCrs(self.parameters, name, self.context)
+        given = self.parameters.get(name)
+        if isinstance(given, str) and given and not crs.isValid():
+            raise RoadExtractionError(
+                tr("{label}: the CRS {given} is not known. Give it as EPSG:number.").format(label=self.label(name), given=given)
+            )
+        return crs_text(crs)
 
     def trajectory(self, name="TRAJECTORY", crs=""):
         """The trajectory as the core takes it, from a layer, a table or a file; `crs` overrules what it says."""
@@ -110,10 +116,23 @@ class Call:
 
     def check_destinations(self):
         """Prove every output writable before the work, so that a read-only disk is told now."""
+        taken = {}
         for definition in self.algorithm.destinationParameterDefinitions():
-            path = destination_path(self._destination(definition.name()))
-            if path is not None:
-                check_writable(path, definition.description())
+            value = self._destination(definition.name())
+            path = destination_path(value)
+            if path is None:
+                continue
+            check_suffix(path, definition)
+            # Layers of one GeoPackage are told apart by the rest of the value
+            place = str(path.absolute()) if value == str(path) else value
+            if place in taken:
+                raise RoadExtractionError(
+                    tr("{first} and {second} would both be written to {path}, and one would be lost. Give each a file of its own, "
+                       "or name the layers in one GeoPackage: ogr:dbname='map.gpkg' table=\"road_edges\" (geom).").format(
+                        first=taken[place], second=definition.description(), path=path)
+                )
+            taken[place] = definition.description()
+            check_writable(path, definition.description())
 
     def _destination(self, name):
         value = self.parameters.get(name)

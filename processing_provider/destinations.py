@@ -9,6 +9,8 @@ import re
 import tempfile
 from pathlib import Path
 
+from qgis.core import QgsProcessingParameterFileDestination, QgsProcessingParameterRasterDestination
+
 from ..core.errors import RoadExtractionError
 from .texts import tr
 
@@ -25,6 +27,23 @@ def destination_path(value):
     if not text or text == "TEMPORARY_OUTPUT" or text.startswith(("memory:", "postgres:", "ogr:", "mssql:", "oracle:")):
         return None
     return Path(text)
+
+
+def check_suffix(path, definition):
+    """Raise RoadExtractionError where the name promises a kind of file that is not written."""
+    if isinstance(definition, QgsProcessingParameterRasterDestination):
+        kinds = (".tif", ".tiff")
+    elif isinstance(definition, QgsProcessingParameterFileDestination):
+        kinds = (".html", ".htm") if "html" in definition.fileFilter() else (".laz", ".las")
+    else:
+        return
+    name = path.name.lower()
+    if not name.endswith(kinds) or name.endswith((".copc.laz", ".copc.las")):
+        raise RoadExtractionError(
+            tr("{label} was to be written to {path}, but it is written as {kinds} only. Name the file so.").format(
+                label=definition.description(), path=path, kinds=tr(" or ").join(kinds[:2])
+            )
+        )
 
 
 def check_writable(path, label):

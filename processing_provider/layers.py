@@ -1,6 +1,6 @@
 """Between QGIS layers and the core's Features."""
 
-from qgis.core import Qgis, QgsFeature, QgsFeatureSink, QgsField, QgsFields, QgsGeometry
+from qgis.core import Qgis, QgsFeature, QgsFeatureSink, QgsField, QgsFields, QgsGeometry, QgsWkbTypes
 from qgis.PyQt.QtCore import QMetaType
 
 from ..core.errors import RoadExtractionError
@@ -56,23 +56,15 @@ def read_features(source, schema, geometry_type, label):
     """A feature source as Features; fields are matched by name, the layer's further fields are left out.
 
     Multi-part geometries become one row a part. Raises RoadExtractionError where a
-    line or polygon layer carries no heights.
+    field is missing, the geometry is of another kind, or carries no heights.
     """
     import shapely
 
-    fields = source.fields()
-    known = [column for column in schema if fields.lookupField(column.name) >= 0]
-    missing = [column.name for column in schema if column not in known]
-    if "road" in missing or (geometry_type == "None" and missing):
-        raise RoadExtractionError(
-            tr("{label} lacks the field(s) {fields}. Use the layer that Lanewright wrote.").format(
-                label=label, fields=", ".join(missing)
-            )
-        )
+    _check_kind(source, schema, geometry_type, label)
     result = Features(geometry_type, list(schema), crs=crs_text(source.sourceCrs()))
-    index = {column.name: fields.lookupField(column.name) for column in known}
+    index = {column.name: source.fields().lookupField(column.name) for column in schema}
     for feature in source.getFeatures():
-        row = {column.name: _typed(feature.attribute(index[column.name]), column) for column in known}
+        row = {column.name: _typed(feature.attribute(index[column.name]), column) for column in schema}
         if geometry_type == "None":
             result.add(None, **row)
             continue
@@ -90,6 +82,25 @@ def read_features(source, schema, geometry_type, label):
     return result
 
 
+def _check_kind(source, schema, geometry_type, label):
+    """Refuse a layer that another stage made, or none."""
+    fields = source.fields()
+    missing = [column.name for column in schema if fields.lookupField(column.name) < 0]
+    if missing:
+        raise RoadExtractionError(
+            tr("{label} lacks the field(s) {fields}. Use the layer that Lanewright wrote.").format(
+                label=label, fields=", ".join(missing)
+            )
+        )
+    found, needed = QgsWkbTypes.geometryType(source.wkbType()), QgsWkbTypes.geometryType(WKB_TYPES[geometry_type])
+    if geometry_type != "None" and found != needed:
+        raise RoadExtractionError(
+            tr("{label} holds geometries of the kind {found}; {needed} is needed. Use the layer that Lanewright wrote.").format(
+                label=label, found=QgsWkbTypes.geometryDisplayString(found), needed=QgsWkbTypes.geometryDisplayString(needed)
+            )
+        )
+
+
 def _typed(value, column: Field):
     if value is None or (hasattr(value, "isNull") and value.isNull()):
         return None
@@ -97,8 +108,13 @@ def _typed(value, column: Field):
 
 
 def crs_text(crs):
-    """WKT of a QgsCoordinateReferenceSystem, "" where it is unknown."""
-    return crs.toWkt(Qgis.CrsWktVariant.Preferred) if crs.isValid() else ""
+    """WKT of a QgsCoordinateReferenceSystem, "" where it is unknown.
+
+    GeoPackage has entries of its own for that: "Undefined geographic SRS" is what
+    GDAL writes for a layer without CRS, whatever its coordinates are.
+    """
+    known = crs.isValid() and not crs.description().lower().startswith("undefined ")
+    return crs.toWkt(Qgis.CrsWktVariant.Preferred) if known else ""
 
 
 def write_features(sink, features, fields):

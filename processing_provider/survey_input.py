@@ -48,8 +48,12 @@ def open_survey_of(call, progress):
     return open_survey(paths, trajectory, call.settings(SURVEY_KNOBS, crs=call.crs()), progress)
 
 
-def frame_of(call, crs, progress, road_points=None):
-    """The road frame of TRAJECTORY for data in `crs`; with road points given, on their clock."""
+def frame_of(call, crs, progress, road_points=None, layers=None):
+    """The road frame of TRAJECTORY for data in `crs`; with road points given, on their clock.
+
+    `layers` (parameter name to Features) and the road points must have been made with this trajectory.
+    """
+    from ..core.survey.belonging import check_features_on_roads, check_road_points_on_roads
     from ..core.survey.crs import reproject_trajectory
     from ..core.survey.road_frame import build_frame
 
@@ -59,6 +63,11 @@ def frame_of(call, crs, progress, road_points=None):
         trajectory, has_time = _on_clock_of(road_points, trajectory, progress)
     frame = build_frame(trajectory)
     frame.crs, frame.has_time = crs or trajectory.crs, has_time
+    for name, features in (layers or {}).items():
+        if features is not None:
+            check_features_on_roads(features, frame, call.label(name))
+    if road_points is not None:
+        check_road_points_on_roads(road_points, frame, tr("The points"))
     return frame
 
 

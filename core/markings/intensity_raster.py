@@ -52,6 +52,9 @@ class IntensityImage:
             raise RoadExtractionError(
                 f"{path} has pixels of {transform[1]:g} by {-transform[5]:g} map units or is rotated. "
                 "An intensity image has square pixels and north up: make it anew with “Intensity image”.")
+        if dataset.GetRasterBand(1).DataType == 1:  # GDT_Byte
+            raise RoadExtractionError(
+                f"{path} is an 8-bit picture for viewing; its grey values are stretched and cut off. Give the intensity image itself.")
         crs = dataset.GetProjection() or ""
         reference = dataset.GetSpatialRef()
         if reference is not None and reference.IsGeographic():

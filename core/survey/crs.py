@@ -49,6 +49,10 @@ def check_projected(files, given="", trajectory_crs=""):
         if file.crs:
             known.setdefault(file.crs, file.path)
     parsed = [(parse_crs(wkt), path) for wkt, path in known.items()]
+    if not known and not given and trajectory_crs and horizontal(parse_crs(trajectory_crs)).is_geographic and not _in_degrees(files):
+        raise RoadExtractionError(
+            f"The point cloud carries no CRS, and the trajectory is in {horizontal(parse_crs(trajectory_crs)).name} (degrees), so "
+            "neither tells where the other lies. Give the CRS of the point cloud by the parameter CRS.")
     for crs, path in parsed[1:]:
         if not horizontal(crs).equals(horizontal(parsed[0][0]), ignore_axis_order=True):
             raise RoadExtractionError(
@@ -60,6 +64,24 @@ def check_projected(files, given="", trajectory_crs=""):
         return ""
     check_metric(crs, "The point cloud")
     return wkt if wkt in known or len(wkt) > 20 else crs.to_wkt()
+
+
+def _in_degrees(files):
+    """Whether the clouds' coordinates can only be longitude and latitude: within the globe's, and a survey less than a degree wide."""
+    low, high = np.min([file.minimum for file in files if file.count], axis=0), np.max([file.maximum for file in files if file.count], axis=0)
+    return bool((np.abs([low[0], high[0]]) <= 180).all() and (np.abs([low[1], high[1]]) <= 90).all() and (high - low)[:2].max() < 1.0)
+
+
+def crs_note(files, given, crs):
+    """What the user should know about the CRS the survey is worked in; "" where there is nothing to say."""
+    if not crs:
+        return ("The point cloud carries no CRS, and neither do the results: they lie in its own coordinates. Where these are "
+                "map coordinates, give their CRS by the parameter CRS (such as EPSG:25832) and run again.")
+    own = next((file.crs for file in files if file.crs), "")
+    if given and own and not same_place(parse_crs(given), parse_crs(own)):
+        return (f"The point cloud says that it is in {horizontal(parse_crs(own)).name}; the parameter CRS "
+                f"({horizontal(parse_crs(given)).name}) is for clouds that carry none and was not used.")
+    return ""
 
 
 def check_metric(crs, what):

@@ -1,5 +1,6 @@
 """Point cloud files: what their headers say, and their points in blocks."""
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -101,17 +102,21 @@ def read_blocks(path, size=BLOCK):
 
 
 def read_headers(paths):
-    """CloudFile of every path, in the order given; a path given twice is read once.
+    """CloudFile of every path, in the order given; a file given twice, by whatever path, is read once.
 
     Raises
     ------
     RoadExtractionError
         If there is no file, all files are empty, or the files disagree about their CRS.
     """
-    unique = list(dict.fromkeys(str(Path(path)) for path in paths))
+    unique = {}
+    for path in paths:
+        unique.setdefault(os.path.realpath(path), str(Path(path)))
+    unique = list(unique.values())
     if not unique:
         raise RoadExtractionError("No point cloud was given. Choose one or more LAS, LAZ or COPC files.")
     files = [read_header(path) for path in unique]
     if not sum(file.count for file in files):
-        raise RoadExtractionError(f"{'The file' if len(files) == 1 else 'The files'} {', '.join(unique[:3])} hold no points. Check the export of the survey.")
+        named = f"The file {unique[0]} holds" if len(files) == 1 else f"The files {', '.join(unique[:3])} hold"
+        raise RoadExtractionError(f"{named} no points. Check the export of the survey.")
     return files

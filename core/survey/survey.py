@@ -6,7 +6,7 @@ import numpy as np
 
 from ..errors import RoadExtractionError
 from ..progress import Progress
-from .crs import check_projected, parse_crs, reproject_trajectory
+from .crs import check_projected, crs_note, parse_crs, reproject_trajectory
 from .point_cloud import BLOCK, read_blocks, read_headers
 from .points import SURVEY_POINT, UNIT, Points, to_units
 from .road_frame import CORRIDOR, build_frame
@@ -104,6 +104,8 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
     """
     files = read_headers(paths)
     crs = check_projected(files, settings.crs, trajectory.crs)
+    if note := crs_note(files, settings.crs, crs):
+        progress.warn(note)
     trajectory = reproject_trajectory(trajectory, crs)
     trajectory, time_note, has_time, week_ends = _match_clocks(files, trajectory, settings, progress)
     if time_note:
@@ -125,6 +127,9 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
     reader.finish()
     if not store.count:
         raise RoadExtractionError(_no_overlap(files, frame, reader))
+    if reader.unplaced_time:
+        progress.warn(f"{reader.unplaced_time:,} of {total:,} points were left out: their gps_time is missing or lies outside the "
+                      "trajectory's.")
     scanner_field, scanners = reader.census.choose(settings.scanner_field)
     heights = sensor_heights(frame, store, reader.drop)
     survey = Survey(files, frame, store, crs, heights, scanner_field, scanners,
@@ -306,11 +311,15 @@ def _check_extent(files, frame, crs, trajectory_crs):
         raise RoadExtractionError(
             f"The trajectory does not run through the point cloud. The cloud covers x {low[0]:.1f} to {high[0]:.1f}, "
             f"y {low[1]:.1f} to {high[1]:.1f}; the trajectory runs over x {x.min():.1f} to {x.max():.1f}, "
-            f"y {y.min():.1f} to {y.max():.1f}. {_which_crs(crs, trajectory_crs)}")
+            f"y {y.min():.1f} to {y.max():.1f}. {_what_to_try(low, high, x, y, crs, trajectory_crs, reach)}")
 
 
-def _which_crs(crs, trajectory_crs):
+def _what_to_try(low, high, x, y, crs, trajectory_crs, reach):
     """What to try where cloud and trajectory lie apart."""
+    if ((y > low[0] - reach) & (y < high[0] + reach) & (x > low[1] - reach) & (x < high[1] + reach)).any():
+        return "The trajectory's x and y are exchanged: name its columns the other way round, or swap them."
+    if (np.abs(high[:2]) <= 180).all() and (np.abs(low[:2]) <= 180).all() and (high - low)[:2].max() < 1.0:
+        return "The cloud's coordinates look like degrees: reproject it to a projected CRS, such as the UTM zone of the survey."
     if trajectory_crs:
         return f"Both were taken to be in {parse_crs(crs).name}. Check that they belong to one survey, and the CRS of the trajectory."
     cloud = f"The cloud is in {parse_crs(crs).name}, the trajectory" if crs else "The trajectory"

@@ -69,7 +69,8 @@ class DrivingLines(LanewrightAlgorithm):
         markings = call.features("MARKINGS", MARKINGS, "PolygonZ")
         edges = call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ")
         road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.3)) if call.cloud("ROAD_POINTS") else None
-        frame = frame_of(call, marking_lines.crs, progress, road_points)
+        layers = {"MARKING_LINES": marking_lines, "MARKINGS": markings, "ROAD_EDGES": edges}
+        frame = frame_of(call, marking_lines.crs, progress, road_points, layers)
         lines, elements = driving_lines(
             marking_lines, frame, call.settings(DRIVING_KNOBS), progress.part(0.3, 1.0),
             markings=markings, edges=edges, road_points=road_points,

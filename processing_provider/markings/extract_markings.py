@@ -48,11 +48,13 @@ class ExtractMarkings(LanewrightAlgorithm):
     def work(self, call, progress):
         from ...core.markings.extraction import extract_markings
         from ...core.markings.image import IntensityImage
+        from ...core.markings.image_cover import check_image_shows
         from ...core.survey.road_points_file import write_road_points
 
         road_points = bright_road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, road_points.crs, progress, road_points)
         image = IntensityImage.open(call.raster("INTENSITY_IMAGE"))
+        check_image_shows(image, road_points)
         markings = extract_markings(
             road_points, image, frame, call.settings(MARKING_KNOBS), progress.part(0.2, 0.95),
             mask_path=call.new_file("MARKING_MASK") or None,

@@ -54,5 +54,5 @@ class FitMarkingLines(LanewrightAlgorithm):
 
         markings = call.features("MARKINGS", MARKINGS, "PolygonZ")
         points = paint_of(call, "CLUSTERED_POINTS", progress.part(0.0, 0.2))
-        frame = frame_of(call, points.crs, progress, points)
+        frame = frame_of(call, points.crs, progress, points, {"MARKINGS": markings})
         call.layer("MARKING_LINES", fit_marking_lines(points, markings, frame, call.settings(LINE_KNOBS), progress.part(0.2, 1.0)))

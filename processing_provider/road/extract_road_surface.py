@@ -45,10 +45,13 @@ class ExtractRoadSurface(LanewrightAlgorithm):
 
     def work(self, call, progress):
         from ...core.road.surface import extract_road_surface
+        from ...core.survey.belonging import check_features_on_roads
         from ...core.survey.road_points_file import write_road_points
 
         edges = call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ")
         survey = open_survey_of(call, progress.part(0.0, 0.5))
+        if edges is not None:
+            check_features_on_roads(edges, survey.frame, call.label("ROAD_EDGES"))
         road_points, surface = extract_road_surface(survey, edges, call.settings(SURFACE_KNOBS), progress.part(0.5, 0.9))
         write_road_points(road_points, call.new_file("ROAD_POINTS"), progress.part(0.9, 1.0))
         call.layer("ROAD_SURFACE", surface)

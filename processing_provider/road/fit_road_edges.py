@@ -38,5 +38,5 @@ class FitRoadEdges(LanewrightAlgorithm):
         from ...core.road.edges import fit_road_edges
 
         curb_points = call.features("CURB_POINTS", CURB_POINTS, "PointZ")
-        frame = frame_of(call, curb_points.crs, progress)
+        frame = frame_of(call, curb_points.crs, progress, layers={"CURB_POINTS": curb_points})
         call.layer("ROAD_EDGES", fit_road_edges(curb_points, frame, call.settings(EDGE_KNOBS), progress))

@@ -1,10 +1,11 @@
 """Results appear whole or not at all."""
 
 import os
+from pathlib import Path
 
 import pytest
 from lanewright.core.errors import RoadExtractionError
-from lanewright.processing_provider.destinations import UnfinishedFiles, check_writable, destination_path
+from lanewright.processing_provider.destinations import UnfinishedFiles, check_suffix, check_writable, destination_path
 
 
 def test_yesterdays_result_stands_until_todays_is_complete(tmp_path):
@@ -74,3 +75,20 @@ def test_a_folder_without_permission_is_refused(tmp_path):
             check_writable(tmp_path / "road.laz", "Road points")
     finally:
         tmp_path.chmod(0o755)
+
+
+@pytest.mark.parametrize("name, path, writes", [
+    ("ROAD_POINTS", "road.txt", r"\.laz or \.las"), ("ROAD_POINTS", "road.copc.laz", r"\.laz or \.las"),
+    ("INTENSITY_IMAGE", "image.png", r"\.tif or \.tiff"), ("REPORT", "report.pdf", r"\.html or \.htm"),
+])
+def test_a_name_that_promises_another_kind_of_file_is_refused(provider, name, path, writes):
+    definition = provider.algorithm("roadmap").parameterDefinition(name)
+    with pytest.raises(RoadExtractionError, match=writes):
+        check_suffix(Path(path), definition)
+
+
+@pytest.mark.parametrize("name, path", [
+    ("ROAD_POINTS", "Road.LAZ"), ("ROAD_POINTS", "road.las"), ("INTENSITY_IMAGE", "image.tiff"), ("REPORT", "r.html"), ("MARKINGS", "m.fgb"),
+])
+def test_a_name_that_fits_is_taken(provider, name, path):
+    check_suffix(Path(path), provider.algorithm("roadmap").parameterDefinition(name))

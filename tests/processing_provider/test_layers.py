@@ -62,12 +62,19 @@ def test_a_table_has_rows_and_no_geometry(tmp_path, qgis_app):
     assert found.rows[0]["radius_m"] == 140.8 and found.geometries == [None]
 
 
+def edge_layer(kind, fields=ROAD_EDGES, crs="EPSG:32650"):
+    """An empty layer with the fields of road edges."""
+    kinds = {int: "integer", float: "double", str: "string"}
+    columns = "".join(f"&field={column.name}:{kinds[column.type]}" for column in fields)
+    return QgsVectorLayer(f"{kind}?crs={crs}{columns}", "edges", "memory")
+
+
 def test_lines_in_many_parts_become_lines(qgis_app):
-    layer = QgsVectorLayer("MultiLineStringZ?crs=EPSG:32650&field=road:integer", "edges", "memory")
+    layer = edge_layer("MultiLineStringZ")
     from qgis.core import QgsFeature, QgsGeometry
 
     feature = QgsFeature(layer.fields())
-    feature.setAttributes([2])
+    feature.setAttribute("road", 2)
     feature.setGeometry(QgsGeometry.fromWkt("MultiLineStringZ((0 0 1, 1 0 1),(2 0 1, 3 0 1))"))
     layer.dataProvider().addFeatures([feature], QgsFeatureSink.Flag.FastInsert)
     found = read_features(layer, ROAD_EDGES, "LineStringZ", "Road edges")
@@ -75,7 +82,7 @@ def test_lines_in_many_parts_become_lines(qgis_app):
 
 
 def test_a_line_layer_without_heights_is_refused_by_name(qgis_app):
-    layer = QgsVectorLayer("LineString?crs=EPSG:32650&field=road:integer", "edges", "memory")
+    layer = edge_layer("LineString")
     from qgis.core import QgsFeature, QgsGeometry
 
     feature = QgsFeature(layer.fields())
@@ -89,3 +96,23 @@ def test_a_layer_of_something_else_is_refused_by_its_fields(qgis_app):
     layer = QgsVectorLayer("LineStringZ?crs=EPSG:32650&field=name:string", "rivers", "memory")
     with pytest.raises(RoadExtractionError, match="Road edges lacks the field.*road"):
         read_features(layer, ROAD_EDGES, "LineStringZ", "Road edges")
+
+
+def test_a_layer_that_lost_a_field_is_refused_by_its_name(qgis_app):
+    layer = edge_layer("LineStringZ", [column for column in ROAD_EDGES if column.name not in ("side", "status")])
+    with pytest.raises(RoadExtractionError, match=r"Road edges lacks the field\(s\) side, status\."):
+        read_features(layer, ROAD_EDGES, "LineStringZ", "Road edges")
+
+
+def test_points_are_no_road_edges(qgis_app):
+    with pytest.raises(RoadExtractionError, match="kind Point; Line is needed"):
+        read_features(edge_layer("PointZ"), ROAD_EDGES, "LineStringZ", "Road edges")
+
+
+def test_a_geopackage_s_undefined_crs_is_no_crs(tmp_path, qgis_app):
+    from osgeo import ogr
+
+    source = ogr.GetDriverByName("GPKG").CreateDataSource(str(tmp_path / "bare.gpkg"))
+    source.CreateLayer("bare", None, ogr.wkbPoint25D)
+    del source
+    assert crs_text(QgsVectorLayer(str(tmp_path / "bare.gpkg"), "bare", "ogr").crs()) == ""

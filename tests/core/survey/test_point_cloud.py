@@ -57,13 +57,21 @@ def test_no_file_and_only_empty_files_are_refused(tmp_path):
     with pytest.raises(RoadExtractionError, match="No point cloud was given"):
         read_headers([])
     empty = write_cloud(tmp_path / "empty.las", *(np.empty(0) for _ in range(4)))
-    with pytest.raises(RoadExtractionError, match="hold no points"):
+    with pytest.raises(RoadExtractionError, match="holds? no points"):
         read_headers([empty])
 
 
 def test_a_file_given_twice_is_read_once(tmp_path):
     path = write_cloud(tmp_path / "cloud.laz", *places())
     assert len(read_headers([path, path])) == 1
+
+
+def test_a_file_given_by_two_paths_is_read_once_too(tmp_path):
+    path = write_cloud(tmp_path / "tile.laz", *places())
+    (tmp_path / "link.laz").symlink_to(path)
+    other = write_cloud(tmp_path / "other.laz", *places())
+    files = read_headers([path, tmp_path / "link.laz", other, tmp_path / ".." / tmp_path.name / "tile.laz"])
+    assert [file.path for file in files] == [path, other]
 
 
 def test_clouds_of_two_zones_are_refused_with_both_names(tmp_path):

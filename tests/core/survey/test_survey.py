@@ -1,10 +1,13 @@
 """A survey read into the road frame: every point once, on its road, whatever way the files come."""
 
+import re
+
 import numpy as np
 import pytest
 from drives import EAST, NORTH, ahead, bend, chain, drive, joined, surveyed_points, write_cloud
 
 from lanewright.core.errors import RoadExtractionError
+from lanewright.core.progress import Progress
 from lanewright.core.survey.survey import SurveySettings, open_survey
 from lanewright.core.survey.trajectory import Trajectory
 
@@ -243,3 +246,50 @@ def test_two_vehicles_of_different_height_agree_on_the_road(tmp_path):
     survey = open_survey([write_cloud(tmp_path / "two.laz", *both, crs=CRS)], joined(van, car.rows(slice(0, 800))))
     np.testing.assert_allclose([survey.sensor_height[0], survey.sensor_height[1]], [2.6, 1.7], atol=0.01)
     np.testing.assert_allclose(survey.road_height(0, np.linspace(-5, 190, 99)) + survey.frame.origin[2], 100.0, atol=0.01)
+
+
+class Heard(Progress):
+    """Listens to the warnings."""
+
+    def __init__(self):
+        self.warnings = []
+
+    def warn(self, text):
+        self.warnings.append(text)
+
+
+@pytest.mark.parametrize("own, given, says", [
+    (None, "", "carries no CRS.*parameter CRS"), (None, CRS, None), (CRS, "", None), (CRS, CRS, None),
+    (CRS, "EPSG:25833", "zone 32N.*zone 33N.*not used"),
+])
+def test_the_user_hears_what_became_of_the_crs(street, tmp_path, own, given, says):
+    trajectory, points, _ = street
+    heard = Heard()
+    open_survey([write_cloud(tmp_path / "c.laz", *points, crs=own)], trajectory, SurveySettings(crs=given), heard)
+    assert len(heard.warnings) == (says is not None) and all(re.search(says, text) for text in heard.warnings)
+
+
+def test_degrees_and_a_cloud_without_crs_cannot_be_brought_together(street, tmp_path):
+    from pyproj import Transformer
+
+    trajectory, points, _ = street
+    lon, lat = Transformer.from_crs(32632, 4326, always_xy=True).transform(trajectory.x, trajectory.y)
+    cloud = write_cloud(tmp_path / "bare.laz", *points)
+    degrees = Trajectory(trajectory.time, lon, lat, trajectory.z, crs="EPSG:4326")
+    with pytest.raises(RoadExtractionError, match="carries no CRS, and the trajectory is in WGS 84.*parameter CRS"):
+        open_survey([cloud], degrees)
+    assert open_survey([cloud], degrees, SurveySettings(crs=CRS)).counts["kept"] == len(points[0])
+
+
+def test_exchanged_coordinates_are_recognised(street):
+    trajectory, _, path = street
+    with pytest.raises(RoadExtractionError, match="x and y are exchanged"):
+        open_survey([path], Trajectory(trajectory.time, trajectory.y, trajectory.x, trajectory.z))
+
+
+def test_points_without_a_time_are_counted_aloud(street, tmp_path):
+    trajectory, (x, y, z, time), _ = street
+    heard, time = Heard(), np.where(np.arange(len(time)) % 4 == 0, np.nan, time)
+    survey = open_survey([write_cloud(tmp_path / "nan.laz", x, y, z, time, crs=CRS)], trajectory, progress=heard)
+    lost = np.count_nonzero(np.isnan(time))
+    assert survey.counts["kept"] == len(x) - lost and f"{lost:,} of {len(x):,} points were left out" in heard.warnings[0]
