@@ -10,8 +10,10 @@ from ..features import Features
 from ..parallel import in_order
 from ..progress import Progress
 from ..schemas import CURB_POINTS
+from .averaged_steps import AVERAGE, find_averaged_steps
 from .chains import choose_along, curb_chains, link_chains, long_enough
 from .corners import Steps
+from .profiles import SPREAD_ROWS
 from .shadows import Sight
 from .sides import REACH, SECTION, SIDES, Track, expected_height, profiles_beside, sections_of
 from .steps import find_steps
@@ -20,6 +22,7 @@ VEHICLE_HALF = 0.6      # m from the track: no curb nearer
 MERGE_ACROSS = 0.12     # m between the same step seen in two passes
 MERGE_UP = 0.10
 DROPPED = 0.5           # a lower curb counts where it continues a full one: share of MIN_HEIGHT
+NOISY = 0.15            # share of MIN_HEIGHT: where heights spread more, profiles are averaged
 STRAIGHT_BLOCK, SHARP_BLOCK = 2.0, 0.5  # m
 TURN_PER_BLOCK = np.radians(1.0)        # a block of road turns no more than this
 BENT = 0.015            # m off its own straight line beyond which a block is cut shorter
@@ -94,14 +97,16 @@ def _steps_of_road(survey, road, settings, progress):
     width = settings.profile_width
     sections = sections_of(survey, road, width)
     first, last = sections[0][0], sections[-1][1]
+    around = max(SPREAD_ROWS, int(np.ceil(AVERAGE / width)))
     sight = {side: Sight(width, first, last - first, REACH) for side in SIDES}
     tracks = {side: Track(survey.frame, road, sign) for side, sign in SIDES.items()}
 
     def work(section):
         found = {side: [] for side in SIDES}
-        for side, _, beside, lines in profiles_beside(survey, road, section, tracks, settings):
-            sight[side].look(*beside, section, lines)
-            steps = find_steps(lines, DROPPED * settings.min_height, settings.max_height)
+        first, last = section
+        for side, _, beside, lines in profiles_beside(survey, road, (first - around, last + around), tracks, settings):
+            sight[side].look(*beside, section, lines.part(first, last))
+            steps = _steps_by_noise(lines, section, settings)
             found[side].append(steps[steps.u > tracks[side](steps.s) + VEHICLE_HALF])
         return {side: _merge_passes(steps) for side, steps in found.items() if steps}
 
@@ -110,6 +115,19 @@ def _steps_of_road(survey, road, settings, progress):
         for side, steps in found.items():
             parts[side].append(steps)
     return {side: Steps.join(parts[side]) if parts[side] else None for side in SIDES}, sight
+
+
+def _steps_by_noise(lines, section, settings):
+    """Steps of a section's profiles: of each by itself, or averaged with its neighbours where noise would hide a curb."""
+    own = lines.part(*section)
+    least, noisy = DROPPED * settings.min_height, own.spread > NOISY * settings.min_height
+    sharp = find_steps(own, least, settings.max_height)
+    if not noisy.any():
+        return sharp
+    blurred = find_averaged_steps(lines, least, settings.max_height)
+    inside = (blurred.profile >= section[0]) & (blurred.profile < section[1])
+    blurred = blurred[inside]
+    return Steps.join([sharp[~noisy[sharp.profile - own.first]], blurred[noisy[blurred.profile - own.first]]])
 
 
 def _merge_passes(found):

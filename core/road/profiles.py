@@ -14,7 +14,7 @@ quantile, less what noise alone would give: the highest of many noisy points wou
 raise a whole road above its sparser neighbours.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,6 +23,8 @@ HIGH_SIGMA = 1.2816  # the same quantile of a normal distribution, in sigmas
 GHOST_SHARE = 0.15  # a lowest layer with less than this share of its cell is multipath, not ground
 LEAST_NOISE = 0.002  # m
 USUAL_NOISE = 0.005  # m, where too few cells hold enough points to tell
+SAME_GROUND = 0.15  # m from a cell's ground within which points tell the scanner's noise
+SPREAD_ROWS = 6     # profiles either side that tell it together
 DEPTH, REACH = 2.0, 2.0  # m below and above the expected road within which ground is sought
 
 
@@ -39,6 +41,8 @@ class PseudoScanLines:
     starts : (P * C + 1,) index of the first point of every cell
     low, high : (P, C) median and high quantile of the lowest layer, m; NaN where no point lies
     noise : (P,) m, spread of heights within a cell of level road
+    spread : (P,) m, the same with the points of all layers next to the ground, over a few metres of
+        road: near `noise` for a scanner that measures to millimetres, far above for one that does not
     """
 
     first: int
@@ -54,6 +58,7 @@ class PseudoScanLines:
     low: np.ndarray
     high: np.ndarray
     noise: np.ndarray
+    spread: np.ndarray
 
     @property
     def shape(self):
@@ -62,6 +67,12 @@ class PseudoScanLines:
     def offset(self, cell):
         """Outward offset of the middle of cells, metres."""
         return self.origin + (np.asarray(cell) + 0.5) * self.spacing
+
+    def part(self, first, last):
+        """The profiles from `first` to before `last`; the points are shared."""
+        a, b, cells = first - self.first, last - self.first, self.shape[1]
+        return replace(self, first=first, starts=self.starts[a * cells:b * cells + 1], low=self.low[a:b], high=self.high[a:b],
+                       noise=self.noise[a:b], spread=self.spread[a:b])
 
 
 def pseudo_scan_lines(u, s, h, ahead, profiles, width, spacing, layer_jump, origin, reach):
@@ -99,7 +110,8 @@ def pseudo_scan_lines(u, s, h, ahead, profiles, width, spacing, layer_jump, orig
     low.flat[owner], high.flat[owner] = middle, top
     many = count >= 4
     noise.flat[owner[many]] = (top - middle)[many] / HIGH_SIGMA
-    return PseudoScanLines(first, width, spacing, origin, u, s, h, ahead[kept], ground, starts, low, high, _profile_noise(noise))
+    return PseudoScanLines(first, width, spacing, origin, u, s, h, ahead[kept], ground, starts, low, high, _profile_noise(noise),
+                           _spread(h, place, low, starts))
 
 
 def _lowest_layers(place, h, layer_jump):
@@ -125,6 +137,27 @@ def _profile_noise(noise):
     """(P,) median spread of each profile's cells."""
     dense = np.isfinite(noise).sum(1) >= 20
     return np.where(dense, np.fmax(_row_median(noise), LEAST_NOISE), USUAL_NOISE)
+
+
+def _spread(h, place, low, starts):
+    """(P,) spread of the points of a profile and its neighbours about the ground of their cells."""
+    rows, cells = low.shape
+    off = np.abs(h - low.flat[place])
+    count = np.diff(starts)
+    kept = (off < SAME_GROUND) & (count[place] >= 4)
+    row = place[kept] // cells
+    order = np.argsort((row << 17) + np.rint(off[kept] * 1e5).astype(np.int64), kind="stable")
+    off, first = off[kept][order], np.searchsorted(row, np.arange(rows + 1))
+    n = np.diff(first)
+    many = np.flatnonzero(n >= 100)
+    own = np.full(rows, np.nan)
+    own[many] = 1.4826 * off[first[many] + n[many] // 2]
+    # one profile beside a bush says nothing about the scanner
+    padded = np.pad(own, SPREAD_ROWS, constant_values=np.nan)
+    around = np.sort(np.lib.stride_tricks.sliding_window_view(padded, 2 * SPREAD_ROWS + 1), axis=1)
+    known = np.isfinite(around).sum(1)
+    middle = around[np.arange(rows), np.maximum(known - 1, 0) // 2]
+    return np.where(known > 0, middle, LEAST_NOISE)
 
 
 def _row_median(values):
