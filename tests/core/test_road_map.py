@@ -1,0 +1,112 @@
+"""The whole chain on a made street with known truth, and what must not change its result."""
+
+from dataclasses import replace
+
+import laspy
+import numpy as np
+import pytest
+import shapely
+
+from lanewright.core.assess.lines import compare_lines
+from lanewright.core.assess.polygons import compare_polygons
+from lanewright.core.road_map import RoadMapSettings, make_road_map
+from lanewright.core.sample.survey import SampleSettings, make_sample_survey
+from lanewright.core.survey.survey import SurveySettings
+
+LAYERS = ("edges", "surface", "markings", "marking_lines", "driving_lines")
+
+
+@pytest.fixture(scope="module")
+def sample():
+    return make_sample_survey(SampleSettings(length=70.0, pulse_rate=120_000, rotation_rate=120.0))
+
+
+@pytest.fixture(scope="module")
+def cloud(sample, tmp_path_factory):
+    path = tmp_path_factory.mktemp("street") / "survey.laz"
+    sample.write_cloud(path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def road_map(sample, cloud):
+    return make_road_map([cloud], sample.trajectory, cloud.with_name("intensity.tif"))
+
+
+def layers_of(road_map):
+    return {name: shapely.get_coordinates(np.array(getattr(road_map, name).geometries, object), include_z=True)
+            for name in LAYERS}
+
+
+def assert_same(one, other, shift=(0.0, 0.0, 0.0)):
+    """Every vertex within a millimetre."""
+    expected, found = layers_of(one), layers_of(other)
+    for name in LAYERS:
+        assert len(expected[name]) == len(found[name]) > 0, name
+        np.testing.assert_allclose(found[name] - shift, expected[name], rtol=0, atol=1e-3, err_msg=name)
+
+
+def area_of(road_map):
+    return shapely.union_all([shapely.force_2d(g).buffer(0.5) for g in road_map.surface.geometries])
+
+
+def test_road_edges_lie_on_the_curbs(sample, road_map):
+    curbs = [g for g, row in sample.truth_boundaries if row["part"] != "top" and row["kind"] != "dropped"]
+    found = compare_lines(road_map.edges.geometries, curbs, area=area_of(road_map))
+    assert found.completeness[0.10] > 0.95
+    assert found.correctness[0.10] > 0.95
+    assert found.height_rmse < 0.02
+
+
+def test_markings_are_the_painted_ones(sample, road_map):
+    found = compare_polygons(road_map.markings.geometries, sample.truth_markings.geometries, area=area_of(road_map))
+    assert found.precision > 0.95 and found.recall > 0.90
+
+
+def test_driving_lines_run_in_the_lanes_the_way_they_are_driven(sample, road_map):
+    found = compare_lines(road_map.driving_lines.geometries, sample.truth_driving_lines.geometries, area=area_of(road_map))
+    assert found.completeness[0.15] > 0.90
+    assert found.correctness[0.15] > 0.90
+    for line, _ in road_map.driving_lines:
+        middle = line.interpolate(0.5, normalized=True)
+        truth = min(sample.truth_driving_lines.geometries, key=middle.distance)
+        ends = [truth.project(shapely.Point(line.coords[k])) for k in (0, -1)]
+        assert ends[1] > ends[0]
+
+
+def test_tiles_in_any_order_give_the_same_map(sample, cloud, road_map, tmp_path):
+    whole = laspy.read(cloud)
+    half = np.asarray(whole.x) > np.median(whole.x)
+    tiles = []
+    for name, part in (("east", half), ("west", ~half)):
+        tile = laspy.LasData(whole.header)
+        tile.points = whole.points[part]
+        tile.write(tmp_path / f"{name}.laz")
+        tiles.append(tmp_path / f"{name}.laz")
+    for order in (tiles, tiles[::-1]):
+        assert_same(road_map, make_road_map(order, sample.trajectory, tmp_path / "intensity.tif"))
+
+
+def test_section_length_memory_and_block_size_do_not_show(sample, cloud, road_map, tmp_path):
+    settings = RoadMapSettings(survey=SurveySettings(section_length=7.0, memory_limit=2**20, block=33_333))
+    assert_same(road_map, make_road_map([cloud], sample.trajectory, tmp_path / "intensity.tif", settings))
+
+
+def test_a_survey_moved_500_km_gives_the_same_map_there(sample, cloud, road_map, tmp_path):
+    east = 500_000.0
+    moved = laspy.read(cloud)
+    x = np.asarray(moved.x) + east
+    moved.change_scaling(offsets=moved.header.offsets + [east, 0, 0])
+    moved.x = x
+    moved.write(tmp_path / "moved.laz")
+    drive = replace(sample.trajectory, x=sample.trajectory.x + east)
+    assert_same(road_map, make_road_map([tmp_path / "moved.laz"], drive, tmp_path / "intensity.tif"), (east, 0.0, 0.0))
+
+
+def test_without_intensity_there_are_edges_and_a_reason(sample, cloud, tmp_path):
+    dark = laspy.read(cloud)
+    dark.intensity = np.zeros(len(dark.points), np.uint16)
+    dark.write(tmp_path / "dark.laz")
+    found = make_road_map([tmp_path / "dark.laz"], sample.trajectory, tmp_path / "intensity.tif")
+    assert len(found.edges) and len(found.surface)
+    assert "intensity" in found.without_paint and found.markings is None
