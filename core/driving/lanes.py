@@ -17,6 +17,7 @@ BESIDE = 5.0       # m that they go on
 OFF_PLACE = 0.5    # m from where the line between two lanes of a strip should be
 SHORT_LANE = 2.0   # m: shorter, it is where lines end unevenly
 SHORT_CLASS = 5.0  # m: a shorter change of class is noise of the width
+SHOULDER = 2.6     # m between two edge lines: a hard shoulder or a row of parking places, unless driven on
 
 
 def chosen_lines(lines, driven):
@@ -157,14 +158,24 @@ def classed(lines, strip):
     return [(names[kind], first + a, first + b) for kind, a, b in pieces]
 
 
-def paired_lanes(lines, all_strips, room):
+def paired_lanes(lines, all_strips, driven, room):
     """A Track for every strip as wide as one lane; `room` says where lanes may be."""
     tracks = []
     for left, right, first, last in all_strips:
         for what, a, b in classed(lines, (left, right, first, last)):
-            if what == "lane" and b - a + 1 >= SHORT_LANE / STEP:
+            if what == "lane" and b - a + 1 >= SHORT_LANE / STEP and not _shoulder(lines, left, right, a, b, driven):
                 tracks.append(_share(lines, left, right, a, b, 0, 1))
     return [track for track in tracks if room(track)]
+
+
+def _shoulder(lines, left, right, first, last, driven):
+    """Whether a strip lies outside the lanes: narrow, between two edge lines, and nobody drove there."""
+    if lines.kinds[left] != "edge" or lines.kinds[right] != "edge":
+        return False
+    window = slice(first, last + 1)
+    dl, dr = lines.d[left, window], lines.d[right, window]
+    used = ((driven[:, window] < dl) & (driven[:, window] > dr)).any(0) if len(driven) else np.zeros(1, bool)
+    return np.median(dl - dr) < SHOULDER and used.mean() < 0.5
 
 
 def _share(lines, left, right, first, last, place, count):

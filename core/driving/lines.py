@@ -86,7 +86,7 @@ def road_lanes(lines, driven, settings, room=lambda track: True):
     """
     kept = chosen_lines(lines, driven)
     all_strips = strips(lines, kept)
-    tracks = paired_lanes(lines, all_strips, room)
+    tracks = paired_lanes(lines, all_strips, driven, room)
     lane_width = settings.lane_width or usual_width(tracks)
     gaps = settings.max_bridge, settings.max_inferred
     tracks = connect(tracks, lines, 0.0, 0.0)

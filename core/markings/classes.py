@@ -20,6 +20,8 @@ STOP_LENGTH = 1.5
 COVER = (0.30, 1.15)  # m, diameter of manhole covers
 RIM = 0.60            # m from the road edge where verge, gutter and curb may look like paint
 BEYOND = 0.80         # m outside an edge line that strips are mistrusted
+AT_RIM, NO_LANE = 0.10, 2.6  # m: what lies this near the road edge is mistrusted as far out as no lane has room
+THIN = 0.10           # m: at the very rim a narrower strip is the top or the face of a curb
 LONGER = 2.0          # times as long as them is the line that says so
 SPECK = 0.30          # m: what is not longer than this and has no companion is no marking
 SPECK_AREA = 0.03     # m2
@@ -69,7 +71,7 @@ def classify(shapes, half_widths, settings=ClassSettings()):
     found = []
     doubles = _has_partner(column, line)
     for k, shape in enumerate(shapes):
-        if room[k] < -settings.margin or _speck(shape) or scrap[k] or _round_cover(shape) or _gutter(shape, room[k], line[k], zebra[k]):
+        if room[k] < -settings.margin or _speck(shape) or scrap[k] or _curb(shape, room[k]) or _round_cover(shape) or _gutter(shape, room[k], line[k], zebra[k]):
             kind = NOT_PAINT
         elif zebra[k]:
             kind = "zebra"
@@ -133,7 +135,8 @@ def _beyond_the_edge_line(column, line, room):
     overlap = np.minimum(column["s1"][rows][:, None], column["s1"][lines]) - np.maximum(column["s0"][rows][:, None], column["s0"][lines])
     # a double line is as long on either side
     longer = column["length"][lines] > LONGER * column["length"][rows][:, None]
-    result[rows] = ((outward > 0.1) & (outward < BEYOND) & (overlap > 0) & longer).any(axis=1)
+    reach = np.where(room[rows] < AT_RIM, NO_LANE, BEYOND)[:, None]
+    result[rows] = ((outward > 0.1) & (outward < reach) & (overlap > 0) & longer).any(axis=1)
     return result
 
 
@@ -151,6 +154,11 @@ def _round_cover(shape):
     along, across = shape.s1 - shape.s0, shape.d1 - shape.d0
     longer, shorter = max(along, across), min(along, across)
     return COVER[0] <= longer <= COVER[1] and shorter > 0.7 * longer and shape.area > 0.5 * along * across
+
+
+def _curb(shape, room):
+    """A hair of brightness along the very edge of the road."""
+    return shape.along and room < AT_RIM and shape.width < THIN
 
 
 def _gutter(shape, room, line, zebra):

@@ -3,7 +3,8 @@
 A gutter begins at the very rim of the road (a curb, an island, a wall) and is
 two decimetres wide or more over metres of rim. An edge line stands off the rim
 or is narrower, and a stop line or zebra stripe that reaches the rim takes up
-little of its length.
+little of its length. Where an edge line is painted right beside the gutter, it is
+the brighter of the two.
 """
 
 import numpy as np
@@ -19,6 +20,7 @@ REACH = 2.5          # m of rim either way that a gutter must be bright on
 SHARE = 0.65         # of the cells of a band
 NARROWEST = 3        # bands
 BRIGHT = 1.5         # spreads above asphalt
+PAINTED = 1.8        # times as bright as what lies between it and the rim: paint beside the gutter
 GAP_ALONG, GAP_ACROSS = 15, 10   # cells: smaller gaps between points are road all the same
 
 
@@ -57,6 +59,8 @@ def gutter_cells(z, distance):
     place = (band[row, column] * coarse[0] + row // COARSE) * coarse[1] + column // COARSE
     size = BANDS * coarse[0] * coarse[1]
     bright = z[row, column] > BRIGHT
+    # in whole 64ths, which sum exactly in any order
+    height = np.rint(64 * np.clip(z[row, column], 0.0, 100.0))
     box = 2 * int(round(REACH / CELL / COARSE)) + 1
 
     def around(counts):
@@ -67,8 +71,14 @@ def gutter_cells(z, distance):
     # at the very rim a cell is half curb: the first band may be anything
     full = (share >= SHARE) & (seen > 20)
     full[0] |= full[1]
-    width = np.cumprod(full, axis=0).sum(axis=0)
-    width = np.where(width >= NARROWEST, width + 1, 0)
+    level = around(np.bincount(place, height, size) / 64) / np.maximum(seen, 1e-9)
+    inner = np.minimum.accumulate(level[1:], axis=0)
+    painted = np.zeros(full.shape, bool)
+    painted[2:] = level[2:] > PAINTED * inner[:-1]
+    width = np.cumprod(full & ~painted, axis=0).sum(axis=0)
+    # the band in which it ends is half gutter, unless it is paint
+    ends = np.take_along_axis(painted, np.minimum(width, BANDS - 1)[None], axis=0)[0]
+    width = np.where(width >= NARROWEST, width + ~ends, 0)
     found = np.zeros(z.shape, bool)
     found[row, column] = band[row, column] < width[row // COARSE, column // COARSE]
     return found

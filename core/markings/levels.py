@@ -3,6 +3,7 @@
 import numpy as np
 
 from .gutters import gutter_cells
+from .patches import patch_level
 from .thresholds import WIDEST, background
 
 BRIGHT = 2.5      # spreads: what is brighter is no background
@@ -14,7 +15,8 @@ def flatten(brightness, median, spread, rim):
     gutter = gutter_cells(z, rim)
     with np.errstate(invalid="ignore"):
         even = (z < BRIGHT) & (z > -2 * BRIGHT) & ~gutter
-    return z - background(z, even), gutter
+    z = z - background(z, even)
+    return z - patch_level(z, BRIGHT), gutter
 
 
 def asphalt_profile(bins, offsets):

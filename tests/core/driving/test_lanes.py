@@ -58,6 +58,15 @@ def test_the_number_of_inferred_lanes_follows_from_the_lane_width(lane_width, la
     assert len(lines) == lanes
 
 
+def test_a_row_of_parking_places_outside_the_edge_line_is_no_lane_unless_it_is_driven_on():
+    def street(vehicle):
+        street = Street(vehicle=vehicle).paint(0.0).paint(-3.5, kind="edge").paint(-5.9, kind="edge")
+        return middle(street, street.lanes()[0])
+
+    assert street(vehicle=-1.75) == [pytest.approx(-1.75, abs=0.01)]
+    assert street(vehicle=-4.7) == [pytest.approx(-4.7, abs=0.01), pytest.approx(-1.75, abs=0.01)]
+
+
 def test_a_verge_between_two_carriageways_is_no_pair_of_lanes():
     street = Street(vehicle=-1.75).paint(0.0).paint(-3.5).paint(7.0).paint(10.5)
     lines, _ = street.lanes()

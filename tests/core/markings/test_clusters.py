@@ -102,6 +102,13 @@ def test_bright_concrete_along_the_road_edge_is_no_marking():
     assert len(markings_of([strip(10, 60, 5.55, 6.0)])) == 0
 
 
+def test_the_bright_top_of_a_curb_is_no_edge_line():
+    inner = strip(5, 70, 3.6, 3.72)
+    assert len(markings_of([strip(30, 60, 5.93, 6.0)])) == 0
+    assert len(markings_of([inner, strip(30, 60, 5.93, 6.0)])) == 1
+    assert len(markings_of([inner, strip(30, 36, 5.85, 6.0)])) == 1, "a parking strip lies between the two"
+
+
 def test_a_strip_of_verge_outside_an_edge_line_is_no_marking():
     edge = strip(5, 70, 5.3, 5.42)
     assert classes(markings_of([edge, strip(30, 36, 5.75, 5.95)])) == ["edge"]

@@ -71,6 +71,27 @@ def test_a_concrete_gutter_is_left_out_and_the_edge_line_beside_it_kept(tmp_path
     assert np.count_nonzero(line(paint.s, paint.d)) > 0.9 * 70 * 0.15 * 1500
 
 
+def test_an_edge_line_painted_right_beside_a_gutter_is_found_and_the_gutter_is_not(tmp_path):
+    line = strip(5, 75, 3.52, 3.67)
+    street_ = street(FRAME, [line], level=lambda s, d: np.where(np.abs(d) > 3.7, 2.0, 1.0))
+    paint = found_on(street_, tmp_path)
+    assert line(paint.s, paint.d).mean() > 0.97
+    assert np.count_nonzero(line(paint.s, paint.d)) > 0.9 * 70 * 0.15 * 1500
+
+
+@pytest.mark.parametrize("factor", [1.4, 1.7, 2.2])
+def test_a_pale_repair_in_a_lane_without_paint_is_road_and_a_line_across_it_is_paint(tmp_path, factor):
+    lines = [strip(5, 75, d, d + 0.15) for d in (-3.5, 0.1, 3.35)]
+
+    def repair(s, d):
+        return np.where((s > 26) & (s < 33) & (d > -2.6) & (d < 0.8), factor, 1.0)
+
+    paint = found_on(street(FRAME, lines, level=repair), tmp_path)
+    on_line = np.any([line(paint.s, paint.d) for line in lines], axis=0)
+    assert on_line.mean() > 0.97
+    assert np.count_nonzero(strip(27, 32, 0.1, 0.25)(paint.s, paint.d)) > 0.9 * 5 * 0.15 * 1500
+
+
 def test_noisy_multi_beam_intensities_show_bars_of_paint_and_stay_silent_without(tmp_path):
     bar = strip(30, 34, 1.0, 1.3)
     s, d = strewn(80, 4, -4, 3000)
