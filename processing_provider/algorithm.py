@@ -105,7 +105,7 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
             results = self.work(call, FeedbackProgress(feedback))
             return call.finish(results or {})
         except RoadExtractionError as error:
-            raise QgsProcessingException(str(error)) from None
+            raise QgsProcessingException(call.in_users_names(str(error))) from None
         except Cancelled:
             raise QgsProcessingException(tr("Cancelled")) from None
         except OSError as error:

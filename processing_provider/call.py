@@ -12,7 +12,7 @@ from qgis.core import (
 )
 
 from ..core.errors import RoadExtractionError
-from .destinations import UnfinishedFiles, check_suffix, check_writable, destination_path
+from .destinations import ReplacedFiles, UnfinishedFiles, check_suffix, check_writable, destination_path
 from .knobs import settings_class
 from .layers import WKB_TYPES, crs_text, qgis_fields, read_features, write_features
 from .styling import style_on_load
@@ -175,10 +175,17 @@ class Call:
             self._layers.append((name, features))
 
     def finish(self, numbers):
-        """Name the files, write the layers, and return the dictionary QGIS wants."""
+        """Write the layers, name the files, and return the dictionary QGIS wants."""
+        replaced = ReplacedFiles()
+        try:
+            for name, features in self._layers:
+                replaced.set_aside(self._destination(name))
+                self._results[name] = self._write(name, features)
+        except BaseException:
+            replaced.put_back()
+            raise
+        replaced.forget()
         self._files.commit()
-        for name, features in self._layers:
-            self._results[name] = self._write(name, features)
         schemas = {name: features.schema for name, features in self._layers}
         for name, dest in self._results.items():
             style_on_load(name, dest, self.label(name), self.context, schemas.get(name, ()))
@@ -196,6 +203,10 @@ class Call:
         # The file is complete only once the sink is gone
         del sink
         return dest
+
+    def in_users_names(self, text):
+        """A message with the names of unfinished files replaced by those the user gave."""
+        return self._files.in_users_names(text)
 
     def discard_unfinished(self):
         self._files.discard()

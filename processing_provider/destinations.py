@@ -14,6 +14,7 @@ from qgis.core import QgsProcessingParameterFileDestination, QgsProcessingParame
 from ..core.errors import RoadExtractionError
 from .texts import tr
 
+SHAPEFILE = (".shp", ".shx", ".dbf", ".prj", ".cpg", ".qix", ".sbn", ".sbx")
 DATABASE = re.compile(r"dbname='(?P<path>[^']+)'")
 
 
@@ -106,6 +107,12 @@ class UnfinishedFiles:
         destination = Path(destination).absolute()
         self._remove([pair for pair in self._waiting if pair[1] == destination])
 
+    def in_users_names(self, text):
+        """A text with every temporary path replaced by its destination."""
+        for temporary, destination in self._waiting:
+            text = text.replace(str(temporary), str(destination))
+        return text
+
     def discard(self):
         """Remove everything that was begun and not committed."""
         self._remove(list(self._waiting))
@@ -115,6 +122,51 @@ class UnfinishedFiles:
             for leftover in (pair[0], Path(f"{pair[0]}.aux.xml")):
                 leftover.unlink(missing_ok=True)
             self._waiting.remove(pair)
+
+
+class ReplacedFiles:
+    """Yesterday's layers, set aside while today's are written in their place."""
+
+    def __init__(self):
+        self._aside, self._new = [], []
+
+    def set_aside(self, value):
+        """Make room for the layer file that a destination value names."""
+        path = destination_path(value)
+        if path is None:
+            return
+        if value.startswith("ogr:"):
+            # One layer of a database: the others stay where they are
+            self._new += [] if path.exists() else [path]
+            return
+        for file in _files_of(path):
+            aside = file.with_name(f".{file.name}.yesterday")
+            try:
+                os.replace(file, aside)
+            except OSError:  # held by a program: it can be replaced only by its own driver
+                return
+            self._aside.append((aside, file))
+        self._new.append(path)
+
+    def forget(self):
+        """Today's layers are whole: drop yesterday's."""
+        for aside, _ in self._aside:
+            aside.unlink(missing_ok=True)
+
+    def put_back(self):
+        """Writing failed: remove what there is of today's layers and restore yesterday's."""
+        for path in self._new:
+            for file in _files_of(path):
+                file.unlink(missing_ok=True)
+        for aside, file in self._aside:
+            os.replace(aside, file)
+
+
+def _files_of(path):
+    """The files there are of a layer: those of one stem for a shapefile, a database's journals for a GeoPackage."""
+    beside = [path.with_suffix(suffix) for suffix in SHAPEFILE] if path.suffix.lower() == ".shp" else \
+        [path.with_name(path.name + suffix) for suffix in ("", "-wal", "-shm", "-journal")]
+    return [file for file in beside if file.is_file()]
 
 
 def _umask():

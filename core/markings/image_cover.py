@@ -9,13 +9,16 @@ SHARE = 0.5  # of the points looked at that must lie on a pixel with a value
 
 
 def check_image_shows(image, road_points):
-    """Refuse an image of another road.
+    """Refuse an image of another road, and the picture for viewing.
 
     Raises
     ------
     RoadExtractionError
-        If fewer than half of the road points lie on pixels that carry a value.
+        If fewer than half of the road points lie on pixels that carry a value, or the image is of 8 bits.
     """
+    if image.eight_bit:
+        raise RoadExtractionError(
+            f"{image.path} is the 8-bit picture for viewing; its grey values are stretched and cut off. Give the intensity image itself.")
     places = [(x, y) for _, x, y, _ in sampled(road_points)]
     if not places:
         return

@@ -25,14 +25,16 @@ class IntensityImage:
     cell_size : metres
     width, height : pixels
     crs : WKT, "" where the file carries none
+    eight_bit : whether it is the picture for viewing
     """
 
-    def __init__(self, path, geotransform, width, height, crs):
+    def __init__(self, path, geotransform, width, height, crs, eight_bit=False):
         self.path = str(path)
         self.geotransform = geotransform
         self.cell_size = geotransform[1]
         self.width, self.height = width, height
         self.crs = crs
+        self.eight_bit = eight_bit
         self._own = threading.local()  # GDAL's datasets serve one thread each
 
     @classmethod
@@ -52,16 +54,14 @@ class IntensityImage:
             raise RoadExtractionError(
                 f"{path} has pixels of {transform[1]:g} by {-transform[5]:g} map units or is rotated. "
                 "An intensity image has square pixels and north up: make it anew with “Intensity image”.")
-        if dataset.GetRasterBand(1).DataType == 1:  # GDT_Byte
-            raise RoadExtractionError(
-                f"{path} is an 8-bit picture for viewing; its grey values are stretched and cut off. Give the intensity image itself.")
         crs = dataset.GetProjection() or ""
         reference = dataset.GetSpatialRef()
         if reference is not None and reference.IsGeographic():
             raise RoadExtractionError(
                 f"{path} is in {reference.GetName()} (degrees). Markings are measured in metres: make the image anew "
                 "from road points in a projected CRS.")
-        return cls(path, transform, dataset.RasterXSize, dataset.RasterYSize, crs)
+        eight_bit = dataset.GetRasterBand(1).DataType == 1  # GDT_Byte
+        return cls(path, transform, dataset.RasterXSize, dataset.RasterYSize, crs, eight_bit)
 
     def read_pixels(self, column, row, width, height):
         """(height, width) float32 from a pixel on; NaN where there is no data or no image."""
@@ -176,11 +176,8 @@ def new_geotiff(path, width, height, geotransform, crs, byte=False, nodata=NODAT
     options = [f"BLOCKXSIZE={TILE}", f"BLOCKYSIZE={TILE}", "TILED=YES", "COMPRESS=DEFLATE", "SPARSE_OK=TRUE",
                "BIGTIFF=IF_SAFER", f"PREDICTOR={2 if byte else 3}"]
     try:
-        try:
-            dataset = gdal.GetDriverByName("GTiff").Create(
-                str(unfinished), width, height, 1, gdal.GDT_Byte if byte else gdal.GDT_Float32, options)
-        except RuntimeError as problem:
-            raise RoadExtractionError(f"{path} cannot be written ({problem}). Choose another folder or free its space.") from problem
+        dataset = gdal.GetDriverByName("GTiff").Create(
+            str(unfinished), width, height, 1, gdal.GDT_Byte if byte else gdal.GDT_Float32, options)
         dataset.SetGeoTransform(geotransform)
         if crs:
             dataset.SetProjection(crs)
@@ -191,6 +188,8 @@ def new_geotiff(path, width, height, geotransform, crs, byte=False, nodata=NODAT
         os.replace(unfinished, path)
         # statistics that a viewer kept beside yesterday's image are not those of this one
         path.with_name(path.name + ".aux.xml").unlink(missing_ok=True)
+    except RuntimeError as problem:  # GDAL's own: the folder refuses, or the disk is full
+        raise RoadExtractionError(f"{path} cannot be written ({problem}). Choose another folder or free its space.") from problem
     finally:
         dataset = None
         unfinished.unlink(missing_ok=True)

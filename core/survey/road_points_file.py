@@ -28,7 +28,7 @@ NEEDED = ("road", "pass", "station_m", "offset_m", "half_width")
 def write_road_points(road_points, path, progress=Progress()):
     """Write road points as LAS 1.4 class 11 in road order; the file appears whole or not at all.
 
-    `path` ends in .laz or .las.
+    `path` ends in .laz or .las. Raises RoadExtractionError where it cannot be written.
     """
     import laspy
 
@@ -43,6 +43,8 @@ def write_road_points(road_points, path, progress=Progress()):
                 writer.write_points(_record(road_points, road, number, header))
                 progress.at((k + 1) / len(sections))
         os.replace(unfinished, path)
+    except (OSError, RuntimeError) as problem:  # lazrs raises RuntimeErrors
+        raise RoadExtractionError(f"{path} cannot be written ({problem}). Choose another folder or free its space.") from problem
     finally:
         Path(unfinished).unlink(missing_ok=True)
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from lanewright.core.errors import RoadExtractionError
-from lanewright.processing_provider.destinations import UnfinishedFiles, check_suffix, check_writable, destination_path
+from lanewright.processing_provider.destinations import ReplacedFiles, UnfinishedFiles, check_suffix, check_writable, destination_path
 
 
 def test_yesterdays_result_stands_until_todays_is_complete(tmp_path):
@@ -25,6 +25,13 @@ def test_a_run_that_fails_leaves_no_half_file(tmp_path):
         stream.write("half")
     files.discard()
     assert os.listdir(tmp_path) == []
+
+
+def test_a_message_names_the_file_as_the_user_does(tmp_path):
+    files = UnfinishedFiles()
+    said = files.in_users_names(f"{files.begin(tmp_path / 'road.laz')} cannot be written.")
+    files.discard()
+    assert said == f"{tmp_path / 'road.laz'} cannot be written."
 
 
 def test_statistics_beside_an_image_go_with_it(tmp_path):
@@ -92,3 +99,35 @@ def test_a_name_that_promises_another_kind_of_file_is_refused(provider, name, pa
 ])
 def test_a_name_that_fits_is_taken(provider, name, path):
     check_suffix(Path(path), provider.algorithm("roadmap").parameterDefinition(name))
+
+
+@pytest.mark.parametrize("files", [["map.gpkg"], ["edges.shp", "edges.dbf", "edges.shx"], ["edges.fgb"]])
+def test_a_layer_that_cannot_be_written_leaves_yesterdays(tmp_path, files):
+    for name in files:
+        (tmp_path / name).write_text("yesterday")
+    replaced = ReplacedFiles()
+    replaced.set_aside(str(tmp_path / files[0]))
+    replaced.set_aside(str(tmp_path / "new.gpkg"))
+    assert all(name.endswith(".yesterday") for name in os.listdir(tmp_path)), "room is made"
+    for name in (files[0], "new.gpkg", "new.gpkg-journal"):
+        (tmp_path / name).write_text("half")
+    replaced.put_back()
+    assert sorted(os.listdir(tmp_path)) == sorted(files)
+    assert all((tmp_path / name).read_text() == "yesterday" for name in files)
+
+
+def test_a_layer_that_was_written_is_todays(tmp_path):
+    (tmp_path / "map.gpkg").write_text("yesterday")
+    replaced = ReplacedFiles()
+    replaced.set_aside(str(tmp_path / "map.gpkg"))
+    (tmp_path / "map.gpkg").write_text("today")
+    replaced.forget()
+    assert os.listdir(tmp_path) == ["map.gpkg"] and (tmp_path / "map.gpkg").read_text() == "today"
+
+
+def test_a_new_layer_of_a_geopackage_leaves_the_others_alone(tmp_path):
+    (tmp_path / "map.gpkg").write_text("the others")
+    replaced = ReplacedFiles()
+    replaced.set_aside(f"ogr:dbname='{tmp_path}/map.gpkg' table=\"road_edges\" (geom)")
+    replaced.put_back()
+    assert (tmp_path / "map.gpkg").read_text() == "the others"

@@ -5,6 +5,7 @@ import pytest
 
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.markings.image import ImageSettings, IntensityImage, write_display_image, write_intensity_image
+from lanewright.core.markings.image_cover import check_image_shows
 from lanewright.core.survey.points import ROAD_POINT, UNIT, to_units
 from lanewright.core.survey.road_points import RoadPoints
 from lanewright.core.survey.section_store import SectionStore
@@ -217,3 +218,18 @@ def test_no_points_make_no_image(tmp_path):
 def test_settings_that_make_no_image_are_refused(wrong):
     with pytest.raises(RoadExtractionError):
         ImageSettings(**wrong)
+
+
+def test_an_image_is_told_from_one_of_another_road(tmp_path):
+    here = painted_street()
+    image = image_of(here, tmp_path / "here.tif")
+    check_image_shows(image, road_points(here))
+    with pytest.raises(RoadExtractionError, match="does not show these road points.*0 % of them"):
+        check_image_shows(image, road_points(here, origin=ORIGIN + [300.0, 0.0, 0.0]))
+
+
+def test_the_display_image_is_no_intensity_image(tmp_path):
+    image_of(painted_street(), tmp_path / "i.tif")
+    write_display_image(tmp_path / "i.tif", tmp_path / "display.tif")
+    with pytest.raises(RoadExtractionError, match="8-bit picture for viewing"):
+        check_image_shows(IntensityImage.open(tmp_path / "display.tif"), road_points(painted_street()))
