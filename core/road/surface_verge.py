@@ -20,6 +20,7 @@ INSIDE = 3                 # cells of road that such a strip is compared with
 DIFFERS, PAINTED = 0.4, 2.0  # times the points' scatter by which its brightness differs at least; at most, or it is paint
 INSET = 0.05               # m kept off a limit: too wide a road takes verge for paint, too narrow a one loses nothing
 AROUND, RANK = 2, 1        # profiles either side, the second nearest of which counts: a missed verge is no wider road
+WIDER = 3.0                # m by which two profiles side by side say the road is wider: a junction or a square, no missed verge
 
 
 @dataclass
@@ -90,12 +91,20 @@ def grown_offsets(profiles, cells, above, sign, track, max_width):
     known = np.isfinite(ends)
     if not known.any():
         return track + sign * max_width
-    return sign * (np.interp(stations, profiles.stations[known], _running_rank(ends[known])) - INSET)
+    return sign * (np.interp(stations, profiles.stations[known], _reliable(ends[known])) - INSET)
 
 
-def _running_rank(values):
-    padded = np.pad(values, AROUND, mode="reflect") if len(values) > AROUND else np.pad(values, AROUND, mode="edge")
-    return np.sort(np.lib.stride_tricks.sliding_window_view(padded, 2 * AROUND + 1), axis=1)[:, RANK]
+def _reliable(ends):
+    """Where profiles end, one after the other, freed of single profiles that ran on over a verge.
+
+    A profile is held back to the second nearest of the five about it, unless it
+    and one beside it both reach metres farther: there a street joins.
+    """
+    padded = np.pad(ends, AROUND, mode="reflect") if len(ends) > AROUND else np.pad(ends, AROUND, mode="edge")
+    held = np.sort(np.lib.stride_tricks.sliding_window_view(padded, 2 * AROUND + 1), axis=1)[:, RANK]
+    beside = np.maximum(np.r_[-np.inf, ends[:-1]], np.r_[ends[1:], -np.inf])
+    both = np.minimum(ends, beside)
+    return np.where(both > held + WIDER, both, held)
 
 
 def _at(grid, cells, stations, offsets):

@@ -164,6 +164,18 @@ def test_without_edges_the_surface_ends_where_the_road_does(verge):
     assert {row["status"] for row in surface.rows} == {"grown"}
 
 
+@pytest.mark.parametrize("mouth, reach", [((20.0, 35.0), 9.9), ((25.0, 30.0), 4.0)])
+def test_a_side_street_belongs_to_a_junction_and_a_short_gap_in_the_verge_does_not(mouth, reach):
+    def ground(s, d):
+        street = (d > 0) & (s > mouth[0]) & (s < mouth[1])
+        return np.where((np.abs(d) > 4.0) & ~street, 0.06 + 0.3 * (np.abs(d) - 4.0), 0.0)
+
+    points, _ = taken(survey(ground, density=400), settings=SurfaceSettings(max_width=10.0))
+    right, left = width_seen(points, mouth[0] + 2, mouth[1] - 2)
+    assert left == pytest.approx(reach, abs=0.25) and right == pytest.approx(-4.0, abs=0.25)
+    assert width_seen(points, 5, 15)[1] == pytest.approx(4.0, abs=0.25)
+
+
 def test_gravel_beside_the_asphalt_is_told_by_its_brightness():
     rough = lambda d: np.where(np.abs(d) > 3.9, 0.02, 0.0)
     bright = lambda d: np.where(np.abs(d) > 3.5, 1150.0, 1000.0)
