@@ -24,13 +24,13 @@ def trajectory_path(value):
 def accept_trajectory_file(algorithm, parameters, context):
     """Parameters for QGIS's own check, which knows no SBET and no table without a header.
 
-    Such a file passes as an empty stand-in layer; whether it can be read is said
-    by the reader, in its own words.
+    Such a file passes as an empty stand-in layer; whether it is there and can be
+    read is said by the reader, in its own words.
     """
     accepted = dict(parameters)
     for name in algorithm.TRAJECTORIES:
         path = trajectory_path(parameters.get(name))
-        if path is not None and path.is_file():
+        if path is not None:
             stand_in = QgsVectorLayer("Point", "trajectory", "memory")
             context.temporaryLayerStore().addMapLayer(stand_in)
             accepted[name] = stand_in.id()

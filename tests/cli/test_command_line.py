@@ -179,6 +179,41 @@ def test_a_setting_beyond_reason_is_refused(survey, tmp_path):
     assert "curb" in one_sentence(run).lower()
 
 
+@pytest.mark.parametrize("outputs, says", [
+    (("--ROAD_EDGES=a.gpkg", "--MARKINGS=a.gpkg"), "Road edges and Markings would both be written to a.gpkg"),
+    (("--INTENSITY_IMAGE=i.png",), "written as .tif or .tiff only"),
+    (("--CRS=EPSG:999999",), "the CRS EPSG:999999 is not known"),
+])
+def test_what_cannot_be_meant_is_told_before_the_work(survey, tmp_path, outputs, says):
+    run = qgis_process(
+        "run", "lanewright:roadmap", f"--POINT_CLOUDS={survey / 's.laz'}", f"--TRAJECTORY={survey / 'drive.csv'}", *outputs, folder=tmp_path,
+    )
+    assert run.returncode == 1 and says in run.stderr and "points read" not in run.stdout
+    assert os.listdir(tmp_path) == []
+
+
+def test_files_of_another_stage_or_drive_are_refused_by_name(survey, tmp_path):
+    cloud, drive = survey / "s.laz", f"--TRAJECTORY={survey / 'drive.csv'}"
+    curbs = qgis_process("run", "lanewright:detectcurbs", f"--POINT_CLOUDS={cloud}", drive, "--CURB_POINTS=curbs.gpkg", folder=tmp_path)
+    assert curbs.returncode == 0, curbs.stderr
+    rows = (survey / "drive.csv").read_text().splitlines()
+    (tmp_path / "later.csv").write_text("\n".join([rows[0], *rows[len(rows) // 4:]]))
+    for says, stage in {
+        "lacks the extra field": ("intensityimage", f"--ROAD_POINTS={cloud}", "--INTENSITY_IMAGE=i.tif"),
+        "Marking lines lacks the field": ("drivinglines", "--MARKING_LINES=curbs.gpkg", drive, "--DRIVING_LINES=d.gpkg"),
+        "Road edges lacks the field": ("extractroadsurface", f"--POINT_CLOUDS={cloud}", drive, "--ROAD_EDGES=curbs.gpkg", "--ROAD_POINTS=r.laz"),
+        "do not belong together": ("fitroadedges", "--CURB_POINTS=curbs.gpkg", "--TRAJECTORY=later.csv", "--ROAD_EDGES=e.gpkg"),
+    }.items():
+        assert re.search(says, one_sentence(qgis_process("run", f"lanewright:{stage[0]}", *stage[1:], folder=tmp_path))), stage
+    assert sorted(os.listdir(tmp_path)) == ["curbs.gpkg", "later.csv"]
+
+
+def test_a_trajectory_file_that_is_not_there_is_named(survey, tmp_path):
+    run = qgis_process("run", "lanewright:detectcurbs", f"--POINT_CLOUDS={survey / 's.laz'}", "--TRAJECTORY=no.csv", "--CURB_POINTS=c.gpkg",
+                       folder=tmp_path)
+    assert "Trajectory: there is no file no.csv" in one_sentence(run)
+
+
 @pytest.fixture(scope="session")
 def street(tmp_path_factory):
     """A sample survey dense enough for the whole chain, its cloud in two files."""
