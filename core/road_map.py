@@ -134,8 +134,11 @@ def _paint(result, image_path, settings, stages):
     """Intensity, markings and lines, added to the result."""
     frame = result.frame
     if settings.correct:
+        uncorrected = result.road_points
         result.road_points, result.intensity_report = stages.run(
-            "intensity", "Correcting intensity …", correct_intensity, result.road_points, frame, settings.intensity)
+            "intensity", "Correcting intensity …", correct_intensity, uncorrected, frame, settings.intensity)
+        if result.road_points is not uncorrected:
+            uncorrected.store.close()
     stages.run("image", "Making the intensity image …", write_intensity_image,
                result.road_points, image_path, settings.image)
     result.image = IntensityImage.open(image_path)

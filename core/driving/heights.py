@@ -8,7 +8,7 @@ from .boundaries import STEP
 REACH = 0.3        # m either side of the driving line
 LEAST_POINTS = 3
 SMOOTHING = 2.0    # m: a car does not follow a pothole
-WINDOW = 200.0     # m of road points in memory at a time
+WINDOW = 20.0      # m of road points in memory at a time
 
 
 def road_heights(road_points, road, s, tracks):
