@@ -12,7 +12,7 @@ import numpy as np
 from ..errors import RoadExtractionError
 from ..parallel import in_order
 from ..progress import Progress
-from ..survey.points import UNIT, Points
+from ..survey.points import UNIT, Points, chosen
 from ..survey.road_points import RoadPoints
 from .gutters import rim_distance
 from .levels import Levels, asphalt_profile, flatten
@@ -153,7 +153,7 @@ class _Look:
         records = self.road_points.window(self.road, (first - 1) * CELL * UNIT, (last + 1) * CELL * UNIT).records
         row = records["s"] // CELL - first
         inside = (row >= 0) & (row < last - first)
-        records, row = records[inside], row[inside]
+        records, row = chosen(records, inside), row[inside]
         own = (row >= HALO) & (row < HALO + WINDOW)
         if not own.any():
             return None
@@ -221,15 +221,15 @@ class _Look:
         else:
             with np.errstate(invalid="ignore"):
                 mask = morphology((z > threshold * scale) & ~gutter, self.settings)
-        records, row, column = records[own], row[own], column[own]
+        records, row, column = chosen(records, own), row[own], column[own]
         kept = mask[row, column]
         if not self.noisy:  # else a single point says nothing
             # what was taken from the cell as background is taken from the point as well
             ground = (brightness - z * spread)[row, column]
             kept &= Points(records).value > ground + (threshold[row, column] - 0.5) * (spread * scale)[row, column]
         if not self.masked:
-            return records[kept], np.empty(0), np.empty(0)
+            return chosen(records, kept), np.empty(0), np.empty(0)
         # the image spreads a point over its neighbours: a cell whose own points are dark is no marking
         mask[row, column] = False
         mask[row[kept], column[kept]] = True
-        return records[kept], *self._pixels(mask, grid)
+        return chosen(records, kept), *self._pixels(mask, grid)

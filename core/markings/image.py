@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import RoadExtractionError
 from ..parallel import in_order
 from ..progress import Progress
-from ..survey.points import canonical_order
+from ..survey.points import Points, in_canonical_order
 from .intensity_raster import NODATA, TILE, IntensityImage, new_geotiff, write_display_image
 
 __all__ = ["ImageSettings", "IntensityImage", "write_intensity_image", "write_display_image"]
@@ -18,7 +18,7 @@ WINDOW = 20.0          # m of station over which intensities are ranked for the 
 NEAREST = 1e-3         # m added to a distance, so that a point on a cell's centre has a finite weight
 STRIP = 64             # rows of a tile summed at once: what fits the processor's cache
 LARGEST = 2_000_000    # px, side of an image: beyond it a coordinate is wrong
-KEPT_WINDOWS = 24      # prepared windows kept: neighbouring tiles ask for them again
+KEPT = 4_000_000       # points of prepared windows kept: neighbouring tiles ask for them again
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ def _window_points(road_points, window):
     """Points of a window in an order that sections have no part in: sums must not depend on them."""
     road, number = window
     points = road_points.window(road, number * WINDOW, (number + 1) * WINDOW)
-    return points[canonical_order(points.records)]
+    return Points(in_canonical_order(points.records))
 
 
 def _survey_window(road_points, window, settings):
@@ -152,13 +152,18 @@ class _Windows:
 
     def __init__(self, road_points, ranks):
         self.road_points, self.ranks = road_points, ranks
-        self._kept, self._lock = OrderedDict(), threading.Lock()
+        self._kept, self._count, self._lock = OrderedDict(), 0, threading.Lock()
+        self._turns = [threading.Lock() for _ in range(16)]  # a window is made ready by one thread while others wait
 
     def get(self, window, beta):
-        with self._lock:
-            if window in self._kept:
-                self._kept.move_to_end(window)
-                return self._kept[window]
+        with self._turns[hash(window) % len(self._turns)]:
+            with self._lock:
+                if window in self._kept:
+                    self._kept.move_to_end(window)
+                    return self._kept[window]
+            return self._made_ready(window, beta)
+
+    def _made_ready(self, window, beta):
         points = _window_points(self.road_points, window)
         value = points.value.astype(float)
         low, high = self.ranks[window]
@@ -166,8 +171,9 @@ class _Windows:
         ready = points.x, points.y, value, 1.0 - beta + beta * brightness
         with self._lock:
             self._kept[window] = ready
-            while len(self._kept) > KEPT_WINDOWS:
-                self._kept.popitem(last=False)
+            self._count += len(value)
+            while self._count > KEPT and len(self._kept) > 1:
+                self._count -= len(self._kept.popitem(last=False)[1][2])
         return ready
 
 

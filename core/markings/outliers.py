@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 from ..errors import RoadExtractionError
 from ..parallel import in_order
 from ..progress import Progress
-from ..survey.points import UNIT, canonical_order
+from ..survey.points import UNIT, canonical_order, chosen, in_canonical_order
 from ..survey.road_points import RoadPoints
 
 SCOPES = ("all", "windows")
@@ -119,7 +119,7 @@ def _windows(start, end):
 def _clean_window(points, road, number, settings):
     records = points.window(road, number * WINDOW - HALO, (number + 1) * WINDOW + HALO).records
     # distances are summed in one order whatever the sections were
-    records = records[canonical_order(records)]
+    records = in_canonical_order(records)
     s = records["s"] * UNIT
     own = (s >= number * WINDOW) & (s < (number + 1) * WINDOW)
     if not own.any():
@@ -132,7 +132,7 @@ def _clean_window(points, road, number, settings):
         rows = np.flatnonzero(own & (band == value))
         if len(rows) >= FEWEST:
             keep[rows] = within_spread(distances[rows], settings.std_ratio) | (distances[rows] <= LONELIER * usual[rows])
-    return records[keep]
+    return chosen(records, keep)
 
 
 def _clean_all(points, kept, settings, progress):

@@ -163,7 +163,7 @@ def _take_points(survey, road, carriageway, road_points, progress):
     def take(number):
         points = survey.section(road, number)
         on_road, half_width = select_points(points, carriageway)
-        records = points.records[on_road]
+        records = points[on_road].records
         found = np.zeros(len(records), ROAD_POINT)
         for name in records.dtype.names:
             found[name] = records[name]

@@ -59,18 +59,44 @@ class Points:
         return np.where(np.isnan(corrected), self.records["intensity"].astype(np.float32), corrected)
 
 
+PLACE = ("x", "y", "z", "intensity")  # what orders points of one time
+
+
 def canonical_order(records):
     """Indices that sort records by time, then place: the same whatever order files came in."""
     order = np.argsort(records["time"], kind="stable")
-    time = records["time"][order]
-    same = np.diff(time) == 0
-    if same.any():
-        # only points that share their time with another are left to sort
-        tied = np.flatnonzero(np.r_[same, False] | np.r_[False, same])
+    as_before = np.r_[np.zeros(min(len(order), 1), bool), np.diff(records["time"][order]) == 0]
+    for name in PLACE:
+        if not as_before.any():
+            break
+        # only points that equal a neighbour so far are left to sort, each run of them among themselves
+        tied = np.flatnonzero(as_before | np.r_[as_before[1:], False])
         rows = order[tied]
-        few = records.take(rows)
-        order[tied] = rows[np.lexsort((few["intensity"], few["z"], few["y"], few["x"], few["time"]))]
+        value = records[name][rows].astype(np.int64)
+        key = (np.cumsum(~as_before[tied]) << 32) + (value - value.min())
+        within = np.argsort(key, kind="stable")
+        order[tied], key = rows[within], key[within]
+        as_before[:] = False
+        as_before[tied[1:]] = key[1:] == key[:-1]
     return order
+
+
+def in_canonical_order(records):
+    """The records sorted by time, then place; they themselves where they are so already."""
+    return records if _are_in_order(records) else chosen(records, canonical_order(records))
+
+
+def _are_in_order(records):
+    step = np.diff(records["time"])
+    if not (step >= 0).all():
+        return False
+    tied = np.flatnonzero(step == 0)
+    before, after = records.take(tied), records.take(tied + 1)
+    equal, good = np.ones(len(tied), bool), np.zeros(len(tied), bool)
+    for name in PLACE:
+        good |= equal & (before[name] < after[name])
+        equal &= before[name] == after[name]
+    return bool((good | equal).all())
 
 
 def chosen(records, which):

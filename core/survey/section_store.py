@@ -7,7 +7,7 @@ from collections import OrderedDict, defaultdict
 
 import numpy as np
 
-from .points import Points, UNIT, canonical_order, chosen, joined
+from .points import Points, UNIT, chosen, in_canonical_order, joined
 
 SECTION_LENGTH = 20.0  # m of station; results must not depend on it
 MEMORY_LIMIT = 256 * 2**20  # bytes of records kept before they are spilled
@@ -94,7 +94,7 @@ class SectionStore:
                     return records
             records = self._read(key)
             if key not in self._in_order:
-                records = chosen(records, canonical_order(records))
+                records = in_canonical_order(records)
                 self._put_back(key, records)
                 self._in_order.add(key)
             records.flags.writeable = False

@@ -8,7 +8,7 @@ from ..errors import RoadExtractionError
 from ..progress import Progress
 from .crs import check_projected, crs_note, parse_crs, reproject_trajectory
 from .point_cloud import BLOCK, read_blocks, read_headers
-from .points import SURVEY_POINT, UNIT, Points, to_units
+from .points import SURVEY_POINT, UNIT, Points, chosen, to_units
 from .road_frame import CORRIDOR, build_frame
 from .scanners import ScannerCensus
 from .section_store import MEMORY_LIMIT, SECTION_LENGTH, SectionStore
@@ -74,7 +74,7 @@ class Survey:
 
     def _handed_out(self, road, records):
         h = records["z"] * UNIT - self.road_height(road, records["s"] * UNIT)
-        records = records[(h > -BELOW) & (h < ABOVE)]
+        records = chosen(records, (h > -BELOW) & (h < ABOVE))
         if self.scanner_field is None:
             records["scanner"] = 0
         elif self.scanner_field == "point_source_id":
@@ -238,7 +238,7 @@ class _Reader:
     def _store(self, road, records):
         ground = self.frame.track_height(road, records["s"] * UNIT) - self.drop
         h = records["z"] * UNIT - ground
-        self.store.append(road, records[(h > -BELOW - MARGIN) & (h < ABOVE + MARGIN)])
+        self.store.append(road, chosen(records, (h > -BELOW - MARGIN) & (h < ABOVE + MARGIN)))
 
     def finish(self):
         """Settle the rough height of the road and store what waited for it."""
