@@ -14,7 +14,8 @@ STEP, LEDGE = 0.035, 0.025  # m off the followed road's height; m off within 0.2
 UNEVEN = 2.0               # times the road's own unevenness on top of either
 ROUGHER, ROUGH_FLOOR = 1.6, 0.0025  # times the road's roughness, and m on top
 TURN = 0.10                # change of tilt that begins a bank or a ditch
-EMPTY = 5                  # cells without a point at which the road is lost sight of
+EMPTY = 5                  # cells without a point at which the road is lost sight of,
+BLIND = 12                 # unless no more are empty and road lies behind: where a scanner does not look beside its own vehicle
 STRIP = 8                  # cells before the verge in which a strip of gravel is looked for
 INSIDE = 3                 # cells of road that such a strip is compared with
 DIFFERS, PAINTED = 0.4, 2.0  # times the points' scatter by which its brightness differs at least; at most, or it is paint
@@ -136,13 +137,33 @@ class Profile:
         inside = np.diff(self.off[:max(start, 8)])
         inside = inside[np.isfinite(inside)]
         uneven = float(np.median(np.abs(inside))) if len(inside) else 0.0
+        blind = 0
         for k in range(start, stop):
             ahead = slice(k, k + PERSISTS)
-            if np.isnan(self.off[k:k + EMPTY]).all():
-                return self.u[k] - ACROSS / 2
+            if k >= blind and np.isnan(self.off[k:k + EMPTY]).all():
+                blind = self._road_behind(k, uneven)
+                if not blind:
+                    return self.u[k] - ACROSS / 2
             if self._differs(k, ahead, uneven):
                 return self._before_strip(k)
         return reach
+
+    def _road_behind(self, k, uneven):
+        """The cell at which the road is seen again after the blind strip that begins at cell k; 0 where it is not.
+
+        What is behind must be at the road's height and as smooth. Its brightness says nothing: it was seen
+        from another part of the scanner's turn.
+        """
+        seen = np.flatnonzero(np.isfinite(self.off[k:k + BLIND + 1]))
+        if not len(seen):
+            return 0
+        again = k + int(seen[0])
+        behind, inner = slice(again, again + 2 * PERSISTS), slice(max(k - 10, 0), k)
+        if np.isfinite(self.off[behind]).mean() < 0.75 or (np.abs(self.off[behind]) > STEP + UNEVEN * uneven).any():
+            return 0
+        with np.errstate(invalid="ignore"):
+            smooth = known_median(self.rough[behind], 0) <= ROUGHER * known_median(self.rough[inner], 0) + ROUGH_FLOOR
+        return again if smooth else 0
 
     def _differs(self, k, ahead, uneven):
         """Whether from cell k on the ground is no longer the road's."""

@@ -176,6 +176,21 @@ def test_a_side_street_belongs_to_a_junction_and_a_short_gap_in_the_verge_does_n
     assert width_seen(points, 5, 15)[1] == pytest.approx(4.0, abs=0.25)
 
 
+def test_a_strip_the_scanner_does_not_look_at_ends_no_road_but_a_yard_behind_a_wall_is_none():
+    def bank(s, d):
+        return np.where(np.abs(d) > 4.0, 0.35 * (np.abs(d) - 4.0), 0.0)
+
+    points, _ = taken(survey(bank, keep=lambda s, d: np.abs(d - 2.3) > 0.35))
+    right, left = width_seen(points, 10, 50)
+    assert left == pytest.approx(4.0, abs=0.25) and right == pytest.approx(-4.0, abs=0.25)
+
+    def yard(s, d):
+        return np.where(d > 2.3, -0.10, bank(s, d))
+
+    points, _ = taken(survey(yard, keep=lambda s, d: np.abs(d - 2.3) > 0.35))
+    assert width_seen(points, 10, 50)[1] == pytest.approx(1.95, abs=0.25)
+
+
 def test_gravel_beside_the_asphalt_is_told_by_its_brightness():
     rough = lambda d: np.where(np.abs(d) > 3.9, 0.02, 0.0)
     bright = lambda d: np.where(np.abs(d) > 3.5, 1150.0, 1000.0)
