@@ -1,4 +1,4 @@
-"""Makes `painted_streets` importable by the tests beside it."""
+"""Makes `lined_streets` importable by the tests beside it."""
 
 import sys
 from pathlib import Path

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from painted_streets import Street, middle
+from lined_streets import Street, middle
 from shapely.geometry import Point
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from painted_streets import EAST, NORTH, Street
+from lined_streets import EAST, NORTH, Street
 
 from lanewright.core.driving.elements import FOOT, curve_elements, curve_points, design_check
 

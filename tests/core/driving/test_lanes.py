@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from painted_streets import HEIGHT, Street, middle
+from lined_streets import HEIGHT, Street, middle
 from shapely import force_2d
 from shapely.geometry import LineString, Polygon
 
