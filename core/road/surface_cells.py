@@ -93,7 +93,7 @@ def ground_cells(points, first_row, rows, reach, road_height, row_size=ROW, colu
     u = d[low] - (column[low] - half + 0.5) * column_size
     v = s[low] - (row[low] + first_row + 0.5) * row_size
     height, rough = _planes(at, u, v, z[low], rows * columns)
-    brightness, scatter = _medians(at, points.intensity[low].astype(float), rows * columns)
+    brightness, scatter = _medians(at, points.intensity[low], rows * columns)
     shape = rows, columns
     count = np.bincount(at, minlength=rows * columns)
     return Cells(first_row, -half, row_size, column_size,
@@ -138,10 +138,10 @@ def _planes(at, u, v, z, cells):
     return np.where(any_ground, height, np.nan), np.where(enough, rough, np.nan)
 
 
-def _medians(at, values, cells):
-    """Median of each cell's values and the lower spread about it."""
-    order = np.lexsort((values, at))
-    at, values = at[order], values[order]
+def _medians(at, intensity, cells):
+    """Median of each cell's intensities (16 bits) and the lower spread about it."""
+    # one number for cell and value sorts several times as fast as the two of them
+    values = (np.sort((at << 16) | intensity) & 0xFFFF).astype(float)
     count = np.bincount(at, minlength=cells)
     start = np.r_[0, np.cumsum(count)[:-1]]
     filled = count >= FEWEST_LAYER

@@ -149,11 +149,19 @@ class Pass:
 
     def at_station(self, s):
         """Offset and height of the vehicle's track where it passes station s."""
+        stations, d, z = self._in_order()
+        return np.interp(s, stations, d), np.interp(s, stations, z)
+
+    def height_at_station(self, s):
+        """Height of the vehicle's track where it passes station s."""
+        stations, _, z = self._in_order()
+        return np.interp(s, stations, z)
+
+    def _in_order(self):
         if self._by_station is None:
             order = np.argsort(self.s, kind="stable")
             self._by_station = self.s[order], self.d[order], self.z[order]
-        stations, d, z = self._by_station
-        return np.interp(s, stations, d), np.interp(s, stations, z)
+        return self._by_station
 
     @property
     def span(self):
@@ -201,14 +209,14 @@ class RoadFrame:
         for p in passes:
             first, last = p.span
             there = (s >= first) & (s <= last)
-            total += np.where(there, p.at_station(s)[1] - below.get(p.number, 0.0), 0.0)
+            total += np.where(there, p.height_at_station(s) - below.get(p.number, 0.0), 0.0)
             count += there
         if not count.all():
             # beyond the driven part, and where the road goes on between two passes: the pass that ends nearest
             nearest = np.argmin([np.maximum(np.maximum(p.span[0] - s, s - p.span[1]), 0.0) for p in passes], axis=0)
             for k, p in enumerate(passes):
                 alone = (count == 0) & (nearest == k)
-                total[alone], count[alone] = p.at_station(s[alone])[1] - below.get(p.number, 0.0), 1
+                total[alone], count[alone] = p.height_at_station(s[alone]) - below.get(p.number, 0.0), 1
         return total / count
 
     def locate_nearest(self, x, y, corridor=CORRIDOR):
