@@ -17,6 +17,10 @@ LONG = 15.0          # m of paint: enough to bound a road by
 TWO_LANES = 5.0      # m between the outer lines of a road of two lanes
 NEIGHBOUR = 8.0      # m across: a line this near starts and ends where this one does
 WIDE_LANE = 2.6      # m: a solid line with less room than this to the road edge bounds the road
+BAR = 4.0            # m along the road: what is called hatching and is longer is no single bar of it
+AT_BAR = 0.35        # m between the end of a bar and the outline
+BAR_PITCH = 3.0      # m from bar to bar along an outline
+BARS = 4             # that make an outline
 
 
 @dataclass
@@ -37,9 +41,19 @@ class Chosen:
 
 def crossings(markings, road, frame):
     """(K, 4) first and last station, least and greatest offset of zebra crossings and stop lines of a road."""
+    return _extents(markings, road, frame, ("zebra", "stop"))
+
+
+def bars(markings, road, frame):
+    """(K, 4) the same of the bars of hatched areas."""
+    found = _extents(markings, road, frame, ("hatch",))
+    return found[found[:, 1] - found[:, 0] < BAR]
+
+
+def _extents(markings, road, frame, classes):
     found = []
     for geometry, row in markings:
-        if row["road"] == road and row["class"] in ("zebra", "stop"):
+        if row["road"] == road and row["class"] in classes:
             places = shapely.get_coordinates(geometry)
             x, y = frame.to_local(places[:, 0], places[:, 1])
             s, d = frame.road(road).locate(x, y)
@@ -48,12 +62,13 @@ def crossings(markings, road, frame):
     return np.array(found).reshape(-1, 4)
 
 
-def choose(lines, drift, crossed, min_paint):
+def choose(lines, drift, crossed, min_paint, hatched=np.empty((0, 4))):
     """The lines worth drawing.
 
     A line needs paint: `min_paint` metres of it, or two dashes of a rhythm, or one dash
     on the course and of the length of a dashed line elsewhere on the road. What runs
-    close beside a much longer line is that line's frayed edge.
+    close beside a much longer line is that line's frayed edge; what frames a hatched
+    area belongs to that area.
 
     Parameters
     ----------
@@ -61,6 +76,7 @@ def choose(lines, drift, crossed, min_paint):
     drift : Drift
     crossed : (K, 4) as `crossings` gives it
     min_paint : metres
+    hatched : (K, 4) as `bars` gives it
 
     Returns
     -------
@@ -80,7 +96,7 @@ def choose(lines, drift, crossed, min_paint):
         lone = None
         if not beats[k] and line.painted < LONGEST_DASH:
             lone = _dash_of_another(k, lines, beats, level)
-        if frayed[k] or outside[k] or not (line.painted >= min_paint or beats[k] or lone):
+        if frayed[k] or outside[k] or _frames_hatching(line, hatched) or not (line.painted >= min_paint or beats[k] or lone):
             continue
         kind = _kind(line, double[k], bool(beats[k]) or lone is not None)
         drawn = pieces(line)
@@ -168,6 +184,19 @@ def _beyond_the_edge(lines, level):
             if j != k and farther > TWIN[0] and shared > 0.5 * (line.last - line.first) and line.painted < max(least, LONG):
                 result[k] = True
     return result
+
+
+def _frames_hatching(line, hatched):
+    """Whether bars end at a line along most of it; an edge line beside a hatched area goes on after it."""
+    s, d, *_ = line.places()
+    middle = hatched[:, :2].mean(axis=1)
+    at = np.interp(middle, s, d)
+    ends = np.minimum(np.abs(hatched[:, 2] - at), np.abs(hatched[:, 3] - at)) < AT_BAR
+    near = middle[ends & (middle > line.first) & (middle < line.last)]
+    if len(near) < BARS:
+        return False
+    steps = np.diff(np.sort(near))
+    return steps[steps < BAR_PITCH].sum() + BAR_PITCH > SHARED * (line.last - line.first)
 
 
 def _votes(line):

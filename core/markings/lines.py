@@ -83,7 +83,8 @@ def fit_marking_lines(clustered_points, markings, frame, settings=LineSettings()
         lines = link_far(lines, drift, settings.max_gap, settings.max_bridge, same_rhythm)
         lines = [without_strays(line, drift) for line in lines]
         part.at(0.5)
-        chosen = line_choice.choose(lines, drift, line_choice.crossings(markings, road, frame), settings.min_paint)
+        chosen = line_choice.choose(lines, drift, line_choice.crossings(markings, road, frame), settings.min_paint,
+                                    line_choice.bars(markings, road, frame))
         dropped += len(lines) - len(chosen)
         for j, one in enumerate(chosen):
             shape, as_wanted = shape_of(one.line, frame.road(road), drift,

@@ -175,6 +175,17 @@ def test_a_zebra_crossing_neither_cuts_a_line_nor_makes_one():
     assert street.distance(shapely.union_all(lines.geometries), 0.0).max() < 0.015
 
 
+def test_the_frame_of_a_hatched_area_is_no_line_and_an_edge_line_beside_one_is():
+    street = Street().paint(0, 120, -4.0, kind="edge")
+    street.paint(40, 62, 1.0).paint(40, 62, 2.6, kind="centre")
+    for s in np.arange(41, 61, 1.5):
+        street.paint(s, s + 0.4, 1.15, across=2.45, kind="hatch", use="other")
+        street.paint(s, s + 0.4, -3.85, across=-2.9, kind="hatch", use="other")
+    lines = street.lines()
+    assert told(lines, "kind", "status") == [("edge", "measured")]
+    assert street.distance(lines.geometries[0], -4.0).max() < 0.02
+
+
 def test_the_stop_line_that_touches_an_edge_line_leaves_the_edge_line_straight():
     street = Street().paint(0, 80, -4.0, kind="hatch", use="other")
     number = len(street.rows)
