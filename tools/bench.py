@@ -2,7 +2,8 @@
 
 Prints, for each size, what `make bench` promises: seconds of every stage, points per
 second, peak memory, and the same run's ratio to reading the file with laspy in blocks of
-100,000 points. Each size runs in a process of its own, so that peaks do not mix.
+100,000 points (the mean of one before and one after). Each size runs in a process of its
+own, so that peaks do not mix.
 """
 
 import argparse
@@ -43,10 +44,11 @@ def measure(folder):
     read_seconds, count = read_with_laspy(cloud)
     began, cpu = time.perf_counter(), time.process_time()
     road_map = make_road_map([cloud], read_trajectory(folder / "trajectory.csv"), folder / "intensity.tif")
-    wall = time.perf_counter() - began
+    wall, cpu = time.perf_counter() - began, time.process_time() - cpu
+    read_seconds = (read_seconds + read_with_laspy(cloud)[0]) / 2
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**10
     return dict(points=count, read=read_seconds, seconds=road_map.seconds, wall=wall,
-                cpu=time.process_time() - cpu, peak_mib=peak,
+                cpu=cpu, peak_mib=peak, load=os.getloadavg()[0],
                 length_m=road_map.frame.roads[0].length, driving_lines=len(road_map.driving_lines or ()))
 
 
@@ -67,7 +69,8 @@ def make(folder, points):
 
 
 def show(figures, floor):
-    print(f"\n{figures['points']:,} points, {figures['length_m']:.0f} m of road; one laspy read {floor:.1f} s")
+    print(f"\n{figures['points']:,} points, {figures['length_m']:.0f} m of road; one laspy read {floor:.1f} s; "
+          f"load {figures['load']:.1f} at the end")
     for stage, seconds in figures["seconds"].items():
         print(f"  {stage:<10} {seconds:7.1f} s  {figures['points'] / max(seconds, 1e-9) / 1e6:8.2f} M points/s"
               f"  {seconds / floor:6.2f} x reading")
@@ -88,7 +91,7 @@ def main():
         print(json.dumps(measure(arguments.folder)))
         return
     print(f"load {os.getloadavg()[0]:.1f}, {os.cpu_count()} cores")
-    walls = []
+    runs = []
     for size in arguments.sizes:
         folder = arguments.folder / f"{size}"
         child = [sys.executable, __file__, "--folder", str(folder), "--sizes", str(size), "--child"]
@@ -97,10 +100,10 @@ def main():
         found = subprocess.run([*child, "measure"], check=True, stdout=subprocess.PIPE, text=True).stdout
         figures = json.loads(found.strip().splitlines()[-1])
         show(figures, figures["read"])
-        walls.append((figures["points"], figures["wall"], figures["peak_mib"]))
-    if len(walls) == 2:
-        (n0, w0, m0), (n1, w1, m1) = walls
-        print(f"\n{n1 / n0:.1f} x the points take {w1 / w0:.1f} x the time and {m1 / m0:.2f} x the memory")
+        runs.append(figures)
+    if len(runs) == 2:
+        points, wall, cpu, peak = (runs[1][name] / runs[0][name] for name in ("points", "wall", "cpu", "peak_mib"))
+        print(f"\n{points:.1f} x the points take {wall:.1f} x the time, {cpu:.1f} x the CPU seconds and {peak:.2f} x the memory")
 
 
 if __name__ == "__main__":
