@@ -18,7 +18,7 @@ from .gutters import rim_distance
 from .levels import Levels, asphalt_profile, flatten
 from .mask import marking_mask, pixel_centres
 from .morphology import averaged, morphology, strips
-from .thresholds import FEWEST, asphalt, asphalt_bins, bin_edges, split_bins
+from .thresholds import FEWEST, asphalt_bins, bin_edges, scatter_of, split_bins
 
 RIM = 0.60        # m from the rim of the road where gutters end and asphalt is asphalt
 NOISY = 0.40      # of asphalt's level: single points that scatter more are averaged (multi-beam scanners)
@@ -140,12 +140,15 @@ class _Look:
         return list(range(int(np.floor(start / UNIT / CELL / WINDOW)), int(np.floor(end / UNIT / CELL / WINDOW)) + 1))
 
     def scatter(self, window):
-        """Spread of the intensity of single asphalt points in a window, as a share of their median."""
+        """Spread of the intensity of single points about asphalt in a window, as a share of its level; None without asphalt.
+
+        It is taken of the intensities as measured, scanner by scanner, in squares
+        that each scanner sees from one distance.
+        """
         points = self.road_points.window(self.road, window * WINDOW * CELL * UNIT, (window + 1) * WINDOW * CELL * UNIT)
         if len(points) < FEWEST:
             return None
-        median, spread = asphalt(points.value)
-        return spread / max(abs(median), 1e-6)
+        return scatter_of(points)
 
     def _grid(self, window):
         """The grid of a window with its halo, the records in it with row and column, brightness and rim distance."""

@@ -8,6 +8,7 @@ from ..errors import RoadExtractionError
 from ..parallel import in_order
 from ..progress import Progress
 from ..survey.road_points import RoadPoints
+from .beams import Beams
 from .intensity_table import BIN, REACH, AsphaltTable, asphalt_of, count_levels, distances_from_vehicle
 
 WITHOUT_VEHICLE = 0.2   # share of points that may lack a vehicle's position before the correction is given up
@@ -38,6 +39,7 @@ class IntensityReport:
         asphalt_after (medians over the distances), fall_before, fall_after (highest
         over lowest asphalt), spread_before, spread_after (coefficient of variation of
         asphalt over the distances, %)
+    beams : how many beams of spinning scanners were evened, 0 where there are none
     between_before, between_after : highest over lowest scanner's asphalt
     reason : why nothing was corrected, "" where it was
     """
@@ -49,6 +51,7 @@ class IntensityReport:
     between_after: float = float("nan")
     spread_before: float = float("nan")
     spread_after: float = float("nan")
+    beams: int = 0
     reason: str = ""
 
     def lines(self):
@@ -57,6 +60,8 @@ class IntensityReport:
             return [self.reason]
         texts = [f"Intensity looks {self.scale}; asphalt was brought to {self.reference:.0f}. Its level varies by "
                  f"{self.spread_after:.1f} % over distances and scanners, {self.spread_before:.1f} % before."]
+        if self.beams:
+            texts[0] += f" {self.beams} beams of unequal brightness were made alike."
         for row in self.scanners:
             texts.append(f"Scanner {row['scanner']}: asphalt varies by {row['spread_after']:.1f} % from {row['nearest']:.0f} to "
                          f"{row['farthest']:.0f} m, {row['spread_before']:.1f} % before.")
@@ -80,6 +85,7 @@ class IntensityReport:
 def correct_intensity(road_points, frame, settings=IntensitySettings(), progress=Progress()):
     """Bring asphalt to one intensity at every distance and for every scanner.
 
+    The beams of a spinning scanner are made alike first, where they are not.
     In a first round the levels of all points are counted by scanner and distance
     from the vehicle, left and right apart; the asphalt I0 of each bin is the median of what
     is not paint. In the second every point becomes I * reference / I0, or
@@ -103,16 +109,20 @@ def correct_intensity(road_points, frame, settings=IntensitySettings(), progress
         return road_points, IntensityReport(reason=reason)
     sections = road_points.all_sections()
     scanners = 1 + max(in_order(lambda key: int(road_points.section(*key).scanner.max()), sections))
+    beams = Beams.of(road_points, frame, scanners, progress.part(0.0, 0.2))
+    even = beams.even if beams else (lambda points: points.intensity)
 
     def count(key):
         points = road_points.section(*key)
         distance = distances_from_vehicle(points, frame.passes)
-        return count_levels(points.scanner, distance, points.intensity, scanners), np.count_nonzero(np.isnan(distance[0]))
+        raw = count_levels(points.scanner, distance, points.intensity, scanners)
+        evened = count_levels(points.scanner, distance, even(points), scanners) if beams else raw
+        return raw, evened, np.count_nonzero(np.isnan(distance[0]))
 
-    before, placeless = 0, 0
-    for counts, lost in in_order(count, sections, progress.part(0.0, 0.4)):
-        before, placeless = before + counts, placeless + lost
-    table = AsphaltTable.of(before)
+    before, evened, placeless = 0, 0, 0
+    for counts, even_counts, lost in in_order(count, sections, progress.part(0.2, 0.5)):
+        before, evened, placeless = before + counts, evened + even_counts, placeless + lost
+    table = AsphaltTable.of(evened)
     if placeless > WITHOUT_VEHICLE * len(road_points):
         reason = ("Intensity was left as it is: the trajectory does not say where the vehicle was when "
                   f"{placeless:,} of {len(road_points):,} points were measured.")
@@ -128,16 +138,17 @@ def correct_intensity(road_points, frame, settings=IntensitySettings(), progress
         points = road_points.section(*key)
         distance = distances_from_vehicle(points, frame.passes)
         records = points.records.copy()
-        records["corrected"] = table.correct(points.intensity, points.scanner, distance)
+        records["corrected"] = table.correct(even(points), points.scanner, distance)
         return key[0], records, count_levels(points.scanner, distance, records["corrected"], scanners)
 
     result = RoadPoints.empty_like(road_points)
     result.has_corrected = True
     after = 0
-    for road, records, counts in in_order(correct, sections, progress.part(0.4, 1.0)):
+    for road, records, counts in in_order(correct, sections, progress.part(0.5, 1.0)):
         result.store.append(road, records)
         after = after + counts
     report = _report(before, after, table)
+    report.beams = beams.count if beams else 0
     for line in report.lines()[:1]:
         progress.say(line)
     return result, report

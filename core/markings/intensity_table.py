@@ -134,7 +134,7 @@ class AsphaltTable:
         rows = told_by, np.arange(len(told_by))
         median, sigma, weight = median[rows], sigma[rows], weight[rows]
         known = np.isfinite(median) & ~_mixed(sigma / np.maximum(median, 1e-9))
-        reference = _weighted_median(median[known], weight[known])
+        reference = weighted_median(median[known], weight[known])
         median = np.where(known, median, np.nan)
         asphalt = np.stack([_smooth(row, count) for row, count in zip(median, weight)])
         return cls(asphalt, known, told_by, reference, is_logarithmic(median, sigma, weight))
@@ -170,7 +170,8 @@ def is_logarithmic(median, sigma, weight):
     return bool(variance > 0.03**2 and (w * level * spread).sum() < 0.5 * variance)
 
 
-def _weighted_median(values, weights):
+def weighted_median(values, weights):
+    """The value below which half of the weight lies."""
     order = np.argsort(values, kind="stable")
     sums = np.cumsum(weights[order])
     return float(values[order][np.searchsorted(sums, 0.5 * sums[-1])])

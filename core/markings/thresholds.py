@@ -16,6 +16,8 @@ FEWEST = 500          # cells of a bin, below which it joins its neighbour
 LEVELS = 256          # histogram levels of Otsu's method
 COARSE = 5            # cells: the background is known in squares of 20 cm
 AROUND = 11           # squares: and taken from 2.2 m about each
+SQUARE = 1.0          # m
+FEWEST_IN_SQUARE = 30  # points of one scanner
 LOWER = 0.5 - 0.3413  # quantile one standard deviation below the median of a normal distribution
 
 
@@ -99,6 +101,25 @@ def asphalt(values):
             break
         rest = kept
     return float(median), float(spread)
+
+
+def scatter_of(points):
+    """How much single points scatter about asphalt, as a share of its level: the median over squares of 1 m.
+
+    The lower half of a square tells it, which paint is not in. None where no square has enough points.
+    """
+    value = points.intensity
+    column, row = np.floor(points.d / SQUARE).astype(np.int64), np.floor(points.s / SQUARE).astype(np.int64)
+    square = ((row - row.min()) * (np.ptp(column) + 1) + column - column.min()) * 256 + points.scanner
+    square = square * 65536 + points.pass_number  # another pass is another distance
+    order = np.lexsort((value, square))
+    value = value[order].astype(float)
+    starts = np.flatnonzero(np.r_[True, np.diff(square[order]) != 0])
+    count = np.diff(np.r_[starts, len(value)])
+    starts, count = starts[count >= FEWEST_IN_SQUARE], count[count >= FEWEST_IN_SQUARE]
+    median, low = value[starts + count // 2], value[starts + (LOWER * count).astype(np.int64)]
+    lit = median > 0
+    return float(np.median(1.0 - low[lit] / median[lit])) if lit.any() else None
 
 
 def otsu(values):

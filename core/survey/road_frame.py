@@ -6,7 +6,7 @@ station is where the normal of the line passes through it: the frame that both
 published methods speak, and in which every stage works.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -125,7 +125,7 @@ class Pass:
     """One run of the vehicle along a road.
 
     time, x, y, z (local), s, d: (N,) the vehicle's own samples in the road's frame.
-    direction: +1 along the reference line, -1 against it.
+    direction: +1 along the reference line, -1 against it. attitude: (3, N) roll, pitch, heading (radians), 0 where unknown, or None.
     """
 
     number: int
@@ -137,6 +137,7 @@ class Pass:
     z: np.ndarray
     s: np.ndarray
     d: np.ndarray
+    attitude: np.ndarray = field(default=None, repr=False)
     _by_station: tuple = field(default=None, repr=False)
 
     def position(self, time):
@@ -259,7 +260,8 @@ def build_frame(trajectory):
             break
         road, members, waiting = _grow_road(len(roads), track, turning, moved, driven, waiting)
         roads.append(road)
-        passes += [_make_pass(road, trajectory.time[a:b], *track[a:b].T) for a, b in sorted(members)]
+        passes += [replace(_make_pass(road, trajectory.time[a:b], *track[a:b].T),
+                           attitude=trajectory.rows(slice(a, b)).attitude()) for a, b in sorted(members)]
     passes.sort(key=lambda p: p.time[0])
     for number, p in enumerate(passes):
         p.number = number

@@ -47,6 +47,12 @@ class Trajectory:
         return replace(self, **{name: getattr(self, name)[which]
                                 for name in ("time", "x", "y", "z", "roll", "pitch", "heading")})
 
+    def attitude(self):
+        """(3, N) roll, pitch and heading in radians, the heading without leaps; unknown roll and pitch as 0. None without heading."""
+        if not np.isfinite(self.heading).all():
+            return None
+        return np.stack([np.radians(np.nan_to_num(self.roll)), np.radians(np.nan_to_num(self.pitch)), np.unwrap(np.radians(self.heading))])
+
     def shifted(self, seconds):
         """The same drive with another zero of time, carried on where its count starts again."""
         return replace(self, time=unwrap_time(self.time) + seconds)

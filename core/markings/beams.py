@@ -1,0 +1,216 @@
+"""The beams of a spinning scanner, told apart by their elevation, and brought to one brightness.
+
+Each laser of such a scanner has a gain and a threshold of its own, so that asphalt
+looks like a pattern of bright and dark arcs. Seen from the scanner, a laser
+always points at the same elevation: points gather there in rings, and the asphalt of
+each ring tells what the laser makes of asphalt.
+"""
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from ..parallel import in_order
+from ..progress import Progress
+from .intensity_table import FEWEST, LEVELS, asphalt_of, is_logarithmic, to_level, weighted_median
+
+LOWEST, STEP, STEPS = -45.0, 0.05, 900   # degrees: elevations of road from -45 to 0 in steps of 0.05
+RINGS = 1.5          # how much fuller than the mean of a degree about them rings must be to be beams
+UNEQUAL = 0.05       # of asphalt's level: beams that differ less from those beside them are alike
+BESIDE = 3           # beams either side
+WINDOWS, WINDOW = 12, 5.0   # how many windows of a road are looked at to tell whether there are beams; m
+LONGEST_FRAME = 1.0  # s that a turn of a spinning scanner may last
+TILTS = ((0, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))  # signs in which roll and pitch are told
+
+
+@dataclass
+class Frames:
+    """Turns of a spinning scanner, counted in point_source_id; a cloud without such a count has none.
+
+    middle : (65536,) s, the time in the middle of each turn; NaN where the number is no turn
+    """
+
+    middle: np.ndarray
+
+    @classmethod
+    def of(cls, road_points):
+        first, last = np.full(65536, np.inf), np.full(65536, -np.inf)
+        for key in road_points.all_sections():
+            points = road_points.section(*key)
+            source, time = points.source, points.time
+            begins = np.flatnonzero(np.r_[True, np.diff(source.astype(np.int64)) != 0])
+            np.minimum.at(first, source[begins], time[begins])
+            np.maximum.at(last, source[begins], time[np.r_[begins[1:], len(time)] - 1])
+        number = np.flatnonzero(np.isfinite(first))
+        number = number[np.argsort(first[number], kind="stable")]
+        begin, end = first[number], last[number]
+        # not every turn begins and ends over the road: where two follow on each other they share the time between
+        follows = begin[1:] - end[:-1] < LONGEST_FRAME / 2
+        between = (end[:-1] + begin[1:]) / 2
+        begin[1:][follows], end[:-1][follows] = between[follows], between[follows]
+        # and one that none follows, or that follows none, is as long as the others
+        turn = np.r_[False, follows] & np.r_[follows, False]
+        if turn.any():
+            length = float(np.median((end - begin)[turn]))
+            begin = np.where(np.r_[False, follows] | ~np.r_[follows, False], begin, end - length)
+            end = np.where(np.r_[follows, False] | ~np.r_[False, follows], end, begin + length)
+        middle = np.full(65536, np.nan)
+        turn = (end - begin < LONGEST_FRAME) & (end > begin)
+        middle[number[turn]] = (begin[turn] + end[turn]) / 2
+        return cls(middle)
+
+    @property
+    def known(self):
+        return bool(np.isfinite(self.middle).any())
+
+
+@dataclass
+class View:
+    """How the elevation of a point is seen: at the point's own time, or where its whole turn was brought to
+    the turn's middle; with the signs of roll and pitch."""
+
+    passes: list
+    frames: Frames
+    by_frame: bool = False
+    tilt: tuple = (0, 0)
+
+    def elevation_bin(self, points):
+        """(N,) int, the bin of elevation; -1 where no pass drove at the point's time."""
+        found = np.full(len(points), -1)
+        time, number = points.time, points.pass_number
+        if self.by_frame:
+            middle = self.frames.middle[points.source]
+            time = np.where(np.isfinite(middle), middle, time)
+        for p in self.passes:
+            rows = np.flatnonzero((number == p.number) & (time >= p.time[0] - 1.0) & (time <= p.time[-1] + 1.0))
+            if not len(rows):
+                continue
+            here, when = points[rows], time[rows]
+            px, py, pz = p.position(when)
+            dx, dy, dz = here.x - px, here.y - py, here.z - pz
+            if any(self.tilt) and p.attitude is not None:
+                roll, pitch, heading = (np.interp(when, p.time, angle) for angle in p.attitude)
+                c, n = np.cos(heading), np.sin(heading)
+                dz = dz + self.tilt[0] * roll * (dx * c - dy * n) + self.tilt[1] * pitch * (dx * n + dy * c)
+            elevation = np.degrees(np.arctan2(dz, np.hypot(dx, dy)))
+            found[rows] = np.clip(np.floor((elevation - LOWEST) / STEP), -1, STEPS - 1)
+        return found
+
+
+@dataclass
+class Beams:
+    """Beams of the scanners that have several.
+
+    views : dict of scanner to View; beam : dict of scanner to (STEPS,) number of the beam by elevation
+    shift : dict of scanner to (beams,) what is added to a beam's intensities, or what they are multiplied by
+    added : dict of scanner to whether it is added
+    """
+
+    views: dict
+    beam: dict
+    shift: dict
+    added: dict
+
+    @classmethod
+    def of(cls, road_points, frame, scanners, progress=Progress()):
+        """Beams of a survey's scanners; None where every scanner has one, or all of one brightness."""
+        frames = Frames.of(road_points)
+        views = {scanner: view for scanner in range(scanners)
+                 if (view := _sharpest(_samples(road_points, frame, scanner), frame.passes, frames)) is not None}
+        if not views:
+            return None
+        found = cls(views, {}, {}, {})
+        counts = 0
+        for section in in_order(lambda key: found._count(road_points.section(*key)), road_points.all_sections(), progress):
+            counts = counts + section
+        for scanner, levels in zip(views, counts):
+            found._learn(scanner, levels)
+        return found if found.shift else None
+
+    def _count(self, points):
+        """(scanners with beams, STEPS, LEVELS) how many points have each level at each elevation."""
+        counts = np.zeros((len(self.views), STEPS, LEVELS), np.int64)
+        for k, (scanner, view) in enumerate(self.views.items()):
+            rows = np.flatnonzero(points.scanner == scanner)
+            place = view.elevation_bin(points[rows])
+            known = place >= 0
+            flat = place[known] * LEVELS + to_level(points.intensity[rows][known])
+            counts[k] = np.bincount(flat, minlength=STEPS * LEVELS).reshape(STEPS, LEVELS)
+        return counts
+
+    def _learn(self, scanner, levels):
+        """What brings each beam's asphalt to the level of all, from (STEPS, LEVELS) counts."""
+        smooth = gaussian_filter1d(levels.sum(axis=1).astype(float), 1.0)
+        valleys = np.flatnonzero((smooth[1:-1] <= smooth[:-2]) & (smooth[1:-1] < smooth[2:])) + 1
+        starts = np.r_[0, valleys]
+        median, lower = asphalt_of(np.add.reduceat(levels, starts, axis=0))
+        weight = np.add.reduceat(levels.sum(axis=1), starts)
+        known = np.flatnonzero(np.isfinite(median) & (median > 0))
+        if len(known) < 2 * BESIDE:
+            return
+        reference = weighted_median(median[known], weight[known])
+        padded = np.pad(median[known], BESIDE, mode="edge")
+        beside = np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * BESIDE + 1), axis=1)
+        if weighted_median(np.abs(median[known] - beside), weight[known]) < UNEQUAL * reference:
+            return
+        # a beam that hardly met the road is taken for its neighbour
+        median = np.interp(np.arange(len(median)), known, median[known])
+        self.beam[scanner] = np.searchsorted(starts, np.arange(STEPS), side="right") - 1
+        self.added[scanner] = is_logarithmic(median[known], lower[known], weight[known])
+        self.shift[scanner] = reference - median if self.added[scanner] else reference / median
+
+    def even(self, points):
+        """(N,) float intensity as if all beams were alike."""
+        value = points.intensity.astype(float)
+        for scanner, shift in self.shift.items():
+            rows = np.flatnonzero(points.scanner == scanner)
+            place = self.views[scanner].elevation_bin(points[rows])
+            rows, place = rows[place >= 0], place[place >= 0]
+            by = shift[self.beam[scanner][place]]
+            value[rows] = np.maximum(value[rows] + by, 0.0) if self.added[scanner] else value[rows] * by
+        return value
+
+    @property
+    def count(self):
+        """How many beams were evened."""
+        return sum(len(shift) for shift in self.shift.values())
+
+
+def _samples(road_points, frame, scanner):
+    """Points of one scanner in a few windows of each road, at the same stations however the sections are cut."""
+    for road in road_points.roads():
+        start, end = frame.road(road).start, frame.road(road).end
+        for s in np.linspace(start, max(end - WINDOW, start), WINDOWS):
+            points = road_points.window(road, s, s + WINDOW)
+            rows = np.flatnonzero(points.scanner == scanner)
+            if len(rows) >= FEWEST:
+                yield points[rows]
+
+
+def _sharpest(samples, passes, frames):
+    """The view in which points gather most clearly in rings; None where they do in no view."""
+    samples = list(samples)
+    tilted = any(p.attitude is not None for p in passes)
+    views = [View(passes, frames, by_frame, tilt) for by_frame, tilt in
+             itertools.product((False, True) if frames.known else (False,), TILTS if tilted else TILTS[:1])]
+    best, sharpest = RINGS, None
+    for view in views:
+        found = sharpness(sum((_histogram(view.elevation_bin(points)) for points in samples), np.zeros(STEPS)))
+        if found > best:
+            best, sharpest = found, view
+    return sharpest
+
+
+def _histogram(place):
+    return np.bincount(place[place >= 0], minlength=STEPS).astype(float)
+
+
+def sharpness(counts):
+    """How much fuller than the mean of a degree about it the elevation of a point is on average: 1 where they lie evenly."""
+    total = counts.sum()
+    if total < STEPS:
+        return 0.0
+    # a point is no company for itself
+    return float((counts * (counts - 1)).sum() / max((counts * gaussian_filter1d(counts, 0.5 / STEP)).sum(), 1e-9))
