@@ -98,3 +98,24 @@ def test_equal_times_are_ordered_by_place():
 
 def test_a_tenth_of_a_millimetre_survives():
     np.testing.assert_array_equal(to_units([0.0001, -0.0001, 123.45674]), [1, -1, 1234567])
+
+
+@pytest.mark.parametrize("limit", [0, 60_000, 10**9])
+def test_a_section_read_before_its_last_points_came_is_in_order_all_the_same(limit):
+    made = records()
+    store = SectionStore(SURVEY_POINT, memory_limit=limit)
+    for part in np.array_split(made, 5):
+        store.append(0, part)
+        store.section(0, 3)
+        store.window(0, 90.0, 150.0)
+    at_once = filled([made])
+    for _ in range(2):  # the second time as it was put back
+        for number in at_once.sections(0):
+            np.testing.assert_array_equal(store.section(0, number), at_once.section(0, number))
+
+
+def test_a_section_that_was_handed_out_cannot_be_spoilt_for_the_next_reader():
+    for limit in (0, 10**9):
+        section = filled([records()], memory_limit=limit).section(0, 2)
+        with pytest.raises(ValueError, match="read-only"):
+            section["time"] = 0.0
