@@ -46,7 +46,7 @@ class MarkingSettings:
     lowest: float = 3.0
     highest: float = 8.0
     alone: float = 5.0
-    faint: float = 3.5
+    faint: float = 3.0
     close: float = 0.20
     shortest: float = 0.20
 

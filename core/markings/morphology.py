@@ -7,23 +7,35 @@ from ..survey.points import UNIT
 from .polygons import fill_gaps
 from .shapes import CELL, measure
 
-AVERAGE = 2.0     # cells, sigma of the average that noisy points are seen through
+AVERAGE = 1.5     # cells, sigma of the average that noisy points are seen through
+AROUND = 10.0     # cells, sigma of the average that this is compared with: tracks, patches and shadows are wider than strokes
 CURB_FACE = 0.20  # m from the rim of the road
 STRIP_AREA, STRIP_LENGTH, STRIP_ELONGATION = 0.12, 0.80, 3.5  # m2, m: least of a stroke of paint where single points are noisy
 
 
 def averaged(cell, value, shape):
-    """(rows, columns) float32 mean of the points about each cell; NaN where there are none.
+    """How much brighter the points about each cell are than those within half a metre.
 
-    cell : (N,) flat cell number of each point; value : (N,) its brightness
+    Parameters
+    ----------
+    cell : (N,) flat cell number of each point
+    value : (N,) its brightness
+
+    Returns
+    -------
+    (rows, columns) float32; NaN where there are no points
     """
     size = shape[0] * shape[1]
     count = np.bincount(cell, minlength=size).reshape(shape).astype(float)
     # brightness in whole 64ths sums exactly, in any order
     total = np.bincount(cell, np.rint(value.astype(float) * 64), size).reshape(shape) / 64
-    count, total = (ndimage.gaussian_filter(a, AVERAGE, mode="constant", truncate=3.0) for a in (count, total))
+
+    def seen(sigma):
+        return [ndimage.gaussian_filter(a, sigma, mode="constant", truncate=3.0) for a in (count, total)]
+
+    (near, near_total), (around, around_total) = seen(AVERAGE), seen(AROUND)
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.where(count > 0.05, total / count, np.nan).astype(np.float32)
+        return np.where(near > 0.05, near_total / near - around_total / around, np.nan).astype(np.float32)
 
 
 def morphology(mask, settings):
