@@ -12,42 +12,76 @@ taken for curbs.
 
 import numpy as np
 
-from .corners import MOST_SKEW, SIGMAS, STEEPEST_ROAD, Steps
+from .corners import SIGMAS, STEEPEST_ROAD, Steps
+from .profiles import seen_between
 
 AVERAGE = 1.25       # m of road averaged
-SKEW_STEP = 0.1      # m outward per m along between the directions tried: 3 cm at the ends of the average
+SKEW_STEP = 0.125    # m outward per m along between the directions tried: 4 cm at the ends of the average
+STEEPEST_SKEW = 8    # such steps to either side
+SURER = 1.15         # how much taller a rise must look in a direction farther from the road's own
 LEAST_ROWS = 0.5     # share of the profiles averaged that must have ground in a cell
-FIT = 0.35           # m of road, and of ground behind, to which a level is fitted
+ROAD_FIT = 0.35      # m of road to which a level is fitted
+BEHIND_FIT = 0.25    # m of ground behind: a hedge may stand close
 FACE = 0.09          # m either side of a step left out of both levels: the blurred face
 STEEP_HALF = 0.07    # m either side of a step within which most of the rise must lie
 STEEP_SHARE = 0.65   # of the height, more than an even rise from level to level has
 LEAST_FILLED = 0.6   # share of the cells of a level that must hold ground
-ALONE = 0.20         # m across within which one step is reported
+ALONE = 0.12         # m across within which one step is reported
+ALL_SIGMAS, RING_SIGMAS = 2.0, 2.5  # times the spread of single heights that a step must rise: in all views, in one
+SAME = 0.25          # m across within which a step seen from one side only is the one already found
 ROUGH = 0.008        # m, scatter of averaged heights about their level: verges and banks have more
 
 
-def find_averaged_steps(lines, least, highest):
+def find_averaged_steps(lines, least, highest, layer_jump):
     """Steps between `least` and `highest` metres of the averaged profiles of one side.
+
+    They are sought in all points together; where those show none, in what was seen from
+    before and from behind alone: positions that drifted in between blur a face away that
+    each of the two shows.
 
     Parameters
     ----------
     lines : PseudoScanLines; the first and last AVERAGE / 2 metres serve the averages of the others
     least, highest : metres
+    layer_jump : metres
 
     Returns
     -------
     Steps, sorted by profile, then outward. The offset is that of half the height: a
     blurred face does not tell its bottom from its top.
     """
+    found = _steps_in(lines, np.maximum(least, ALL_SIGMAS * lines.spread)[:, None], highest)
+    for nearest, farthest in ((0.0, np.inf), (-np.inf, 0.0)):
+        # a view of its own averages few rings of a multi-beam scanner, each with an error of its own
+        single = _steps_in(seen_between(lines, nearest, farthest, layer_jump),
+                           np.maximum(least, RING_SIGMAS * lines.spread)[:, None], highest)
+        found = Steps.join([found, single[~_beside(single, found)]])
+    return found[np.lexsort((found.u, found.profile))]
+
+
+def _beside(steps, others):
+    """(M,) bool: does one of the others lie within SAME metres across in the same profile?"""
+    if not len(others):
+        return np.zeros(len(steps), bool)
+    order = np.lexsort((others.u, others.profile))
+    key = others.profile[order] * 1000.0 + others.u[order]
+    wanted = steps.profile * 1000.0 + steps.u
+    right = np.searchsorted(key, wanted)
+    return np.minimum(np.abs(key[np.clip(right, 0, len(key) - 1)] - wanted),
+                      np.abs(key[np.clip(right - 1, 0, len(key) - 1)] - wanted)) < SAME
+
+
+def _steps_in(lines, least, highest):
+    """Steps of averaged profiles; `least` is (P, 1)."""
     best = None
-    for skew in np.arange(-MOST_SKEW, MOST_SKEW + 1e-9, SKEW_STEP):
-        seen = _Averaged(lines, skew).rises()
+    for skew in sorted(np.arange(-STEEPEST_SKEW, STEEPEST_SKEW + 1) * SKEW_STEP, key=abs):
+        seen = _rises(_averaged(lines, skew), lines.spacing, skew)
         if best is None:
             best = seen
             continue
-        better = seen["rise"] > best["rise"]
+        better = seen["rise"] > SURER * best["rise"]
         for name, values in seen.items():
-            best[name] = np.where(better, values, best[name])
+            np.copyto(best[name], values, where=better)
     good = ((best["height"] >= least) & (best["height"] <= highest) & (best["height"] >= SIGMAS * best["doubt"])
             & (best["rise"] >= STEEP_SHARE * best["height"]) & (best["scatter"] <= ROUGH)
             & (np.abs(best["before"]) <= STEEPEST_ROAD) & (np.abs(best["behind"]) <= STEEPEST_ROAD))
@@ -55,7 +89,7 @@ def find_averaged_steps(lines, least, highest):
     rows, cells = np.nonzero(good & (score >= _largest_near(score, int(round(ALONE / lines.spacing)))))
     pick = {name: values[rows, cells] for name, values in best.items()}
     count = np.diff(lines.starts).reshape(lines.shape)
-    reach = int(round((FACE + FIT) / lines.spacing))
+    reach = int(round((FACE + ROAD_FIT) / lines.spacing))
     total = np.concatenate([np.zeros((len(count), 1), np.int64), np.cumsum(count, axis=1)], axis=1)
     first, last = np.maximum(cells - reach, 0), np.minimum(cells + reach + 1, lines.shape[1])
     return Steps(profile=lines.first + rows, s=(lines.first + rows + 0.5) * lines.width,
@@ -64,60 +98,66 @@ def find_averaged_steps(lines, least, highest):
                  support=total[rows, cells] - total[rows, first], behind=total[rows, last] - total[rows, cells])
 
 
-class _Averaged:
-    """The profiles of one side averaged along one direction."""
-
-    def __init__(self, lines, skew):
-        self.spacing, self.skew = lines.spacing, skew
-        half = max(int(round(0.5 * AVERAGE / lines.width)), 1)
-        low = lines.low
-        stack = np.full((2 * half + 1, *low.shape), np.nan)
-        for k in range(-half, half + 1):
-            _shifted(low, k, int(round(skew * k * lines.width / lines.spacing)), stack[k + half])
-        enough = np.isfinite(stack).sum(0) >= max(LEAST_ROWS * len(stack), 2)
-        self.height = np.where(enough, _median_of_rows(stack), np.nan)
-
-    def rises(self):
-        """For a step at every cell: its height, what of it lies within the face, what remains in doubt; dict of (P, C)."""
-        value, spacing = self.height, self.spacing
-        gap, fit = int(round(FACE / spacing)), int(round(FIT / spacing))
-        road, slope, rough, n = _levels(value, -gap - fit, -gap, spacing)
-        top, climb, uneven, m = _levels(value, gap, gap + fit, spacing)
-        near = int(round(STEEP_HALF / spacing))
-        with np.errstate(invalid="ignore", divide="ignore"):
-            height = top - road
-            smooth = _mean_of(value, -1, 1)
-            rise = _moved(smooth, near) - _moved(smooth, -near) - 2 * near * spacing * 0.5 * (slope + climb)
-            doubt = np.sqrt(rough**2 / n + uneven**2 / m) * 2.0
-            filled = np.minimum(n, m) >= LEAST_FILLED * (fit + 1)
-            rise = np.where(filled & np.isfinite(rise), rise, -np.inf)
-            # where the profile crosses half the height: mean height of the face tells how far from this cell
-            face = _mean_of(value, -gap, gap)
-            shift = np.clip((0.5 - (face - road) / height) * (2 * gap + 1) * spacing, -FACE, FACE)
-        return dict(rise=rise, height=height, doubt=doubt, scatter=np.maximum(rough, uneven), before=slope, behind=climb,
-                    shift=np.nan_to_num(shift), bottom=road, skew=np.full(value.shape, self.skew))
+def _averaged(lines, skew):
+    """(P, C) median heights of AVERAGE metres of road about every profile, along one direction."""
+    half = max(int(round(0.5 * AVERAGE / lines.width)), 1)
+    stack = np.full((2 * half + 1, *lines.shape), np.nan)
+    for k in range(-half, half + 1):
+        _shifted(lines.low, k, int(round(skew * k * lines.width / lines.spacing)), stack[k + half])
+    enough = np.isfinite(stack).sum(0) >= max(LEAST_ROWS * len(stack), 2)
+    return np.where(enough, _median_of_rows(stack), np.nan)
 
 
-def _levels(value, first, last, spacing):
-    """Line through the cells from `first` to `last` beside every cell: height at the cell, slope, scatter, cells used."""
-    there = np.isfinite(value)
-    h = np.where(there, value, 0.0)
-    steps = np.arange(first, last + 1) * spacing
-    n, su, sz, suu, suz, szz = (np.zeros(value.shape) for _ in range(6))
-    for k, u in zip(range(first, last + 1), steps):
-        t, z = _moved(there, k, False), _moved(h, k, 0.0)
-        n += t
-        su += u * t
-        suu += u * u * t
-        sz += z
-        suz += u * z
-        szz += z * z
+def _rises(value, spacing, skew):
+    """For a step at every cell: its height, what of it lies within the face, what remains in doubt; dict of (P, C)."""
+    gap, fit, short = (int(round(v / spacing)) for v in (FACE, ROAD_FIT, BEHIND_FIT))
+    near = int(round(STEEP_HALF / spacing))
+    sums = _Sums(value, spacing)
+    road, slope, rough, n = sums.line(-gap - fit, -gap)
+    top, climb, uneven, m = sums.line(gap, gap + short)
+    smooth, face = sums.mean(-1, 1), sums.mean(-gap, gap)
     with np.errstate(invalid="ignore", divide="ignore"):
-        mu, mz = su / n, sz / n
-        vuu, vuz, vzz = suu / n - mu * mu, suz / n - mu * mz, szz / n - mz * mz
-        slope = np.where(vuu > 1e-4, vuz / vuu, 0.0)
-        scatter = np.sqrt(np.maximum(vzz - slope * vuz, 0.0) * n / np.maximum(n - 2, 1))
-    return mz - slope * mu, slope, scatter, n
+        height = top - road
+        rise = _moved(smooth, near) - _moved(smooth, -near) - near * spacing * (slope + climb)
+        doubt = 2.0 * np.sqrt(rough**2 / n + uneven**2 / m)
+        filled = (n >= LEAST_FILLED * (fit + 1)) & (m >= LEAST_FILLED * (short + 1)) & (sums.mean(gap, gap + fit) - road > 0.5 * height)
+        rise = np.where(filled & np.isfinite(rise), rise, -np.inf)
+        # where the profile crosses half the height: mean height of the face tells how far from this cell
+        shift = np.clip((0.5 - (face - road) / height) * (2 * gap + 1) * spacing, -FACE, FACE)
+    return dict(rise=rise, height=height, doubt=doubt, scatter=np.maximum(rough, uneven), before=slope, behind=climb,
+                shift=np.nan_to_num(shift), bottom=road, skew=np.full(value.shape, skew))
+
+
+class _Sums:
+    """Running sums over the cells of every profile, from which levels beside any cell follow at once."""
+
+    def __init__(self, value, spacing):
+        there = np.isfinite(value)
+        h, self.u = np.where(there, value, 0.0), np.arange(value.shape[1]) * spacing
+        u = np.where(there, self.u, 0.0)
+        self.totals = [np.concatenate([np.zeros((len(value), 1)), np.cumsum(v, axis=1)], axis=1)
+                       for v in (there.astype(float), h, h * h, u, u * u, u * h)]
+
+    def _window(self, which, first, last):
+        cells = len(self.u)
+        c = np.arange(cells)
+        total = self.totals[which]
+        return total[:, np.clip(c + last + 1, 0, cells)] - total[:, np.clip(c + first, 0, cells)]
+
+    def mean(self, first, last):
+        """Mean of the occupied cells from `first` to `last` beside every cell."""
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return self._window(1, first, last) / self._window(0, first, last)
+
+    def line(self, first, last):
+        """Line through those cells: its height at the cell, slope, scatter, cells used."""
+        n, sz, szz, su, suu, suz = (self._window(k, first, last) for k in range(6))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            mu, mz = su / n, sz / n
+            vuu, vuz, vzz = suu / n - mu * mu, suz / n - mu * mz, szz / n - mz * mz
+            slope = np.where(vuu > 1e-4, vuz / vuu, 0.0)
+            scatter = np.sqrt(np.maximum(vzz - slope * vuz, 0.0) * n / np.maximum(n - 2, 1))
+            return mz + slope * (self.u - mu), slope, scatter, n
 
 
 def _median_of_rows(stack):
@@ -138,15 +178,6 @@ def _moved(values, k, empty=np.nan):
     else:
         out[:, -k:] = values[:, :k]
     return out
-
-
-def _mean_of(values, first, last):
-    """Mean of the occupied cells from `first` to `last` beside every cell."""
-    there = np.isfinite(values)
-    h = np.where(there, values, 0.0)
-    n = sum(_moved(there, k, False).astype(float) for k in range(first, last + 1))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return sum(_moved(h, k, 0.0) for k in range(first, last + 1)) / n
 
 
 def _shifted(values, rows, cells, out):

@@ -23,6 +23,8 @@ TIP_STEPS = 5          # at the end of a chain that give its direction
 TURN_REACH = 3.0       # m that a chain is drawn on in its own direction
 DENSEST = 0.5          # share of its profiles in which a chain must be seen
 WANDER = 0.02          # m, scatter about its own running line beyond the scanner's noise
+NOISY = 0.125          # share of MIN_HEIGHT: a scanner whose heights spread more does not show a curb in one profile
+DOUBT = 0.3            # share of MIN_HEIGHT by which such a scanner may have seen a curb too low
 ROUGH_ROAD = 0.010     # m about the road side's line, if the scanner's noise is less than half of it
 JUMP_COST = 4.0        # m of curb that a lateral jump of 1 m must bring to pay
 CLIMB_COST = 60.0      # the same for 1 m of height: ground behind a curb is higher
@@ -114,7 +116,8 @@ def curb_chains(steps, label, profile_width, least, slope):
         height, usual = np.median(steps.height[members]), np.median(steps.usual[members])
         # blur widens a face and never narrows it, so the sharper profiles tell
         sharp = max(np.quantile(steps.run[members], 0.3) - 2 * usual, 0.0)
-        if height < least or np.arctan2(height, sharp) < slope:
+        doubt = min(usual, DOUBT * least) if usual > NOISY * least else 0.0
+        if height < least - doubt or np.arctan2(height, sharp) < slope:
             continue
         if np.median(steps.noise[members]) > max(ROUGH_ROAD, 2 * usual):
             continue

@@ -87,7 +87,7 @@ def measure_corners(lines, rows, cells, least, highest):
     # each step is measured from all points, and from those seen from before and from behind
     # alone: positions that drifted in between blur a face that each of the two shows sharp
     candidates = len(rows)
-    owner = np.concatenate([owner, owner + candidates * (1 + lines.ahead[index])])
+    owner = np.concatenate([owner, owner + candidates * (1 + (lines.along[index] > 0))])
     index = np.concatenate([index, index])
     rows, cells = np.tile(rows, 3), np.tile(cells, 3)
     edge, middle = lines.offset(cells), (lines.first + rows + 0.5) * lines.width

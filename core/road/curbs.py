@@ -11,7 +11,7 @@ from ..parallel import in_order
 from ..progress import Progress
 from ..schemas import CURB_POINTS
 from .averaged_steps import AVERAGE, find_averaged_steps
-from .chains import choose_along, curb_chains, link_chains, long_enough
+from .chains import NOISY, choose_along, curb_chains, link_chains, long_enough
 from .corners import Steps
 from .profiles import SPREAD_ROWS
 from .shadows import Sight
@@ -22,7 +22,6 @@ VEHICLE_HALF = 0.6      # m from the track: no curb nearer
 MERGE_ACROSS = 0.12     # m between the same step seen in two passes
 MERGE_UP = 0.10
 DROPPED = 0.5           # a lower curb counts where it continues a full one: share of MIN_HEIGHT
-NOISY = 0.15            # share of MIN_HEIGHT: where heights spread more, profiles are averaged
 STRAIGHT_BLOCK, SHARP_BLOCK = 2.0, 0.5  # m
 TURN_PER_BLOCK = np.radians(1.0)        # a block of road turns no more than this
 BENT = 0.015            # m off its own straight line beyond which a block is cut shorter
@@ -124,9 +123,8 @@ def _steps_by_noise(lines, section, settings):
     sharp = find_steps(own, least, settings.max_height)
     if not noisy.any():
         return sharp
-    blurred = find_averaged_steps(lines, least, settings.max_height)
-    inside = (blurred.profile >= section[0]) & (blurred.profile < section[1])
-    blurred = blurred[inside]
+    blurred = find_averaged_steps(lines, least, settings.max_height, settings.layer_jump)
+    blurred = blurred[(blurred.profile >= section[0]) & (blurred.profile < section[1])]
     return Steps.join([sharp[~noisy[sharp.profile - own.first]], blurred[noisy[blurred.profile - own.first]]])
 
 
@@ -139,7 +137,7 @@ def _merge_passes(found):
     steps = steps[order]
     apart = (np.diff(steps.profile) > 0) | (np.diff(steps.u) > MERGE_ACROSS) | (np.abs(np.diff(steps.h)) > MERGE_UP)
     group = np.r_[0, np.cumsum(apart)]
-    weight = np.sqrt(steps.support)
+    weight = np.sqrt(np.maximum(steps.support, 1))
     total = np.bincount(group, weight)
     values = {name: np.bincount(group, weight * getattr(steps, name)) / total
               for name in ("s", "u", "h", "skew", "height", "run", "noise", "usual")}

@@ -24,6 +24,7 @@ GHOST_SHARE = 0.15  # a lowest layer with less than this share of its cell is mu
 LEAST_NOISE = 0.002  # m
 USUAL_NOISE = 0.005  # m, where too few cells hold enough points to tell
 SAME_GROUND = 0.15  # m from a cell's ground within which points tell the scanner's noise
+SPREAD_POINTS, SPREAD_CELLS = 5, 10  # points in a cell, and such cells in a profile, that tell it
 SPREAD_ROWS = 6     # profiles either side that tell it together
 DEPTH, REACH = 2.0, 2.0  # m below and above the expected road within which ground is sought
 
@@ -36,13 +37,13 @@ class PseudoScanLines:
     width, spacing : metres
     u, s, h : (N,) the points, sorted by profile, cell and height; u is the outward
         offset, h the height above the expected road, which takes the grade out
-    ahead : (N,) bool, seen while the vehicle was still before the point
+    along : (N,) m along the road from the vehicle to the point when it was seen
     ground : (N,) bool, points of the lowest layer
     starts : (P * C + 1,) index of the first point of every cell
     low, high : (P, C) median and high quantile of the lowest layer, m; NaN where no point lies
     noise : (P,) m, spread of heights within a cell of level road
-    spread : (P,) m, the same with the points of all layers next to the ground, over a few metres of
-        road: near `noise` for a scanner that measures to millimetres, far above for one that does not
+    spread : (P,) m, the same with the points of all layers next to the ground, in the smoother cells
+        over a few metres of road: near `noise` for a scanner that measures to millimetres, far above for one that does not
     """
 
     first: int
@@ -52,7 +53,7 @@ class PseudoScanLines:
     u: np.ndarray
     s: np.ndarray
     h: np.ndarray
-    ahead: np.ndarray
+    along: np.ndarray
     ground: np.ndarray
     starts: np.ndarray
     low: np.ndarray
@@ -75,13 +76,22 @@ class PseudoScanLines:
                        noise=self.noise[a:b], spread=self.spread[a:b])
 
 
-def pseudo_scan_lines(u, s, h, ahead, profiles, width, spacing, layer_jump, origin, reach):
+def seen_between(lines, nearest, farthest, layer_jump):
+    """The PseudoScanLines of the points that were measured from `nearest` to before `farthest` metres ahead."""
+    own = np.flatnonzero((lines.along >= nearest) & (lines.along < farthest))
+    rows, cells = lines.shape
+    seen = pseudo_scan_lines(lines.u[own], lines.s[own], lines.h[own], lines.along[own], (lines.first, lines.first + rows),
+                             lines.width, lines.spacing, layer_jump, lines.origin, lines.origin + cells * lines.spacing)
+    return replace(seen, spread=lines.spread)
+
+
+def pseudo_scan_lines(u, s, h, along, profiles, width, spacing, layer_jump, origin, reach):
     """Cut points of one side into profiles and cells and find the ground in each.
 
     Parameters
     ----------
     u, s, h : (N,) outward offset, station, and height above the expected road, metres
-    ahead : (N,) bool
+    along : (N,) metres along the road from the vehicle to the point when it was measured
     profiles : (first, last + 1) numbers of the profiles
     width, spacing, layer_jump : metres
     origin, reach : nearest and farthest outward offset, metres
@@ -110,8 +120,8 @@ def pseudo_scan_lines(u, s, h, ahead, profiles, width, spacing, layer_jump, orig
     low.flat[owner], high.flat[owner] = middle, top
     many = count >= 4
     noise.flat[owner[many]] = (top - middle)[many] / HIGH_SIGMA
-    return PseudoScanLines(first, width, spacing, origin, u, s, h, ahead[kept], ground, starts, low, high, _profile_noise(noise),
-                           _spread(h, place, low, starts))
+    return PseudoScanLines(first, width, spacing, origin, u, s, h, along[kept], ground, starts, low, high, _profile_noise(noise),
+                           _spread(h, place, low))
 
 
 def _lowest_layers(place, h, layer_jump):
@@ -139,21 +149,21 @@ def _profile_noise(noise):
     return np.where(dense, np.fmax(_row_median(noise), LEAST_NOISE), USUAL_NOISE)
 
 
-def _spread(h, place, low, starts):
-    """(P,) spread of the points of a profile and its neighbours about the ground of their cells."""
+def _spread(h, place, low):
+    """(P,) spread of heights about the ground of their cells, in the smoother cells of a profile and its neighbours."""
     rows, cells = low.shape
     off = np.abs(h - low.flat[place])
-    count = np.diff(starts)
-    kept = (off < SAME_GROUND) & (count[place] >= 4)
-    row = place[kept] // cells
-    order = np.argsort((row << 17) + np.rint(off[kept] * 1e5).astype(np.int64), kind="stable")
-    off, first = off[kept][order], np.searchsorted(row, np.arange(rows + 1))
-    n = np.diff(first)
-    many = np.flatnonzero(n >= 100)
-    own = np.full(rows, np.nan)
-    own[many] = 1.4826 * off[first[many] + n[many] // 2]
+    near = off < SAME_GROUND
+    count = np.bincount(place[near], minlength=rows * cells).reshape(rows, cells)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        own = np.bincount(place[near], off[near], rows * cells).reshape(rows, cells) / count
+    # 1.2533 mean distances of a normal distribution are its sigma
+    own = np.where(count >= SPREAD_POINTS, 1.2533 * own, np.nan)
+    # grass is rough with any scanner, so the smoother cells tell
+    ordered, n = np.sort(own, axis=1), np.isfinite(own).sum(1)
+    tell = np.where(n >= SPREAD_CELLS, ordered[np.arange(rows), np.maximum(n - 1, 0) * 3 // 10], np.nan)
     # one profile beside a bush says nothing about the scanner
-    padded = np.pad(own, SPREAD_ROWS, constant_values=np.nan)
+    padded = np.pad(tell, SPREAD_ROWS, constant_values=np.nan)
     around = np.sort(np.lib.stride_tricks.sliding_window_view(padded, 2 * SPREAD_ROWS + 1), axis=1)
     known = np.isfinite(around).sum(1)
     middle = around[np.arange(rows), np.maximum(known - 1, 0) // 2]

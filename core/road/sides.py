@@ -54,7 +54,7 @@ def profiles_beside(survey, road, section, tracks, settings):
     s, d = points.s, points.d
     along = _ahead_of_vehicle(survey, points, s)
     near = np.flatnonzero(np.abs(along) < BESIDE + np.abs(d))
-    points, s, d, ahead = points[near], s[near], d[near], along[near] > 0
+    points, s, d, along = points[near], s[near], d[near], along[near]
     h = points.z - expected_height(survey, road, s)
     stations = (np.arange(*section) + 0.5) * width
     for side, sign in SIDES.items():
@@ -64,7 +64,7 @@ def profiles_beside(survey, road, section, tracks, settings):
         for number in np.unique(points.pass_number):
             own = np.flatnonzero(outward & (points.pass_number == number))
             beside = u[own], s[own], h[own]
-            lines = pseudo_scan_lines(*beside, ahead[own], section, width, settings.point_spacing,
+            lines = pseudo_scan_lines(*beside, along[own], section, width, settings.point_spacing,
                                       settings.layer_jump, origin, REACH)
             yield side, int(number), beside, lines
 

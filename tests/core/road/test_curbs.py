@@ -3,7 +3,7 @@
 import curbed_streets as streets
 import numpy as np
 import pytest
-from curbed_streets import measured, parked_car, street, survey_of
+from curbed_streets import driven, measured, parked_car, ringed_street, street, survey_of
 
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.road.curbs import CurbSettings, block_edges, detect_curbs
@@ -64,6 +64,20 @@ def test_a_scanner_with_two_centimetres_of_noise_finds_the_curb_and_nothing_else
         points = measured(curbs, side)
         assert len(points) > 20
         np.testing.assert_allclose(points[:, 1], offset, atol=0.03)
+
+
+def test_a_low_curb_among_the_rings_of_a_spinning_scanner_is_found_and_nothing_else():
+    curbs = found(ringed_street(), drive=driven(36.0))
+    for side, offset in (("left", 4.5), ("right", -4.5)):
+        points = measured(curbs, side)
+        assert len(np.unique(np.floor(points[(points[:, 3] > 2) & (points[:, 3] < 34), 3] / 2))) >= 14
+        np.testing.assert_allclose(points[:, 1], offset, atol=0.06)
+        np.testing.assert_allclose(np.median(points[:, 4]), 0.08, atol=0.015)
+
+
+@pytest.mark.parametrize("ground", [dict(curb=0.0), dict(curb=0.02), dict(curb=0.10, ramp=0.8)], ids=["level", "seam", "ramp"])
+def test_rings_of_a_spinning_scanner_are_no_curbs(ground):
+    assert len(found(ringed_street(**ground), drive=driven(36.0))) == 0
 
 
 def test_a_bend_is_followed_with_shorter_blocks():
