@@ -28,7 +28,7 @@ ROAD_SURFACE = [ROAD, STATUS, STATION, END, Field("area_m2", float, "Area (m²)"
 MARKINGS = [ROAD, Field("cluster", int, "Cluster"), Field("class", str, "Class"), Field("use", str, "Use (keep/other)"),
             STATION, OFFSET, LENGTH, WIDTH, Field("elongation", float, "Elongation"),
             Field("scan_m", float, "Scanning distance (m)"), Field("area_m2", float, "Area (m²)"),
-            Field("points", int, "Points"), Field("contrast", float, "Contrast to asphalt (σ)")]
+            Field("points", int, "Points")]
 MARKING_LINES = [ROAD, Field("line", int, "Line"), Field("kind", str, "Kind (edge/lane/centre)"),
                  Field("pattern", str, "Pattern"), STATUS, Field("curve", str, "Curve"), RADIUS, RMSE,
                  STATION, END, OFFSET, LENGTH, WIDTH, Field("params", str, "Fitted function (JSON)")]

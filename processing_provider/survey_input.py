@@ -127,7 +127,7 @@ def imported_trajectory(call, progress):
     """INPUT in TARGET_CRS (or the clouds' CRS) and, with POINT_CLOUDS given, on the clouds' clock."""
     from ..core.survey.crs import reproject_trajectory
     from ..core.survey.point_cloud import read_headers
-    from ..core.survey.survey import _match_clocks as match_clocks
+    from ..core.survey.survey import match_clocks
 
     trajectory = call.trajectory("INPUT", call.crs("INPUT_CRS"))
     headers = read_headers(call.point_clouds()) if call.parameters.get("POINT_CLOUDS") else []

@@ -13,7 +13,7 @@ from .point_cloud import BLOCK, read_blocks, read_headers
 from .scanners import ScannerCensus
 from .sensor_height import NEAR_TRACK
 from .survey import SurveySettings
-from .survey import _match_clocks as match_clocks
+from .survey import match_clocks
 from .trajectory import clean_trajectory
 
 NEAR = 25.0        # m from the trajectory that counts as measured from it

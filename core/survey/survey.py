@@ -107,7 +107,7 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
     if note := crs_note(files, settings.crs, crs):
         progress.warn(note)
     trajectory = reproject_trajectory(trajectory, crs)
-    trajectory, time_note, has_time, week_ends = _match_clocks(files, trajectory, settings, progress)
+    trajectory, time_note, has_time, week_ends = match_clocks(files, trajectory, settings, progress)
     if time_note:
         progress.say(time_note)
     frame = build_frame(trajectory)
@@ -250,7 +250,7 @@ class _Reader:
                 self._store(road, records)
 
 
-def _match_clocks(files, trajectory, settings, progress):
+def match_clocks(files, trajectory, settings, progress):
     """The trajectory in the cloud's time system, a note, whether time can be used, whether the GPS week ends during the scan."""
     if not trajectory.has_time:
         return trajectory, "The trajectory has no time; each point is placed at the nearest foot on it.", False, False
