@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..features import Features, Field
-from ..schemas import DRIVING_LINES, END, HEIGHT, LENGTH, PART, RADIUS, ROAD, SIDE, STATION, WIDTH
+from ..schemas import DRIVING_LINES, END, HEIGHT, LENGTH, PART, ROAD, SIDE, STATION, WIDTH
 
 _STEP = 0.25      # m between vertices along the road
 _DROPPED = 0.05   # m, a curb lower than this is a dropped one

@@ -4,8 +4,6 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from ..errors import RoadExtractionError
 
 BLOCK = 500_000  # points decoded at a time
