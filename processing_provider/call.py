@@ -13,9 +13,10 @@ from qgis.core import (
 
 from ..core.errors import RoadExtractionError
 from .destinations import ReplacedFiles, UnfinishedFiles, check_suffix, check_writable, destination_path
+from .embedded_style import embed_style
 from .knobs import settings_class
 from .layers import WKB_TYPES, crs_text, qgis_fields, read_features, write_features
-from .styling import style_on_load
+from .styling import group_of, style_on_load
 from .texts import tr
 from .trajectory_source import read_trajectory_source, trajectory_path
 
@@ -42,6 +43,12 @@ class Call:
         """Paths of the clouds, each proven to be there."""
         paths = self.algorithm.parameterAsFileList(self.parameters, "POINT_CLOUDS", self.context)
         return [existing_file(path, self.label("POINT_CLOUDS")) for path in paths]
+
+    def _surveyed(self):
+        """The point clouds whose name the results go by; none where a stage starts from another's result."""
+        if self.algorithm.parameterDefinition("POINT_CLOUDS") is None:
+            return []
+        return self.algorithm.parameterAsFileList(self.parameters, "POINT_CLOUDS", self.context)
 
     def cloud(self, name):
         """The path of one point cloud; "" where the optional parameter is empty."""
@@ -187,8 +194,10 @@ class Call:
         replaced.forget()
         self._files.commit()
         schemas = {name: features.schema for name, features in self._layers}
+        group = group_of(self._surveyed())
         for name, dest in self._results.items():
-            style_on_load(name, dest, self.label(name), self.context, schemas.get(name, ()))
+            embed_style(name, dest, self.label(name), schemas.get(name, ()))
+            style_on_load(name, dest, self.label(name), self.context, schemas.get(name, ()), group)
         return {**self._results, **numbers}
 
     def _write(self, name, features):

@@ -1,5 +1,6 @@
 """Names, order, group and style of the layers a run puts into the project."""
 
+import os
 from pathlib import Path
 
 from qgis.core import (
@@ -49,28 +50,42 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
         return styler
 
     def postProcessLayer(self, layer, context, feedback):
-        if Path(self.qml).exists():
-            layer.loadNamedStyle(self.qml)
-        for column in self.schema:
-            # A scratch layer's own fields cannot carry them
-            index = layer.fields().lookupField(column.name)
-            if index >= 0:
-                layer.setFieldAlias(index, tr(column.alias))
-        if isinstance(layer, QgsRasterLayer) and isinstance(layer.renderer(), QgsSingleBandGrayRenderer):
-            # Intensities have no common scale: every image is stretched to its own values
-            layer.setContrastEnhancement(
-                QgsContrastEnhancement.ContrastEnhancementAlgorithm.StretchToMinimumMaximum,
-                QgsRasterMinMaxOrigin.Limits.CumulativeCut,
-            )
+        apply_style(layer, self.qml, self.schema)
         layer.triggerRepaint()
 
 
-def style_on_load(name, dest, title, context, schema=()):
+def apply_style(layer, qml, schema=()):
+    """Give a layer the look of a QML file, its fields their aliases, an image its stretch."""
+    if Path(qml).exists():
+        layer.loadNamedStyle(str(qml))
+    for column in schema:
+        # A scratch layer's own fields cannot carry them
+        index = layer.fields().lookupField(column.name)
+        if index >= 0:
+            layer.setFieldAlias(index, tr(column.alias))
+    if isinstance(layer, QgsRasterLayer) and isinstance(layer.renderer(), QgsSingleBandGrayRenderer):
+        # Intensities have no common scale: every image is stretched to its own values
+        layer.setContrastEnhancement(
+            QgsContrastEnhancement.ContrastEnhancementAlgorithm.StretchToMinimumMaximum,
+            QgsRasterMinMaxOrigin.Limits.CumulativeCut,
+        )
+
+
+def group_of(paths):
+    """The layer group of a survey, by what the names of its point clouds have in common."""
+    stems = [Path(path).stem.removesuffix(".copc") for path in paths]
+    name = os.path.commonprefix(stems).rstrip("_-. 0123456789") if len(set(stems)) > 1 else "".join(stems[:1])
+    if not name and paths:
+        name = Path(paths[0]).absolute().parent.name
+    return f"Lanewright – {name}" if name else "Lanewright"
+
+
+def style_on_load(name, dest, title, context, schema=(), group="Lanewright"):
     """Name, group and style the layer `dest` where QGIS is going to load it."""
     if not dest or not context.willLoadLayerOnCompletion(dest):
         return
     details = context.layerToLoadOnCompletionDetails(dest)
-    details.name, details.forceName, details.groupName = title, True, tr("Road map")
+    details.name, details.forceName, details.groupName = title, True, group
     look, order = LOOKS.get(name, (None, 90))
     details.layerSortKey = order
     qml = STYLES / f"{look}.qml"

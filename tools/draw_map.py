@@ -9,7 +9,6 @@ from pathlib import Path
 
 from plugin_package import ROOT
 
-STYLES = ROOT / "resources" / "styles"
 # from above
 LAYERS = (("driving_lines", "Driving lines"), ("road_edges", "Road edges"), ("marking_lines", "Marking lines"),
           ("markings", "Markings"), ("road_surface", "Road surface"))
@@ -19,7 +18,7 @@ MARGIN = 4.0  # m of ground around the road
 
 
 def styled_layers(package, image):
-    """The layers of the package from above, styled, and the style saved with each."""
+    """The layers of the package from above, in the styles they carry."""
     from qgis.core import QgsRasterLayer, QgsVectorLayer
 
     layers = []
@@ -27,15 +26,10 @@ def styled_layers(package, image):
         layer = QgsVectorLayer(f"{package}|layername={table}", title, "ogr")
         if not layer.isValid() or not layer.featureCount():
             sys.exit(f"Layer {table} of {package} is missing or empty.")
-        _, loaded = layer.loadNamedStyle(str(STYLES / f"{table}.qml"))
-        if not loaded:
-            sys.exit(f"There is no style for {table} in {STYLES}.")
-        save = getattr(layer, "saveStyleToDatabaseV2", None) or layer.saveStyleToDatabase
-        save("default", "", True, "")
+        if not layer.loadDefaultStyle()[1]:
+            sys.exit(f"Layer {table} of {package} has no style of its own.")
         layers.append(layer)
     raster = QgsRasterLayer(str(image), IMAGE_TITLE)
-    raster.loadNamedStyle(str(STYLES / "intensity_image.qml"))
-    raster.saveNamedStyle(str(Path(image).with_suffix(".qml")))  # QGIS looks for it beside the raster
     return [*layers, raster]
 
 

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from lanewright.core.schemas import DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES
+from lanewright.processing_provider.embedded_style import embed_style
 from lanewright.processing_provider.layers import qgis_fields
-from lanewright.processing_provider.styling import LOOKS, STYLES, Styler, style_on_load
+from lanewright.processing_provider.styling import LOOKS, STYLES, Styler, group_of, style_on_load
 from osgeo import gdal
 from qgis.core import QgsProcessingContext, QgsProject, QgsRasterLayer, QgsRenderContext, QgsVectorLayer
 
@@ -53,9 +54,9 @@ def test_what_is_loaded_comes_named_and_grouped(qgis_app):
     context.setProject(QgsProject.instance())
     details = QgsProcessingContext.LayerDetails("x", context.project(), "x")
     context.addLayerToLoadOnCompletion("/data/edges.gpkg", details)
-    style_on_load("ROAD_EDGES", "/data/edges.gpkg", "Road edges", context)
+    style_on_load("ROAD_EDGES", "/data/edges.gpkg", "Road edges", context, group="Lanewright – B12")
     loaded = context.layerToLoadOnCompletionDetails("/data/edges.gpkg")
-    assert (loaded.name, loaded.groupName, loaded.forceName) == ("Road edges", "Road map", True)
+    assert (loaded.name, loaded.groupName, loaded.forceName) == ("Road edges", "Lanewright – B12", True)
     assert loaded.postProcessor() is not None
 
 
@@ -63,3 +64,46 @@ def test_what_is_not_loaded_is_left_alone(qgis_app):
     context = QgsProcessingContext()
     style_on_load("ROAD_EDGES", "/data/edges.gpkg", "Road edges", context)
     assert not context.layersToLoadOnCompletion()
+
+
+@pytest.mark.parametrize("clouds, group", [
+    (["/data/main_street.laz"], "Lanewright – main_street"),
+    (["/data/B12/tile_001.laz", "/data/B12/tile_002.laz"], "Lanewright – tile"),
+    (["/data/B12/1.laz", "/data/B12/2.laz"], "Lanewright – B12"),
+    (["/data/drive.copc.laz"], "Lanewright – drive"),
+    ([], "Lanewright"),
+])
+def test_layers_of_one_survey_share_a_group_that_bears_its_name(clouds, group):
+    assert group_of(clouds) == group
+
+
+def written(tmp_path, dest):
+    from qgis.core import QgsCoordinateTransformContext, QgsVectorFileWriter
+
+    layer = layer_of(*KINDS["ROAD_EDGES"])
+    options = QgsVectorFileWriter.SaveVectorOptions()
+    options.layerName = "edges"
+    QgsVectorFileWriter.writeAsVectorFormatV3(layer, str(tmp_path / "map.gpkg"), QgsCoordinateTransformContext(), options)
+    return dest
+
+
+def test_a_geopackage_made_without_a_window_opens_styled_and_with_aliases(qgis_app, tmp_path):
+    path = tmp_path / "map.gpkg"
+    dest = written(tmp_path, f"ogr:dbname='{path}' table=\"edges\" (geom)")
+    for _ in range(2):  # a second run into the same table replaces the style
+        embed_style("ROAD_EDGES", dest, "Road edges", ROAD_EDGES)
+    layer = QgsVectorLayer(f"{path}|layername=edges", "edges", "ogr")
+    assert layer.listStylesInDatabase()[2] == ["default"]
+    assert layer.renderer().type() != "singleSymbol"
+    assert layer.attributeAlias(layer.fields().lookupField("station_m")) == "Station (m)"
+
+
+def test_an_image_made_without_a_window_opens_stretched(qgis_app, tmp_path):
+    path = str(tmp_path / "image.tif")
+    values = np.linspace(3000.0, 9000.0, 10000, dtype=np.float32)
+    dataset = gdal.GetDriverByName("GTiff").Create(path, 100, 100, 1, gdal.GDT_Float32)
+    dataset.GetRasterBand(1).WriteRaster(0, 0, 100, 100, values.tobytes())
+    del dataset
+    embed_style("INTENSITY_IMAGE", path, "Intensity image")
+    stretch = QgsRasterLayer(path, "image").renderer().contrastEnhancement()
+    assert 3000 <= stretch.minimumValue() < 3300 and 8700 < stretch.maximumValue() <= 9000

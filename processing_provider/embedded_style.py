@@ -1,0 +1,55 @@
+"""Styles that travel with a result, so that a file made without a window opens styled anywhere."""
+
+from pathlib import Path
+
+from qgis.core import QgsDataSourceUri, QgsRasterLayer, QgsVectorLayer
+
+from .destinations import destination_path
+from .styling import LOOKS, STYLES, apply_style
+
+NAME = "default"
+
+
+def embed_style(name, dest, title, schema=()):
+    """Give the result `dest` of the output `name` its style: in the GeoPackage, or beside the raster.
+
+    Other formats have no room for one. A style that cannot be kept costs a look, not the result, so
+    nothing is raised.
+    """
+    path = destination_path(dest)
+    look, _ = LOOKS.get(name, (None, None))
+    qml = STYLES / f"{look}.qml"
+    if path is None or look is None or not qml.exists():
+        return
+    if path.suffix.lower() in (".tif", ".tiff"):
+        _beside_the_raster(path, qml)
+    elif path.suffix.lower() == ".gpkg":
+        _in_the_package(_layer_uri(dest, path), title, qml, schema)
+
+
+def _beside_the_raster(path, qml):
+    layer = QgsRasterLayer(str(path), path.stem)
+    if layer.isValid():
+        apply_style(layer, qml)
+        layer.saveNamedStyle(str(path.with_suffix(".qml")))  # QGIS looks for it under this name
+
+
+def _in_the_package(uri, title, qml, schema):
+    layer = QgsVectorLayer(uri, title, "ogr")
+    if not layer.isValid():
+        return
+    apply_style(layer, qml, schema)
+    # The style of an earlier run into the same table would win
+    count, ids, names, _, _ = layer.listStylesInDatabase()
+    for number in range(max(count, 0)):
+        if names[number] == NAME:
+            layer.deleteStyleFromDatabase(ids[number])
+    save = getattr(layer, "saveStyleToDatabaseV2", None) or layer.saveStyleToDatabase
+    save(NAME, title, True, "")
+
+
+def _layer_uri(dest, path):
+    """The layer of a destination as the OGR provider opens it."""
+    if dest.startswith("ogr:"):
+        return f"{path}|layername={QgsDataSourceUri(dest.removeprefix('ogr:')).table()}"
+    return dest if "|" in dest else f"{path}|layername={Path(path).stem}"
