@@ -162,7 +162,7 @@ def _report_side(found, survey, road, side, steps, sight, settings):
         members = members[(steps.s[members] >= a) & (steps.s[members] <= b)]
         rows += _block_points(steps[members], edges, number)
     measured = np.array([(r["s"], r["u"], r["h"]) for r in rows]).reshape(-1, 3)
-    rows += _hidden_points(measured, sight, track)
+    rows += hidden_points(measured, sight, track)
     rows.sort(key=lambda r: r["s"])
     if not rows:
         return
@@ -194,7 +194,7 @@ def _block_points(steps, edges, chain):
     """One point per block from the steps of a chain: their line, read at the middle of what was seen."""
     if not len(steps):
         return []
-    block = _block_numbers(steps, edges)
+    block = block_numbers(steps, edges)
     # a chain's ends stand for themselves, not for the middle of their blocks
     if len(steps) > 2 * END_STEPS:
         block[:END_STEPS] = block[0] - 1
@@ -213,7 +213,7 @@ def _block_points(steps, edges, chain):
                              residual_m=round(float(residual[k]), 4), support=int(support[k]))) for k in range(len(names))]
 
 
-def _block_numbers(steps, edges):
+def block_numbers(steps, edges):
     """(M,) number of the block of each step, even numbers; blocks in which the curb bends are cut in four."""
     block = np.searchsorted(edges, steps.s, side="right")
     names, member = np.unique(block, return_inverse=True)
@@ -227,7 +227,7 @@ def _block_numbers(steps, edges):
     return 8 * block + 2 * np.where(off[member] > BENT, quarter, 0)
 
 
-def _hidden_points(measured, sight, track):
+def hidden_points(measured, sight, track):
     """Places in the gaps between curb points where something hides the curb."""
     if len(measured) < 2:
         return []

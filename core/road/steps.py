@@ -28,28 +28,28 @@ def find_steps(lines: PseudoScanLines, least, highest):
 def _rising_cells(lines, least, highest):
     """(row, cell) of the cells in which a profile crosses the middle of a step."""
     low, high, spacing = lines.low, lines.high, lines.spacing
-    base, rough, count = _road_before(low, spacing)
+    base, _, rough, count = road_before(low, spacing)
     span = max(int(round(WINDOW / spacing)), 2)
     noise = lines.noise[:, None]
-    top = _max_ahead(high, span) - HIGH_SIGMA * noise
+    top = max_ahead(high, span) - HIGH_SIGMA * noise
     with np.errstate(invalid="ignore"):
         step = top - base
     # the cell before must still be road: the last occupied one within the window
-    before = _last_before(low, span)
+    before = last_before(low, span)
     middle = base + 0.5 * step
     with np.errstate(invalid="ignore"):
         found = ((count >= 3) & (step >= np.maximum(0.8 * least, SIGMAS * np.maximum(noise, rough) / 2))
                  & (step <= highest + 0.05) & (high >= middle) & (before < middle))
     score = np.where(found, step - 2 * rough, -np.inf)
     # one of a cluster: the best within the window
-    beyond = _max_ahead(score, span, inclusive=False)
-    nearer = _max_ahead(score[:, ::-1], span, inclusive=False)[:, ::-1]
+    beyond = max_ahead(score, span, inclusive=False)
+    nearer = max_ahead(score[:, ::-1], span, inclusive=False)[:, ::-1]
     best = score >= np.maximum(beyond, nearer)
     return np.nonzero(found & best)
 
 
-def _road_before(low, spacing):
-    """Line through the principal points before every cell: its height there, scatter, and count."""
+def road_before(low, spacing):
+    """Line through the principal points before every cell: its height there, slope, scatter, and count."""
     rows, cells = low.shape
     reach, skip = int(round(ROAD_SIDE / spacing)), int(round(CLEARANCE / spacing))
     there = np.isfinite(low)
@@ -69,10 +69,10 @@ def _road_before(low, spacing):
         slope = np.where(vuu > 1e-4, vuz / vuu, 0.0)
         slope = np.clip(slope, -STEEPEST_ROAD, STEEPEST_ROAD)
         rough = np.sqrt(np.maximum(vzz - 2 * slope * vuz + slope * slope * vuu, 0.0))
-        return mz + slope * (c - mu), rough, n
+        return mz + slope * (c - mu), slope, rough, n
 
 
-def _max_ahead(values, span, inclusive=True):
+def max_ahead(values, span, inclusive=True):
     """Largest value in this and the following cells, NaN taken as none."""
     best = np.full(values.shape, -np.inf)
     for k in range(0 if inclusive else 1, span + 1):
@@ -82,7 +82,7 @@ def _max_ahead(values, span, inclusive=True):
     return best
 
 
-def _last_before(values, span):
+def last_before(values, span):
     """Value of the nearest occupied cell before each within the span, NaN where there is none."""
     found = np.full(values.shape, np.nan)
     for k in range(span, 0, -1):

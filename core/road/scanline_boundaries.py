@@ -1,0 +1,234 @@
+"""Road boundaries from normalized scanlines: corners of curbs, chained along the road.
+
+Section by section the scanlines of each side, pass and scanner are searched by
+themselves; corners that agree are merged, those that do not stay apart until the
+choice along the road, which both ways of finding curbs share, takes the ones that go on.
+
+References
+----------
+The scanline paper (ISPRS Archives, 2020), section 3 and table 1.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from ..errors import RoadExtractionError
+from ..features import Features
+from ..parallel import in_order
+from ..progress import Progress
+from ..schemas import CURB_POINTS
+from .chains import choose_along, curb_chains, link_chains, long_enough
+from .curbs import END_STEPS, MERGE_ACROSS, MERGE_UP, VEHICLE_HALF, block_edges, block_numbers, hidden_points
+from .profiles import LEAST_NOISE
+from .scanline_candidates import NEIGHBOURS, find_candidates
+from .scanline_corners import CurbCorners, corners_of
+from .scanline_grid import side_scanlines
+from .shadows import Sight
+from .sides import REACH, SECTION, SIDES, Track, expected_height
+
+
+@dataclass(frozen=True)
+class ScanlineBoundarySettings:
+    """The paper's table 1.
+
+    search_width : m across within which the height must change
+    sensor_height : m from the trajectory down to the road; 0 = from the data
+    clipping_height : m above the road up to which anything is looked at
+    min_height : m of height change
+    distance_across, distance_along : m to either side of a candidate from which its planes are made
+    ransac_distance : m, inliers of a plane
+    vertical_angle, horizontal_angle : degrees of a plane's normal from Z: at least that of a face, at most that of
+        road and sidewalk
+    max_gap : m between corners that are connected
+    """
+
+    search_width: float = 0.10
+    sensor_height: float = 0.0
+    clipping_height: float = 0.45
+    min_height: float = 0.03
+    distance_across: float = 0.50
+    distance_along: float = 0.40
+    ransac_distance: float = 0.005
+    vertical_angle: float = 60.0
+    horizontal_angle: float = 20.0
+    max_gap: float = 2.5
+
+    def __post_init__(self):
+        def check(name, value, least, most, unit):
+            if not least <= value <= most:
+                raise RoadExtractionError(f"{name} is {value} {unit}; it must be between {least} and {most} {unit}.")
+
+        check("The search width", self.search_width, 0.04, 0.5, "m")
+        check("The sensor height", self.sensor_height, 0.0, 10.0, "m")
+        check("The minimum height", self.min_height, 0.01, 0.5, "m")
+        check("The clipping height", self.clipping_height, 0.05, 2.0, "m")
+        if self.clipping_height <= self.min_height:
+            raise RoadExtractionError(f"The clipping height is {self.clipping_height} m and the minimum height {self.min_height} m; "
+                                      "the clipping height must be above the minimum height.")
+        check("The distance across", self.distance_across, 0.15, 2.0, "m")
+        check("The distance along", self.distance_along, 0.1, 2.0, "m")
+        check("The RANSAC distance", self.ransac_distance, 0.001, 0.1, "m")
+        check("The vertical angle", self.vertical_angle, 20.0, 90.0, "°")
+        check("The horizontal angle", self.horizontal_angle, 1.0, 45.0, "°")
+        if self.vertical_angle <= self.horizontal_angle:
+            raise RoadExtractionError(f"The vertical angle is {self.vertical_angle}° and the horizontal angle {self.horizontal_angle}°; "
+                                      "the vertical angle must be above the horizontal one.")
+        check("The longest connected gap", self.max_gap, 0.0, 100.0, "m")
+
+
+def curbs_from_scanlines(source, settings=ScanlineBoundarySettings(), block_length=0.0, progress=Progress()):
+    """Bottom and top corners of the curb on each side of every road, one of each per block.
+
+    Parameters
+    ----------
+    source : gives `frame`, `crs`, `interval`, `roads()`, `span(road)`, `road_height(road, s)` and
+        `scanlines(road, start, end)`; see scanline_source
+    block_length : m of road per corner; 0 = 0.5 to 2.0, shorter in sharp bends
+
+    Returns
+    -------
+    Features CURB_POINTS: PointZ in map coordinates, `part` bottom or top. Rows of status
+    `occluded` say where something hides the curb.
+    """
+    found = Features("PointZ", list(CURB_POINTS), crs=source.crs)
+    roads = source.roads()
+    for i, road in enumerate(roads):
+        part = progress.part(i / len(roads), (i + 1) / len(roads))
+        corners, sight = _corners_of_road(source, road, settings, part)
+        for side in SIDES:
+            if corners[side] is not None and len(corners[side]):
+                _report_side(found, source, road, side, corners[side], sight[side], settings, block_length)
+    bottoms = [row["status"] for row in found.rows if row["part"] == "bottom"]
+    progress.say(f"{bottoms.count('measured'):,} corners of curbs measured on scanlines, "
+                 f"{bottoms.count('occluded'):,} hidden by something in front.")
+    return found
+
+
+def _corners_of_road(source, road, settings, progress):
+    """Corners of each side, passes and scanners merged where they agree, and what was seen beside the road."""
+    interval = source.interval
+    sections = _sections(*source.span(road), interval)
+    first, last = sections[0][0], sections[-1][1]
+    margin = max(int(np.ceil(settings.distance_along / interval)), NEIGHBOURS) + 1
+    sight = {side: Sight(interval, first, last - first, REACH) for side in SIDES}
+    tracks = {side: Track(source.frame, road, sign) for side, sign in SIDES.items()}
+
+    def work(section):
+        begin, end = section
+        rows = begin - margin, end + margin
+        lines = source.scanlines(road, (rows[0] - 0.5) * interval, (rows[1] - 0.5) * interval)
+        heights = lines.z - np.repeat(expected_height(source, road, lines.station), np.diff(lines.first))
+        stations = np.arange(*rows) * interval
+        found = {side: [] for side in SIDES}
+        nearest = {side: tracks[side](stations) + VEHICLE_HALF for side in SIDES}
+        for chosen, own in _apart(lines, heights):
+            for side, sign in SIDES.items():
+                outward = side_scanlines(chosen, own, sign, rows, interval, np.floor(nearest[side].min()), REACH, settings.clipping_height)
+                _look(sight[side], chosen, own, sign, outward, section)
+                candidates = find_candidates(outward, nearest[side], settings)
+                candidates = candidates[(candidates.row >= margin) & (candidates.row < margin + end - begin)]
+                if len(candidates):
+                    found[side].append(corners_of(outward, candidates, settings))
+        return {side: merged_corners(parts) for side, parts in found.items() if parts}
+
+    parts = {side: [] for side in SIDES}
+    for found in in_order(work, sections, progress):
+        for side, corners in found.items():
+            parts[side].append(corners)
+    return {side: _with_usual_noise(CurbCorners.join(found)) if found else None for side, found in parts.items()}, sight
+
+
+def _sections(start, end, interval):
+    """The section planes of a road parted for work: list of (first, last + 1) numbers, about 20 m each."""
+    first, last = int(np.floor(start / interval)), int(np.ceil(end / interval)) + 1
+    count = max(int(np.ceil((end - start) / SECTION)), 1)
+    bounds = np.unique(np.rint(np.linspace(first, last, count + 1)).astype(int))
+    return [(int(a), int(b)) for a, b in zip(bounds[:-1], bounds[1:])]
+
+
+def _apart(lines, heights):
+    """The lines of every pass and scanner by themselves, with the heights of their vertices."""
+    keys = np.c_[lines.pass_number, lines.scanner]
+    for key in np.unique(keys, axis=0):
+        own = np.flatnonzero((keys == key).all(1))
+        yield lines[own], heights[np.isin(lines.line_of_vertex(), own)]
+
+
+def _look(sight, lines, heights, sign, outward, section):
+    """Note what the lines of a section show beside the road."""
+    margin = section[0] - outward.first
+    u, s = sign * lines.d, np.repeat(lines.station, np.diff(lines.first)) + 0.5 * outward.interval
+    sight.look(u, s, heights, section, outward.part(margin, margin + section[1] - section[0]))
+
+
+def merged_corners(found):
+    """One corner where several passes or scanners saw the same one: the mean, weighted by support."""
+    corners = CurbCorners.join(found)
+    if len(found) < 2 or not len(corners):
+        return corners
+    corners = corners[np.lexsort((corners.u, corners.profile))]
+    apart = (np.diff(corners.profile) > 0) | (np.diff(corners.u) > MERGE_ACROSS) | (np.abs(np.diff(corners.h)) > MERGE_UP)
+    group = np.r_[0, np.cumsum(apart)]
+    weight = np.sqrt(np.maximum(corners.support, 1))
+    total = np.bincount(group, weight)
+    values = {name: np.bincount(group, weight * getattr(corners, name)) / total
+              for name in ("s", "u", "h", "skew", "height", "run", "noise", "usual", "top_u", "top_h", "residual")}
+    return CurbCorners(profile=corners.profile[np.r_[True, apart]], **values,
+                       support=np.bincount(group, corners.support).astype(np.int64),
+                       behind=np.bincount(group, corners.behind).astype(np.int64))
+
+
+def _with_usual_noise(corners):
+    """The corners, each with the scatter that is usual about the planes of this road."""
+    if len(corners):
+        corners.usual = np.full(len(corners), max(float(np.median(corners.noise)), LEAST_NOISE))
+    return corners
+
+
+def _report_side(found, source, road, side, corners, sight, settings, block_length):
+    """Bottom and top corners of one side of one road, measured and hidden, in order of station."""
+    frame, sign = source.frame, SIDES[side]
+    track = Track(frame, road, sign)
+    label = link_chains(corners, source.interval)
+    chains = curb_chains(corners, label, source.interval, settings.min_height, np.radians(settings.vertical_angle))
+    chosen = long_enough(choose_along(chains, corners, track), chains, corners)
+    edges = block_edges(frame.road(road), *source.span(road), block_length)
+    rows = []
+    for number, (chain, a, b) in enumerate(chosen):
+        members = chains[chain].steps
+        members = members[(corners.s[members] >= a) & (corners.s[members] <= b)]
+        rows += _block_points(corners[members], edges, number)
+    bottoms = np.array([(r["s"], r["u"], r["h"]) for r in rows if r["fields"]["part"] == "bottom"]).reshape(-1, 3)
+    rows += [{**r, "fields": dict(r["fields"], part="bottom")} for r in hidden_points(bottoms, sight, track)]
+    rows.sort(key=lambda r: (r["s"], r["fields"]["part"]))
+    if not rows:
+        return
+    s, u, h = (np.array([r[name] for r in rows]) for name in ("s", "u", "h"))
+    x, y, z = frame.to_map(road, s, sign * u, h + expected_height(source, road, s))
+    for point, row in zip(shapely.points(np.round(x, 4), np.round(y, 4), np.round(z, 4)), rows):
+        found.add(point, road=road, side=side, station_m=round(row["s"], 4), offset_m=round(sign * row["u"], 4), **row["fields"])
+
+
+def _block_points(corners, edges, chain):
+    """A bottom and a top corner per block from those of a chain: their means."""
+    if not len(corners):
+        return []
+    block = block_numbers(corners, edges)
+    # a chain's ends stand for themselves, not for the middle of their blocks
+    if len(corners) > 2 * END_STEPS:
+        block[:END_STEPS] = block[0] - 1
+        block[-END_STEPS:] = block[-1] + 1
+    names, member = np.unique(block, return_inverse=True)
+    n = np.bincount(member)
+    mean = {name: np.bincount(member, getattr(corners, name)) / n for name in ("s", "u", "h", "top_u", "top_h", "height")}
+    off = corners.u - np.interp(corners.s, mean["s"], mean["u"])
+    residual, support = np.sqrt(np.bincount(member, off**2) / n), np.bincount(member, corners.support)
+    rows = []
+    for k in range(len(names)):
+        fields = dict(status="measured", height_m=round(float(mean["height"][k]), 4), chain=chain,
+                      residual_m=round(float(residual[k]), 4), support=int(support[k]))
+        for part, u, h in (("bottom", "u", "h"), ("top", "top_u", "top_h")):
+            rows.append(dict(s=float(mean["s"][k]), u=float(mean[u][k]), h=float(mean[h][k]), fields=dict(fields, part=part)))
+    return rows

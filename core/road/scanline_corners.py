@@ -1,0 +1,158 @@
+"""Bottom and top corners of curbs: where section plane, curb face, and road or sidewalk meet.
+
+About every candidate the vertices of neighbouring scanlines are parted into road,
+face and raised ground by their height over the road's own line. Each part gives a
+plane by RANSAC; if the three planes are those of a curb, their meeting points with the
+section plane are its corners.
+
+References
+----------
+The scanline paper (ISPRS Archives, 2020), section 3 and table 1, steps c to f. Its
+angles from the vertical are the planes' own; here they are those of the normals.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .corners import Steps, median_and_spread
+from .scanline_planes import SIGMAS, fit_planes
+
+MOST_ROAD, MOST_FACE = 96, 64  # vertices of road, and of raised ground, that give a plane; and of the face
+MOST_ROWS = 9         # scanlines of a neighbourhood; narrower intervals leave some out
+FEWEST = 15           # inliers of a plane
+LEAST_SHARE = 0.5     # inliers of a plane among its vertices
+QUARTERS = 1.35       # sigmas between the quartiles of a normal distribution
+LOWER, UPPER = 0.30, 0.70  # share of the rise up to which a vertex is road, and from which it is raised ground
+FACE = (0.12, 0.88)   # share of the rise within which it may be face
+FACE_REACH = 0.12     # m across from the middle of the rise within which the face lies
+CLEAR = 0.02          # m from the middle of the rise at which road ends and raised ground begins
+UNDER, OVER = 0.12, 0.10   # m below the road's line, and above the rise, that belong to it: gutters; slopes
+FARTHEST = 0.10       # m from a corner to the nearest inlier
+LEAST_MEETING = 0.1   # 1 - product of the slopes: planes that meet flatter give no corner
+MOST_SKEW = 1.0       # m outward per m along
+
+
+@dataclass
+class CurbCorners(Steps):
+    """Steps measured by planes: besides the bottom corners, the top ones and the scatter about the planes.
+
+    top_u, top_h : (M,) m, outward offset and height of the top corner above the expected road
+    residual : (M,) m, scatter of the inliers about their planes
+    """
+
+    top_u: np.ndarray
+    top_h: np.ndarray
+    residual: np.ndarray
+
+
+def corners_of(side, candidates, settings):
+    """Corners at the candidates whose three planes are road, face and raised ground.
+
+    Parameters
+    ----------
+    side : SideScanlines
+    candidates : Candidates
+    settings : ScanlineBoundarySettings
+
+    Returns
+    -------
+    CurbCorners, at most one for each candidate, in their order; `usual` is the scatter
+    about the planes of each, and no better known here
+    """
+    owner, s, u, h = _neighbourhood(side, candidates, settings)
+    # heights over the road's own line, so that its slope does not count as part of the rise
+    over = h - candidates.slope[owner] * u
+    share = over / candidates.step[owner]
+    road = (u < -CLEAR) & (share < LOWER) & (over > -UNDER)
+    face = (np.abs(u) < FACE_REACH) & (share > FACE[0]) & (share < FACE[1])
+    raised = (u > CLEAR) & (share > UPPER) & (over < candidates.step[owner] + OVER)
+    count = len(candidates)
+
+    def plane(part, v, p, q, most, scatter):
+        index, n = _evenly(owner, part, count, most)
+        return fit_planes(v[index], p[index], q[index], n, settings.ransac_distance, SIGMAS * scatter), index
+
+    ground, ground_points = plane(road, h, u, s, MOST_ROAD, candidates.rough)
+    front, front_points = plane(face, u, h, s, MOST_FACE, candidates.rough)
+    # grass behind a curb scatters more than the road before it
+    _, spread = median_and_spread(owner, over, raised, count)
+    top, top_points = plane(raised, h, u, s, MOST_ROAD, np.maximum(candidates.rough, spread / QUARTERS))
+    bottom_u, bottom_h, bottom_meets = _meeting(ground, front)
+    top_u, top_h, top_meets = _meeting(top, front)
+    tan = np.tan(np.radians(settings.horizontal_angle))
+    # the angle of the face's normal from the vertical: its slope against height makes it lean
+    lean = front.coefficients[:, 1] / np.hypot(1.0, front.coefficients[:, 2])
+    with np.errstate(invalid="ignore"):
+        good = (bottom_meets & top_meets & (ground.steepness() <= tan) & (top.steepness() <= tan)
+                & (np.degrees(np.arctan2(1.0, np.abs(lean))) >= settings.vertical_angle)
+                & (np.abs(front.coefficients[:, 2]) <= MOST_SKEW)
+                & (ground.inliers >= FEWEST) & (front.inliers >= FEWEST) & (top.inliers >= FEWEST)
+                & (ground.inliers >= LEAST_SHARE * ground.points) & (top.inliers >= LEAST_SHARE * top.points)
+                & (front.inliers >= LEAST_SHARE * front.points)
+                & (top_h - bottom_h >= settings.min_height) & (top_h - bottom_h <= settings.clipping_height))
+        for points, n, at_u, at_h in ((ground_points, ground.points, bottom_u, bottom_h), (front_points, front.points, bottom_u, bottom_h),
+                                      (front_points, front.points, top_u, top_h), (top_points, top.points, top_u, top_h)):
+            good &= _distance(u, h, points, n, at_u, at_h) <= FARTHEST
+    total = ground.inliers + front.inliers + top.inliers
+    residual = np.sqrt((ground.sigma**2 * ground.inliers + front.sigma**2 * front.inliers + top.sigma**2 * top.inliers)
+                       / np.maximum(total, 1))
+    row, noise = side.first + candidates.row, ground.sigma.astype(float)
+    found = CurbCorners(profile=row, s=row * side.interval, u=candidates.u + bottom_u, h=candidates.base + bottom_h,
+                        skew=front.coefficients[:, 2].astype(float), height=top_h - bottom_h, run=np.maximum(top_u - bottom_u, 0.0),
+                        noise=noise, usual=noise, support=ground.inliers + front.inliers, behind=top.inliers,
+                        top_u=candidates.u + top_u, top_h=candidates.base + top_h, residual=residual)
+    return found[good]
+
+
+def _neighbourhood(side, candidates, settings):
+    """(owner, s, u, h) float32 of the vertices about every candidate, from its own place."""
+    reach = int(np.floor(settings.distance_along / side.interval + 1e-9))
+    stride = max(int(np.ceil((2 * reach + 1) / MOST_ROWS)), 1)
+    key = side.row * 1000.0 + side.u
+    starts, ends, ahead = [], [], np.arange(-(reach // stride), reach // stride + 1) * stride
+    for k in ahead:
+        row = candidates.row + k
+        inside = (row >= 0) & (row < side.shape[0])
+        at = row * 1000.0 + candidates.u
+        starts.append(np.searchsorted(key, at - settings.distance_across))
+        ends.append(np.where(inside, np.searchsorted(key, at + settings.distance_across), starts[-1]))
+    start, end = np.stack(starts, 1).ravel(), np.stack(ends, 1).ravel()
+    length = end - start
+    which = np.repeat(np.arange(len(start)), length)
+    index = np.arange(length.sum()) - np.repeat(np.cumsum(length) - length, length) + start[which]
+    owner, along = which // len(ahead), ahead[which % len(ahead)] * side.interval
+    return (owner, along.astype(np.float32), (side.u[index] - candidates.u[owner]).astype(np.float32),
+            (side.h[index] - candidates.base[owner]).astype(np.float32))
+
+
+def _evenly(owner, mask, count, most):
+    """(count, most) indices of the masked vertices of each owner, evenly chosen where there are more; how many."""
+    chosen = np.flatnonzero(mask)
+    number = np.bincount(owner[chosen], minlength=count)
+    first = np.cumsum(number) - number
+    size = np.minimum(number, most)
+    column = np.arange(most)
+    place = np.where(column < size[:, None], (column * number[:, None]) // np.maximum(size, 1)[:, None], 0)
+    if not len(chosen):
+        return np.zeros((count, most), np.int64), size
+    return chosen[np.minimum(first[:, None] + place, len(chosen) - 1)], size
+
+
+def _meeting(level, face):
+    """Offset and height where a level plane and a face meet in the section plane, and whether they do."""
+    a, b = level.coefficients[:, 0].astype(float), level.coefficients[:, 1].astype(float)
+    c, d = face.coefficients[:, 0].astype(float), face.coefficients[:, 1].astype(float)
+    det = 1.0 - b * d
+    with np.errstate(invalid="ignore", divide="ignore"):
+        u = (c + d * a) / det
+        return u, a + b * u, np.abs(det) > LEAST_MEETING
+
+
+def _distance(u, h, points, count, at_u, at_h):
+    """(M,) m from a corner to the nearest of its points."""
+    if not u.size:
+        return np.full(len(at_u), np.inf)
+    there = np.arange(points.shape[1]) < count[:, None]
+    squared = (u[points] - at_u[:, None]) ** 2 + (h[points] - at_h[:, None]) ** 2
+    return np.sqrt(np.where(there, squared, np.inf).min(1))

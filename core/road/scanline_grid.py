@@ -1,0 +1,117 @@
+"""Normalized scanlines of one side of the road, walked outward: resampled, and on a grid for the search of steps."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+SPACING = 0.02      # m along a scanline between resampled vertices, and across between cells
+UPRIGHT = 2.0       # m that a metre of height counts as, so that low faces keep vertices enough
+DEPTH = 1.0         # m below the road to which ground is sought
+FAR = 1e3           # m: parts lines that follow on each other in one array
+
+
+@dataclass
+class SideScanlines:
+    """Resampled scanlines of one side, pass and scanner.
+
+    Rows are section planes, row r at station (first + r) * interval; offsets count
+    outward from the reference line, heights from the expected road.
+
+    Attributes
+    ----------
+    first, interval, origin : number of the first row, m between rows, least offset
+    low : (R, C) float64, height where each row passes the middle of a cell, the lowest of
+        several lines; NaN where there is none
+    row, u, h : (N,) vertices SPACING apart along the lines, sorted by row and offset
+    row_start : (R + 1,) vertices of each row
+    """
+
+    first: int
+    interval: float
+    origin: float
+    low: np.ndarray
+    row: np.ndarray
+    u: np.ndarray
+    h: np.ndarray
+    row_start: np.ndarray
+
+    @property
+    def shape(self):
+        return self.low.shape
+
+    def part(self, first, last):
+        """The grid of the rows from index `first` to before `last`; the vertices are left out."""
+        none = np.empty(0)
+        return SideScanlines(self.first + first, self.interval, self.origin, self.low[first:last], none, none, none, none)
+
+    def offset(self, cell):
+        """Outward offset of the middle of cells, metres."""
+        return self.origin + (np.asarray(cell) + 0.5) * SPACING
+
+
+def side_scanlines(lines, heights, sign, rows, interval, origin, reach, clipping_height):
+    """The scanlines of one side.
+
+    Parameters
+    ----------
+    lines : Scanlines of one pass and scanner
+    heights : (V,) m of their vertices above the expected road
+    sign : 1 for the left side, -1 for the right
+    rows : (first, last + 1) numbers of the section planes
+    interval, origin, reach : metres
+    clipping_height : m above the expected road up to which ground is looked for
+
+    Returns
+    -------
+    SideScanlines
+    """
+    first, last = rows
+    line, u, h = _resampled(lines, sign * lines.d, heights)
+    row_of_line = np.rint(lines.station / interval).astype(np.int64) - first
+    row = row_of_line[line]
+    kept = (row >= 0) & (row < last - first) & (u >= origin) & (u < reach) & (h > -DEPTH) & (h <= clipping_height)
+    line, row, u, h = line[kept], row[kept], u[kept], h[kept]
+    cells = max(int(np.ceil((reach - origin) / SPACING)), 1)
+    low = _on_grid(line, row, (u - origin) / SPACING - 0.5, h, last - first, cells)
+    order = np.argsort(row * FAR + (u - origin), kind="stable")
+    row, u, h = row[order], u[order], h[order]
+    return SideScanlines(first, interval, origin, low, row, u, h, np.searchsorted(row, np.arange(last - first + 1)))
+
+
+def _resampled(lines, u, h):
+    """(line, u, h) at equal steps along every line, a metre of height counted as UPRIGHT metres."""
+    if not len(lines):
+        return np.empty(0, np.int64), np.empty(0), np.empty(0)
+    counts = np.diff(lines.first)
+    step = np.abs(np.diff(u)) + UPRIGHT * np.abs(np.diff(h))
+    step[lines.first[1:-1] - 1] = FAR
+    along = np.r_[0.0, np.cumsum(step)]
+    begin, end = along[lines.first[:-1]], along[lines.first[1:] - 1]
+    number = np.floor((end - begin) / SPACING).astype(np.int64) + 1
+    line = np.repeat(np.arange(len(counts)), number)
+    within = np.arange(number.sum()) - np.repeat(np.cumsum(number) - number, number)
+    at = begin[line] + within * SPACING
+    before = np.clip(np.searchsorted(along, at, side="right") - 1, 0, len(along) - 2)
+    share = (at - along[before]) / np.maximum(along[before + 1] - along[before], 1e-9)
+    # the last sample of a line may touch the leap to the next one
+    share = np.where(before >= lines.first[line + 1] - 1, 0.0, share)
+    return line, u[before] + share * (u[before + 1] - u[before]), h[before] + share * (h[before + 1] - h[before])
+
+
+def _on_grid(line, row, column, h, rows, cells):
+    """(rows, cells) heights where lines pass the middles of cells, the lowest of several."""
+    low = np.full((rows, cells), np.nan)
+    if len(line) < 2:
+        return low
+    a, b = column[:-1], column[1:]
+    cell = np.floor(np.maximum(a, b)).astype(np.int64)
+    # vertices are nearer than a cell, so that no two middles lie between them
+    passes = (line[:-1] == line[1:]) & (cell >= np.minimum(a, b)) & (np.abs(b - a) < 2.0) & (cell >= 0) & (cell < cells)
+    k = np.flatnonzero(passes)
+    share = (cell[k] - a[k]) / np.where(b[k] == a[k], 1.0, b[k] - a[k])
+    height = h[k] + share * (h[k + 1] - h[k])
+    place = row[k] * cells + cell[k]
+    # of several heights for one place the last one written stays
+    order = np.argsort(-height, kind="stable")
+    low.flat[place[order]] = height[order]
+    return low
