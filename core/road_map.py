@@ -16,8 +16,10 @@ from .markings.intensity import IntensitySettings, correct_intensity
 from .markings.lines import LineSettings, fit_marking_lines
 from .markings.outliers import OutlierSettings, remove_outliers
 from .progress import Progress
-from .road.curbs import CurbSettings, detect_curbs
-from .road.edges import EdgeSettings, fit_road_edges
+from .road.boundaries import BoundarySettings, draw_boundaries, find_curb_points
+from .road.curbs import CurbSettings
+from .road.edges import EdgeSettings
+from .road.scanline_boundaries import ScanlineBoundarySettings
 from .road.surface import SurfaceSettings, extract_road_surface
 from .survey.survey import SurveySettings, open_survey
 
@@ -27,7 +29,9 @@ class RoadMapSettings:
     """The settings of every stage, and whether intensity is corrected first."""
 
     survey: SurveySettings = SurveySettings()
+    boundary_method: str = BoundarySettings.method
     curbs: CurbSettings = CurbSettings()
+    scanlines: ScanlineBoundarySettings = ScanlineBoundarySettings()
     edges: EdgeSettings = EdgeSettings()
     surface: SurfaceSettings = SurfaceSettings()
     correct: bool = True
@@ -39,11 +43,16 @@ class RoadMapSettings:
     lines: LineSettings = LineSettings()
     driving: DrivingSettings = DrivingSettings()
 
+    @property
+    def boundaries(self):
+        return BoundarySettings(self.boundary_method, self.curbs, self.scanlines)
+
 
 @dataclass
 class RoadMap:
     """Every result of the chain; `seconds` and `counts` tell of each stage.
 
+    `boundary_differences` tells where the two boundary methods lie apart, None where one was asked for.
     `without_paint` is the sentence that says why there are no markings, "" where
     there are.
     """
@@ -54,6 +63,8 @@ class RoadMap:
     edges: Features
     surface: Features
     road_points: object
+    boundary_differences: Features = None
+    length_by_method: dict = field(default_factory=dict)
     intensity_report: object = None
     image: object = None
     markings: Features = None
@@ -109,8 +120,9 @@ def make_road_map(paths, trajectory, image_path, settings=RoadMapSettings(), pro
     stages = _Stages(progress)
     survey = stages.run("survey", "Reading the survey …", open_survey, paths, trajectory, settings.survey)
     try:
-        curb_points = stages.run("curbs", "Detecting curbs …", detect_curbs, survey, settings.curbs)
-        edges = stages.run("edges", "Fitting road edges …", fit_road_edges, curb_points, survey.frame, settings.edges)
+        found = stages.run("curbs", "Detecting curbs …", find_curb_points, survey, settings.boundaries)
+        boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, found, survey.frame, settings.edges)
+        curb_points, edges = boundaries.curb_points, boundaries.edges
         road_points, surface = stages.run("surface", "Extracting the road surface …", extract_road_surface,
                                           survey, edges, settings.surface)
         facts = dict(files=len(survey.files), scanners=len(survey.scanners), passes=len(survey.frame.passes),
@@ -118,8 +130,8 @@ def make_road_map(paths, trajectory, image_path, settings=RoadMapSettings(), pro
         has_intensity = survey.has_intensity
     finally:
         survey.store.close()
-    result = RoadMap(survey.frame, survey.crs, curb_points, edges, surface, road_points, seconds=stages.seconds,
-                     survey_facts=facts)
+    result = RoadMap(survey.frame, survey.crs, curb_points, edges, surface, road_points,
+                     boundaries.differences, boundaries.length_by_method, seconds=stages.seconds, survey_facts=facts)
     result.counts.update(curb_points=len(curb_points), road_points=len(road_points))
     if not has_intensity:
         result.without_paint = ("The point cloud has no intensity (all values are 0), so paint cannot be told from "

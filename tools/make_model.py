@@ -16,9 +16,8 @@ STEP_X, STEP_Y = 300, 130
 SURVEY = {"POINT_CLOUDS": "@POINT_CLOUDS", "TRAJECTORY": "@TRAJECTORY", "CRS": "@CRS"}
 DRIVE = {"TRAJECTORY": "@TRAJECTORY"}
 STAGES = {
-    "detectcurbs": (SURVEY, ()),
-    "fitroadedges": ({"CURB_POINTS": "detectcurbs.CURB_POINTS", **DRIVE}, ("ROAD_EDGES",)),
-    "extractroadsurface": ({**SURVEY, "ROAD_EDGES": "fitroadedges.ROAD_EDGES"}, ("ROAD_SURFACE",)),
+    "detectboundaries": ({**SURVEY, "BOUNDARY_METHOD": "@BOUNDARY_METHOD"}, ("ROAD_EDGES",)),
+    "extractroadsurface": ({**SURVEY, "ROAD_EDGES": "detectboundaries.ROAD_EDGES"}, ("ROAD_SURFACE",)),
     "correctintensity": ({"ROAD_POINTS": "extractroadsurface.ROAD_POINTS", **DRIVE}, (("OUTPUT", "ROAD_POINTS"),)),
     "intensityimage": ({"ROAD_POINTS": "correctintensity.OUTPUT"}, ("INTENSITY_IMAGE",)),
     "extractmarkings": (
@@ -30,13 +29,13 @@ STAGES = {
         ("MARKING_LINES",)),
     "drivinglines": (
         {"MARKING_LINES": "fitmarkinglines.MARKING_LINES", "MARKINGS": "clustermarkings.MARKINGS",
-         "ROAD_EDGES": "fitroadedges.ROAD_EDGES", "ROAD_POINTS": "correctintensity.OUTPUT", **DRIVE},
+         "ROAD_EDGES": "detectboundaries.ROAD_EDGES", "ROAD_POINTS": "correctintensity.OUTPUT", **DRIVE},
         ("DRIVING_LINES", "CURVE_ELEMENTS")),
 }
 
 
 OUTPUT_ORDER = [
-    "fitroadedges:Road edges", "extractroadsurface:Road surface", "correctintensity:Road points",
+    "detectboundaries:Road edges", "extractroadsurface:Road surface", "correctintensity:Road points",
     "intensityimage:Intensity image", "clustermarkings:Markings", "fitmarkinglines:Marking lines",
     "drivinglines:Driving lines", "drivinglines:Curve elements",
 ]
@@ -46,10 +45,12 @@ def add_inputs(model):
     from qgis.core import (QgsProcessing, QgsProcessingModelParameter, QgsProcessingParameterCrs,
                            QgsProcessingParameterFeatureSource, QgsProcessingParameterMultipleLayers)
     from qgis.PyQt.QtCore import QPointF
+    from lanewright.processing_provider.road.detect_boundaries import METHOD_KNOB
 
     inputs = (
         QgsProcessingParameterMultipleLayers("POINT_CLOUDS", "Point clouds", QgsProcessing.SourceType.TypeFile),
         QgsProcessingParameterFeatureSource("TRAJECTORY", "Trajectory", [QgsProcessing.SourceType.TypeVector]),
+        METHOD_KNOB.parameter(),
         QgsProcessingParameterCrs("CRS", "CRS of the point clouds, where they carry none", optional=True),
     )
     for row, definition in enumerate(inputs):

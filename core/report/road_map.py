@@ -10,7 +10,8 @@ from .page import Page
 STAGES = dict(survey="Reading and placing points", curbs="Curbs", edges="Road edges", surface="Road surface",
               intensity="Intensity correction", image="Intensity image", markings="Marking extraction",
               outliers="Outlier removal", clusters="Clustering", lines="Marking lines", driving="Driving lines")
-KEY = (("#e63c3c", "road edge, measured"), ("#ff963c", "road edge, bridged"), ("#ffdc50", "marking"),
+KEY = (("#e63c3c", "road edge, measured"), ("#ff963c", "road edge, bridged"), ("#e63cff", "the two methods more than 5 cm apart"),
+       ("#ffdc50", "marking"),
        ("#3cc8e6", "marking line"), ("#3cdc5a", "driving line"), ("#bfff3c", "bridged"), ("#c878dc", "inferred"))
 
 
@@ -40,7 +41,7 @@ def road_map_report(road_map, image_path=None, progress=Progress()):
 
 def _picture(page, road_map, image_path):
     background = grey_background(image_path) if image_path and road_map.image is not None else None
-    layers = dict(markings=road_map.markings, edges=road_map.edges, marking_lines=road_map.marking_lines,
+    layers = dict(markings=road_map.markings, edges=road_map.edges, differences=road_map.boundary_differences, marking_lines=road_map.marking_lines,
                   driving_lines=road_map.driving_lines)
     picture = draw_map(layers, background)
     if picture is not None:
@@ -73,8 +74,28 @@ def _road(page, road_map):
         page.table(("Side", "Status", "Length (m)"), _lengths(road_map.edges, "side", "status"))
     else:
         page.text("No curb was found along this road, so no edge line was drawn.")
+    if road_map.boundary_differences is not None:
+        _agreement(page, road_map)
     page.table(("Status of the surface", "Area (m²)"),
                [(row.get("status"), geometry.area) for geometry, row in road_map.surface])
+
+
+def _agreement(page, road_map):
+    """Where profiles and scanlines tell of different edges: a measure of trust where there is no truth."""
+    page.heading("Agreement of the two methods")
+    page.table(("Method", "Edges measured (m)"), sorted(road_map.length_by_method.items()))
+    apart = [(row["length_m"], row["agree_cm"]) for row in road_map.edges.rows if row.get("agree_cm") is not None]
+    length = sum(m for m, _ in apart)
+    if length:
+        usual = sum(m * cm for m, cm in apart) / length
+        page.text(f"Both methods see {length:.0f} m of the edges drawn; 95 % of each piece keeps within {usual:.1f} cm on average.")
+    stretches = road_map.boundary_differences.rows
+    if not stretches:
+        page.text("Nowhere do they lie more than 5 cm apart for a metre or more.")
+        return
+    page.text("Here they lie more than 5 cm apart; look at these places first.")
+    page.table(("Road", "Side", "From (m)", "To (m)", "Apart at most (cm)"),
+               [[row[name] for name in ("road", "side", "station_m", "end_m", "agree_cm")] for row in stretches])
 
 
 def _markings(page, road_map):

@@ -6,10 +6,13 @@ INTERVAL, CORRIDOR = 0.10, 15.0  # m between section planes; m either side
 
 
 class SurveyScanlines:
-    """The scanlines of a survey, made when they are asked for."""
+    """The scanlines of a survey, made when they are asked for.
 
-    def __init__(self, survey, interval=INTERVAL, corridor=CORRIDOR):
-        self.survey, self.interval, self.corridor = survey, interval, corridor
+    interval, corridor : metres; sensor_height : m from the trajectory down to the road, 0 = from the data
+    """
+
+    def __init__(self, survey, interval=INTERVAL, corridor=CORRIDOR, sensor_height=0.0):
+        self.survey, self.interval, self.corridor, self.sensor_height = survey, interval, corridor, sensor_height
         self.frame, self.crs = survey.frame, survey.crs
 
     def roads(self):
@@ -19,6 +22,9 @@ class SurveyScanlines:
         return self.survey.store.span(road)
 
     def road_height(self, road, s):
+        """(N,) local z at which the road is expected."""
+        if self.sensor_height:
+            return self.frame.track_height(road, s) - self.sensor_height
         return self.survey.road_height(road, s)
 
     def scanlines(self, road, start, end):

@@ -11,7 +11,8 @@ from ..markings.extract_markings import MARKING_KNOBS
 from ..markings.fit_marking_lines import LINE_KNOBS
 from ..markings.intensity_image import IMAGE_KNOBS
 from ..markings.remove_outliers import OUTLIER_KNOBS
-from ..road.detect_boundaries import add_boundary_method
+from ..road.boundaries_from_scanlines import DOOR_KNOBS
+from ..road.detect_boundaries import METHOD_KNOB
 from ..road.detect_curbs import CURB_KNOBS
 from ..road.extract_road_surface import SURFACE_KNOBS
 from ..road.fit_road_edges import EDGE_KNOBS
@@ -22,6 +23,7 @@ from .driving_lines import DRIVING_KNOBS
 # Field of RoadMapSettings -> its knobs
 STAGES = {
     "curbs": CURB_KNOBS,
+    "scanlines": DOOR_KNOBS,
     "edges": EDGE_KNOBS,
     "surface": SURFACE_KNOBS,
     "intensity": INTENSITY_KNOBS,
@@ -35,7 +37,7 @@ STAGES = {
 
 # The dialog shows what one turns from survey to survey; the rest is for the single stages
 SHOWN = (
-    "MIN_HEIGHT", "MAX_HEIGHT", "SLOPE", "BLOCK_LENGTH", "MAX_GAP", "FALLBACK_WIDTH", "MAX_WIDTH", "CELL_SIZE", "METHOD",
+    "MIN_HEIGHT", "MAX_HEIGHT", "SLOPE", "SCANLINE_MIN_HEIGHT", "BLOCK_LENGTH", "MAX_GAP", "FALLBACK_WIDTH", "MAX_WIDTH", "CELL_SIZE", "METHOD",
     "CURVE", "DEGREE", "LANE_WIDTH", "LINE_DISTANCE", "TRAFFIC_SIDE",
 )
 
@@ -57,7 +59,7 @@ class RoadMap(LanewrightAlgorithm):
 
     def initAlgorithm(self, configuration=None):
         self.add_survey()
-        add_boundary_method(self)
+        self.add_knobs((METHOD_KNOB,))
         self.add(
             QgsProcessingParameterBoolean("CORRECT_INTENSITY", tr("Correct intensity first"), True),
             tr("Evens out range, incidence and the difference between scanners. Switch it off for clouds whose "
@@ -81,6 +83,7 @@ class RoadMap(LanewrightAlgorithm):
 
         settings = RoadMapSettings(
             correct=call.flag("CORRECT_INTENSITY"),
+            boundary_method=call.knob(METHOD_KNOB),
             survey=call.settings(SURVEY_KNOBS, crs=call.crs()),
             **{field: call.settings(knobs) for field, knobs in STAGES.items()},
         )

@@ -1,0 +1,86 @@
+"""Road boundaries by either method or by both: the one door that the road map and its dialogs use."""
+
+from dataclasses import dataclass, field
+
+from ..errors import RoadExtractionError
+from ..features import Features
+from ..progress import Progress
+from .boundary_agreement import chosen_points, note_agreement
+from .curbs import CurbSettings, detect_curbs
+from .edges import EdgeSettings, fit_road_edges
+from .scanline_boundaries import ScanlineBoundarySettings, curbs_from_scanlines
+from .scanline_source import SurveyScanlines
+
+METHODS = ("profiles", "scanlines", "both")
+
+
+@dataclass(frozen=True)
+class BoundarySettings:
+    """How road boundaries are found.
+
+    method : "profiles", "scanlines", or "both": the two check each other
+    curbs, scanlines : settings of the one and of the other
+    """
+
+    method: str = "profiles"
+    curbs: CurbSettings = CurbSettings()
+    scanlines: ScanlineBoundarySettings = ScanlineBoundarySettings()
+
+    def __post_init__(self):
+        if self.method not in METHODS:
+            raise RoadExtractionError(f"The boundary method {self.method!r} is not known; choose {', '.join(METHODS[:-1])} or {METHODS[-1]}.")
+
+
+@dataclass
+class Boundaries:
+    """Curb points and the edges through them; with both methods also where these lie apart (else None)."""
+
+    curb_points: Features
+    edges: Features
+    differences: Features = None
+    length_by_method: dict = field(default_factory=dict)
+
+
+def find_curb_points(survey, settings=BoundarySettings(), progress=Progress()):
+    """Curb points of the methods asked for: {method: Features CURB_POINTS}, "profiles" and/or "scanlines"."""
+    both = settings.method == "both"
+    found = {}
+    if settings.method != "scanlines":
+        found["profiles"] = detect_curbs(survey, settings.curbs, progress.part(0.0, 0.3) if both else progress)
+    if settings.method != "profiles":
+        source = SurveyScanlines(survey, sensor_height=settings.scanlines.sensor_height)
+        found["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length,
+                                                  progress.part(0.3, 1.0) if both else progress)
+    return found
+
+
+def draw_boundaries(found, frame, settings=EdgeSettings(), progress=Progress()):
+    """Edges through the curb points of one method, or of two that check each other.
+
+    Of two, the one that measures better is drawn at every place (`chosen_points`), and
+    `agree_cm` of every piece says how far apart they are.
+
+    Parameters
+    ----------
+    found : what `find_curb_points` gave
+    frame : RoadFrame
+    settings : EdgeSettings
+
+    Returns
+    -------
+    Boundaries
+    """
+    if len(found) == 1:
+        points, = found.values()
+        return Boundaries(points, fit_road_edges(points, frame, settings, progress))
+    quiet = Progress()
+    # scanlines first: a tie goes to the lines that come from planes
+    alone = {method: fit_road_edges(found[method], frame, settings, quiet) for method in ("scanlines", "profiles")}
+    points = chosen_points(found["scanlines"], found["profiles"], alone["scanlines"], alone["profiles"], frame)
+    edges = fit_road_edges(points, frame, settings, progress)
+    differences = note_agreement(edges, alone["scanlines"], alone["profiles"], frame)
+    lengths = {method: sum(row["length_m"] for row in lines.rows if row["status"] == "measured") for method, lines in alone.items()}
+    doubtful = sum(row["length_m"] for row in differences.rows)
+    progress.say(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "
+                 f"they lie more than 5 cm apart along {doubtful:.0f} m.")
+    return Boundaries(points, edges, differences, lengths)

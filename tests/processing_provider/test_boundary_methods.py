@@ -1,0 +1,45 @@
+"""The boundary methods through Processing: every one draws edges, both say how far apart they are."""
+
+import pytest
+from osgeo import ogr
+
+ogr.UseExceptions()
+
+
+@pytest.fixture(scope="module")
+def survey(provider, tmp_path_factory):
+    import processing
+
+    folder = tmp_path_factory.mktemp("survey")
+    return processing.run("lanewright:samplesurvey", {
+        "LENGTH": 50, "PULSE_RATE": 120000, "POINT_CLOUD": str(folder / "s.laz"), "TRAJECTORY": str(folder / "drive.gpkg"),
+    })
+
+
+def edges_of(path):
+    source = ogr.Open(str(path))
+    return [feature.items() for feature in source.GetLayer(0)]
+
+
+@pytest.mark.parametrize("method", ["profiles", "scanlines", "both"])
+def test_every_method_draws_both_sides(survey, tmp_path, method):
+    import processing
+
+    edges = tmp_path / "edges.gpkg"
+    processing.run("lanewright:detectboundaries", {
+        "POINT_CLOUDS": [survey["POINT_CLOUD"]], "TRAJECTORY": survey["TRAJECTORY"], "BOUNDARY_METHOD": method, "ROAD_EDGES": str(edges),
+    })
+    rows = edges_of(edges)
+    assert {row["side"] for row in rows} == {"left", "right"}
+    told = [row["agree_cm"] for row in rows if row["agree_cm"] is not None]
+    assert bool(told) == (method == "both") and all(cm < 5 for cm in told)
+
+
+def test_the_road_map_report_shows_how_far_apart_the_methods_are(survey, tmp_path):
+    import processing
+
+    report = tmp_path / "report.html"
+    processing.run("lanewright:roadmap", {
+        "POINT_CLOUDS": [survey["POINT_CLOUD"]], "TRAJECTORY": survey["TRAJECTORY"], "BOUNDARY_METHOD": "both", "REPORT": str(report),
+    })
+    assert "Agreement of the two methods" in report.read_text(encoding="utf-8")
