@@ -1,12 +1,40 @@
-"""Lines against reference lines: how much was found, how much is right, how far off."""
+"""Lines against reference lines: how much was found, how much is right, how far off.
 
-from dataclasses import dataclass
+Measures after Heipke et al. (1997) and Wiedemann (2003), evaluated in places 0.1 m apart;
+a tolerance is the half-width of the buffer.
+"""
+
+from dataclasses import dataclass, field
 
 import numpy as np
-import shapely
 
-STEP = 0.1          # m between compared places along the lines
+from ..errors import RoadExtractionError
+from .places import Places, Segments, pieces_of, places_along, runs_of, single_lines
+from .rates import NAN, Errors
+
 ASSOCIATED = 0.75   # m: farther apart, two lines are not the same line
+LEAST_GAP = 0.5     # m of reference without a result that count as a gap
+
+
+@dataclass(frozen=True)
+class LineSettings:
+    """How two sets of lines are compared."""
+
+    tolerances: tuple = (0.05, 0.10, 0.15, 0.20)  # m, half-widths of the buffer
+    max_angle: float = 15.0                       # degrees between the directions of two lines that may match; 90 = any
+
+    def __post_init__(self):
+        check_tolerances(self.tolerances, ASSOCIATED)
+        if not 0 < self.max_angle <= 90:
+            raise RoadExtractionError(f"The largest angle between matching lines is {self.max_angle}°; it must be above 0° and at most 90°.")
+
+
+def check_tolerances(tolerances, largest):
+    """Refuse tolerances that are not lengths from a millimetre to `largest` metres."""
+    if not len(tolerances) or not all(0.001 <= t <= largest for t in tolerances):
+        said = ", ".join(f"{t:g}" for t in tolerances) or "empty"
+        raise RoadExtractionError(
+            f"The tolerances are {said}; give one or more lengths in metres from 0.001 to {largest:g}, such as 0.05, 0.10, 0.20.")
 
 
 @dataclass(frozen=True)
@@ -14,75 +42,144 @@ class LineAccuracy:
     """Shares are 0 to 1, keyed by tolerance (half-width of the buffer, metres); NaN where nothing was to compare.
 
     completeness : share of the reference's length within the tolerance of the result
-    correctness : share of the result's length within the tolerance of the reference;
-        1 - correctness is the miscoding of the driving-line thesis
-    rmse, height_rmse : metres, over result places within 0.75 m of the reference
+    correctness : share of the result's length within the tolerance of the reference
+    miscoding : 1 - correctness, as the driving-line thesis reports it (its buffer is put about the
+        reference here: about the result, as printed, it would not be a share of wrong lines)
+    quality : matched result / (result + unmatched reference)
+    gaps_per_km, mean_gap : stretches of at least 0.5 m of reference without a result, and their mean length in metres
+    lateral, height : Errors in metres over result places within 0.75 m of the reference; lateral is positive
+        left of the reference as drawn
     """
 
     completeness: dict
     correctness: dict
-    rmse: float
-    height_rmse: float
+    quality: dict
+    gaps_per_km: dict
+    mean_gap: dict
+    lateral: Errors
+    height: Errors
     reference_length: float
     result_length: float
 
+    @property
+    def miscoding(self):
+        return {tolerance: 1.0 - share for tolerance, share in self.correctness.items()}
 
-def compare_lines(result, reference, tolerances=(0.05, 0.10, 0.15, 0.20), area=None):
-    """Compare two sets of lines in plan.
+    @property
+    def rmse(self):
+        return self.lateral.rmse
+
+    @property
+    def height_rmse(self):
+        return self.height.rmse
+
+
+@dataclass(frozen=True)
+class LineMatch:
+    """Two sets of lines with the distance of every place from the other set.
+
+    mine, theirs : Places along the result and the reference; to_reference, to_result : (N,) metres, inf where
+    nothing matches; lateral (signed, left of the reference as drawn) and height : (N,) metres of the result's
+    places, NaN beyond 0.75 m; nearest_reference : (N,) the reference line each result place is nearest to, or -1.
+    """
+
+    result: list
+    reference: list
+    result_owner: np.ndarray
+    reference_owner: np.ndarray
+    mine: Places
+    theirs: Places
+    to_reference: np.ndarray = field(repr=False)
+    to_result: np.ndarray = field(repr=False)
+    lateral: np.ndarray = field(repr=False)
+    height: np.ndarray = field(repr=False)
+    nearest_reference: np.ndarray = field(repr=False)
+
+    def accuracy(self, tolerances, mine=None, theirs=None):
+        """LineAccuracy of all places, or of those in the masks."""
+        mine = np.ones(len(self.mine), bool) if mine is None else mine
+        theirs = np.ones(len(self.theirs), bool) if theirs is None else theirs
+        length, reference_length = self.mine.length[mine].sum(), self.theirs.length[theirs].sum()
+        complete, correct, quality, gaps, mean_gap = {}, {}, {}, {}, {}
+        for tolerance in tolerances:
+            right = self.mine.length[mine & (self.to_reference <= tolerance)].sum()
+            found = self.theirs.length[theirs & (self.to_result <= tolerance)].sum()
+            complete[tolerance], correct[tolerance] = _share(found, reference_length), _share(right, length)
+            quality[tolerance] = _share(right, length + reference_length - found)
+            long = self._gaps(tolerance, theirs)
+            gaps[tolerance] = _share(1000.0 * len(long), reference_length)
+            mean_gap[tolerance] = float(np.mean(long)) if len(long) else 0.0
+        return LineAccuracy(complete, correct, quality, gaps, mean_gap, Errors.of(self.lateral[mine], self.mine.length[mine]),
+                            Errors.of(self.height[mine], self.mine.length[mine]), float(reference_length), float(length))
+
+    def per_reference_line(self, tolerances):
+        """LineAccuracy of each reference line with the result that lies nearest to it, within 0.75 m."""
+        return [self.accuracy(tolerances, self.nearest_reference == k, self.theirs.line == k) for k in range(len(self.reference))]
+
+    def _gaps(self, tolerance, theirs):
+        """Lengths of the gaps in the reference's places of the mask."""
+        missing = np.where(theirs, (self.to_result > tolerance).astype(int), -1)
+        first, last = runs_of(self.theirs, missing)
+        cumulated = np.r_[0.0, np.cumsum(self.theirs.length)]
+        length = cumulated[last + 1] - cumulated[first]
+        return length[(missing[first] == 1) & (length >= LEAST_GAP)] if len(first) else np.empty(0)
+
+    def pieces(self, tolerance):
+        """The lines cut by outcome.
+
+        Yields
+        ------
+        outcome : "correct" or "false" for the result, "missed" for the reference
+        owner : index of the geometry given
+        geometry : the stretch
+        first, last : indices of its places, of the result's or the reference's
+        """
+        wrong = (self.to_reference > tolerance).astype(int)
+        first, last = runs_of(self.mine, wrong)
+        for k, geometry in enumerate(pieces_of(self.result, self.mine, first, last)):
+            yield "false" if wrong[first[k]] else "correct", self.result_owner[self.mine.line[first[k]]], geometry, first[k], last[k]
+        missed = (self.to_result > tolerance).astype(int)
+        first, last = runs_of(self.theirs, missed)
+        first, last = first[missed[first] == 1], last[missed[first] == 1]
+        for k, geometry in enumerate(pieces_of(self.reference, self.theirs, first, last)):
+            yield "missed", self.reference_owner[self.theirs.line[first[k]]], geometry, first[k], last[k]
+
+
+def match_lines(result, reference, area=None, max_angle=90.0):
+    """Set two groups of lines against each other in plan.
 
     Parameters
     ----------
-    result, reference : lists of shapely LineStrings, with Z or without, in one metric CRS
-    tolerances : half-widths of the buffer around the reference, metres
+    result, reference : lists of shapely lines (multi-part ones and polygons' outlines too), with Z or
+        without, in one metric CRS; the direction they are drawn in does not matter
     area : shapely polygon; what lies outside is left out of both, or None
+    max_angle : degrees; lines that cross at more do not match
 
-    Notes
-    -----
-    Measures after Heipke et al. (1997), evaluated on places 0.1 m apart.
+    Returns
+    -------
+    LineMatch
     """
-    mine, theirs = _places(result, area), _places(reference, area)
-    to_reference, height = _nearest(mine, reference)
-    to_result, _ = _nearest(theirs, result)
-    near = to_reference <= ASSOCIATED
-    difference = (mine[:, 2] - height)[near] if len(mine) else np.empty(0)
-    difference = difference[np.isfinite(difference)]
-    return LineAccuracy(
-        {w: _share(to_result <= w) for w in tolerances}, {w: _share(to_reference <= w) for w in tolerances},
-        _rms(to_reference[near]), _rms(difference), STEP * len(theirs), STEP * len(mine))
+    result, result_owner = single_lines([g for g in result if g is not None])
+    reference, reference_owner = single_lines([g for g in reference if g is not None])
+    mine, theirs = places_along(result).inside(area), places_along(reference).inside(area)
+    feet, back = _feet(mine, reference, max_angle), _feet(theirs, result, max_angle)
+    near = feet.distance <= ASSOCIATED
+    return LineMatch(result, reference, result_owner, reference_owner, mine, theirs, feet.distance, back.distance,
+                     np.where(near, feet.side * feet.distance, NAN), np.where(near, mine.z - feet.z, NAN),
+                     np.where(near, feet.line, -1))
 
 
-def _places(lines, area):
-    """(N, 3) places every 0.1 m along the lines."""
-    parts = [_along(line) for line in lines if line is not None and line.length > 0]
-    places = np.vstack(parts) if parts else np.empty((0, 3))
-    if area is not None and len(places):
-        places = places[shapely.contains_xy(area, places[:, 0], places[:, 1])]
-    return places
+def compare_lines(result, reference, tolerances=LineSettings.tolerances, area=None, max_angle=90.0):
+    """LineAccuracy of two sets of lines: `match_lines` and its `accuracy`, for those who need no layer."""
+    return match_lines(result, reference, area, max_angle).accuracy(tolerances)
 
 
-def _along(line):
-    if line.geom_type != "LineString":
-        return np.vstack([_along(part) for part in line.geoms])
-    count = max(2, int(np.ceil(line.length / STEP)) + 1)
-    places = shapely.line_interpolate_point(line, np.linspace(0, line.length, count))
-    return shapely.get_coordinates(places, include_z=True)
+def _feet(places, lines, max_angle):
+    # the nearest line counts where any direction will do, however far: then the distance is known
+    if max_angle >= 90.0:
+        return Segments(lines).nearest(places.xy)
+    return Segments(lines).nearest(places.xy, places.heading, np.radians(max_angle), ASSOCIATED)
 
 
-def _nearest(places, lines):
-    """Distance in plan to the nearest line and that line's height there."""
-    lines = [line for line in lines if line is not None and line.length > 0]
-    if not len(places) or not lines:
-        return np.full(len(places), np.inf), np.full(len(places), np.nan)
-    points = shapely.points(places[:, :2])
-    (_, which), distance = shapely.STRtree(lines).query_nearest(points, return_distance=True, all_matches=False)
-    line = np.asarray(lines, object)[which]
-    foot = shapely.line_interpolate_point(line, shapely.line_locate_point(line, points))
-    return distance, shapely.get_z(foot)
-
-
-def _share(mask):
-    return float(mask.mean()) if len(mask) else float("nan")
-
-
-def _rms(values):
-    return float(np.sqrt(np.mean(values**2))) if len(values) else float("nan")
+def _share(part, whole):
+    return float(part / whole) if whole else NAN

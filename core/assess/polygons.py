@@ -4,16 +4,28 @@ from dataclasses import dataclass
 
 import shapely
 
+from .rates import Rates
+
 
 @dataclass(frozen=True)
 class PolygonAccuracy:
-    """precision, recall, f1: shares of area, 0 to 1, with a tolerance given on either side."""
+    """Shares of area, 0 to 1, with a tolerance given on either side; areas in m²."""
 
-    precision: float
-    recall: float
-    f1: float
+    rates: Rates
     result_area: float
     reference_area: float
+
+    @property
+    def precision(self):
+        return self.rates.precision
+
+    @property
+    def recall(self):
+        return self.rates.recall
+
+    @property
+    def f1(self):
+        return self.rates.f1
 
 
 def compare_polygons(result, reference, tolerance=0.04, area=None):
@@ -28,10 +40,7 @@ def compare_polygons(result, reference, tolerance=0.04, area=None):
     mine, theirs = _merged(result, area), _merged(reference, area)
     right = mine.intersection(theirs.buffer(tolerance)).area
     found = theirs.intersection(mine.buffer(tolerance)).area
-    precision = right / mine.area if mine.area else float(theirs.area == 0)
-    recall = found / theirs.area if theirs.area else float(mine.area == 0)
-    f1 = 2 * precision * recall / (precision + recall) if precision + recall else 0.0
-    return PolygonAccuracy(precision, recall, f1, mine.area, theirs.area)
+    return PolygonAccuracy(Rates(right, mine.area - right, theirs.area - found, found), mine.area, theirs.area)
 
 
 def _merged(polygons, area):

@@ -1,0 +1,181 @@
+"""Places along lines, and how far each is from other lines."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from shapely.ops import substring
+
+STEP = 0.1       # m between compared places along a line
+BATCH = 200_000  # places asked for at a time: neighbours within a reach are many
+
+
+def single_lines(geometries):
+    """The lines of any mix of geometries: parts of multi-lines, outlines of polygons; what has no length is left out.
+
+    Returns
+    -------
+    lines : list of LineString
+    owner : (N,) index of the geometry each line comes from
+    """
+    geometries = np.asarray(geometries, object)
+    parts, owner = shapely.get_parts(geometries, return_index=True) if len(geometries) else (geometries, np.empty(0, int))
+    is_area = shapely.get_type_id(parts) == shapely.GeometryType.POLYGON
+    parts[is_area] = shapely.get_exterior_ring(parts[is_area])
+    is_line = np.isin(shapely.get_type_id(parts), (shapely.GeometryType.LINESTRING, shapely.GeometryType.LINEARRING))
+    kept = is_line & (shapely.length(parts) > 0)
+    return list(parts[kept]), owner[kept]
+
+
+@dataclass(frozen=True)
+class Places:
+    """Middles of pieces of at most STEP along lines.
+
+    xy (N, 2); z (N,) NaN where the line has no heights; line (N,) which line; station (N,) metres along it;
+    length (N,) of the piece each stands for; heading (N,) radians, the way the line is drawn.
+    """
+
+    xy: np.ndarray
+    z: np.ndarray
+    line: np.ndarray
+    station: np.ndarray
+    length: np.ndarray
+    heading: np.ndarray
+
+    def __len__(self):
+        return len(self.xy)
+
+    def only(self, mask):
+        return Places(*(getattr(self, name)[mask] for name in ("xy", "z", "line", "station", "length", "heading")))
+
+    def inside(self, area):
+        """Those within a shapely polygon; all where it is None."""
+        return self if area is None else self.only(shapely.contains_xy(area, self.xy[:, 0], self.xy[:, 1]))
+
+
+def places_along(lines, step=STEP):
+    """Places every `step` metres or less along LineStrings, each the middle of its piece."""
+    if not len(lines):
+        none = np.empty(0)
+        return Places(np.empty((0, 2)), none, np.empty(0, int), none, none, none)
+    lines = np.asarray(lines, object)
+    total = shapely.length(lines)
+    count = np.maximum(np.ceil(total / step - 1e-9).astype(int), 1)
+    which = np.repeat(np.arange(len(lines)), count)
+    piece = (total / count)[which]
+    number = np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)
+    segments = Segments(lines)
+    xy, z, heading = segments.at(which, (number + 0.5) * piece)
+    return Places(xy, z, which, (number + 0.5) * piece, piece, heading)
+
+
+def runs_of(places, key):
+    """Stretches along the lines in which (N,) integer `key` stays the same.
+
+    Returns
+    -------
+    first, last : index of the first and the last place of each stretch
+    """
+    if not len(places):
+        return np.empty(0, int), np.empty(0, int)
+    apart = np.abs(np.diff(places.station)) > 1.5 * np.maximum(places.length[1:], places.length[:-1])
+    cut = np.flatnonzero((np.diff(key) != 0) | (np.diff(places.line) != 0) | apart) + 1
+    return np.r_[0, cut], np.r_[cut, len(places)] - 1
+
+
+def pieces_of(lines, places, first, last):
+    """The stretches of the lines from the first to the last place of each run."""
+    start = places.station[first] - places.length[first] / 2
+    end = places.station[last] + places.length[last] / 2
+    return [substring(lines[k], max(a, 0.0), b) for k, a, b in zip(places.line[first], start, end)]
+
+
+@dataclass(frozen=True)
+class Feet:
+    """The nearest spot on some lines for each of N places; distance inf and the rest NaN or -1 where there is none.
+
+    side is +1 where the place lies left of the line as drawn, -1 right of it.
+    """
+
+    distance: np.ndarray
+    side: np.ndarray
+    xy: np.ndarray
+    z: np.ndarray
+    line: np.ndarray
+    station: np.ndarray
+
+
+class Segments:
+    """All straight pieces of some LineStrings, searchable."""
+
+    def __init__(self, lines):
+        lines = np.asarray(lines, object)
+        points, owner = shapely.get_coordinates(lines, include_z=True, return_index=True)
+        run = np.hypot(*np.diff(points[:, :2], axis=0).T) if len(points) > 1 else np.empty(0)
+        along = np.r_[0.0, np.cumsum(run)] if len(points) else run
+        own = np.flatnonzero((owner[1:] == owner[:-1]) & (run > 0)) if len(points) > 1 else np.empty(0, int)
+        begins = np.searchsorted(owner, np.arange(len(lines)))
+        self.a, self.b, self.line = points[own], points[own + 1], owner[own]
+        self.length = run[own]
+        self.start = along[own] - along[begins[self.line]] if len(own) else np.empty(0)
+        self.heading = np.arctan2(*(self.b - self.a)[:, 1::-1].T)
+        self._along = along[own] if len(own) else np.empty(0)
+        self._line_start = along[begins] if len(points) else np.empty(0)
+        self._tree = None
+
+    def at(self, line, station):
+        """(xy, z, heading) at stations along the lines of these numbers."""
+        k = np.clip(np.searchsorted(self._along, self._line_start[line] + station, side="right") - 1, 0, len(self.a) - 1)
+        share = np.clip((station - self.start[k]) / self.length[k], 0.0, 1.0)[:, None]
+        spot = self.a[k] + share * (self.b[k] - self.a[k])
+        return spot[:, :2], spot[:, 2], self.heading[k]
+
+    def nearest(self, xy, heading=None, max_angle=None, reach=np.inf):
+        """Feet of (N, 2) places.
+
+        With `max_angle` (radians) only segments count that run within this angle of the place's `heading`,
+        either way round, and lie within `reach` metres.
+        """
+        if not len(self.a) or not len(xy):
+            return _no_feet(len(xy))
+        if self._tree is None:
+            self._tree = shapely.STRtree(shapely.linestrings(np.stack([self.a[:, :2], self.b[:, :2]], axis=1)))
+        if max_angle is None:
+            (place, segment), _ = self._tree.query_nearest(shapely.points(xy), return_distance=True, all_matches=False)
+            return self._feet(xy, place, segment)
+        parts = [self._feet(xy[k:k + BATCH], *self._parallel(xy[k:k + BATCH], heading[k:k + BATCH], max_angle, reach))
+                 for k in range(0, len(xy), BATCH)]
+        return Feet(*(np.concatenate([getattr(part, name) for part in parts]) for name in Feet.__dataclass_fields__))
+
+    def _parallel(self, xy, heading, max_angle, reach):
+        """(place, segment) pairs: of the segments within reach that run the same way, the nearest."""
+        place, segment = self._tree.query(shapely.points(xy), predicate="dwithin", distance=reach)
+        turned = np.abs((heading[place] - self.heading[segment] + np.pi / 2) % np.pi - np.pi / 2)
+        place, segment = place[turned <= max_angle], segment[turned <= max_angle]
+        order = np.lexsort((segment, self._to(xy[place], segment)[2], place))
+        first = order[np.unique(place[order], return_index=True)[1]]
+        return place[first], segment[first]
+
+    def _to(self, xy, segment):
+        a, b = self.a[segment], self.b[segment]
+        step = b - a
+        share = np.clip(((xy - a[:, :2]) * step[:, :2]).sum(axis=1) / self.length[segment]**2, 0.0, 1.0)
+        foot = a + share[:, None] * step
+        off = xy - foot[:, :2]
+        return foot, share, np.hypot(off[:, 0], off[:, 1])
+
+    def _feet(self, xy, place, segment):
+        found = _no_feet(len(xy))
+        foot, share, distance = self._to(xy[place], segment)
+        step, off = (self.b - self.a)[segment], xy[place] - self.a[segment, :2]
+        found.distance[place] = distance
+        found.side[place] = np.where(step[:, 0] * off[:, 1] - step[:, 1] * off[:, 0] >= 0, 1.0, -1.0)
+        found.xy[place], found.z[place] = foot[:, :2], foot[:, 2]
+        found.line[place] = self.line[segment]
+        found.station[place] = self.start[segment] + share * self.length[segment]
+        return found
+
+
+def _no_feet(count):
+    return Feet(np.full(count, np.inf), np.full(count, np.nan), np.full((count, 2), np.nan), np.full(count, np.nan),
+                np.full(count, -1), np.full(count, np.nan))
