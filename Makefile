@@ -1,6 +1,6 @@
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench package
+.PHONY: help setup demo test bench package manual window
 
 help: ## this list
 	@grep -hE '^[a-z]+:.*## ' $(firstword $(MAKEFILE_LIST)) | sed -E 's/^([a-z]+):.*## /make \1\t/' | expand -t 16
@@ -19,3 +19,9 @@ bench: setup ## seconds per stage and peak memory on 5 and 20 million points
 
 package: ## the zip for QGIS's plugin manager, into dist/
 	@tools/package.sh
+
+manual: setup ## the manual's pages from the algorithms' own texts, into docs/manual/
+	@tools/make_manual.sh
+
+window: setup ## a real QGIS window driven on a screen of its own, pictures into docs/manual/img/
+	@tools/screenshots.sh

@@ -9,28 +9,30 @@ import os
 import sys
 
 
-def add_library_folders():
+def add_library_folders(profile=""):
     """Let Python find laspy, lazrs and shapely where users without system packages keep them.
 
     The folders go to the end of the search path: what QGIS brings (numpy, GDAL,
     pyproj) must win, or its compiled parts meet a numpy they were not built for.
+    `profile` is the folder of the QGIS profile, for a plugin that lies elsewhere.
     """
     here = os.path.dirname(os.path.abspath(__file__))
     folders = os.environ.get("LANEWRIGHT_LIBS", "").split(os.pathsep)
     folders.append(os.path.join(here, "_vendor"))
-    folders += _qpip_folders(here)
+    # <profile>/python/plugins/lanewright -> <profile>/python/dependencies
+    folders += _dependency_folders(os.path.dirname(os.path.dirname(here)))
+    if profile:
+        folders += _dependency_folders(os.path.join(profile, "python"))
     for folder in folders:
         if folder and os.path.isdir(folder) and folder not in sys.path:
             sys.path.append(folder)
 
 
-def _qpip_folders(plugin_folder):
-    """Where the QPIP plugin installs: `<profile>/python/dependencies`.
+def _dependency_folders(python_folder):
+    """Where packages for plugins lie in a profile: `<profile>/python/dependencies`.
 
-    QPIP itself is not loaded by qgis_process, so we look there ourselves.
+    The QPIP plugin installs there too, but is not loaded by qgis_process, so we look ourselves.
     """
-    # <profile>/python/plugins/lanewright -> <profile>/python/dependencies
-    python_folder = os.path.dirname(os.path.dirname(plugin_folder))
     prefix = os.path.join(python_folder, "dependencies")
     version = f"python{sys.version_info.major}.{sys.version_info.minor}"
     return [
@@ -63,7 +65,9 @@ def load_shapely():
 
 def classFactory(iface):
     """Called by QGIS with its interface, which is None in qgis_process."""
-    add_library_folders()
+    from qgis.core import QgsApplication
+
+    add_library_folders(QgsApplication.qgisSettingsDirPath())
     load_shapely()
     from .plugin import LanewrightPlugin
 

@@ -1,10 +1,9 @@
-"""The plugin object QGIS holds: it registers the Processing provider and nothing else."""
+"""The plugin object QGIS holds: it registers the Processing provider and, in a window, the menu."""
 
 from qgis.core import Qgis, QgsApplication
-from qgis.PyQt.QtCore import QCoreApplication
 
 from . import add_library_folders
-from .processing_provider.dependencies import missing_packages
+from .processing_provider.dependencies import how_to_install, missing_packages
 from .processing_provider.provider import LanewrightProvider
 
 
@@ -12,6 +11,7 @@ class LanewrightPlugin:
     def __init__(self, iface):
         self.iface = iface
         self.provider = None
+        self.menu = None
 
     def initProcessing(self):
         """qgis_process calls only this one; the desktop comes here through initGui."""
@@ -23,17 +23,19 @@ class LanewrightPlugin:
 
     def initGui(self):
         self.initProcessing()
+        if self.iface is None:
+            return
+        from .desktop.menu import Menu
+
+        self.menu = Menu(self.iface)
         missing = missing_packages()
-        if missing and self.iface is not None:
-            self.iface.messageBar().pushMessage(
-                "Lanewright",
-                QCoreApplication.translate("Lanewright", "{missing} The README says how to install them.").format(
-                    missing=missing
-                ),
-                level=Qgis.MessageLevel.Warning,
-            )
+        if missing:
+            self.iface.messageBar().pushMessage("Lanewright", missing, how_to_install(), level=Qgis.MessageLevel.Warning)
 
     def unload(self):
+        if self.menu is not None:
+            self.menu.remove()
+            self.menu = None
         if self.provider is not None:
             QgsApplication.processingRegistry().removeProvider(self.provider)
             self.provider = None

@@ -32,6 +32,9 @@ CLOUD_FILTER = "Point clouds (*.las *.laz *.LAS *.LAZ);;All files (*.*)"
 LAZ_FILTER = "LAZ (*.laz);;LAS (*.las)"
 HTML_FILTER = "HTML (*.html)"
 
+# QGIS sorts the groups of the toolbox by name: the numbers keep them in the order of the work
+ROOMS = ("Survey", "Road", "Markings", "Driving", "Road map", "Assessment", "Orthoimages")
+
 SOURCES = {
     "PointZ": QgsProcessing.SourceType.TypeVectorPoint,
     "LineStringZ": QgsProcessing.SourceType.TypeVectorLine,
@@ -69,13 +72,17 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         return tr(self.TITLE)
 
     def group(self):
-        return tr(self.ROOM)
+        return f"{ROOMS.index(self.ROOM) + 1} {tr(self.ROOM)}"
 
     def groupId(self):
         return self.ROOM.lower().replace(" ", "")
 
     def shortDescription(self):
         return tr(self.SUMMARY)
+
+    def helpUrl(self):
+        """The page of the manual that the plugin itself shows; in a window only, where it can be shown."""
+        return f"lanewright:{self.ID}"
 
     def tags(self):
         return [tr(tag) for tag in self.TAGS] + ["mls", "lidar", "road"]

@@ -1,27 +1,84 @@
-"""Which of the Python packages we need are missing, in one sentence for the user.
+"""Which of the Python packages we need are missing, and how to install them on this system.
 
 Nothing in this folder imports them when QGIS starts, so that the algorithms are
-listed, and can say what they lack, on a machine that has none of them.
+listed, and can say what they lack, on a machine that has none of them. Nothing is
+ever installed from here: the user is told the command.
 """
 
+import sys
 from importlib import import_module
 from importlib.util import find_spec
+from pathlib import Path
+
+from qgis.core import QgsApplication
 
 from .texts import tr
 
 # What Python imports -> what it is called where one installs it
 NEEDED = {"numpy": "numpy", "scipy": "scipy", "laspy": "laspy", "lazrs": "lazrs", "shapely": "shapely",
           "pyproj": "pyproj", "cv2": "opencv-python-headless"}
+# Debian's and Ubuntu's own, built for the numpy and PROJ that their QGIS uses
+DEBIAN = {"numpy": "python3-numpy", "scipy": "python3-scipy", "pyproj": "python3-pyproj", "cv2": "python3-opencv"}
+OLDEST_SHAPELY = 2
 
 
 def missing_packages():
-    """One sentence naming what is missing or too old, or "" when everything is there."""
-    missing = [package for name, package in NEEDED.items() if find_spec(name) is None]
-    if missing:
-        return tr("Missing Python package(s): {names}. Install them for the Python of QGIS and start QGIS again.").format(
-            names=", ".join(missing)
+    """One sentence naming what is missing or too old, and the way on; "" when everything is there."""
+    names = _missing()
+    if names:
+        return tr("Missing Python package(s): {names}. To install: {command} Then start QGIS again.").format(
+            names=", ".join(NEEDED[name] for name in names), command=_command(names)
         )
     shapely = import_module("shapely")
-    if int(shapely.__version__.split(".")[0]) < 2:
-        return tr("shapely {version} is installed and version 2 or newer is needed.").format(version=shapely.__version__)
+    if int(shapely.__version__.split(".")[0]) < OLDEST_SHAPELY:
+        return tr("shapely {version} is installed and version 2 or newer is needed. To install: {command} "
+                  "Then start QGIS again.").format(version=shapely.__version__, command=_command(["shapely"]))
     return ""
+
+
+def how_to_install():
+    """What is missing and the commands, for this system and this QGIS, as a text to copy from."""
+    names = _missing() or ["shapely"]
+    return "\n\n".join((missing_packages(), tr(
+        "The packages go into a folder of your QGIS profile that only Lanewright looks into, after everything QGIS brings. "
+        "The QPIP plugin can install them as well: it reads the requirements.txt of Lanewright."
+    ), _command(names)))
+
+
+def _missing():
+    return [name for name in NEEDED if find_spec(name) is None]
+
+
+def _command(names):
+    """The command that installs the packages for the Python of this QGIS."""
+    if Path("/etc/debian_version").exists():
+        system = [DEBIAN[name] for name in names if name in DEBIAN]
+        own = [name for name in names if name not in DEBIAN]
+    else:
+        system, own = [], list(names)
+    commands = [f"sudo apt install {' '.join(system)}"] if system else []
+    if own:
+        commands.append(f'{_python()} -m pip install --no-deps --target "{library_folder()}" {" ".join(map(_wanted, own))}')
+    where = tr(" (in the OSGeo4W Shell)") if sys.platform == "win32" else tr(" (in a terminal)")
+    return " && ".join(commands) + where + "."
+
+
+def _wanted(name):
+    """How pip is asked for a package."""
+    limits = {"shapely": '"shapely>=2"', "cv2": '"opencv-python-headless<4.12"'}
+    return limits.get(name, NEEDED[name])
+
+
+def _python():
+    """The interpreter of this QGIS as one calls it in a terminal: inside QGIS on Windows sys.executable is QGIS."""
+    if sys.platform == "win32":
+        return "python"
+    name = f"python{sys.version_info.major}.{sys.version_info.minor}"
+    return str(Path(sys.prefix) / "bin" / name) if sys.platform == "darwin" else "/usr/bin/python3"
+
+
+def library_folder():
+    """Where packages for Lanewright alone belong: in the profile, beside the plugins, so that updates keep them."""
+    python = f"python{sys.version_info.major}.{sys.version_info.minor}"
+    packages = ("Lib",) if sys.platform == "win32" else ("lib", python)
+    return Path(QgsApplication.qgisSettingsDirPath(), "python", "dependencies", *packages, "site-packages")

@@ -12,6 +12,9 @@ from qgis.core import (
 )
 
 
+DECIMALS = 3  # millimetres; QGIS would show six
+
+
 def settings_class(path):
     """`road.curbs:CurbSettings` -> the class; None where a package it needs is missing."""
     module, name = path.split(":")
@@ -64,6 +67,8 @@ class Knob:
             if self.maximum is not None:
                 limits["maxValue"] = self.maximum
             parameter = QgsProcessingParameterNumber(self.name, self.label, kind, default, **limits)
+            if not whole:
+                parameter.setMetadata({"widget_wrapper": {"decimals": DECIMALS}})
         parameter.setHelp(self.help)
         if self.advanced:
             parameter.setFlags(parameter.flags() | Qgis.ProcessingParameterFlag.Advanced)

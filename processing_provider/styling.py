@@ -32,6 +32,7 @@ LOOKS = {
     "TRAJECTORY": ("trajectory", 80),
     "OUTPUT": ("trajectory", 80),
 }
+TABLES = 5  # tables lie below what is drawn
 
 
 class Styler(QgsProcessingLayerPostProcessorInterface):
@@ -86,7 +87,7 @@ def style_on_load(name, dest, title, context, schema=(), group="Lanewright"):
         return
     details = context.layerToLoadOnCompletionDetails(dest)
     details.name, details.forceName, details.groupName = title, True, group
-    look, order = LOOKS.get(name, (None, 90))
+    look, order = LOOKS.get(name, (None, TABLES))
     details.layerSortKey = order
     qml = STYLES / f"{look}.qml"
     if schema or qml.exists():

@@ -8,7 +8,7 @@ import sys
 from plugin_package import ROOT, load
 
 TARGET = ROOT / "resources" / "models" / "road_map.model3"
-NAME, GROUP = "Road map stages", "Road map"
+NAME, GROUP = "Road map stages", "Models"
 STEP_X, STEP_Y = 300, 130
 
 # child -> (its inputs, the outputs that are the model's). "@NAME" is a model input,

@@ -1,5 +1,7 @@
 """The whole chain in one call."""
 
+from dataclasses import replace
+
 from qgis.core import QgsProcessingParameterBoolean
 
 from ...core.features import Features
@@ -35,11 +37,10 @@ STAGES = {
     "driving": DRIVING_KNOBS,
 }
 
-# The dialog shows what one turns from survey to survey; the rest is for the single stages
-SHOWN = (
-    "MIN_HEIGHT", "MAX_HEIGHT", "SLOPE", "SCANLINE_MIN_HEIGHT", "BLOCK_LENGTH", "MAX_GAP", "FALLBACK_WIDTH", "MAX_WIDTH", "CELL_SIZE", "METHOD",
-    "CURVE", "DEGREE", "LANE_WIDTH", "LINE_DISTANCE", "TRAFFIC_SIDE",
-)
+# The dialog shows what one turns from survey to survey, folds away what one turns now and then,
+# and leaves the rest to the single stages
+SHOWN = ("MIN_HEIGHT", "MAX_HEIGHT", "MAX_GAP", "CELL_SIZE", "LANE_WIDTH", "TRAFFIC_SIDE")
+FOLDED = ("SLOPE", "SCANLINE_MIN_HEIGHT", "BLOCK_LENGTH", "FALLBACK_WIDTH", "MAX_WIDTH", "METHOD", "CURVE", "DEGREE", "LINE_DISTANCE")
 
 LAYERS = (
     ("ROAD_EDGES", "edges", "LineStringZ", ROAD_EDGES, tr("Road edges")),
@@ -67,6 +68,8 @@ class RoadMap(LanewrightAlgorithm):
         )
         for knobs in STAGES.values():
             self.add_knobs(knobs, only=SHOWN)
+        for knobs in STAGES.values():
+            self.add_knobs([replace(knob, advanced=True) for knob in knobs], only=FOLDED)
         self.add_knobs(SURVEY_KNOBS)
         for name, _, geometry, fields, label in LAYERS:
             self.add_sink(name, label, fields=fields, geometry=geometry, optional=True)

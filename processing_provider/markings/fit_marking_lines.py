@@ -10,7 +10,7 @@ LINES = "markings.lines:LineSettings"
 
 LINE_KNOBS = (
     Knob(
-        "CURVE", LINES, "curve", tr("Curve"),
+        "CURVE", LINES, "curve", tr("Curve fitted to marking lines"),
         tr("Automatic takes the simplest curve that fits (Bayesian information criterion). Choose one to force it "
            "on every line."),
         choices=("automatic", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline"),

@@ -39,7 +39,7 @@
         </numericFormat>
       </rampLegendSettings>
     </rasterrenderer>
-    <brightnesscontrast brightness="0" contrast="0" gamma="1"/>
+    <brightnesscontrast brightness="0" contrast="0" gamma="1.5"/>
     <huesaturation colorizeOn="0" invertColors="0" colorizeRed="255" colorizeBlue="128" saturation="0" grayscaleMode="0" colorizeGreen="128" colorizeStrength="100"/>
     <rasterresampler maxOversampling="2"/>
     <resamplingStage>resamplingFilter</resamplingStage>

@@ -1,0 +1,78 @@
+"""The Lanewright menu and its toolbar button: what a user reaches without opening the toolbox."""
+
+from pathlib import Path
+
+from qgis.core import Qgis, QgsProject
+from qgis.PyQt.QtCore import QObject
+from qgis.PyQt.QtGui import QAction, QIcon
+
+from ..processing_provider.texts import tr
+from .manual import ManualWindow
+from .map_layout import road_map_layout
+from .sample_run import SampleRun
+
+ICON = Path(__file__).resolve().parents[1] / "resources" / "icon.svg"
+GROUP = "Lanewright"
+
+
+class Menu(QObject):
+    """Adds its actions on creation; `remove` takes them away again."""
+
+    def __init__(self, iface):
+        super().__init__()
+        self.iface = iface
+        self.actions = []
+        self.dialog = None  # kept, or Python would collect the open window
+        self.sample = SampleRun(iface)
+        self.manual = ManualWindow(iface.mainWindow())
+        self.toolbar = iface.addToolBar("Lanewright")
+        self.toolbar.setObjectName("LanewrightToolbar")
+        self._add(tr("Road map…"), self.open_road_map, tr("From a survey to driving lines in one call"), button=True)
+        self._add(tr("Run the sample survey"), self.sample.start, tr("A made street through the whole chain, into this project"))
+        self._add(tr("Print layout of the road map"), self.open_layout, tr("A map of the layers that Lanewright made"))
+        self._add(tr("Manual"), self.manual.open, tr("What every algorithm does, and a walk through a first survey"))
+
+    def _add(self, title, what, tip, button=False):
+        action = QAction(QIcon(str(ICON)), title, self.iface.mainWindow())
+        action.setToolTip(f"Lanewright: {tip}")
+        action.setStatusTip(tip)
+        action.triggered.connect(lambda checked=False: what())
+        self.iface.addPluginToMenu("Lanewright", action)
+        if button:
+            self.toolbar.addAction(action)
+        self.actions.append(action)
+
+    def remove(self):
+        for action in self.actions:
+            self.iface.removePluginMenu("Lanewright", action)
+        self.actions = []
+        self.toolbar.deleteLater()
+        self.manual.forget()
+
+    def open_road_map(self):
+        import processing
+
+        self.dialog = processing.createAlgorithmDialog("lanewright:roadmap")
+        if self.dialog is not None:  # QGIS has said why
+            self.dialog.show()
+
+    def open_layout(self):
+        """A layout of the newest Lanewright group, opened in QGIS's designer."""
+        project = QgsProject.instance()
+        groups = [node for node in project.layerTreeRoot().findGroups() if node.name().startswith(GROUP)]
+        layers = [node.layer() for node in (groups[0].findLayers() if groups else []) if node.layer() and node.layer().isSpatial()]
+        if not layers:
+            self.iface.messageBar().pushMessage(
+                "Lanewright", tr("There is no road map in this project yet: run Road map first."), level=Qgis.MessageLevel.Info
+            )
+            return
+        layout = road_map_layout(project, layers, unused_name(project, groups[0].name()))
+        project.layoutManager().addLayout(layout)
+        self.iface.openLayoutDesigner(layout)
+
+
+def unused_name(project, name):
+    """The name, numbered where the project has a layout of that name."""
+    taken = {layout.name() for layout in project.layoutManager().printLayouts()}
+    names = (name if number == 1 else f"{name} {number}" for number in range(1, len(taken) + 2))
+    return next(free for free in names if free not in taken)

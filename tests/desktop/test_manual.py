@@ -1,0 +1,52 @@
+"""The manual: written from the algorithms themselves, complete and up to date."""
+
+import re
+import sys
+from pathlib import Path
+
+import pytest
+from lanewright.processing_provider.catalogue import ALGORITHMS
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = ROOT / "docs" / "manual"
+sys.path.insert(0, str(ROOT / "tools"))
+
+
+@pytest.fixture(scope="module")
+def made(provider):
+    from make_manual import pages
+
+    return pages(ALGORITHMS)
+
+
+def test_every_page_says_what_the_dialogs_say(made):
+    stale = [name for name, text in made.items() if not (PAGES / name).exists() or (PAGES / name).read_text(encoding="utf-8") != text]
+    assert not stale, "run make manual"
+
+
+def test_no_page_is_left_of_an_algorithm_that_is_gone(made):
+    from make_manual import WRITTEN_BY_HAND
+
+    assert {page.name for page in PAGES.glob("*.md")} == set(made) | {f"{name}.md" for name in WRITTEN_BY_HAND}
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS, ids=lambda algorithm: algorithm.ID)
+def test_the_help_button_opens_the_page_of_the_algorithm(provider, algorithm):
+    scheme, _, name = algorithm().create().helpUrl().partition(":")
+    assert scheme == "lanewright" and (PAGES / f"{name}.md").is_file()
+
+
+def test_links_and_pictures_lead_somewhere():
+    for page in PAGES.glob("*.md"):
+        for target in re.findall(r"\]\(([^)#]+)", page.read_text(encoding="utf-8")):
+            assert target.startswith("http") or (PAGES / target).exists(), f"{page.name}: {target}"
+
+
+def test_the_troubleshooting_quotes_what_is_really_said():
+    """Every message of the page is a sentence of the code, with gaps for the numbers."""
+    code = "".join(path.read_text(encoding="utf-8") for folder in ("core", "processing_provider") for path in (ROOT / folder).rglob("*.py"))
+    # Sentences in the code are cut into strings, and hold braces where the page has …
+    said = re.sub(r'"\s*\n?\s*f?"', "", code)
+    for message in re.findall(r"^### (.+)$", (PAGES / "troubleshooting.md").read_text(encoding="utf-8"), re.M):
+        for part in (part.strip(" .") for part in message.split("…")):
+            assert part in said, f"{message}: {part}"

@@ -1,0 +1,163 @@
+"""Writes the manual's page of every algorithm, and its contents: make_manual.py [FOLDER].
+
+The text is that of the toolbox: a parameter's label and help, an output's fields. What people write
+by hand (the walk-through, models, headless use, troubleshooting) lies beside it and is only linked.
+"""
+
+import os
+import sys
+from pathlib import Path
+
+os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+
+from plugin_package import ROOT, load
+
+PAGES = ROOT / "docs" / "manual"
+WRITTEN_BY_HAND = ("first_survey", "models", "headless", "troubleshooting")
+KINDS = {
+    "multilayer": "files", "file": "file", "source": "vector layer", "raster": "raster", "crs": "CRS", "number": "number",
+    "enum": "choice", "boolean": "yes or no", "string": "text", "sink": "vector layer", "fileDestination": "file",
+    "rasterDestination": "raster", "pointcloud": "point cloud", "vector": "vector layer", "matrix": "numbers",
+}
+SAMPLE_VALUES = {
+    "POINT_CLOUDS": "survey.laz", "TRAJECTORY": "trajectory.gpkg", "POINT_CLOUD": "survey.laz", "IMAGE": "photo.jpg",
+    "INPUT": "input.gpkg", "REFERENCE": "reference.gpkg",
+}
+
+
+def pages(algorithms):
+    """File name -> text of every generated page."""
+    made = {f"{algorithm.ID}.md": page(algorithm().create()) for algorithm in algorithms}
+    made["index.md"] = contents([algorithm().create() for algorithm in algorithms])
+    return made
+
+
+def contents(algorithms):
+    lines = ["# Lanewright manual", "", "Road maps from mobile laser scanning, in QGIS.", ""]
+    lines += [f"- [{heading(name)}]({name}.md)" for name in WRITTEN_BY_HAND if (PAGES / f"{name}.md").exists()]
+    lines += ["", "## The algorithms, in the order of the work"]
+    group = None
+    for algorithm in algorithms:
+        if algorithm.group() != group:
+            group = algorithm.group()
+            lines += ["", f"### {group}", ""]
+        lines.append(f"- [{algorithm.displayName()}]({algorithm.name()}.md): {lower_first(algorithm.shortDescription())}")
+    return "\n".join(lines) + "\n"
+
+
+def page(algorithm):
+    lines = [f"# {algorithm.displayName()}", "", algorithm.shortDescription(), ""]
+    lines += [part + "\n" for part in algorithm.HELP.split("\n\n") if part]
+    if (PAGES / "img" / f"{algorithm.name()}.png").exists():
+        lines += [f"![{algorithm.displayName()}](img/{algorithm.name()}.png)", ""]
+    definitions = algorithm.parameterDefinitions()
+    inputs = [d for d in definitions if not d.isDestination()]
+    plain = [d for d in inputs if not advanced(d)]
+    folded = [d for d in inputs if advanced(d)]
+    lines += ["## Inputs", ""] + table(plain)
+    if folded:
+        lines += ["", "## Advanced parameters", ""] + table(folded)
+    lines += ["", "## Results", ""]
+    for d in definitions:
+        if d.isDestination():
+            lines += [result(d)]
+    numbers = [o for o in algorithm.outputDefinitions() if o.type() == "outputNumber"]
+    if numbers:
+        lines += ["", "Numbers, for models and scripts:", ""]
+        lines += [f"- `{o.name()}`: {o.description()}" for o in numbers]
+    lines += ["", "## On the command line", "", "```", command(algorithm, definitions), "```"]
+    return "\n".join(lines) + "\n"
+
+
+def table(definitions):
+    lines = ["| parameter | what it is | default |", "|---|---|---|"]
+    for d in definitions:
+        said = f"**{d.description()}** ({KINDS.get(d.type(), d.type())}{', optional' if optional(d) else ''}). {d.help()}"
+        lines.append(f"| `{d.name()}` | {cell(said)}{choices(d)} | {cell(default(d))} |")
+    return lines
+
+
+def choices(d):
+    return f" One of: {', '.join(f'`{option}`' for option in d.options())}." if d.type() == "enum" else ""
+
+
+def default(d):
+    value = d.defaultValue()
+    return "" if value is None or value == "" else f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def result(d):
+    said = f"- `{d.name()}`: **{d.description()}** ({KINDS.get(d.type(), d.type())}{', optional' if optional(d) else ''})."
+    text, _, fields = d.help().partition("Fields:")
+    lines = [" ".join(part for part in (said, text.strip()) if part)]
+    if fields:
+        lines += ["  Fields:"] + [f"    - {entry.strip()}" for entry in fields.strip().rstrip(".").split(";")]
+    return "\n".join(lines)
+
+
+def command(algorithm, definitions):
+    """The shortest call that makes every result."""
+    words = [f"tools/qgis_process run lanewright:{algorithm.name()}"]
+    for d in definitions:
+        if d.isDestination():
+            words.append(f"--{d.name()}={d.name().lower()}{SUFFIXES.get(d.type()) or file_suffix(d)}")
+        elif not optional(d) and d.defaultValue() is None:
+            words.append(f"--{d.name()}={SAMPLE_VALUES.get(d.name()) or d.name().lower() + INPUTS.get(d.type(), '')}")
+    return " \\\n    ".join(words)
+
+
+SUFFIXES = {"sink": ".gpkg", "rasterDestination": ".tif"}
+INPUTS = {"source": ".gpkg", "file": ".laz", "multilayer": ".laz", "raster": ".tif"}
+
+
+def file_suffix(d):
+    return ".html" if "html" in d.fileFilter() else ".laz"
+
+
+def advanced(d):
+    from qgis.core import Qgis
+
+    return bool(d.flags() & Qgis.ProcessingParameterFlag.Advanced)
+
+
+def optional(d):
+    from qgis.core import Qgis
+
+    return bool(d.flags() & Qgis.ProcessingParameterFlag.Optional)
+
+
+def cell(text):
+    return text.replace("|", "\\|").replace("\n", " ")
+
+
+def heading(name):
+    """The first heading of a page written by hand."""
+    with open(PAGES / f"{name}.md", encoding="utf-8") as page:
+        return page.readline().lstrip("# ").strip()
+
+
+def lower_first(text):
+    return text if text[:2].isupper() else text[:1].lower() + text[1:]
+
+
+def main():
+    from qgis.core import QgsApplication
+
+    load()
+    application = QgsApplication([], False)
+    application.initQgis()
+    try:
+        from lanewright.processing_provider.catalogue import ALGORITHMS
+
+        folder = Path(sys.argv[1]) if len(sys.argv) > 1 else PAGES
+        folder.mkdir(parents=True, exist_ok=True)
+        made = pages(ALGORITHMS)
+        for name, text in made.items():
+            (folder / name).write_text(text, encoding="utf-8")
+        print(f"{len(made)} pages written to {folder}")
+    finally:
+        application.exitQgis()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,166 @@
+"""Run by QGIS itself (qgis --code): does what a newcomer does, and keeps a picture of each step."""
+
+import os
+import sys
+import traceback
+from pathlib import Path
+
+from qgis.core import QgsApplication, QgsProject
+from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, Qt, QTimer
+from qgis.PyQt.QtGui import QAction, QImage
+from qgis.PyQt.QtWidgets import QDockWidget
+from qgis.utils import iface, plugins
+
+PICTURES = Path(os.environ["LANEWRIGHT_PICTURES"])
+MAPS = ("window_result", "window_layout", "window_model")
+SAID = Path(os.environ["LANEWRIGHT_SAID"])
+
+
+def say(text):
+    with open(SAID, "a", encoding="utf-8") as file:
+        file.write(text + "\n")
+
+
+def wait(seconds, until=lambda: False):
+    """Let the window live for so long, or until something is so; whether it was."""
+    clock = QElapsedTimer()
+    clock.start()
+    while clock.elapsed() < 1000 * seconds:
+        QCoreApplication.processEvents()
+        if until():
+            return True
+    return until()
+
+
+def keep(widget, name):
+    wait(0.7)
+    picture = widget.grab()
+    assert not picture.isNull(), name
+    image = picture.toImage()
+    if name not in MAPS:  # 256 colours do for windows, and a manual travels in the plugin's zip
+        image = image.convertToFormat(QImage.Format.Format_Indexed8, Qt.ImageConversionFlag.ThresholdDither | Qt.ImageConversionFlag.AvoidDither)
+    image.save(str(PICTURES / f"{name}.png"))
+    say(f"{name}.png {picture.width()} x {picture.height()}")
+
+
+def needed(condition, what):
+    if not condition:
+        raise AssertionError(what)
+
+
+def toolbox():
+    dock = next(dock for dock in iface.mainWindow().findChildren(QDockWidget) if dock.objectName() == "ProcessingToolbox")
+    dock.show()
+    dock.raise_()
+    dock.setFloating(True)
+    dock.resize(420, 760)
+    tree = dock.findChild(type(dock.algorithmTree)) if hasattr(dock, "algorithmTree") else None
+    wait(0.5)
+    view = tree or dock.algorithmTree
+    model = view.model()
+    for row in range(model.rowCount()):
+        index = model.index(row, 0)
+        if "Lanewright" in str(index.data()):
+            view.expand(index)
+            for child in range(model.rowCount(index)):
+                view.expand(model.index(child, 0, index))
+            view.scrollTo(index, view.ScrollHint.PositionAtTop)
+            needed(model.rowCount(index) >= 5, "the toolbox lists too few groups")
+    keep(dock, "window_toolbox")
+    dock.hide()
+
+
+def dialog():
+    """The road map dialog as the toolbar button opens it."""
+    plugins["lanewright"].menu.actions[0].trigger()
+    wait(1.5)
+    window = plugins["lanewright"].menu.dialog
+    needed(window is not None and window.isVisible(), "the road map dialog did not open")
+    window.resize(1000, 820)
+    keep(window, "window_dialog")
+    window.close()
+
+
+def menu():
+    found = next(a.menu() for a in iface.pluginMenu().actions() if a.menu() and "Lanewright" in a.menu().title())
+    found.popup(iface.mainWindow().mapToGlobal(iface.mainWindow().rect().center()))
+    keep(found, "window_menu")
+    found.close()
+
+
+def sample():
+    """The sample survey, run from the menu, until its layers are there."""
+    ours = plugins["lanewright"].menu
+    ours.actions[1].trigger()
+    needed(wait(150, lambda: not ours.sample.running), "the sample survey took longer than 150 s")
+    wait(2)
+    names = {layer.name() for layer in QgsProject.instance().mapLayers().values()}
+    needed(len(names) >= 6, f"the sample left only {sorted(names)}")
+    groups = [node.name() for node in QgsProject.instance().layerTreeRoot().findGroups()]
+    say(f"groups: {groups}, layers: {sorted(names)}")
+    for dock in iface.mainWindow().findChildren(QDockWidget):
+        if dock.objectName() not in ("Layers",):
+            dock.hide()
+    iface.mainWindow().resize(1380, 860)
+    iface.messageBar().clearWidgets()
+    surface = next(l for l in QgsProject.instance().mapLayers().values() if "urface" in l.name() or "oberfläche" in l.name())
+    iface.setActiveLayer(surface)
+    iface.zoomToActiveLayer()
+    wait(3)
+    keep(iface.mainWindow(), "window_result")
+
+
+def layout():
+    plugins["lanewright"].menu.actions[2].trigger()
+    wait(3)
+    designers = iface.openLayoutDesigners()
+    needed(designers, "no layout was opened")
+    window = designers[0].window()
+    window.resize(1300, 800)
+    designers[0].view().zoomFull()
+    wait(2)
+    keep(window, "window_layout")
+    designers[0].close()
+
+
+def manual():
+    plugins["lanewright"].menu.actions[3].trigger()
+    window = plugins["lanewright"].menu.manual
+    wait(1)
+    needed(len(window.browser.toPlainText()) > 500, "the manual is empty")
+    keep(window, "window_manual")
+    window.close()
+
+
+def designer():
+    """The chain as a model, in the model designer."""
+    from processing.modeler.ModelerDialog import ModelerDialog
+
+    model = QgsApplication.processingRegistry().createAlgorithmById("lanewright:Road map stages")
+    needed(model is not None, "the model is not listed")
+    window = ModelerDialog.create(model)
+    window.show()
+    window.resize(1380, 860)
+    wait(1)
+    window.findChild(QAction, "mActionZoomToItems").trigger()
+    keep(window, "window_model")
+    window.close()
+
+
+def drive():
+    try:
+        iface.mainWindow().resize(1380, 860)
+        wait(2)
+        for step in (menu, toolbox, dialog, sample, layout, manual, designer):
+            step()
+        say("finished")
+    except BaseException:
+        say(traceback.format_exc())
+    QgsProject.instance().clear()
+    os._exit(0)
+
+
+if "lanewright" not in plugins:
+    say(f"The plugin is not loaded: {sorted(plugins)}")
+    os._exit(1)
+QTimer.singleShot(1500, drive)
