@@ -1,6 +1,6 @@
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench package manual window
+.PHONY: help setup demo test bench package manual window lint
 
 help: ## this list
 	@grep -hE '^[a-z]+:.*## ' $(firstword $(MAKEFILE_LIST)) | sed -E 's/^([a-z]+):.*## /make \1\t/' | expand -t 16
@@ -25,3 +25,6 @@ manual: setup ## the manual's pages from the algorithms' own texts, into docs/ma
 
 window: setup ## a real QGIS window driven on a screen of its own, pictures into docs/manual/img/
 	@tools/screenshots.sh
+
+lint: setup ## style, spelling, and the scans QGIS's plugin repository makes of an upload
+	@tools/lint.sh

@@ -1,7 +1,6 @@
 """Run by QGIS itself (qgis --code): does what a newcomer does, and keeps a picture of each step."""
 
 import os
-import sys
 import traceback
 from pathlib import Path
 
@@ -103,7 +102,7 @@ def sample():
             dock.hide()
     iface.mainWindow().resize(1380, 860)
     iface.messageBar().clearWidgets()
-    surface = next(l for l in QgsProject.instance().mapLayers().values() if "urface" in l.name() or "oberfläche" in l.name())
+    surface = next(layer for layer in QgsProject.instance().mapLayers().values() if layer.name() == "Road surface")
     iface.setActiveLayer(surface)
     iface.zoomToActiveLayer()
     wait(3)
