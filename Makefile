@@ -1,6 +1,6 @@
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench package manual window lint
+.PHONY: help setup demo test bench package manual window lint translations
 
 help: ## this list
 	@grep -hE '^[a-z]+:.*## ' $(firstword $(MAKEFILE_LIST)) | sed -E 's/^([a-z]+):.*## /make \1\t/' | expand -t 16
@@ -28,3 +28,6 @@ window: setup ## a real QGIS window driven on a screen of its own, pictures into
 
 lint: setup ## style, spelling, and the scans QGIS's plugin repository makes of an upload
 	@tools/lint.sh
+
+translations: setup ## new texts into resources/i18n/*.ts for the translators, and the .qm that QGIS loads
+	@tools/translations.sh

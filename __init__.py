@@ -69,6 +69,9 @@ def classFactory(iface):
 
     add_library_folders(QgsApplication.qgisSettingsDirPath())
     load_shapely()
+    from .processing_provider.texts import install_translator
+
+    translator = install_translator()
     from .plugin import LanewrightPlugin
 
-    return LanewrightPlugin(iface)
+    return LanewrightPlugin(iface, translator)

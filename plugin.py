@@ -5,11 +5,13 @@ from qgis.core import Qgis, QgsApplication
 from . import add_library_folders
 from .processing_provider.dependencies import how_to_install, missing_packages
 from .processing_provider.provider import LanewrightProvider
+from .processing_provider.texts import remove_translator
 
 
 class LanewrightPlugin:
-    def __init__(self, iface):
+    def __init__(self, iface, translator=None):
         self.iface = iface
+        self.translator = translator  # Qt keeps none
         self.provider = None
         self.menu = None
 
@@ -39,3 +41,4 @@ class LanewrightPlugin:
         if self.provider is not None:
             QgsApplication.processingRegistry().removeProvider(self.provider)
             self.provider = None
+        remove_translator(self.translator)

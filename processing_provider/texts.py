@@ -1,7 +1,31 @@
 """Translation of what the user reads."""
 
-from qgis.PyQt.QtCore import QCoreApplication
+from pathlib import Path
+
+from qgis.core import QgsApplication
+from qgis.PyQt.QtCore import QCoreApplication, QTranslator
+
+CONTEXT = "Lanewright"
+TRANSLATIONS = Path(__file__).resolve().parents[1] / "resources" / "i18n"
 
 
 def tr(text):
-    return QCoreApplication.translate("Lanewright", text)
+    return QCoreApplication.translate(CONTEXT, text)
+
+
+def install_translator(locale=""):
+    """Speak the language of QGIS where there is a translation; the translator, for its owner to keep.
+
+    Labels stand in classes and tables, so this comes before those are imported.
+    """
+    language = (locale or QgsApplication.locale())[:2]
+    translator = QTranslator()
+    if not translator.load(str(TRANSLATIONS / f"lanewright_{language}.qm")):
+        return None
+    QCoreApplication.installTranslator(translator)
+    return translator
+
+
+def remove_translator(translator):
+    if translator is not None:
+        QCoreApplication.removeTranslator(translator)
