@@ -1,0 +1,195 @@
+"""Markings against a reference, cell by cell and object by object."""
+
+from dataclasses import dataclass, field
+
+import cv2
+import numpy as np
+
+from ..errors import RoadExtractionError
+from ..progress import Progress
+from .cells import TILE, Burner, Seen, tile_bounds, tiles_of
+from .rates import Rates
+
+HIT, MISSED, FALSE, MISSED_BESIDE, FALSE_BESIDE = 1, 2, 3, 4, 5  # values of the outcome raster
+BLOCK = 16  # cells a side: what is summed up for the chart along the road
+
+
+@dataclass(frozen=True)
+class MarkingAccuracySettings:
+    """How markings are judged."""
+
+    cell_size: float = 0.04     # m
+    tolerance_cells: int = 1    # cells by which the other side is widened for the tolerant figures
+    found_share: float = 0.5    # share of an object's cells that makes it found, or right
+    line_width: float = 0.15    # m of lines that tell no width of their own
+
+    def __post_init__(self):
+        if not 0.005 <= self.cell_size <= 1:
+            raise RoadExtractionError(f"The cell size is {self.cell_size} m; it must be between 0.005 and 1 m.")
+        if not 0 <= self.tolerance_cells <= 10:
+            raise RoadExtractionError(f"The tolerance is {self.tolerance_cells} cells; it must be 0 to 10.")
+        if not 0 < self.found_share <= 1:
+            raise RoadExtractionError(f"The share that makes an object found is {self.found_share}; it must be above 0 and at most 1.")
+        if not 0.01 <= self.line_width <= 10:
+            raise RoadExtractionError(f"The width of lines is {self.line_width} m; it must be between 0.01 and 10 m.")
+
+
+@dataclass(frozen=True)
+class ClassAccuracy:
+    """Cells of one class. found: of the reference's cells, painted in the result whatever its class; right: of the
+    result's cells, painted in the reference whatever its class; same: cells of this class in both."""
+
+    reference: int
+    found: int
+    found_beside: int
+    result: int
+    right: int
+    right_beside: int
+    same: int
+
+    @property
+    def rates(self):
+        """Rates of the class itself: a cell of another class is wrong."""
+        return Rates(self.same, self.result - self.same, self.reference - self.same)
+
+
+@dataclass(frozen=True)
+class MarkingAccuracy:
+    """strict, tolerant: Rates in cells; objects: Rates in objects, with the tolerance.
+
+    by_class : class to ClassAccuracy, of all classes that reference or result name
+    reference_cells, reference_found, result_cells, result_right : (N,) judged cells of every object
+    blocks : (N, 5) x, y and cells hit, missed and false of every block that has any, with the tolerance
+    """
+
+    strict: Rates
+    tolerant: Rates
+    objects: Rates
+    by_class: dict
+    reference_cells: np.ndarray = field(repr=False)
+    reference_found: np.ndarray = field(repr=False)
+    result_cells: np.ndarray = field(repr=False)
+    result_right: np.ndarray = field(repr=False)
+    blocks: np.ndarray = field(repr=False)
+    settings: MarkingAccuracySettings = MarkingAccuracySettings()
+
+    def outcomes(self):
+        """("correct" | "missed" | "excluded" of every reference object, "correct" | "false" | "excluded" of every result object)."""
+        share = self.settings.found_share
+        return (_outcome(self.reference_cells, self.reference_found, share, "missed"),
+                _outcome(self.result_cells, self.result_right, share, "false"))
+
+
+def assess_markings(result, reference, settings=MarkingAccuracySettings(), result_classes=None, reference_classes=None,
+                    area=None, seen=None, outcome_raster=None, progress=Progress()):
+    """Judge painted polygons.
+
+    Parameters
+    ----------
+    result, reference : lists of shapely polygons in one metric CRS (`painted` makes them of lines and rasters)
+    result_classes, reference_classes : class of every polygon, or None
+    area : shapely polygon; what lies outside is not judged, or None
+    seen : path of a raster in the same CRS whose empty cells are not judged, or None
+    outcome_raster : object with `write(tile, values)`, given (TILE, TILE) uint8 of HIT … of every tile, or None
+
+    Returns
+    -------
+    MarkingAccuracy
+    """
+    classes = sorted({str(name) for name in (*(result_classes or ()), *(reference_classes or ())) if name is not None})
+    tally = _Tally(len(result), len(reference), _numbers(result_classes, len(result), classes),
+                   _numbers(reference_classes, len(reference), classes), len(classes))
+    margin = settings.tolerance_cells
+    burners = Burner(result), Burner(reference)
+    valid = [Burner([area])] if area is not None else []
+    valid += [Seen(seen)] if seen else []
+    tiles = tiles_of([*result, *reference], settings.cell_size, margin)
+    shape = (TILE + 2 * margin,) * 2
+    inner = slice(margin, margin + TILE)
+    for number, tile in enumerate(tiles):
+        progress.at(number / len(tiles))
+        bounds = tile_bounds(tile, settings.cell_size, margin)
+        mine, theirs = (burner.burn(bounds, shape) for burner in burners)
+        beside = [_widened(ids > 0, margin) for ids in (mine, theirs)]
+        judged = np.logical_and.reduce([raster.burn(bounds, shape)[inner, inner] > 0 for raster in valid]) if valid else True
+        values = tally.add(mine[inner, inner], theirs[inner, inner], beside[0][inner, inner], beside[1][inner, inner], judged)
+        tally.add_blocks(values, tile, settings.cell_size)
+        if outcome_raster is not None and values.any():
+            outcome_raster.write(tile, values)
+    return tally.accuracy(classes, settings)
+
+
+class _Tally:
+    """Counts over the tiles."""
+
+    def __init__(self, results, references, result_class, reference_class, classes):
+        self.cells = np.zeros(5, np.int64)  # hit; right and found within the tolerance; of result; of reference
+        self.result_class, self.reference_class = result_class, reference_class
+        self.result_cells, self.result_right = np.zeros(results + 1, np.int64), np.zeros(results + 1, np.int64)
+        self.reference_cells, self.reference_found = np.zeros(references + 1, np.int64), np.zeros(references + 1, np.int64)
+        self.by_class = np.zeros((7, classes + 1), np.int64)
+        self.blocks = []
+
+    def add(self, mine, theirs, near_mine, near_theirs, judged):
+        """Count one tile; its outcome values."""
+        r, t = np.nonzero((mine > 0) & judged), np.nonzero((theirs > 0) & judged)
+        m, k = mine[r], theirs[t]
+        right, right_beside = theirs[r] > 0, near_theirs[r]
+        found, found_beside = mine[t] > 0, near_mine[t]
+        self.cells += right.sum(), right_beside.sum(), found_beside.sum(), len(m), len(k)
+        _add(self.result_cells, m), _add(self.result_right, m[right_beside])
+        _add(self.reference_cells, k), _add(self.reference_found, k[found_beside])
+        rc, tc = self.result_class[m], self.reference_class[k]
+        for row, values in enumerate((tc, tc[found], tc[found_beside], rc, rc[right], rc[right_beside],
+                                      rc[right][rc[right] == self.reference_class[theirs[r][right]]])):
+            _add(self.by_class[row], values)
+        values = np.zeros(mine.shape, np.uint8)
+        values[r] = np.where(right, HIT, np.where(right_beside, FALSE_BESIDE, FALSE))
+        lost = ~found
+        values[t[0][lost], t[1][lost]] = np.where(found_beside[lost], MISSED_BESIDE, MISSED)
+        return values
+
+    def add_blocks(self, values, tile, cell_size):
+        n = TILE // BLOCK
+        cut = values.reshape(n, BLOCK, n, BLOCK)
+        hit, missed, false = (sum((cut == value).sum(axis=(1, 3)) for value in group)
+                              for group in ((HIT, MISSED_BESIDE, FALSE_BESIDE), (MISSED,), (FALSE,)))
+        row, column = np.nonzero(hit + missed + false)
+        x0, _, _, y1 = tile_bounds(tile, cell_size)
+        size = BLOCK * cell_size
+        self.blocks.append(np.c_[x0 + (column + 0.5) * size, y1 - (row + 0.5) * size,
+                                 hit[row, column], missed[row, column], false[row, column]])
+
+    def accuracy(self, classes, settings):
+        hit, right, found, mine, theirs = self.cells.tolist()
+        by_class = {name: ClassAccuracy(*self.by_class[:, number].tolist()) for number, name in enumerate(classes, start=1)}
+        objects = [self.reference_cells[1:], self.reference_found[1:], self.result_cells[1:], self.result_right[1:]]
+        was_found, was_right = (_outcome(objects[k], objects[k + 1], settings.found_share, "wrong") for k in (0, 2))
+        counts = [int((outcome == value).sum()) for outcome in (was_right, was_found) for value in ("correct", "wrong")]
+        return MarkingAccuracy(
+            Rates(hit, mine - hit, theirs - hit), Rates(right, mine - right, theirs - found, found),
+            Rates(counts[0], counts[1], counts[3], counts[2]), by_class, *objects,
+            np.concatenate(self.blocks) if self.blocks else np.empty((0, 5)), settings)
+
+
+def _numbers(names, count, classes):
+    """Class number by polygon number; 0 for none."""
+    if names is None:
+        return np.zeros(count + 1, int)
+    place = {name: number for number, name in enumerate(classes, start=1)}
+    return np.array([0, *(0 if name is None else place[str(name)] for name in names)])
+
+
+def _widened(mask, cells):
+    """The mask and what lies within so many cells of it, corners included."""
+    side = 2 * cells + 1
+    return cv2.dilate(mask.astype(np.uint8), np.ones((side, side), np.uint8)).astype(bool) if cells else mask
+
+
+def _add(counts, numbers):
+    counts += np.bincount(numbers, minlength=len(counts))
+
+
+def _outcome(cells, good, share, otherwise):
+    found = np.where(good >= share * cells, "correct", otherwise)
+    return np.where(cells > 0, found, "excluded")

@@ -1,0 +1,78 @@
+"""Polygons of whatever paint is given as: lines with a width, or a raster of cells."""
+
+import numpy as np
+import shapely
+
+from ..errors import RoadExtractionError
+from ..progress import Progress
+
+BLOCK = 2048  # pixels
+
+
+def strips(lines, widths):
+    """Lines widened to polygons: (N,) metres from side to side, square ends that do not stick out."""
+    return list(shapely.buffer(np.asarray(lines, object), np.asarray(widths, float) / 2, cap_style="flat", join_style="mitre"))
+
+
+def polygons_of_raster(path, progress=Progress()):
+    """The painted patches of a raster: cells that touch, corners included, and have the same value other than 0 and no-data.
+
+    Parameters
+    ----------
+    path : a raster file; values beyond 1 to 65534 and broken ones count as 1
+
+    Returns
+    -------
+    polygons : list in the raster's CRS
+    values : (N,) int
+    crs : WKT, "" where it says none
+    """
+    from osgeo import gdal, ogr
+
+    gdal.UseExceptions()
+    ogr.UseExceptions()
+    try:
+        raster = gdal.Open(str(path))
+    except RuntimeError as problem:
+        raise RoadExtractionError(f"{path} cannot be read as a raster ({problem}).") from problem
+    copy = f"/vsimem/lanewright_{id(raster)}.tif"
+    try:
+        values = _values(raster, copy, progress.part(0.0, 0.7))
+        source = ogr.GetDriverByName("Memory").CreateDataSource("painted")
+        layer = source.CreateLayer("painted", None, ogr.wkbPolygon)
+        layer.CreateField(ogr.FieldDefn("value", ogr.OFTInteger))
+        band = values.GetRasterBand(1)
+        gdal.Polygonize(band, band, layer, 0, ["8CONNECTED=8"], callback=lambda share, *_: progress.at(0.7 + 0.3 * share) or 1)
+        found, kinds = [], []
+        for feature in layer:
+            found.append(shapely.from_wkb(bytes(feature.GetGeometryRef().ExportToWkb())))
+            kinds.append(feature.GetField(0))
+        values = band = None
+    finally:
+        gdal.Unlink(copy)
+    crs = raster.GetProjection()
+    # patches that touch themselves at a corner are no valid polygons
+    return list(shapely.make_valid(np.asarray(found, object))) if found else [], np.array(kinds, int), crs
+
+
+def _values(raster, path, progress):
+    """A copy with whole numbers: 0 where nothing is painted."""
+    from osgeo import gdal
+
+    width, height = raster.RasterXSize, raster.RasterYSize
+    copy = gdal.GetDriverByName("GTiff").Create(path, width, height, 1, gdal.GDT_UInt16, ["TILED=YES", "COMPRESS=LZW", "SPARSE_OK=TRUE"])
+    copy.SetGeoTransform(raster.GetGeoTransform())
+    band, target = raster.GetRasterBand(1), copy.GetRasterBand(1)
+    nodata = band.GetNoDataValue()
+    for row in range(0, height, BLOCK):
+        progress.at(row / height)
+        for column in range(0, width, BLOCK):
+            wide, high = min(BLOCK, width - column), min(BLOCK, height - row)
+            data = np.frombuffer(band.ReadRaster(column, row, wide, high, buf_type=gdal.GDT_Float64), np.float64)
+            painted = np.isfinite(data) & (data != 0)
+            if nodata is not None:
+                painted &= data != nodata
+            if painted.any():
+                value = np.where(painted & (data >= 1) & (data < 65535), np.nan_to_num(data), painted).astype(np.uint16)
+                target.WriteRaster(column, row, wide, high, value.tobytes())
+    return copy
