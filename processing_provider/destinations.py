@@ -9,7 +9,12 @@ import re
 import tempfile
 from pathlib import Path
 
-from qgis.core import QgsProcessingParameterFileDestination, QgsProcessingParameterRasterDestination
+from qgis.core import (
+    QgsProcessingParameterFeatureSink,
+    QgsProcessingParameterFileDestination,
+    QgsProcessingParameterRasterDestination,
+    QgsVectorFileWriter,
+)
 
 from ..core.errors import RoadExtractionError
 from .texts import tr
@@ -32,6 +37,9 @@ def destination_path(value):
 
 def check_suffix(path, definition):
     """Raise RoadExtractionError where the name promises a kind of file that is not written."""
+    if isinstance(definition, QgsProcessingParameterFeatureSink):
+        _check_vector_suffix(path, definition.description())
+        return
     if isinstance(definition, QgsProcessingParameterRasterDestination):
         kinds = (".tif", ".tiff")
     elif isinstance(definition, QgsProcessingParameterFileDestination):
@@ -43,6 +51,22 @@ def check_suffix(path, definition):
         raise RoadExtractionError(
             tr("{label} was to be written to {path}, but it is written as {kinds} only. Name the file so.").format(
                 label=definition.description(), path=path, kinds=tr(" or ").join(kinds[:2])
+            )
+        )
+
+
+def _check_vector_suffix(path, label):
+    """Layers need a format that QGIS writes and that has fields."""
+    suffix = path.suffix.lower().lstrip(".")
+    if suffix == "dxf":
+        raise RoadExtractionError(
+            tr("{label} was to be written to {path}, but a DXF has no fields. Write a GeoPackage and bring it to DXF with the "
+               "QGIS algorithm “Export layers to DXF”.").format(label=label, path=path)
+        )
+    if suffix not in QgsVectorFileWriter.supportedFormatExtensions():
+        raise RoadExtractionError(
+            tr("{label} was to be written to {path}, whose ending names no format that QGIS writes. Use .gpkg, .fgb or .shp.").format(
+                label=label, path=path
             )
         )
 

@@ -10,6 +10,7 @@ OLDEST=3.40
 NEWER="Debian 12 has 3.40 in bookworm-backports, Debian 13 has it itself, and https://qgis.org/download serves other systems"
 PACKAGES=(ca-certificates fonts-dejavu-core gdal-bin make python3-numpy python3-opencv python3-pip
   python3-pyproj python3-pytest python3-scipy python3-venv)
+TESTED_WITH=(postgresql postgresql-postgis) # the tests start a server of their own, in a folder that goes afterwards
 
 qgis_version() { qgis_process --version 2>/dev/null | sed -nE 's/^QGIS ([0-9]+\.[0-9]+).*/\1/p' | head -n 1; }
 at_least() { [ "$(printf '%s\n%s\n' "$2" "$1" | sort -V | head -n 1)" = "$2" ]; }
@@ -53,6 +54,11 @@ install_script() { # the shell lines that install from $1 ("" or a release such 
   echo "apt-get update -q"
   echo "apt-get install -y --no-install-recommends ${from}qgis python3-qgis qgis-providers"
   echo "apt-get install -y --no-install-recommends ${PACKAGES[*]}"
+  # Debian would set up a database server that runs from then on
+  local quiet=/etc/postgresql-common/createcluster.d
+  echo "mkdir -p $quiet; echo 'create_main_cluster = false' > $quiet/lanewright.conf"
+  echo "apt-get install -y --no-install-recommends ${TESTED_WITH[*]}"
+  echo "rm $quiet/lanewright.conf"
 }
 
 candidate() { apt-cache policy qgis 2>/dev/null | sed -nE 's/^ +Candidate: ([0-9]+:)?([0-9]+\.[0-9]+).*/\2/p'; }
