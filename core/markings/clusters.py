@@ -17,7 +17,7 @@ from ..errors import RoadExtractionError
 from ..features import Features
 from ..progress import Progress
 from ..schemas import MARKINGS
-from ..survey.points import ROAD_POINT, UNIT
+from ..survey.points import ROAD_POINT, UNIT, joined
 from ..survey.road_points import RoadPoints
 from . import polygons
 from .classes import LINES, NOT_PAINT, ClassSettings, classify
@@ -176,7 +176,7 @@ def group(marking_points, road, distance, progress=Progress()):
     graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
     _, merged = connected_components(graph, directed=False)
     labels = np.concatenate(labels)
-    return np.concatenate(records), merged[labels] if len(labels) else labels
+    return np.asarray(joined(records, ROAD_POINT)), merged[labels] if len(labels) else labels
 
 
 def _components(records, distance):

@@ -9,7 +9,6 @@ import numpy as np
 from ..errors import RoadExtractionError
 from ..parallel import in_order
 from ..progress import Progress
-from ..survey.points import Points, in_canonical_order
 from .intensity_raster import NODATA, TILE, IntensityImage, new_geotiff, write_display_image
 
 __all__ = ["ImageSettings", "IntensityImage", "write_intensity_image", "write_display_image"]
@@ -119,10 +118,8 @@ def _window_numbers(road_points, road):
 
 
 def _window_points(road_points, window):
-    """Points of a window in an order that sections have no part in: sums must not depend on them."""
     road, number = window
-    points = road_points.window(road, number * WINDOW, (number + 1) * WINDOW)
-    return Points(in_canonical_order(points.records))
+    return road_points.window(road, number * WINDOW, (number + 1) * WINDOW)
 
 
 def _survey_window(road_points, window, settings):

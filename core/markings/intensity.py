@@ -137,15 +137,14 @@ def correct_intensity(road_points, frame, settings=IntensitySettings(), progress
     def correct(key):
         points = road_points.section(*key)
         distance = distances_from_vehicle(points, frame.passes)
-        records = points.records.copy()
-        records["corrected"] = table.correct(even(points), points.scanner, distance)
-        return key[0], records, count_levels(points.scanner, distance, records["corrected"], scanners)
+        corrected = table.correct(even(points), points.scanner, distance)
+        return key, points.records.with_columns(corrected=corrected), count_levels(points.scanner, distance, corrected, scanners)
 
     result = RoadPoints.empty_like(road_points)
     result.has_corrected = True
     after = 0
-    for road, records, counts in in_order(correct, sections, progress.part(0.5, 1.0)):
-        result.store.append(road, records)
+    for key, records, counts in in_order(correct, sections, progress.part(0.5, 1.0)):
+        result.store.put(*key, records)
         after = after + counts
     report = _report(before, after, table)
     report.beams = beams.count if beams else 0

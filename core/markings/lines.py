@@ -11,6 +11,7 @@ from ..errors import RoadExtractionError
 from ..features import Features
 from ..progress import Progress
 from ..schemas import MARKING_LINES
+from ..survey.points import ROAD_POINT, joined
 from . import line_choice
 from .line_shape import shape_of
 from .linking import Drift, Line, link, link_far, without_strays
@@ -102,7 +103,7 @@ def fit_marking_lines(clustered_points, markings, frame, settings=LineSettings()
 
 def _records_of(points, road):
     parts = [points.store.section(road, section) for section in points.sections(road)]
-    return np.concatenate(parts)
+    return np.asarray(joined(parts, ROAD_POINT))
 
 
 def _add(found, one, shape, number, road, origin):

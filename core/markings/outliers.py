@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 from ..errors import RoadExtractionError
 from ..parallel import in_order
 from ..progress import Progress
-from ..survey.points import UNIT, canonical_order, chosen, in_canonical_order
+from ..survey.points import UNIT, canonical_order, chosen
 from ..survey.road_points import RoadPoints
 
 SCOPES = ("all", "windows")
@@ -118,8 +118,6 @@ def _windows(start, end):
 
 def _clean_window(points, road, number, settings):
     records = points.window(road, number * WINDOW - HALO, (number + 1) * WINDOW + HALO).records
-    # distances are summed in one order whatever the sections were
-    records = in_canonical_order(records)
     s = records["s"] * UNIT
     own = (s >= number * WINDOW) & (s < (number + 1) * WINDOW)
     if not own.any():

@@ -9,7 +9,7 @@ from ..features import Features
 from ..parallel import in_order
 from ..progress import Progress
 from ..schemas import ROAD_SURFACE
-from ..survey.points import ROAD_POINT, UNIT
+from ..survey.points import UNIT
 from ..survey.road_frame import CORRIDOR
 from ..survey.road_points import RoadPoints
 from .surface_cells import COLUMN, ROW, Cells, ground_cells
@@ -88,7 +88,7 @@ def extract_road_surface(survey, edges=None, settings=SurfaceSettings(), progres
     RoadExtractionError
         If no road surface is found.
     """
-    road_points = RoadPoints.empty_like(origin=survey.frame.origin, crs=survey.crs)
+    road_points = RoadPoints.empty_of(survey)
     surface = Features("PolygonZ", list(ROAD_SURFACE), crs=survey.crs)
     roads = survey.store.roads()
     for k, road in enumerate(roads):
@@ -163,16 +163,14 @@ def _take_points(survey, road, carriageway, road_points, progress):
     def take(number):
         points = survey.section(road, number)
         on_road, half_width = select_points(points, carriageway)
-        records = points[on_road].records
-        found = np.zeros(len(records), ROAD_POINT)
-        for name in records.dtype.names:
-            found[name] = records[name]
-        found["corrected"] = np.nan
-        found["half_width"] = np.clip(np.rint(half_width * 1e3), 0, 65535)
-        return found
+        count = len(on_road)
+        records = points[on_road].records.with_columns(
+            corrected=np.full(count, np.nan, np.float32), cluster=np.zeros(count, np.int32),
+            half_width=np.clip(np.rint(half_width * 1e3), 0, 65535).astype(np.uint16))
+        return number, records.whole()
 
-    for records in in_order(take, sections, progress):
-        road_points.store.append(road, records)
+    for number, records in in_order(take, sections, progress):
+        road_points.store.put(road, number, records)
         row = np.floor(records["s"] * UNIT / ROW).astype(np.int64) - carriageway.cells.first_row
         per_row += np.bincount(np.clip(row, 0, len(per_row) - 1), minlength=len(per_row))
     return per_row

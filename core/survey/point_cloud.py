@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ..errors import RoadExtractionError
 
-BLOCK = 500_000  # points decoded at a time
+BLOCK = 200_000  # points decoded at a time
 SUFFIXES = (".las", ".laz")
 
 
@@ -32,8 +32,12 @@ class CloudFile:
     adjusted_time: bool
 
 
-def open_cloud(path):
-    """Open a LAS/LAZ/COPC file for reading with laspy, or say in one sentence why it cannot be read."""
+def open_cloud(path, wanted=None):
+    """Open a LAS/LAZ/COPC file for reading with laspy, or say in one sentence why it cannot be read.
+
+    `wanted` names the layers of a LAZ 1.4 file that are decoded beside place and
+    return numbers ("z", "intensity" ...), all by default.
+    """
     import laspy
 
     path = str(path)
@@ -42,7 +46,12 @@ def open_cloud(path):
     if not path.lower().endswith(SUFFIXES):
         raise RoadExtractionError(f"{path} is not a LAS or LAZ file. Lanewright reads .las, .laz and .copc.laz; convert other formats first.")
     try:
-        return laspy.open(path)
+        if wanted is None:
+            return laspy.open(path)
+        selection = laspy.DecompressionSelection.base()
+        for name in wanted:
+            selection = getattr(selection, f"decompress_{name}")()
+        return laspy.open(path, decompression_selection=selection)
     except Exception as problem:  # laspy and its backends raise many kinds for a damaged file
         raise RoadExtractionError(f"{path} cannot be read as a LAS/LAZ file ({problem}). It may be damaged or cut off; copy or export it again.") from problem
 
@@ -74,15 +83,15 @@ def _crs_of(header):
     return "" if crs is None else crs.to_wkt()
 
 
-def read_blocks(path, size=BLOCK):
-    """Yield laspy point records of a file, `size` at a time.
+def read_blocks(path, size=BLOCK, wanted=None):
+    """Yield laspy point records of a file, `size` at a time; `wanted` as in `open_cloud`.
 
     Raises
     ------
     RoadExtractionError
         If the file ends early or is damaged.
     """
-    with open_cloud(path) as reader:
+    with open_cloud(path, wanted) as reader:
         promised, read = reader.header.point_count, 0
         try:
             for points in reader.chunk_iterator(size):

@@ -8,6 +8,10 @@ from .points import ROAD_POINT, Points, joined
 from .section_store import SectionStore
 
 
+def _store_like(store):
+    return SectionStore(ROAD_POINT, store.section_length, store.memory_limit)
+
+
 @dataclass
 class RoadPoints:
     """Road points in their sections, with what a later stage must know of them.
@@ -24,10 +28,15 @@ class RoadPoints:
 
     @classmethod
     def empty_like(cls, other=None, origin=None, crs=""):
-        """A new, empty set; with `other` given, its origin, CRS and columns."""
+        """A new, empty set; with `other` given, its sections, origin, CRS and columns."""
         if other is not None:
-            return cls(SectionStore(ROAD_POINT), other.origin, other.crs, other.has_corrected, other.has_cluster)
+            return cls(_store_like(other.store), other.origin, other.crs, other.has_corrected, other.has_cluster)
         return cls(SectionStore(ROAD_POINT), np.asarray(origin, float), crs)
+
+    @classmethod
+    def empty_of(cls, survey):
+        """A new, empty set with the sections, origin and CRS of a survey."""
+        return cls(_store_like(survey.store), np.asarray(survey.frame.origin, float), survey.crs)
 
     def __len__(self):
         return self.store.count
@@ -51,9 +60,9 @@ class RoadPoints:
         return [(road, number) for road in self.roads() for number in self.sections(road)]
 
     def all_points(self):
-        """Every point, road by road and section by section (for sets known to be small: paint)."""
+        """Every point in one structured array, road by road and section by section (for sets known to be small: paint)."""
         parts = [self.store.section(road, number) for road, number in self.all_sections()]
-        return Points(joined(parts, ROAD_POINT))
+        return Points(np.asarray(joined(parts, ROAD_POINT)))
 
     def point_roads(self):
         """(N,) road number of each of `all_points()`."""

@@ -20,8 +20,9 @@ class ScannerCensus:
         seen = self.spans[name]
         if len(seen) > 4 * MOST_SCANNERS:
             return
-        for value in np.unique(values)[: 4 * MOST_SCANNERS + 1]:
-            times = time[values == value]
+        counts = np.bincount(values)
+        for value in np.flatnonzero(counts)[: 4 * MOST_SCANNERS + 1]:
+            times = time if counts[value] == len(values) else time[values == value]
             first, last, count = seen.get(int(value), (np.inf, -np.inf, 0))
             seen[int(value)] = min(first, float(times.min())), max(last, float(times.max())), count + len(times)
 

@@ -3,13 +3,15 @@
 import os
 import tempfile
 import threading
+from bisect import bisect_left
 from collections import OrderedDict, defaultdict
 
 import numpy as np
 
-from .points import Points, UNIT, chosen, in_canonical_order, joined
+from .columns import Columns
+from .points import UNIT, Points, canonical_order
 
-SECTION_LENGTH = 20.0  # m of station; results must not depend on it
+SECTION_LENGTH = 5.0   # m of station; results must not depend on it
 MEMORY_LIMIT = 256 * 2**20  # bytes of records kept before they are spilled
 KEPT = 64 * 2**20      # bytes of spilled sections kept as last read: neighbours ask for them again
 TURNS = 16             # locks that sections share while they are put in order
@@ -19,16 +21,23 @@ class SectionStore:
     """Points of all roads, appended in any order, read back by station.
 
     A section is a fixed cell of station of one road, cut from 0. What is read
-    back is sorted by time and place, so it does not depend on the order of
-    appending; a section is sorted once, when it is first read. The spill file
-    has no name on disk, so a killed run leaves nothing.
+    back is sorted by station, offset, height and time, so it does not depend on
+    the order of appending, and a window is a run of rows; a section is sorted
+    once, when it is first read. The spill file has no name on disk (on Windows it
+    is deleted when it is closed), so a killed run leaves nothing.
+
+    `finish`, where set, is a function of road and Columns that is applied to
+    every section once, when it is first read, and returns its final points.
     """
 
-    def __init__(self, dtype, section_length=SECTION_LENGTH, memory_limit=MEMORY_LIMIT):
+    def __init__(self, dtype, section_length=SECTION_LENGTH, memory_limit=MEMORY_LIMIT, finish=None):
         self.dtype = np.dtype(dtype)
         self.section_length = section_length
         self.memory_limit = memory_limit
-        self._waiting = defaultdict(list)   # (road, section) -> arrays in memory
+        self.finish = finish
+        # in the file the widest columns of a piece come first, so that each begins at a multiple of its width
+        self._names = sorted(self.dtype.names, key=lambda name: -self.dtype[name].itemsize)
+        self._waiting = defaultdict(list)   # (road, section) -> Columns in memory
         self._spilled = defaultdict(list)   # (road, section) -> (offset, count) in the file, before those in memory
         self._in_order = set()              # sections whose records lie sorted, in the file and in memory
         self._kept = OrderedDict()          # a few spilled sections as last read
@@ -41,34 +50,56 @@ class SectionStore:
         self.count = 0
 
     def append(self, road, records):
-        """Add (N,) records of one road; each goes to the section of its station."""
-        if not len(records):
-            return
+        """Add (N,) records of one road (a structured array or Columns); each goes to the section of its station."""
+        if len(records):
+            self.add(self.parted(road, Columns.of(records)))
+
+    def parted(self, road, records):
+        """[((road, section), Columns)] of the sections that (N,) Columns lie in: the work of `append` that any thread may do."""
         section = np.floor(records["s"] * UNIT / self.section_length).astype(np.int64)
-        order = np.argsort(section, kind="stable")
-        section, records = section[order], chosen(records, order)
-        starts = np.r_[0, np.flatnonzero(np.diff(section)) + 1, len(section)]
-        for a, b in zip(starts[:-1], starts[1:]):
-            key = (int(road), int(section[a]))
-            self._waiting[key].append(records[a:b].copy())
-            self._in_order.discard(key)
-            self._forget(key)
+        low, high = int(section.min()), int(section.max())
+        if low == high:
+            return [((int(road), low), records.whole())]
+        section -= low
+        section = section.astype(np.uint16) if high - low < 2**16 else section
+        records = records.take(np.argsort(section, kind="stable")).whole()
+        ends = np.cumsum(np.bincount(section))
+        return [((int(road), low + k), records[first:end])
+                for k, (first, end) in enumerate(zip([0, *ends[:-1].tolist()], ends.tolist())) if end > first]
+
+    def add(self, parted):
+        """Add what `parted` made."""
+        for key, records in parted:
+            self._add(key, records)
+        self._spill_beyond_limit()
+
+    def put(self, road, section, records):
+        """Add the records of one section, which lie in order already and are all that it will hold."""
+        if len(records):
+            self._add((int(road), int(section)), records.whole())
+            self._in_order.add((int(road), int(section)))
+            self._spill_beyond_limit()
+
+    def _add(self, key, records):
+        self._waiting[key].append(records)
+        self._in_order.discard(key)
+        self._forget(key)
         self.count += len(records)
         self._waiting_bytes += records.nbytes
-        if self._waiting_bytes > self.memory_limit:
-            self._spill()
 
-    def _spill(self):
+    def _spill_beyond_limit(self):
+        if self._waiting_bytes <= self.memory_limit:
+            return
         if self._file is None:
             self._file = tempfile.TemporaryFile(prefix="lanewright-")
-        self._file.seek(self._end)
-        for key, arrays in self._waiting.items():
-            count = sum(map(len, arrays))
-            for array in arrays:
-                self._file.write(array.view(np.uint8))
-            self._spilled[key].append((self._end, count))
-            self._end += count * self.dtype.itemsize
-        self._file.flush()
+        for key, parts in self._waiting.items():
+            records = Columns.joined(parts, self.dtype)
+            if len(records):
+                # every piece begins at a multiple of the widest column
+                self._end += -self._end % 8
+                self._write(self._end, records)
+                self._spilled[key].append((self._end, len(records)))
+                self._end += records.nbytes
         self._waiting.clear()
         self._waiting_bytes = 0
 
@@ -84,7 +115,7 @@ class SectionStore:
         return set(self._waiting) | set(self._spilled)
 
     def section(self, road, section):
-        """The records of one section in canonical order (empty where there are none); not to be written to."""
+        """The Columns of one section in canonical order (empty where there are none); not to be written to."""
         key = (road, section)
         with self._turns[hash(key) % TURNS]:
             with self._lock:
@@ -94,29 +125,37 @@ class SectionStore:
                     return records
             records = self._read(key)
             if key not in self._in_order:
-                records = in_canonical_order(records)
-                self._put_back(key, records)
-                self._in_order.add(key)
-            records.flags.writeable = False
+                records = self._put_in_order(key, records)
+            records.locked()
             if key in self._spilled:
                 self._keep(key, records)
             return records
 
+    def _put_in_order(self, key, records):
+        records = records.take(canonical_order(records)).whole()
+        if self.finish is not None:
+            records = self.finish(key[0], records).whole()
+        self._put_back(key, records)
+        self._in_order.add(key)
+        return records
+
     def _read(self, key):
         """What was appended to a section, as it lies in the file and in memory."""
-        arrays = [np.frombuffer(self._read_at(offset, count * self.dtype.itemsize), self.dtype)
-                  for offset, count in self._spilled.get(key, ())]
-        arrays += self._waiting.get(key, [])
-        return arrays[0] if len(arrays) == 1 else joined(arrays, self.dtype)
+        parts = [self._read_piece(offset, count) for offset, count in self._spilled.get(key, ())]
+        return Columns.joined(parts + self._waiting.get(key, []), self.dtype)
 
     def _put_back(self, key, records):
-        """Records in their new order into the places they came from."""
-        first = 0
+        """Records in their new order, no more than before, into the places they came from."""
+        first, places = 0, []
         for offset, count in self._spilled.get(key, ()):
-            self._write_at(offset, records[first:first + count].view(np.uint8))
+            count = min(count, len(records) - first)
+            self._write(offset, records[first:first + count])
+            places.append((offset, count))
             first += count
+        if places:
+            self._spilled[key] = places
         if key in self._waiting:
-            self._waiting[key] = [records[first:] if not first else records[first:].copy()]
+            self._waiting[key] = [records[first:].copy() if first else records]
 
     def _keep(self, key, records):
         with self._lock:
@@ -130,6 +169,21 @@ class SectionStore:
             records = self._kept.pop(key, None)
             self._kept_bytes -= 0 if records is None else records.nbytes
 
+    def _read_piece(self, offset, count):
+        """Columns of a piece of the file; they share what was read."""
+        data = self._read_at(offset, count * self.dtype.itemsize)
+        arrays, first = {}, 0
+        for name in self._names:
+            arrays[name] = np.frombuffer(data, self.dtype[name], count, first)
+            first += arrays[name].nbytes
+        return Columns(arrays, self.dtype, count)
+
+    def _write(self, offset, records):
+        for name in self._names:
+            column = np.ascontiguousarray(records[name])
+            self._write_at(offset, column.view(np.uint8))
+            offset += column.nbytes
+
     # pread and pwrite leave the file's position alone, so threads may use it together; Windows has neither
     def _read_at(self, offset, size):
         if hasattr(os, "pread"):
@@ -140,7 +194,9 @@ class SectionStore:
 
     def _write_at(self, offset, data):
         if hasattr(os, "pwrite"):
-            os.pwrite(self._file.fileno(), data, offset)
+            while len(data):  # a full disk raises, a signal only shortens
+                written = os.pwrite(self._file.fileno(), data, offset)
+                data, offset = data[written:], offset + written
             return
         with self._lock:
             self._file.seek(offset)
@@ -148,18 +204,19 @@ class SectionStore:
             self._file.flush()
 
     def window(self, road, start, end):
-        """Points of a road with start <= station < end (metres), in canonical order per section."""
+        """Points of a road with start <= station < end (metres), in canonical order."""
         first = int(np.floor(start / self.section_length))
         last = int(np.floor(np.nextafter(end, -np.inf) / self.section_length))
         parts = []
         for number in range(first, last + 1):
             records = self.section(road, number)
             if number in (first, last) and len(records):
-                s = records["s"] * UNIT
-                inside = (s >= start) & (s < end)
-                records = records if inside.all() else chosen(records, inside)
+                stations = _Metres(records["s"])
+                a = bisect_left(stations, start) if number == first else 0
+                b = bisect_left(stations, end) if number == last else len(records)
+                records = records if b - a == len(records) else records[a:b]
             parts.append(records)
-        return Points(parts[0] if len(parts) == 1 else joined(parts, self.dtype))
+        return Points(Columns.joined(parts, self.dtype))
 
     def span(self, road):
         """(start, end) of the sections of a road that have points, metres."""
@@ -178,3 +235,16 @@ class SectionStore:
         if self._file is not None:
             self._file.close()
             self._file = None
+
+
+class _Metres:
+    """Units of a column as metres, one at a time, for a binary search."""
+
+    def __init__(self, column):
+        self.column = column
+
+    def __len__(self):
+        return len(self.column)
+
+    def __getitem__(self, k):
+        return self.column[k] * UNIT

@@ -1,5 +1,7 @@
 """How high the trajectory runs above the road, from the points on the vehicle's own track."""
 
+import threading
+
 import numpy as np
 
 from .points import UNIT
@@ -10,17 +12,36 @@ FEWEST = 50            # points that make a height
 STEP = 0.001           # m to which a height is told
 RANGE = 20.0           # m either side of the first estimate that is counted
 PEAK = 0.1             # m: width of the bins in which the road stands out
+LOOKUP, WINDING = 0.5, 0.3  # m between looked-up places of a track, and how far it may stray between them
 AROUND = 0.5           # m either side of the peak that belong to the road
 
 
-def drops_on_track(frame, road, records):
-    """Per pass over a road: (pass number, (N,) metres from the trajectory down to the points on its own track)."""
-    s, d, z = (records[name] * UNIT for name in ("s", "d", "z"))
-    for p in frame.passes_of(road):
-        m = np.flatnonzero(records["pass_number"] == p.number)
-        if len(m):
-            track_d, track_z = p.at_station(s[m])
-            yield p.number, (track_z - z[m])[np.abs(d[m] - track_d) < NEAR_TRACK]
+class Tracks:
+    """The vehicle's own tracks in the road frame, for asking which points lie on them."""
+
+    def __init__(self, frame):
+        self.frame = frame
+        self._rough = {}  # pass number -> first station, offsets of the track every LOOKUP metres
+        for p in frame.passes:
+            first, last = p.span
+            stations = np.arange(first, last + LOOKUP, LOOKUP)
+            self._rough[p.number] = first, p.at_station(stations)[0]
+
+    def drops(self, road, records):
+        """Per pass over a road: (pass number, (N,) metres from the trajectory down to the points on its own track)."""
+        number = records["pass_number"]
+        only = len(number) and number.min() == number.max()
+        for p in self.frame.passes_of(road):
+            m = np.flatnonzero(number == p.number) if not only else slice(None) if number[0] == p.number else []
+            s, d = records["s"][m] * UNIT, records["d"][m] * UNIT
+            if not len(s):
+                continue
+            first, track = self._rough[p.number]
+            k = ((s - first) * (1.0 / LOOKUP) + 0.5).astype(np.intp)
+            near = np.flatnonzero(np.abs(d - track.take(k, mode="clip")) < NEAR_TRACK + WINDING)
+            track_d, track_z = p.at_station(s[near])
+            on = np.abs(d[near] - track_d) < NEAR_TRACK
+            yield p.number, track_z[on] - records["z"][m][near[on]] * UNIT
 
 
 def first_estimate(drops):
@@ -28,34 +49,44 @@ def first_estimate(drops):
     return float(np.median(drops)) if len(drops) > FEWEST else None
 
 
-def sensor_heights(frame, store, about):
-    """Height of the trajectory above the road, one per pass.
-
-    The road is where most points on the track lie: the fullest decimetre of
-    height. Its height is the median of the points within half a metre of it, so
-    that a bridge or trees above do not count, nor how many of them were kept.
+class HeightTally:
+    """Counts points on the tracks by their depth below the trajectory; no order of adding shows.
 
     Parameters
     ----------
-    about : metres, a first estimate
-
-    Returns
-    -------
-    {pass number: metres, a whole number of millimetres}; a pass without points
-    on its own track gets the median of the others.
+    passes : numbers of the passes
+    about : metres, a first estimate of the sensor's height
     """
-    origin = np.floor(about) - RANGE
-    size = int(2 * RANGE / STEP)
-    tally = {p.number: np.zeros(size, np.int64) for p in frame.passes}
-    for road in store.roads():
-        for section in store.sections(road):
-            for number, drops in drops_on_track(frame, road, store.section(road, section)):
-                k = np.rint((drops - origin) / STEP).astype(np.int64)
-                tally[number] += np.bincount(k[(k >= 0) & (k < size)], minlength=size)
-    found = {number: _road_height(counts, origin) for number, counts in tally.items()}
-    known = [height for height in found.values() if height is not None]
-    usual = float(np.median(known)) if known else DEFAULT_HEIGHT
-    return {number: usual if height is None else height for number, height in found.items()}
+
+    def __init__(self, passes, about):
+        self.origin = np.floor(about) - RANGE
+        self.counts = {number: np.zeros(int(2 * RANGE / STEP), np.int64) for number in passes}
+        self._lock = threading.Lock()
+
+    def add(self, number, drops):
+        """Count (N,) metres below the trajectory of points on the track of one pass."""
+        size = int(2 * RANGE / STEP)
+        k = np.rint((drops - self.origin) / STEP).astype(np.int64)
+        found = np.bincount(k[(k >= 0) & (k < size)], minlength=size)
+        with self._lock:
+            self.counts[number] += found
+
+    def heights(self):
+        """Height of the trajectory above the road, one per pass.
+
+        The road is where most points on the track lie: the fullest decimetre of
+        height. Its height is the median of the points within half a metre of it, so
+        that a bridge or trees above do not count, nor how many of them were kept.
+
+        Returns
+        -------
+        {pass number: metres, a whole number of millimetres}; a pass without points
+        on its own track gets the median of the others.
+        """
+        found = {number: _road_height(counts, self.origin) for number, counts in self.counts.items()}
+        known = [height for height in found.values() if height is not None]
+        usual = float(np.median(known)) if known else DEFAULT_HEIGHT
+        return {number: usual if height is None else height for number, height in found.items()}
 
 
 def height_above(drops):

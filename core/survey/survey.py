@@ -7,20 +7,14 @@ import numpy as np
 from ..errors import RoadExtractionError
 from ..progress import Progress
 from .crs import check_projected, crs_note, parse_crs, reproject_trajectory
-from .point_cloud import BLOCK, read_blocks, read_headers
-from .points import SURVEY_POINT, UNIT, Points, chosen, to_units
+from .point_cloud import BLOCK, read_headers
+from .points import SURVEY_POINT, UNIT, Points
+from .reading import ABOVE, BELOW, SurveyReader, carried_on
 from .road_frame import CORRIDOR, build_frame
-from .scanners import ScannerCensus
 from .section_store import MEMORY_LIMIT, SECTION_LENGTH, SectionStore
-from .sensor_height import DEFAULT_HEIGHT, drops_on_track, first_estimate, sensor_heights
-from .time_systems import WEEK, align_time, wrapped_week
+from .time_systems import align_time, wrapped_week
 
-ABOVE, BELOW = 3.5, 4.0  # m about the road kept: vehicles that hide a curb above, ditches below
-# m more that are stored: the height of the road is rough while reading, and exact when points are handed out,
-# so that what is handed out does not depend on which file came first
-MARGIN = 1.5
-WAITING = 4_000_000    # points kept back at most until that height is known
-CLOCK_SLACK = 1.0      # s that a cloud may begin before or end after the trajectory
+HEIGHT_STEP = 0.25     # m between the stations at which the height of the road is taken to choose points by
 
 
 @dataclass(frozen=True)
@@ -64,24 +58,38 @@ class Survey:
     has_time: bool
     counts: dict = field(default_factory=dict)
 
+    def __post_init__(self):
+        self.store.finish = self._finished
+
     def window(self, road, start, end):
         """Points of a road with start <= station < end and near its height, scanners numbered from 0."""
-        return self._handed_out(road, self.store.window(road, start, end).records)
+        return self.store.window(road, start, end)
 
     def section(self, road, number):
         """Points of one section near the road's height."""
-        return self._handed_out(road, self.store.section(road, number))
+        return Points(self.store.section(road, number))
 
-    def _handed_out(self, road, records):
-        h = records["z"] * UNIT - self.road_height(road, records["s"] * UNIT)
-        records = chosen(records, (h > -BELOW) & (h < ABOVE))
+    def _finished(self, road, records):
+        """A section's points near the road's height, scanners numbered from 0."""
+        h = records["z"] * UNIT - self._height_beneath(road, records["s"] * UNIT)
+        near = (h > -BELOW) & (h < ABOVE)
+        records = records if near.all() else records.take(near)
         if self.scanner_field is None:
-            records["scanner"] = 0
-        elif self.scanner_field == "point_source_id":
-            records["scanner"] = np.searchsorted(self.scanners, records["source"])
+            scanner = np.zeros(len(records), np.uint8)
         else:
-            records["scanner"] = np.searchsorted(self.scanners, records["scanner"])
-        return Points(records)
+            numbers = records["source" if self.scanner_field == "point_source_id" else "scanner"]
+            scanner = np.searchsorted(self.scanners, np.arange(int(numbers.max(initial=0)) + 1)).astype(np.uint8)[numbers]
+        return records.with_columns(scanner=scanner)
+
+    def _height_beneath(self, road, s):
+        """`road_height` from nodes at fixed stations, so that many points cost little."""
+        if not len(s):
+            return np.empty(0)
+        first = int(np.floor(s.min() / HEIGHT_STEP))
+        nodes = self.road_height(road, np.arange(first, int(np.floor(s.max() / HEIGHT_STEP)) + 2) * HEIGHT_STEP)
+        at = s / HEIGHT_STEP - first
+        k = at.astype(np.int64)
+        return nodes[k] + (at - k) * (nodes[k + 1] - nodes[k])
 
     def road_height(self, road, s):
         """(N,) local z of the road under the vehicle's track at stations of a road: a prior, good to decimetres."""
@@ -117,137 +125,22 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
         progress.say(note)
     _check_extent(files, frame, crs, trajectory.crs)
     store = SectionStore(SURVEY_POINT, settings.section_length, settings.memory_limit)
-    reader = _Reader(frame, store, settings, has_time, week_ends)
-    total, done = sum(file.count for file in files), 0
-    for file in files:
-        for block in read_blocks(file.path, settings.block):
-            reader.take(block, file)
-            done += len(block)
-            progress.at(done / total)
-    reader.finish()
+    reader = SurveyReader(frame, store, settings.corridor, has_time, week_ends)
+    reader.read(files, settings.block, progress)
+    total = sum(file.count for file in files)
     if not store.count:
-        raise RoadExtractionError(_no_overlap(files, frame, reader))
+        raise RoadExtractionError(_no_overlap(files, frame, reader, settings.corridor))
     if reader.unplaced_time:
         progress.warn(f"{reader.unplaced_time:,} of {total:,} points were left out: their gps_time is missing or lies outside the "
                       "trajectory's.")
     scanner_field, scanners = reader.census.choose(settings.scanner_field)
-    heights = sensor_heights(frame, store, reader.drop)
-    survey = Survey(files, frame, store, crs, heights, scanner_field, scanners,
+    survey = Survey(files, frame, store, crs, reader.heights, scanner_field, scanners,
                     reader.brightest > 0, has_time,
                     dict(read=total, kept=store.count, outside=total - store.count))
     progress.say(f"{total:,} points read from {len(files)} file(s), {store.count:,} near the road kept; "
                  f"{len(frame.roads)} road(s), {len(frame.passes)} pass(es), {len(scanners)} scanner(s); "
-                 f"sensor {np.mean(list(heights.values())):.2f} m above the road.")
+                 f"sensor {np.mean(list(reader.heights.values())):.2f} m above the road.")
     return survey
-
-
-class _Reader:
-    """Places blocks of points; the coarse height limits come from the first points on the track."""
-
-    def __init__(self, frame, store, settings, has_time, week_ends=False):
-        self.frame, self.store, self.settings, self.has_time = frame, store, settings, has_time
-        self.week_ends = week_ends
-        self.census = ScannerCensus()
-        self.brightest = 0
-        self.drop = None          # metres from track to road, rough
-        self.waiting = []         # (road, records) until it is known
-        self.samples = []
-        self.unplaced_time = 0
-        self.starts = np.array([p.time[0] for p in frame.passes])
-        self.ends = np.array([p.time[-1] for p in frame.passes])
-
-    def take(self, block, file):
-        x, y, z = (np.asarray(block[c], float) for c in ("x", "y", "z"))
-        names = set(block.point_format.dimension_names)
-        good = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
-        if "withheld" in names:
-            good &= np.asarray(block["withheld"]) == 0
-        lx, ly, lz = self.frame.to_local(x, y, z)
-        # Absurd coordinates would overflow the 0.1 mm integers
-        good &= (np.abs(lx) < 2e5) & (np.abs(ly) < 2e5) & (np.abs(lz) < 2e4)
-        intensity = np.asarray(block["intensity"])
-        self.brightest = max(self.brightest, int(intensity.max(initial=0)))
-        source = np.asarray(block["point_source_id"])
-        time = np.asarray(block["gps_time"], float) if "gps_time" in names else np.zeros(len(x))
-        time = _carried_on(time) if self.week_ends else time
-        channel = np.asarray(block["scanner_channel"]) if "scanner_channel" in names else np.zeros(len(x), np.uint8)
-        if len(x):
-            self.census.add("point_source_id", source, time)
-            if "scanner_channel" in names:
-                self.census.add("scanner_channel", channel, time)
-        pass_number, road, s, d = self._place(lx, ly, time, good)
-        for number in np.unique(road[road >= 0]):
-            m = np.flatnonzero(road == number)
-            records = np.empty(len(m), SURVEY_POINT)
-            records["time"] = time[m]
-            records["x"], records["y"], records["z"] = to_units(lx[m]), to_units(ly[m]), to_units(lz[m])
-            records["s"], records["d"] = to_units(s[m]), to_units(d[m])
-            records["intensity"], records["source"] = intensity[m], source[m]
-            records["pass_number"], records["scanner"] = pass_number[m], channel[m]
-            records["returns"] = np.asarray(block["return_number"])[m] | (np.asarray(block["number_of_returns"])[m] << 4)
-            self._keep(int(number), records)
-
-    def _place(self, x, y, time, good):
-        """Pass, road, station and offset of local places; road -1 where there is none."""
-        count = len(x)
-        pass_number, road = np.zeros(count, np.uint16), np.full(count, -1)
-        s, d = np.full(count, np.nan), np.full(count, np.nan)
-        if not self.has_time:
-            rows = np.flatnonzero(good)
-            road[rows], s[rows], d[rows] = self.frame.locate_nearest(x[rows], y[rows], self.settings.corridor)
-            for p in self.frame.passes[::-1]:
-                pass_number[road == p.road] = p.number
-            return pass_number, road, s, d
-        owner = self._owner(time)
-        self.unplaced_time += int(np.count_nonzero(good & (owner < 0)))
-        for p in self.frame.passes:
-            rows = np.flatnonzero(good & (owner == p.number))
-            if not len(rows):
-                continue
-            line = self.frame.road(p.road)
-            # far points are dropped before the exact foot is sought
-            px, py, _ = p.position(time[rows])
-            reach = 2.0 * self.settings.corridor
-            rows = rows[np.hypot(x[rows] - px, y[rows] - py) < reach]
-            s0 = p.station_at(time[rows])
-            px, py, _ = p.position(time[rows])
-            h = line.heading(s0)
-            s0 = s0 + (x[rows] - px) * np.cos(h) + (y[rows] - py) * np.sin(h)
-            s[rows], d[rows] = line.locate(x[rows], y[rows], s0, self.settings.corridor)
-            found = rows[np.isfinite(s[rows])]
-            road[found], pass_number[found] = p.road, p.number
-        return pass_number, road, s, d
-
-    def _owner(self, time):
-        """Pass that drove at each time: within it, or within a second of its ends; -1 where none did."""
-        k = np.clip(np.searchsorted(self.starts, time + CLOCK_SLACK, side="right") - 1, 0, None)
-        # between two passes that follow on each other the earlier one ends where the later begins
-        k = np.where((k > 0) & (time < self.starts[k]) & (time <= self.ends[np.maximum(k - 1, 0)]), k - 1, k)
-        inside = (time >= self.starts[k] - CLOCK_SLACK) & (time <= self.ends[k] + CLOCK_SLACK)
-        return np.where(inside, k, -1)
-
-    def _keep(self, road, records):
-        if self.drop is not None:
-            self._store(road, records)
-            return
-        self.waiting.append((road, records))
-        self.samples += [drops[::7] for _, drops in drops_on_track(self.frame, road, records)]
-        if sum(map(len, self.samples)) > 20000 or sum(len(kept) for _, kept in self.waiting) > WAITING:
-            self.finish()
-
-    def _store(self, road, records):
-        ground = self.frame.track_height(road, records["s"] * UNIT) - self.drop
-        h = records["z"] * UNIT - ground
-        self.store.append(road, chosen(records, (h > -BELOW - MARGIN) & (h < ABOVE + MARGIN)))
-
-    def finish(self):
-        """Settle the rough height of the road and store what waited for it."""
-        if self.drop is None:
-            drop = first_estimate(np.concatenate(self.samples)) if self.samples else None
-            self.drop = DEFAULT_HEIGHT if drop is None else drop
-            waiting, self.waiting, self.samples = self.waiting, [], []
-            for road, records in waiting:
-                self._store(road, records)
 
 
 def match_clocks(files, trajectory, settings, progress):
@@ -262,11 +155,6 @@ def match_clocks(files, trajectory, settings, progress):
     span, week_ends = span
     offset, note = align_time(trajectory.time, span, settings.time, files[0].adjusted_time)
     return trajectory.shifted(offset), note, True, week_ends
-
-
-def _carried_on(time):
-    """Seconds of the week, those after the week's end carried on."""
-    return np.where(time < WEEK / 2, time + WEEK, time)
 
 
 def _time_span(files):
@@ -297,7 +185,7 @@ def _time_span(files):
     if not len(times) or times.max() <= times.min():
         return None
     week_ends = wrapped_week((times.min(), times.max()))
-    times = _carried_on(times) if week_ends else times
+    times = carried_on(times) if week_ends else times
     return (float(times.min()), float(times.max())), week_ends
 
 
@@ -326,10 +214,11 @@ def _what_to_try(low, high, x, y, crs, trajectory_crs, reach):
     return f"{cloud} carries no CRS. Give it the one its coordinates are in (Import trajectory does), and check that both belong to one survey."
 
 
-def _no_overlap(files, frame, reader):
+def _no_overlap(files, frame, reader, corridor):
     if reader.unplaced_time:
-        times = f"{reader.starts.min():.1f} s to {reader.ends.max():.1f} s"
+        starts, ends = [p.time[0] for p in frame.passes], [p.time[-1] for p in frame.passes]
+        times = f"{min(starts):.1f} s to {max(ends):.1f} s"
         return (f"No point was measured while the trajectory was driven: {reader.unplaced_time} points lie outside "
                 f"its time, {times}. Set the trajectory's time system, or check that both belong to one survey.")
-    return (f"No point lies within {reader.settings.corridor:.0f} m of the trajectory and near its height. Check that "
+    return (f"No point lies within {corridor:.0f} m of the trajectory and near its height. Check that "
             "cloud and trajectory belong to one survey and use one CRS.")

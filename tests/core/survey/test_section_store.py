@@ -5,7 +5,7 @@ import threading
 import numpy as np
 import pytest
 
-from lanewright.core.survey.points import SURVEY_POINT, canonical_order, to_units
+from lanewright.core.survey.points import SURVEY_POINT, canonical_order, joined, to_units
 from lanewright.core.survey.section_store import SectionStore
 
 
@@ -27,16 +27,34 @@ def filled(parts, **settings):
 
 
 @pytest.mark.parametrize("limit", [0, 10_000, 10**9])
-def test_what_went_in_comes_out_sorted_by_time_and_place(limit):
+def test_what_went_in_comes_out_sorted_along_the_road(limit):
     made = records()
-    store = filled(np.array_split(made, 7), memory_limit=limit)
-    read = np.concatenate([store.section(0, number) for number in store.sections(0)])
+    store = filled(np.array_split(made, 7), section_length=20.0, memory_limit=limit)
+    read = np.asarray(joined([store.section(0, number) for number in store.sections(0)], SURVEY_POINT))
     assert store.count == len(read) == len(made)
+    assert (np.diff(read["s"]) >= 0).all()
     np.testing.assert_array_equal(np.sort(read, order=["time", "x"]), np.sort(made, order=["time", "x"]))
     for number in store.sections(0):
         section = store.section(0, number)
-        assert (np.diff(section["time"]) >= 0).all()
         assert ((section["s"] >= to_units(20.0 * number)) & (section["s"] < to_units(20.0 * (number + 1)))).all()
+
+
+def test_columns_survive_the_file_whatever_their_widths():
+    made = records(999)
+    made["returns"], made["scanner"], made["source"] = np.arange(999) % 256, 3, np.arange(999)
+    kept, spilled = filled([made]), filled([made[:500], made[500:]], memory_limit=0)
+    for number in kept.sections(0):
+        np.testing.assert_array_equal(spilled.section(0, number), kept.section(0, number))
+
+
+def test_what_a_section_is_finished_with_is_seen_and_nothing_else():
+    made = records()
+    for limit in (0, 10_000, 10**9):
+        store = filled(np.array_split(made, 3), memory_limit=limit)
+        store.finish = lambda road, section: section.take(section["d"] > 0)
+        for _ in range(2):  # the second time as it was put back
+            assert len(store.window(0, -20.0, 220.0)) == np.count_nonzero(made["d"] > 0)
+            assert (store.window(0, -20.0, 220.0).d > 0).all()
 
 
 def test_the_order_of_appending_leaves_no_trace():
@@ -74,13 +92,13 @@ def test_an_empty_store_has_no_roads_and_empty_windows():
 
 
 def test_several_threads_read_what_one_reads():
-    store = filled(np.array_split(records(20_000), 9), memory_limit=50_000)
-    expected = {number: store.section(0, number).tobytes() for number in store.sections(0)}
+    store = filled(np.array_split(records(20_000), 9), section_length=20.0, memory_limit=50_000)
+    expected = {number: np.asarray(store.section(0, number)).tobytes() for number in store.sections(0)}
     wrong = []
 
     def read(seed):
         for number in np.random.default_rng(seed).permutation(list(expected)):
-            if store.section(0, int(number)).tobytes() != expected[int(number)]:
+            if np.asarray(store.section(0, int(number))).tobytes() != expected[int(number)]:
                 wrong.append(number)
 
     threads = [threading.Thread(target=read, args=(seed,)) for seed in range(8)]
@@ -89,11 +107,12 @@ def test_several_threads_read_what_one_reads():
     assert not wrong
 
 
-def test_equal_times_are_ordered_by_place():
-    made = records(500)
-    made["time"] = 7.0
-    order = canonical_order(made)
-    assert (np.diff(made["x"][order]) >= 0).all()
+@pytest.mark.parametrize("length", [0.01, 3.0, 200.0])
+def test_points_are_ordered_by_station_then_offset_then_height(length):
+    made = records(5000, length=length)
+    made["d"] -= made["d"] % 20_000  # many share an offset, and some a station
+    expected = np.lexsort((made["x"], made["intensity"], made["time"], made["z"], made["d"], made["s"]))
+    np.testing.assert_array_equal(canonical_order(made), expected)
 
 
 def test_a_tenth_of_a_millimetre_survives():

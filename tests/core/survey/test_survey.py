@@ -89,7 +89,7 @@ def test_driving_the_other_way_swaps_the_sides(street, tmp_path):
     rows = np.argmin(np.hypot(x[:, None] - back.x[::10], y[:, None] - back.y[::10]), axis=1) * 10
     other = write_cloud(tmp_path / "back.laz", x, y, z, back.time[rows], crs=CRS)
     along, against = open_survey([path], trajectory), open_survey([other], back)
-    place = lambda survey: {(a, b): d for a, b, d in zip(*np.rint(survey.window(0, 30, 170).records[["x", "y", "d"]].tolist()).T)}  # noqa: E731
+    place = lambda survey: {(a, b): d for a, b, d in zip(*np.rint(np.asarray(survey.window(0, 30, 170).records)[["x", "y", "d"]].tolist()).T)}  # noqa: E731
     first, second = place(along), place(against)
     shared = first.keys() & second.keys()
     assert len(shared) > 10_000

@@ -1,0 +1,108 @@
+"""Points column by column: a step reads the columns it needs, and no others are moved."""
+
+import numpy as np
+
+
+class Columns:
+    """Arrays of one length under names, used like a structured array.
+
+    `columns["z"]` is one column, `columns[mask]`, `columns[indices]` and
+    `columns[2:5]` are Columns of those rows. Rows are chosen, and parts joined,
+    only when a column of the result is asked for: most steps look at few.
+    """
+
+    __slots__ = ("_arrays", "_make", "_chosen", "_length", "dtype")
+
+    def __init__(self, arrays, dtype, length=None, make=None, chosen=None):
+        self._arrays, self._make = arrays, make
+        self._chosen = chosen  # (Columns, rows) that these were chosen from
+        self.dtype = np.dtype(dtype)
+        self._length = len(next(iter(arrays.values()))) if length is None else length
+
+    @classmethod
+    def of(cls, records):
+        """Columns of a structured array (copied), or Columns as they are."""
+        if isinstance(records, cls):
+            return records
+        return cls({name: np.ascontiguousarray(records[name]) for name in records.dtype.names}, records.dtype, len(records))
+
+    @classmethod
+    def joined(cls, parts, dtype):
+        """Several Columns one after the other (none at all give an empty one)."""
+        parts = [part for part in parts if len(part)]
+        if len(parts) == 1:
+            return parts[0]
+        dtype = np.dtype(dtype)
+        if not parts:
+            return cls({name: np.empty(0, dtype[name]) for name in dtype.names}, dtype, 0)
+        return cls({}, dtype, sum(map(len, parts)), lambda name: np.concatenate([part[name] for part in parts]))
+
+    def __len__(self):
+        return self._length
+
+    @property
+    def shape(self):
+        return (self._length,)
+
+    @property
+    def nbytes(self):
+        return self._length * self.dtype.itemsize
+
+    def __getitem__(self, which):
+        if isinstance(which, str):
+            found = self._arrays.get(which)
+            if found is None:
+                if which not in self.dtype.names:
+                    raise KeyError(which)
+                found = self._arrays[which] = self._make(which)
+            return found
+        if isinstance(which, slice):
+            return Columns({}, self.dtype, len(range(*which.indices(self._length))), lambda name: self[name][which])
+        return self.take(which)
+
+    def take(self, which):
+        """The rows of a mask or index array."""
+        which = np.asarray(which)
+        if which.dtype == bool:
+            if which.shape != self.shape:
+                raise IndexError(f"A mask of {which.shape} does not fit {self._length} points.")
+            which = np.flatnonzero(which)
+        source, rows = self, which.astype(np.intp, copy=False)
+        if self._chosen is not None:
+            source, rows = self._chosen[0], self._chosen[1].take(rows)
+        return Columns({}, self.dtype, len(rows), lambda name: source[name].take(rows), (source, rows))
+
+    def __setitem__(self, name, values):
+        array = self[name]
+        if not array.flags.writeable:
+            raise ValueError("assignment destination is read-only")
+        array[:] = values
+
+    def whole(self):
+        """These columns, every one of them made, and what they were made of let go."""
+        for name in self.dtype.names:
+            self[name]
+        self._make = self._chosen = None
+        return self
+
+    def locked(self):
+        """The same, not to be written to."""
+        for array in self.whole()._arrays.values():
+            array.flags.writeable = False
+        return self
+
+    def copy(self):
+        """Columns of their own, which may be written to."""
+        return Columns({name: self[name].copy() for name in self.dtype.names}, self.dtype, self._length)
+
+    def with_columns(self, **columns):
+        """The same points with further columns, or others in their place."""
+        kinds = {**{name: self.dtype[name] for name in self.dtype.names}, **{name: array.dtype for name, array in columns.items()}}
+        dtype = np.dtype(list(kinds.items()))
+        return Columns(dict(columns), dtype, self._length, lambda name: self[name])
+
+    def __array__(self, dtype=None, copy=None):
+        records = np.empty(self._length, self.dtype)
+        for name in self.dtype.names:
+            records[name] = self[name]
+        return records
