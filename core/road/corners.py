@@ -144,7 +144,7 @@ class _Near:
         upper = np.maximum(np.minimum(FACE_HIGH * height, height - 2 * scatter), 0.55 * height)
         face = (np.abs(u) < FACE_WINDOW) & (rise > lower[owner]) & (rise < upper[owner])
         skew, straight = _skew(owner, u, s, face, scatter, count)
-        mid, spread = median_and_spread(owner, straight, face, count)
+        mid, spread = _median_and_spread(owner, straight, face, count)
         face &= np.abs(straight - mid[owner]) < 0.05 + 2 * scatter[owner]
         skew, straight = _skew(owner, u, s, face, scatter, count)
         n_face = total(face)
@@ -214,7 +214,7 @@ def _skew(owner, u, s, mask, scatter, count):
     return skew, u - skew[owner] * ds
 
 
-def median_and_spread(owner, values, mask, count):
+def _median_and_spread(owner, values, mask, count):
     """Median and interquartile range of the masked values of each owner (0 where it has none)."""
     owner, values = owner[mask], values[mask]
     order = np.lexsort((values, owner))

@@ -88,7 +88,7 @@ def _table(curb_points):
 def _pieces(rows, max_gap):
     """Curb points of one side parted into edges: lists of (points, is each gap to the next bridged)."""
     hidden = rows["s"][~rows["measured"]]
-    points = _without_outliers(rows[rows["measured"]])
+    points = without_outliers(rows[rows["measured"]])
     if len(points) < 2:
         return []
     gap = np.diff(points["s"])
@@ -106,7 +106,7 @@ def _pieces(rows, max_gap):
     return pieces
 
 
-def _without_outliers(points):
+def without_outliers(points):
     """Points that stay near the running median of the offsets of their chain."""
     kept = np.ones(len(points), bool)
     for chain in np.unique(points["chain"]):
@@ -125,7 +125,7 @@ def _without_outliers(points):
     return points[kept]
 
 
-class _Curve:
+class EdgeCurve:
     """A parametric smoothing cubic B-spline through curb points, by chord length."""
 
     def __init__(self, points):
@@ -159,7 +159,7 @@ def _noise(t, values):
 def _draw(edges, frame, road, side, piece, number):
     """Add the pieces of one edge; returns its (start, end) station."""
     points, bridged = piece
-    curve = _Curve(points)
+    curve = EdgeCurve(points)
     changes = np.flatnonzero(np.diff(bridged.astype(int))) + 1
     bounds = np.r_[0, changes, len(points) - 1]
     for i, j in zip(bounds[:-1], bounds[1:]):

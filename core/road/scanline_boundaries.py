@@ -83,7 +83,7 @@ def curbs_from_scanlines(source, settings=ScanlineBoundarySettings(), block_leng
 
     Parameters
     ----------
-    source : gives `frame`, `crs`, `interval`, `roads()`, `span(road)`, `road_height(road, s)` and
+    source : gives `frame`, `crs`, `interval`, `corridor`, `roads()`, `span(road)`, `road_height(road, s)` and
         `scanlines(road, start, end)`; see scanline_source
     block_length : m of road per corner; 0 = 0.5 to 2.0, shorter in sharp bends
 
@@ -125,7 +125,8 @@ def _corners_of_road(source, road, settings, progress):
         nearest = {side: tracks[side](stations) + VEHICLE_HALF for side in SIDES}
         for chosen, own in _apart(lines, heights):
             for side, sign in SIDES.items():
-                outward = side_scanlines(chosen, own, sign, rows, interval, np.floor(nearest[side].min()), REACH, settings.clipping_height)
+                outward = side_scanlines(chosen, own, sign, rows, interval, np.floor(nearest[side].min()),
+                                         min(REACH, source.corridor), settings.clipping_height)
                 _look(sight[side], chosen, own, sign, outward, section)
                 candidates = find_candidates(outward, nearest[side], settings)
                 candidates = candidates[(candidates.row >= margin) & (candidates.row < margin + end - begin)]
@@ -152,8 +153,8 @@ def _apart(lines, heights):
     """The lines of every pass and scanner by themselves, with the heights of their vertices."""
     keys = np.c_[lines.pass_number, lines.scanner]
     for key in np.unique(keys, axis=0):
-        own = np.flatnonzero((keys == key).all(1))
-        yield lines[own], heights[np.isin(lines.line_of_vertex(), own)]
+        own = (keys == key).all(1)
+        yield lines[own], heights[np.repeat(own, np.diff(lines.first))]
 
 
 def _look(sight, lines, heights, sign, outward, section):

@@ -15,14 +15,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .corners import Steps, median_and_spread
+from .corners import Steps
 from .scanline_planes import SIGMAS, fit_planes
 
 MOST_ROAD, MOST_FACE = 96, 64  # vertices of road, and of raised ground, that give a plane; and of the face
 MOST_ROWS = 9         # scanlines of a neighbourhood; narrower intervals leave some out
 FEWEST = 15           # inliers of a plane
 LEAST_SHARE = 0.5     # inliers of a plane among its vertices
-QUARTERS = 1.35       # sigmas between the quartiles of a normal distribution
+MEAN_SIGMA = 1.2533   # mean distances from the mean of a normal distribution that are its sigma
 LOWER, UPPER = 0.30, 0.70  # share of the rise up to which a vertex is road, and from which it is raised ground
 FACE = (0.12, 0.88)   # share of the rise within which it may be face
 FACE_REACH = 0.12     # m across from the middle of the rise within which the face lies
@@ -76,8 +76,7 @@ def corners_of(side, candidates, settings):
     ground, ground_points = plane(road, h, u, s, MOST_ROAD, candidates.rough)
     front, front_points = plane(face, u, h, s, MOST_FACE, candidates.rough)
     # grass behind a curb scatters more than the road before it
-    _, spread = median_and_spread(owner, over, raised, count)
-    top, top_points = plane(raised, h, u, s, MOST_ROAD, np.maximum(candidates.rough, spread / QUARTERS))
+    top, top_points = plane(raised, h, u, s, MOST_ROAD, np.maximum(candidates.rough, _scatter(owner, over, raised, count)))
     bottom_u, bottom_h, bottom_meets = _meeting(ground, front)
     top_u, top_h, top_meets = _meeting(top, front)
     tan = np.tan(np.radians(settings.horizontal_angle))
@@ -103,6 +102,15 @@ def corners_of(side, candidates, settings):
                         noise=noise, usual=noise, support=ground.inliers + front.inliers, behind=top.inliers,
                         top_u=candidates.u + top_u, top_h=candidates.base + top_h, residual=residual)
     return found[good]
+
+
+def _scatter(owner, values, mask, count):
+    """(count,) spread of the masked values of each owner, from their mean distance to their mean."""
+    chosen = np.flatnonzero(mask)
+    owner, values = owner[chosen], values[chosen]
+    n = np.maximum(np.bincount(owner, minlength=count), 1)
+    middle = np.bincount(owner, values, count) / n
+    return MEAN_SIGMA * np.bincount(owner, np.abs(values - middle[owner]), count) / n
 
 
 def _neighbourhood(side, candidates, settings):

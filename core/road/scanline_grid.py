@@ -111,7 +111,10 @@ def _on_grid(line, row, column, h, rows, cells):
     share = (cell[k] - a[k]) / np.where(b[k] == a[k], 1.0, b[k] - a[k])
     height = h[k] + share * (h[k + 1] - h[k])
     place = row[k] * cells + cell[k]
-    # of several heights for one place the last one written stays
-    order = np.argsort(-height, kind="stable")
-    low.flat[place[order]] = height[order]
+    flat = low.reshape(-1)
+    flat[place] = height
+    # of several heights for one place the lowest shall stay
+    while len(lower := np.flatnonzero(height < flat[place])):
+        place, height = place[lower], height[lower]
+        flat[place] = height
     return low
