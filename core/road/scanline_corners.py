@@ -26,6 +26,7 @@ MEAN_SIGMA = 1.2533   # mean distances from the mean of a normal distribution th
 LOWER, UPPER = 0.30, 0.70  # share of the rise up to which a vertex is road, and from which it is raised ground
 FACE = (0.12, 0.88)   # share of the rise within which it may be face
 FACE_REACH = 0.12     # m across from the middle of the rise within which the face lies
+SLANT = 20.0          # degrees that a scanline's own slope on a face may fall short of the face's
 CLEAR = 0.02          # m from the middle of the rise at which road ends and raised ground begins
 UNDER, OVER = 0.12, 0.10   # m below the road's line, and above the rise, that belong to it: gutters; slopes
 FARTHEST = 0.10       # m from a corner to the nearest inlier
@@ -60,12 +61,14 @@ def corners_of(side, candidates, settings):
     CurbCorners, at most one for each candidate, in their order; `usual` is the scatter
     about the planes of each, and no better known here
     """
-    owner, s, u, h = _neighbourhood(side, candidates, settings)
+    owner, s, u, h, steep = _neighbourhood(side, candidates, settings)
     # heights over the road's own line, so that its slope does not count as part of the rise
     over = h - candidates.slope[owner] * u
     share = over / candidates.step[owner]
     road = (u < -CLEAR) & (share < LOWER) & (over > -UNDER)
-    face = (np.abs(u) < FACE_REACH) & (share > FACE[0]) & (share < FACE[1])
+    # where points lie sparse a scanline slants from the last one on the road to the first on the face
+    upright = steep > np.tan(np.radians(settings.vertical_angle - SLANT))
+    face = upright & (np.abs(u) < FACE_REACH) & (share > FACE[0]) & (share < FACE[1])
     raised = (u > CLEAR) & (share > UPPER) & (over < candidates.step[owner] + OVER)
     count = len(candidates)
 
@@ -114,7 +117,7 @@ def _scatter(owner, values, mask, count):
 
 
 def _neighbourhood(side, candidates, settings):
-    """(owner, s, u, h) float32 of the vertices about every candidate, from its own place."""
+    """(owner, s, u, h, steepness) of the vertices about every candidate, from its own place."""
     reach = int(np.floor(settings.distance_along / side.interval + 1e-9))
     stride = max(int(np.ceil((2 * reach + 1) / MOST_ROWS)), 1)
     key = side.row * 1000.0 + side.u
@@ -131,7 +134,7 @@ def _neighbourhood(side, candidates, settings):
     index = np.arange(length.sum()) - np.repeat(np.cumsum(length) - length, length) + start[which]
     owner, along = which // len(ahead), ahead[which % len(ahead)] * side.interval
     return (owner, along.astype(np.float32), (side.u[index] - candidates.u[owner]).astype(np.float32),
-            (side.h[index] - candidates.base[owner]).astype(np.float32))
+            (side.h[index] - candidates.base[owner]).astype(np.float32), side.steep[index])
 
 
 def _evenly(owner, mask, count, most):

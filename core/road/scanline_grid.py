@@ -23,7 +23,7 @@ class SideScanlines:
     low : (R, C) float64, height where each row passes the middle of a cell, the lowest of
         several lines; NaN where there is none
     row, u, h : (N,) vertices SPACING apart along the lines, sorted by row and offset
-    row_start : (R + 1,) vertices of each row
+    steep : (N,) m of height per m across between the neighbours of each
     """
 
     first: int
@@ -33,7 +33,7 @@ class SideScanlines:
     row: np.ndarray
     u: np.ndarray
     h: np.ndarray
-    row_start: np.ndarray
+    steep: np.ndarray
 
     @property
     def shape(self):
@@ -69,13 +69,13 @@ def side_scanlines(lines, heights, sign, rows, interval, origin, reach, clipping
     line, u, h = _resampled(lines, sign * lines.d, heights)
     row_of_line = np.rint(lines.station / interval).astype(np.int64) - first
     row = row_of_line[line]
+    steep = _steepness(line, u, h)
     kept = (row >= 0) & (row < last - first) & (u >= origin) & (u < reach) & (h > -DEPTH) & (h <= clipping_height)
     line, row, u, h = line[kept], row[kept], u[kept], h[kept]
     cells = max(int(np.ceil((reach - origin) / SPACING)), 1)
     low = _on_grid(line, row, (u - origin) / SPACING - 0.5, h, last - first, cells)
     order = np.argsort(row * FAR + (u - origin), kind="stable")
-    row, u, h = row[order], u[order], h[order]
-    return SideScanlines(first, interval, origin, low, row, u, h, np.searchsorted(row, np.arange(last - first + 1)))
+    return SideScanlines(first, interval, origin, low, row[order], u[order], h[order], steep[kept][order])
 
 
 def _resampled(lines, u, h):
@@ -96,6 +96,17 @@ def _resampled(lines, u, h):
     # the last sample of a line may touch the leap to the next one
     share = np.where(before >= lines.first[line + 1] - 1, 0.0, share)
     return line, u[before] + share * (u[before + 1] - u[before]), h[before] + share * (h[before + 1] - h[before])
+
+
+def _steepness(line, u, h):
+    """(N,) rise over run, without sign, from the vertex before to the one after on the same line."""
+    if len(line) < 2:
+        return np.zeros(len(line))
+    before, after = np.arange(-1, len(line) - 1), np.arange(1, len(line) + 1)
+    before[0], after[-1] = 0, len(line) - 1
+    before += line[before] != line
+    after -= line[after] != line
+    return np.abs(h[after] - h[before]) / np.maximum(np.abs(u[after] - u[before]), 1e-6)
 
 
 def _on_grid(line, row, column, h, rows, cells):
