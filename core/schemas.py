@@ -51,3 +51,13 @@ CURVE_ELEMENTS = [ROAD, Field("lane", int, "Lane"), STATION, END, Field("turn", 
                   Field("speed_kmh", int, "Highest design speed allowed (km/h)"), Field("code", str, "Design code check")]
 TRAJECTORY = [Field("time", float, "Time (s)"), Field("roll", float, "Roll (°)"), Field("pitch", float, "Pitch (°)"),
               Field("heading", float, "Heading (°, clockwise from grid north)"), PASS, ROAD, STATION]
+OUTCOME = Field("outcome", str, "Outcome (correct/missed/false/excluded)")
+WHY = Field("why", str, "Why")
+ASSESSED_BOUNDARIES = [OUTCOME, WHY, Field("road", int, "Road, or line of the reference"), SIDE, STATION, END,
+                       Field("covered_m", float, "Covered by the result (m)"), Field("lateral_m", float, "Mean lateral error (m)"),
+                       Field("max_m", float, "Largest lateral error (m)"), Field("height_m", float, "Mean height error (m)"), LENGTH]
+ASSESSED_DRIVING_LINES = [OUTCOME, WHY, Field("line", int, "Row of the line in its layer"), Field("station_m", float, "From, along the line (m)"),
+                          Field("end_m", float, "To, along the line (m)"), LENGTH, Field("lateral_m", float, "Mean distance (m)"),
+                          Field("max_m", float, "Largest distance (m)")]
+ASSESSED_MARKINGS = [OUTCOME, WHY, Field("source", str, "Of (reference/result)"), Field("class", str, "Class"),
+                     Field("share_pct", float, "Share of it in the other layer (%)"), Field("area_m2", float, "Judged area (m²)")]

@@ -39,6 +39,8 @@ SOURCES = {
     "PointZ": QgsProcessing.SourceType.TypeVectorPoint,
     "LineStringZ": QgsProcessing.SourceType.TypeVectorLine,
     "PolygonZ": QgsProcessing.SourceType.TypeVectorPolygon,
+    "MultiLineStringZ": QgsProcessing.SourceType.TypeVectorLine,
+    "MultiPolygonZ": QgsProcessing.SourceType.TypeVectorPolygon,
     "None": QgsProcessing.SourceType.TypeVector,
     "any": QgsProcessing.SourceType.TypeVector,
 }
@@ -59,6 +61,7 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
     TAGS = ()
     HELP = ""
     TRAJECTORIES = ("TRAJECTORY",)  # inputs that may also be a file only the core can read
+    LOOKS = {}  # output -> its entry in styling.LOOKS, where that is not its own name
 
     # -- what QGIS asks ---------------------------------------------------------------------
 

@@ -65,15 +65,15 @@ class Call:
             )
         return crs_text(crs)
 
-    def trajectory(self, name="TRAJECTORY", crs=""):
+    def trajectory(self, name="TRAJECTORY", crs="", heights_needed=True):
         """The trajectory as the core takes it, from a layer, a table or a file; `crs` overrules what it says."""
         path = trajectory_path(self.parameters.get(name))
         if path is not None:
             from ..core.survey.trajectory_file import read_trajectory
 
             return read_trajectory(existing_file(str(path), self.label(name)), crs)
-        source = self._source(name)
-        return None if source is None else read_trajectory_source(source, self.label(name), crs)
+        source = self.source(name)
+        return None if source is None else read_trajectory_source(source, self.label(name), crs, heights_needed)
 
     def raster(self, name):
         """The file of a raster input."""
@@ -82,12 +82,30 @@ class Call:
             raise QgsProcessingException(self.algorithm.invalidRasterError(self.parameters, name))
         return existing_file(layer.source(), self.label(name))
 
+    def raster_in(self, name, crs):
+        """The file of an optional raster input, reprojected by a small VRT where it lies in another CRS; None where it was not given."""
+        if not self.parameters.get(name):
+            return None
+        from osgeo import gdal
+
+        from ..core.survey.crs import parse_crs, same_place
+
+        path = self.raster(name)
+        gdal.UseExceptions()
+        own = gdal.Open(path).GetProjection()
+        if not own or not crs or same_place(parse_crs(own), parse_crs(crs)):
+            return path
+        target = self.scratch_file(f"{name.lower()}.vrt")
+        gdal.Warp(target, path, format="VRT", dstSRS=crs)
+        return target
+
     def features(self, name, schema, geometry_type):
         """A vector input as Features; None where the optional parameter is empty."""
-        source = self._source(name)
+        source = self.source(name)
         return None if source is None else read_features(source, schema, geometry_type, self.label(name))
 
-    def _source(self, name):
+    def source(self, name):
+        """A vector input as QGIS's feature source; None where the optional parameter is empty."""
         if self.parameters.get(name) in (None, ""):
             return None
         source = self.algorithm.parameterAsSource(self.parameters, name, self.context)
@@ -196,8 +214,9 @@ class Call:
         schemas = {name: features.schema for name, features in self._layers}
         group = group_of(self._surveyed())
         for name, dest in self._results.items():
-            embed_style(name, dest, self.label(name), schemas.get(name, ()))
-            style_on_load(name, dest, self.label(name), self.context, schemas.get(name, ()), group)
+            look = self.algorithm.LOOKS.get(name, name)
+            embed_style(look, dest, self.label(name), schemas.get(name, ()))
+            style_on_load(look, dest, self.label(name), self.context, schemas.get(name, ()), group)
         return {**self._results, **numbers}
 
     def _write(self, name, features):

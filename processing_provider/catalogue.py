@@ -1,5 +1,8 @@
 """Every algorithm, in the order of the work."""
 
+from .assess.assess_boundaries import AssessBoundaries
+from .assess.assess_driving_lines import AssessDrivingLines
+from .assess.assess_markings import AssessMarkings
 from .driving.driving_lines import DrivingLines
 from .driving.road_map import RoadMap
 from .markings.cluster_markings import ClusterMarkings
@@ -32,4 +35,7 @@ ALGORITHMS = (
     FitMarkingLines,
     DrivingLines,
     RoadMap,
+    AssessBoundaries,
+    AssessMarkings,
+    AssessDrivingLines,
 )

@@ -11,6 +11,8 @@ WKB_TYPES = {
     "PointZ": Qgis.WkbType.PointZ,
     "LineStringZ": Qgis.WkbType.LineStringZ,
     "PolygonZ": Qgis.WkbType.PolygonZ,
+    "MultiLineStringZ": Qgis.WkbType.MultiLineStringZ,
+    "MultiPolygonZ": Qgis.WkbType.MultiPolygonZ,
     "None": Qgis.WkbType.NoGeometry,
 }
 COLUMN_TYPES = {int: QMetaType.Type.LongLong, float: QMetaType.Type.Double, str: QMetaType.Type.QString}

@@ -30,6 +30,9 @@ LOOKS = {
     "TRUTH_DRIVING_LINES": ("truth_driving_lines", 71),
     "TRUTH_SURFACE": ("truth_surface", 21),
     "TRAJECTORY": ("trajectory", 80),
+    "ASSESSED_CELLS": ("assessed_cells", 15),
+    "ASSESSED_POLYGONS": ("assessed_polygons", 35),
+    "ASSESSED_LINES": ("assessed_lines", 75),
     "OUTPUT": ("trajectory", 80),
 }
 TABLES = 5  # tables lie below what is drawn

@@ -37,8 +37,8 @@ def accept_trajectory_file(algorithm, parameters, context):
     return accepted
 
 
-def read_trajectory_source(source, label, crs=""):
-    """A point layer, line layer or table as the core's Trajectory (not yet cleaned)."""
+def read_trajectory_source(source, label, crs="", heights_needed=True):
+    """A point layer, line layer or table as the core's Trajectory (not yet cleaned); without heights, where none are needed, all are 0."""
     from ..core.survey.trajectory_file import trajectory_from_columns
 
     kind = QgsWkbTypes.geometryType(source.wkbType())
@@ -52,6 +52,8 @@ def read_trajectory_source(source, label, crs=""):
         raise RoadExtractionError(
             tr("{label} has no rows. Choose the layer that holds the driven positions.").format(label=label)
         )
+    if not heights_needed and not np.isfinite(columns.get("z", np.nan)).any():
+        columns["z"] = np.zeros(len(next(iter(columns.values()))))
     return trajectory_from_columns(columns, crs or crs_text(source.sourceCrs()), label=label)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import shapely
 
 from ..errors import RoadExtractionError
-from .lines import check_tolerances
+from .lines import checked_tolerances
 from .places import Places, Segments, pieces_of, places_along, runs_of, single_lines
 from .rates import NAN, Errors, Rates
 from .stationing import AlongReference, AlongTrajectory, Stations
@@ -30,13 +30,14 @@ class BoundarySettings:
     """How boundaries are judged."""
 
     tolerances: tuple = (0.05, 0.10, 0.20)   # m
+    tolerance: float = 0.10                  # m, the one that intervals are drawn for
     interval: float = 2.0                    # m along the trajectory or the reference
     coverage: float = 0.5                    # share of an interval that lines must cover
     agreement: float = 0.8                   # share of these that must lie within the tolerance
     corridor: float = 30.0                   # m either side of the trajectory
 
     def __post_init__(self):
-        check_tolerances(self.tolerances, 2.0)
+        object.__setattr__(self, "tolerances", checked_tolerances(self.tolerances, self.tolerance, 2.0))
         if not 0.5 <= self.interval <= 100:
             raise RoadExtractionError(f"The interval is {self.interval} m; it must be between 0.5 and 100 m.")
         for name in ("coverage", "agreement"):

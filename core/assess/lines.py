@@ -21,20 +21,23 @@ class LineSettings:
     """How two sets of lines are compared."""
 
     tolerances: tuple = (0.05, 0.10, 0.15, 0.20)  # m, half-widths of the buffer
+    tolerance: float = 0.10                       # m, the one that pieces are drawn for
     max_angle: float = 15.0                       # degrees between the directions of two lines that may match; 90 = any
 
     def __post_init__(self):
-        check_tolerances(self.tolerances, ASSOCIATED)
+        object.__setattr__(self, "tolerances", checked_tolerances(self.tolerances, self.tolerance, ASSOCIATED))
         if not 0 < self.max_angle <= 90:
             raise RoadExtractionError(f"The largest angle between matching lines is {self.max_angle}°; it must be above 0° and at most 90°.")
 
 
-def check_tolerances(tolerances, largest):
-    """Refuse tolerances that are not lengths from a millimetre to `largest` metres."""
-    if not len(tolerances) or not all(0.001 <= t <= largest for t in tolerances):
-        said = ", ".join(f"{t:g}" for t in tolerances) or "empty"
+def checked_tolerances(tolerances, one, largest):
+    """All tolerances and the one shown, in order; refuses what is not a length from a millimetre to `largest` metres."""
+    found = tuple(sorted({*tolerances, one}))
+    if not all(0.001 <= t <= largest for t in found):
+        said = ", ".join(f"{t:g}" for t in found)
         raise RoadExtractionError(
-            f"The tolerances are {said}; give one or more lengths in metres from 0.001 to {largest:g}, such as 0.05, 0.10, 0.20.")
+            f"The tolerances are {said}; give lengths in metres from 0.001 to {largest:g}, such as 0.05, 0.10, 0.20.")
+    return found
 
 
 @dataclass(frozen=True)

@@ -19,15 +19,19 @@ class MarkingAccuracySettings:
     """How markings are judged."""
 
     cell_size: float = 0.04     # m
-    tolerance_cells: int = 1    # cells by which the other side is widened for the tolerant figures
+    tolerances: tuple = (0, 1)  # cells by which the other side is widened
+    tolerance: int = 1          # the one that objects are judged and drawn with
     found_share: float = 0.5    # share of an object's cells that makes it found, or right
     line_width: float = 0.15    # m of lines that tell no width of their own
 
     def __post_init__(self):
         if not 0.005 <= self.cell_size <= 1:
             raise RoadExtractionError(f"The cell size is {self.cell_size} m; it must be between 0.005 and 1 m.")
-        if not 0 <= self.tolerance_cells <= 10:
-            raise RoadExtractionError(f"The tolerance is {self.tolerance_cells} cells; it must be 0 to 10.")
+        tolerances = tuple(sorted({0, self.tolerance, *self.tolerances}))
+        if any(t != int(t) or not 0 <= t <= 10 for t in tolerances):
+            said = ", ".join(f"{t:g}" for t in tolerances)
+            raise RoadExtractionError(f"The tolerances are {said}; give whole numbers of cells from 0 to 10, such as 0, 1.")
+        object.__setattr__(self, "tolerances", tuple(int(t) for t in tolerances))
         if not 0 < self.found_share <= 1:
             raise RoadExtractionError(f"The share that makes an object found is {self.found_share}; it must be above 0 and at most 1.")
         if not 0.01 <= self.line_width <= 10:
@@ -55,15 +59,14 @@ class ClassAccuracy:
 
 @dataclass(frozen=True)
 class MarkingAccuracy:
-    """strict, tolerant: Rates in cells; objects: Rates in objects, with the tolerance.
+    """rates: tolerance to Rates in cells; objects: Rates in objects, with the tolerance of the settings.
 
     by_class : class to ClassAccuracy, of all classes that reference or result name
     reference_cells, reference_found, result_cells, result_right : (N,) judged cells of every object
     blocks : (N, 5) x, y and cells hit, missed and false of every block that has any, with the tolerance
     """
 
-    strict: Rates
-    tolerant: Rates
+    rates: dict
     objects: Rates
     by_class: dict
     reference_cells: np.ndarray = field(repr=False)
@@ -72,6 +75,14 @@ class MarkingAccuracy:
     result_right: np.ndarray = field(repr=False)
     blocks: np.ndarray = field(repr=False)
     settings: MarkingAccuracySettings = MarkingAccuracySettings()
+
+    @property
+    def strict(self):
+        return self.rates[0]
+
+    @property
+    def tolerant(self):
+        return self.rates[self.settings.tolerance]
 
     def outcomes(self):
         """("correct" | "missed" | "excluded" of every reference object, "correct" | "false" | "excluded" of every result object)."""
@@ -98,8 +109,8 @@ def assess_markings(result, reference, settings=MarkingAccuracySettings(), resul
     """
     classes = sorted({str(name) for name in (*(result_classes or ()), *(reference_classes or ())) if name is not None})
     tally = _Tally(len(result), len(reference), _numbers(result_classes, len(result), classes),
-                   _numbers(reference_classes, len(reference), classes), len(classes))
-    margin = settings.tolerance_cells
+                   _numbers(reference_classes, len(reference), classes), len(classes), settings)
+    margin = max(settings.tolerances)
     burners = Burner(result), Burner(reference)
     valid = [Burner([area])] if area is not None else []
     valid += [Seen(seen)] if seen else []
@@ -110,9 +121,9 @@ def assess_markings(result, reference, settings=MarkingAccuracySettings(), resul
         progress.at(number / len(tiles))
         bounds = tile_bounds(tile, settings.cell_size, margin)
         mine, theirs = (burner.burn(bounds, shape) for burner in burners)
-        beside = [_widened(ids > 0, margin) for ids in (mine, theirs)]
         judged = np.logical_and.reduce([raster.burn(bounds, shape)[inner, inner] > 0 for raster in valid]) if valid else True
-        values = tally.add(mine[inner, inner], theirs[inner, inner], beside[0][inner, inner], beside[1][inner, inner], judged)
+        beside = {t: [_widened(ids > 0, t)[inner, inner] for ids in (mine, theirs)] for t in settings.tolerances}
+        values = tally.add(mine[inner, inner], theirs[inner, inner], beside, judged)
         tally.add_blocks(values, tile, settings.cell_size)
         if outcome_raster is not None and values.any():
             outcome_raster.write(tile, values)
@@ -122,21 +133,25 @@ def assess_markings(result, reference, settings=MarkingAccuracySettings(), resul
 class _Tally:
     """Counts over the tiles."""
 
-    def __init__(self, results, references, result_class, reference_class, classes):
-        self.cells = np.zeros(5, np.int64)  # hit; right and found within the tolerance; of result; of reference
+    def __init__(self, results, references, result_class, reference_class, classes, settings):
+        self.tolerance, self.totals = settings.tolerance, np.zeros(2, np.int64)
+        self.cells = {t: np.zeros(2, np.int64) for t in settings.tolerances}  # right of the result, found of the reference
         self.result_class, self.reference_class = result_class, reference_class
         self.result_cells, self.result_right = np.zeros(results + 1, np.int64), np.zeros(results + 1, np.int64)
         self.reference_cells, self.reference_found = np.zeros(references + 1, np.int64), np.zeros(references + 1, np.int64)
         self.by_class = np.zeros((7, classes + 1), np.int64)
         self.blocks = []
 
-    def add(self, mine, theirs, near_mine, near_theirs, judged):
-        """Count one tile; its outcome values."""
+    def add(self, mine, theirs, beside, judged):
+        """Count one tile; its outcome values. `beside`: tolerance to the masks of result and reference widened by it."""
         r, t = np.nonzero((mine > 0) & judged), np.nonzero((theirs > 0) & judged)
         m, k = mine[r], theirs[t]
+        self.totals += len(m), len(k)
+        for tolerance, (near_mine, near_theirs) in beside.items():
+            self.cells[tolerance] += near_theirs[r].sum(), near_mine[t].sum()
+        near_mine, near_theirs = beside[self.tolerance]
         right, right_beside = theirs[r] > 0, near_theirs[r]
         found, found_beside = mine[t] > 0, near_mine[t]
-        self.cells += right.sum(), right_beside.sum(), found_beside.sum(), len(m), len(k)
         _add(self.result_cells, m), _add(self.result_right, m[right_beside])
         _add(self.reference_cells, k), _add(self.reference_found, k[found_beside])
         rc, tc = self.result_class[m], self.reference_class[k]
@@ -161,14 +176,14 @@ class _Tally:
                                  hit[row, column], missed[row, column], false[row, column]])
 
     def accuracy(self, classes, settings):
-        hit, right, found, mine, theirs = self.cells.tolist()
+        mine, theirs = self.totals.tolist()
+        rates = {t: Rates(int(right), mine - int(right), theirs - int(found), int(found)) for t, (right, found) in self.cells.items()}
         by_class = {name: ClassAccuracy(*self.by_class[:, number].tolist()) for number, name in enumerate(classes, start=1)}
         objects = [self.reference_cells[1:], self.reference_found[1:], self.result_cells[1:], self.result_right[1:]]
         was_found, was_right = (_outcome(objects[k], objects[k + 1], settings.found_share, "wrong") for k in (0, 2))
         counts = [int((outcome == value).sum()) for outcome in (was_right, was_found) for value in ("correct", "wrong")]
         return MarkingAccuracy(
-            Rates(hit, mine - hit, theirs - hit), Rates(right, mine - right, theirs - found, found),
-            Rates(counts[0], counts[1], counts[3], counts[2]), by_class, *objects,
+            rates, Rates(counts[0], counts[1], counts[3], counts[2]), by_class, *objects,
             np.concatenate(self.blocks) if self.blocks else np.empty((0, 5)), settings)
 
 

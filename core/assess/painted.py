@@ -5,6 +5,7 @@ import shapely
 
 from ..errors import RoadExtractionError
 from ..progress import Progress
+from .common_ground import AssessedLayer, check_kind
 
 BLOCK = 2048  # pixels
 
@@ -76,3 +77,41 @@ def _values(raster, path, progress):
                 value = np.where(painted & (data >= 1) & (data < 65535), np.nan_to_num(data), painted).astype(np.uint16)
                 target.WriteRaster(column, row, wide, high, value.tobytes())
     return copy
+
+
+def painted_polygons(layer, line_width):
+    """The AssessedLayer with its lines widened to `width_m` or `width` of their row, or to `line_width` metres.
+
+    Raises
+    ------
+    RoadExtractionError
+        If it holds points.
+    """
+    check_kind(layer, ("LineString", "Polygon", "GeometryCollection"), "polygons, lines or a mask")
+    shapes = list(layer.geometries)
+    lines = [k for k, shape in enumerate(shapes) if "LineString" in shape.geom_type]
+    named, plain = layer.column("width_m"), layer.column("width")
+    widths = [_width(named[k], plain[k], line_width) for k in lines]
+    for k, strip in zip(lines, strips([shapes[k] for k in lines], widths)):
+        shapes[k] = strip
+    valid = shapely.make_valid(shapely.force_2d(np.asarray(shapes, object))) if shapes else []
+    return AssessedLayer(layer.label, list(valid), layer.rows, layer.crs)
+
+
+def _width(*candidates):
+    for value in candidates:
+        try:
+            if value is not None and 0.01 <= float(value) <= 10:
+                return float(value)
+        except (TypeError, ValueError):
+            continue
+    return candidates[-1]
+
+
+def classes_of(layer, name):
+    """The class of every row by the field of this name, or mark_class, or kind; None where the layer has none."""
+    for field in (name, "mark_class", "kind"):
+        found = layer.column(field) if field else []
+        if any(value is not None for value in found):
+            return found
+    return None

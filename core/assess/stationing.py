@@ -93,3 +93,26 @@ def sides_of(lines):
     if high - low < APART:
         return np.zeros(len(lines), int)
     return np.where(near, np.where(offset > (low + high) / 2, 1, -1), 0)
+
+
+def stations_of_match(match, frame=None):
+    """((N,) station of the result's places, (M,) of the reference's, NaN where untold), and what they are measured along."""
+    if frame is not None:
+        along = AlongTrajectory(frame, BREADTH)
+        return tuple(along.of_reference(places).station for places in (match.mine, match.theirs)), along.title
+    feet = Segments(match.reference).nearest(match.mine.xy)
+    return (feet.station, match.theirs.station), AlongReference.title
+
+
+def stations_of_blocks(blocks, frame=None):
+    """(N,) station of places (N, 2+), and what it is measured along: without a trajectory the longer way through them."""
+    if not len(blocks):
+        return np.empty(0), AlongTrajectory.title
+    xy = blocks[:, :2]
+    if frame is not None:
+        return frame.locate_nearest(*frame.to_local(*xy.T), corridor=BREADTH)[1], AlongTrajectory.title
+    centre = xy.mean(axis=0)
+    axis = np.linalg.eigh(np.cov((xy - centre).T) if len(xy) > 1 else np.eye(2))[1][:, -1]
+    axis = axis if axis[np.argmax(np.abs(axis))] > 0 else -axis
+    along = (xy - centre) @ axis
+    return along - along.min(), "the longer side of the layers"

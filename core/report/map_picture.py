@@ -23,14 +23,16 @@ STYLE = (
 )
 
 
-def draw_map(layers, background=None, bounds=None, longest=LONGEST):
+def draw_map(layers, background=None, bounds=None, longest=LONGEST, style=STYLE, paper=28):
     """Draw layers over an image.
 
     Parameters
     ----------
-    layers : dict of Features by the names in STYLE; missing ones are left out
+    layers : dict of Features by the names in `style`; missing ones are left out
     background : (grey image (H, W) uint8 with 0 where empty, (min x, min y, max x, max y)) or None
     bounds : map area; by default that of the layers with a margin of 3 m
+    style : what is drawn and how, as STYLE
+    paper : grey of what no layer and no image covers
 
     Returns
     -------
@@ -43,10 +45,10 @@ def draw_map(layers, background=None, bounds=None, longest=LONGEST):
         bounds = shapely.total_bounds(np.array(shapes, object)) + np.array([-3, -3, 3, 3])
     scale = longest / max(bounds[2] - bounds[0], bounds[3] - bounds[1])
     width, height = (max(int(np.ceil(side * scale)), 2) for side in (bounds[2] - bounds[0], bounds[3] - bounds[1]))
-    canvas = np.full((height, width, 3), 28, np.uint8)
+    canvas = np.full((height, width, 3), paper, np.uint8)
     if background is not None:
         _paste(canvas, *background, bounds, scale)
-    for name, rule, colour, thickness, filled in STYLE:
+    for name, rule, colour, thickness, filled in style:
         for geometry, row in layers.get(name) or ():
             if geometry is not None and (rule is None or row.get(rule[0]) == rule[1]):
                 _draw(canvas, geometry, bounds, scale, colour, thickness, filled)

@@ -8,7 +8,7 @@ body { font: 15px/1.5 "DejaVu Sans", "Segoe UI", Helvetica, Arial, sans-serif; c
 h1 { font-size: 1.6rem; margin-bottom: .2rem; } h2 { font-size: 1.15rem; margin-top: 2rem; border-bottom: 1px solid #ddd; }
 table { border-collapse: collapse; margin: .6rem 0; } th, td { padding: .22rem .9rem .22rem 0; text-align: left; vertical-align: top; }
 th { font-weight: 600; border-bottom: 1px solid #bbb; } td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
-img { max-width: 100%; border: 1px solid #ccc; } .note { color: #555; } .warning { background: #fff3d6; padding: .4rem .8rem; }
+img { max-width: 100%; border: 1px solid #ccc; } svg { max-width: 100%; height: auto; } .note { color: #555; } .warning { background: #fff3d6; padding: .4rem .8rem; }
 .key { display: inline-block; width: 1.6rem; height: .5rem; margin: 0 .4rem 0 1rem; vertical-align: middle; }
 """
 
@@ -39,18 +39,25 @@ class Page:
         cells = "".join(f"<tr><td>{html.escape(str(name))}</td>{_cell(value)}</tr>" for name, value in rows)
         self.parts.append(f"<table>{cells}</table>")
 
-    def table(self, head, rows):
-        """A table; numbers stand right."""
+    def table(self, head, rows, digits=()):
+        """A table; numbers stand right, those of a column with `digits` (None: as number() likes) after the point."""
         rows = [list(row) for row in rows]
         right = [bool(rows) and all(isinstance(row[k], (int, float)) or row[k] is None for row in rows) for k in range(len(head))]
         top = "".join(f'<th{" class=number" if r else ""}>{html.escape(str(h))}</th>' for h, r in zip(head, right))
-        body = "".join(f"<tr>{''.join(_cell(value) for value in row)}</tr>" for row in rows)
+        digits = [*digits, *[None] * (len(head) - len(digits))]
+        body = "".join(f"<tr>{''.join(_cell(value, places) for value, places in zip(row, digits))}</tr>" for row in rows)
         self.parts.append(f"<table><tr>{top}</tr>{body}</table>")
 
     def picture(self, png, caption=""):
         """A picture from the bytes of a PNG file."""
         data = base64.b64encode(png).decode("ascii")
         self.parts.append(f'<p><img alt="{html.escape(caption)}" src="data:image/png;base64,{data}"></p>')
+        if caption:
+            self.note(caption)
+
+    def drawing(self, svg, caption=""):
+        """A chart as SVG text made by `chart`, which escapes what it writes."""
+        self.parts.append(f"<p>{svg}</p>")
         if caption:
             self.note(caption)
 
@@ -65,10 +72,11 @@ class Page:
                 f"<style>{STYLE}</style></head><body>\n" + "\n".join(self.parts) + "\n</body></html>\n")
 
 
-def _cell(value):
+def _cell(value, digits=None):
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return f"<td>{html.escape('–' if value is None else str(value))}</td>"
-    return f'<td class="number">{number(value)}</td>'
+    shown = number(value) if digits is None or value != value else f"{value:.{digits}f}"
+    return f'<td class="number">{shown}</td>'
 
 
 def number(value):

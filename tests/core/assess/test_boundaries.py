@@ -115,5 +115,5 @@ def test_the_layer_shows_what_the_table_counts(frame, result):
 
 
 def test_tolerances_that_cannot_be_meant_are_refused():
-    with pytest.raises(RoadExtractionError, match="tolerances are 5, 10; give .* from 0.001 to 2, such as 0.05"):
+    with pytest.raises(RoadExtractionError, match="tolerances are 0.1, 5, 10; give .* from 0.001 to 2, such as 0.05"):
         BoundarySettings(tolerances=(5, 10))
