@@ -134,7 +134,7 @@ def make_road_map(paths, trajectory, image_path, settings=RoadMapSettings(), pro
                      boundaries.differences, boundaries.length_by_method, seconds=stages.seconds, survey_facts=facts)
     result.counts.update(curb_points=len(curb_points), road_points=len(road_points))
     if not has_intensity:
-        result.without_paint = ("The point cloud has no intensity (all values are 0), so paint cannot be told from "
+        result.without_paint = ("The point cloud has no intensity (all values are the same), so paint cannot be told from "
                                 "asphalt: no markings, marking lines or driving lines were made.")
         progress.warn(result.without_paint)
         return result

@@ -100,9 +100,11 @@ def road_points_of(call, name, progress):
 def bright_road_points_of(call, name, progress):
     """The same for stages that look at intensity; refused where there is none."""
     road_points = road_points_of(call, name, progress)
-    if not any(road_points.section(*key).intensity.any() for key in road_points.all_sections()):
+    sections = (road_points.section(*key).intensity for key in road_points.all_sections())
+    values = [(section.min(), section.max()) for section in sections if len(section)]
+    if values and min(low for low, _ in values) == max(high for _, high in values):
         raise RoadExtractionError(
-            tr("{path} has no intensity (all values are 0), so paint cannot be told from asphalt. Road edges and surface "
+            tr("{path} has no intensity (all values are the same), so paint cannot be told from asphalt. Road edges and surface "
                "need none; for markings, export the point clouds with intensity.").format(path=call.cloud(name))
         )
     return road_points

@@ -42,14 +42,14 @@ class SurveyReader:
     Attributes, complete after `finish`
     ----------
     census : ScannerCensus
-    brightest : the highest intensity
+    darkest, brightest : the lowest and the highest intensity
     unplaced_time : points whose time no pass has
     heights : {pass number: metres from the trajectory down to the road}
     """
 
     def __init__(self, frame, store, corridor, has_time, week_ends=False):
         self.frame, self.store, self.corridor, self.has_time, self.week_ends = frame, store, corridor, has_time, week_ends
-        self.census, self.brightest, self.unplaced_time = ScannerCensus(), 0, 0
+        self.census, self.darkest, self.brightest, self.unplaced_time = ScannerCensus(), 65535, 0, 0
         self.placing = Placing(frame, corridor) if has_time else None
         self.tracks = Tracks(frame)
         self.tally = None          # of heights; made when the rough height of the road is known
@@ -91,6 +91,7 @@ class SurveyReader:
         time = self._time(block)
         if not len(time):
             return time
+        self.darkest = min(self.darkest, int(block.array["intensity"].min()))
         self.brightest = max(self.brightest, int(block.array["intensity"].max()))
         self.census.add("point_source_id", block.array["point_source_id"], time)
         if "scanner_channel" in names:

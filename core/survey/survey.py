@@ -135,7 +135,7 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
                       "trajectory's.")
     scanner_field, scanners = reader.census.choose(settings.scanner_field)
     survey = Survey(files, frame, store, crs, reader.heights, scanner_field, scanners,
-                    reader.brightest > 0, has_time,
+                    reader.brightest > reader.darkest, has_time,
                     dict(read=total, kept=store.count, outside=total - store.count))
     progress.say(f"{total:,} points read from {len(files)} file(s), {store.count:,} near the road kept; "
                  f"{len(frame.roads)} road(s), {len(frame.passes)} pass(es), {len(scanners)} scanner(s); "

@@ -69,6 +69,8 @@ def align_time(time, cloud_span, system="automatic", adjusted=True):
     """
     if system not in SYSTEMS:
         raise RoadExtractionError(f"The time system {system!r} is not known; choose one of {', '.join(SYSTEMS)}.")
+    if not np.isfinite(time).any():
+        raise RoadExtractionError("The trajectory holds no position with a time. Check the file, or export it again.")
     time = unwrap_time(time)
     first, last = float(np.nanmin(time)), float(np.nanmax(time))
     cloud_first, cloud_last = map(float, cloud_span)
