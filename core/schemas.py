@@ -49,6 +49,14 @@ CURVE_ELEMENTS = [ROAD, Field("lane", int, "Lane"), STATION, END, Field("turn", 
                   Field("pt_y", float, "PT y"), Field("pi_x", float, "PI x"), Field("pi_y", float, "PI y"),
                   Field("rmse_m", float, "RMSE of the arc (m)"),
                   Field("speed_kmh", int, "Highest design speed allowed (km/h)"), Field("code", str, "Design code check")]
+RESIDUALS = [Field("point", str, "Point"), Field("role", str, "Role (control/check/disabled)"),
+             Field("pixel", float, "Pixel"), Field("line", float, "Line, downwards"),
+             Field("dx_m", float, "Residual east (m)"), Field("dy_m", float, "Residual north (m)"),
+             Field("resid_m", float, "Residual (m)"), Field("loo_m", float, "Residual without this point (m)"),
+             Field("leverage", float, "Leverage (0 to 1)")]
+CONTROL_POINTS = [Field("point", str, "Point"), Field("role", str, "Role (control/check)"),
+                  Field("pixel", float, "Pixel"), Field("line", float, "Line, downwards"),
+                  Field("kind", str, "What was pointed at")]
 TRAJECTORY = [Field("time", float, "Time (s)"), Field("roll", float, "Roll (°)"), Field("pitch", float, "Pitch (°)"),
               Field("heading", float, "Heading (°, clockwise from grid north)"), PASS, ROAD, STATION]
 OUTCOME = Field("outcome", str, "Outcome (correct/missed/false/excluded)")

@@ -77,6 +77,9 @@ class Call:
 
     def raster(self, name):
         """The file of a raster input."""
+        given = self.parameters.get(name)
+        if isinstance(given, str) and Path(given).is_file():
+            return given  # loaded as a layer, QGIS would write statistics beside it
         layer = self.algorithm.parameterAsRasterLayer(self.parameters, name, self.context)
         if layer is None:
             raise QgsProcessingException(self.algorithm.invalidRasterError(self.parameters, name))

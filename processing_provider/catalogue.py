@@ -11,6 +11,7 @@ from .markings.extract_markings import ExtractMarkings
 from .markings.fit_marking_lines import FitMarkingLines
 from .markings.intensity_image import IntensityImage
 from .markings.remove_outliers import RemoveOutliers
+from .overlay.georeference_image import GeoreferenceImage
 from .road.detect_boundaries import DetectBoundaries
 from .road.detect_curbs import DetectCurbs
 from .road.extract_road_surface import ExtractRoadSurface
@@ -38,4 +39,5 @@ ALGORITHMS = (
     AssessBoundaries,
     AssessMarkings,
     AssessDrivingLines,
+    GeoreferenceImage,
 )

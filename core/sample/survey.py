@@ -17,6 +17,7 @@ from ..errors import RoadExtractionError
 from ..progress import Progress
 from ..survey.trajectory import Trajectory
 from . import truth
+from .camera import camera_over
 from .casting import OBSTACLE, cast
 from .drive import Drive
 from .intensity import brightness_of, label_hits, received
@@ -95,6 +96,7 @@ class SampleSurvey:
     Attributes
     ----------
     scene : Scene, in local coordinates (map minus settings.origin)
+    camera : Camera of the UAV image, in local coordinates
     trajectory : Trajectory at 200 Hz, 2.6 m above the road, all passes
     truth_boundaries, truth_markings, truth_driving_lines, truth_surface : Features in map coordinates
     crs : WKT
@@ -104,6 +106,7 @@ class SampleSurvey:
         self.settings, self.crs = settings, crs
         self.scene = build_scene(settings.scene, float(settings.length), settings.seed, settings.radius,
                                  settings.curb_height, settings.gutter)
+        self.camera = camera_over(self.scene)
         self.scanners = butterfly(settings.rotation_rate, settings.pulse_rate)
         phases = np.random.default_rng([settings.seed, 2]).uniform(0, 2 * np.pi, len(self.scene.passes))
         self.drives, start = [], _START_TIME

@@ -2,7 +2,7 @@
 
 from qgis.core import QgsProcessingParameterCrs
 
-from ...core.schemas import TRAJECTORY
+from ...core.schemas import CONTROL_POINTS, TRAJECTORY
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob
 from ..texts import tr
@@ -80,6 +80,12 @@ class SampleSurvey(LanewrightAlgorithm):
         self.add_sink("TRAJECTORY", tr("Trajectory"), fields=TRAJECTORY, geometry="PointZ")
         for name, _, geometry, label in TRUTHS:
             self.add_sink(name, label, geometry=geometry, optional=True)
+        self.add_raster(
+            "UAV_IMAGE", tr("UAV image"),
+            tr("What a UAV sees of the first 150 m: a TIFF of 4 cm pixels without a place on the map, with the distortion of its camera. "
+               "Georeference image finds its place."), optional=True, by_default=False)
+        self.add_sink("UAV_GCPS", tr("Ground control points of the UAV image"), geometry="PointZ", optional=True, by_default=False,
+                      fields=CONTROL_POINTS)
         self.add_number("POINTS", tr("Points"))
 
     def work(self, call, progress):
@@ -87,8 +93,16 @@ class SampleSurvey(LanewrightAlgorithm):
 
         settings = call.settings(SAMPLE_KNOBS, **({"crs": call.crs()} if call.crs() else {}))
         survey = make_sample_survey(settings, progress.part(0.0, 0.1))
-        count = survey.write_cloud(call.new_file("POINT_CLOUD"), progress.part(0.1, 1.0))
+        count = survey.write_cloud(call.new_file("POINT_CLOUD"), progress.part(0.1, 0.9 if call.wants("UAV_IMAGE") else 1.0))
         progress.say(tr("{count} points of a {length:.0f} m road.").format(count=count, length=settings.length))
+        if call.wants("UAV_IMAGE"):
+            from ...core.sample.orthoimage import write_uav_image
+
+            write_uav_image(survey, call.new_file("UAV_IMAGE"), progress.part(0.9, 1.0))
+        if call.wants("UAV_GCPS"):
+            from ...core.sample.control_marks import uav_control_points
+
+            call.layer("UAV_GCPS", uav_control_points(survey))
         call.layer("TRAJECTORY", trajectory_features(survey.trajectory))
         for name, attribute, _, _ in TRUTHS:
             call.layer(name, getattr(survey, attribute))

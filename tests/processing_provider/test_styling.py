@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.schemas import DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES
+from lanewright.core.schemas import CONTROL_POINTS, DRIVING_LINES, MARKING_LINES, MARKINGS, RESIDUALS, ROAD_EDGES
 from lanewright.processing_provider.embedded_style import embed_style
 from lanewright.processing_provider.layers import qgis_fields
 from lanewright.processing_provider.styling import LOOKS, STYLES, Styler, group_of, style_on_load
@@ -14,6 +14,8 @@ KINDS = {
     "MARKINGS": ("PolygonZ", MARKINGS),
     "MARKING_LINES": ("LineStringZ", MARKING_LINES),
     "DRIVING_LINES": ("LineStringZ", DRIVING_LINES),
+    "RESIDUALS": ("LineStringZ", RESIDUALS),
+    "UAV_GCPS": ("PointZ", CONTROL_POINTS),
 }
 
 
@@ -24,7 +26,7 @@ def layer_of(kind, schema):
     return layer
 
 
-@pytest.mark.parametrize("name", LOOKS)
+@pytest.mark.parametrize("name", [name for name, (look, _) in LOOKS.items() if look])
 def test_every_result_has_a_style(name):
     assert (STYLES / f"{LOOKS[name][0]}.qml").exists()
 

@@ -1,0 +1,1 @@
+"""UAV images: ground control points, polynomial georeferencing."""

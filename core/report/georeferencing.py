@@ -1,0 +1,142 @@
+"""The report on a georeferenced image: how well it lies, point by point, and a picture of the residuals."""
+
+import cv2
+import numpy as np
+
+from ..overlay.control_points import CHECK, CONTROL, DISABLED
+from ..overlay.warping import drawn_area, output_grid
+from ..survey.crs import horizontal, parse_crs
+from .map_picture import png
+from .page import Page
+
+LONGEST = 1300    # pixels of the picture
+ARROW = 0.06      # of the picture's longer side, length of the longest arrow
+COLOURS = {CONTROL: (60, 60, 230), CHECK: (230, 190, 40), DISABLED: (150, 150, 150)}  # blue, green, red
+CSS = {role: "#%02x%02x%02x" % colour[::-1] for role, colour in COLOURS.items()}
+KINDS = {0: "shift (order 0)", 1: "polynomial of order 1 (affine)", 2: "polynomial of order 2", 3: "polynomial of order 3"}
+
+
+def georeferencing_report(found, drawn, departure):
+    """HTML of a Georeferencing.
+
+    Parameters
+    ----------
+    found : Georeferencing
+    drawn : path of the GeoTIFF that was drawn
+    departure : pixels between the drawn image and the polynomial, from `draw_image`
+    """
+    page = Page("Georeferenced image", "How well the image lies on its control points.")
+    for note in found.notes:
+        page.warning(note)
+    image, crs = found.image, found.points.crs
+    _, width, height = output_grid(found)
+    page.heading("Image")
+    page.facts((
+        ("Image", image.path), ("Pixels and lines", f"{image.width} × {image.height}"), ("Placed by", KINDS[found.settings.order]),
+        ("CRS", horizontal(parse_crs(crs)).name if crs else "none"), ("Result", f"{width} × {height} pixels of {found.pixel_size:g} m"),
+        ("Drawn within", f"{max(departure, 0.001):.3f} pixels of the polynomial, everywhere"),
+        ("Outside the hull of the control points", f"{100 * found.outside:.0f} % of the image" + (", left out" if found.cut else ""))))
+    _errors(page, found)
+    picture, times = residual_picture(found, drawn)
+    page.heading("Residuals")
+    page.picture(png(picture), f"From where the polynomial puts each point to where it was measured, {times:,.0f} times as long as on "
+                               "the ground. North is up; the thin line is the hull of the control points.")
+    page.colour_key([(CSS[role], role) for role in (CONTROL, CHECK, DISABLED) if len(found.points.having(role))])
+    _points(page, found)
+    return page.html()
+
+
+def _errors(page, found):
+    fit, pixel = found.fit, found.pixel_size
+    rows = [("Control points", len(found.points.having(CONTROL)), found.rmse()),
+            ("Control points, each left out in turn", len(found.points.having(CONTROL)), found.left_out_rmse),
+            ("Check points", len(found.points.having(CHECK)), found.rmse(CHECK))]
+    page.heading("Errors")
+    page.table(("", "Points", "RMSE (m)", "RMSE (pixels)", "Largest (m)"),
+               [(title, count, error, error / pixel, _largest(vectors)) for (title, count, error), vectors in zip(
+                   rows, (found.errors[found.points.having(CONTROL)], found.left_out[found.points.having(CONTROL)],
+                          found.errors[found.points.having(CHECK)]))])
+    page.note("RMSE = √(Σ(dx² + dy²) / n). The residuals of control points flatter, since the polynomial was bent to them; "
+              f"there are {fit.free} more than it needs. Points measured in the laser point cloud itself tell how well the image fits "
+              "the cloud, not how well either fits the ground.")
+
+
+def _largest(vectors):
+    known = vectors[np.isfinite(vectors).all(axis=1)]
+    return float(np.hypot(*known.T).max()) if len(known) else float("nan")
+
+
+def _points(page, found):
+    page.heading("Points")
+    points = found.points
+    page.table(
+        ("Point", "Role", "Pixel", "Line", "East (m)", "North (m)", "Residual (m)", "Without this point (m)"),
+        [(points.names[k], str(points.roles[k]), round(float(points.pixel[k]), 2), round(float(points.line[k]), 2),
+          *(float(error) for error in found.errors[k]), float(np.hypot(*found.errors[k])), float(np.hypot(*found.left_out[k])))
+         for k in range(len(points))])
+
+
+def residual_picture(found, drawn):
+    """((H, W, 3) picture of the drawn image with the residuals on it, how many times they are lengthened)."""
+    canvas, scale, corner = _small(drawn)
+    points = found.points
+
+    def at(x, y):
+        return np.column_stack([(np.asarray(x) - corner[0]) * scale, (corner[1] - np.asarray(y)) * scale])
+
+    if found.hull is not None:
+        hull = np.array(drawn_area(found).exterior.coords) if found.cut else np.array(found.hull.exterior.segmentize(50.0).coords)
+        outline = at(*found.fit.polynomial.to_map(hull[:, 0], hull[:, 1]))
+        cv2.polylines(canvas, [np.rint(outline * 16).astype(np.int32)], True, (255, 255, 255), 1, cv2.LINE_AA, 4)
+    judged = points.roles != DISABLED
+    longest = np.hypot(*found.errors[judged].T).max() if judged.any() else 0.0
+    times = _round_down(ARROW * max(canvas.shape[:2]) / (longest * scale)) if longest * scale > 1e-6 else 1.0
+    # An arrow starts where the polynomial puts the point and is lengthened from there
+    starts = at(points.easting - found.errors[:, 0], points.northing - found.errors[:, 1])
+    tips = starts + found.errors * np.array([1.0, -1.0]) * scale * times
+    for place, tip, role in sorted(zip(starts, tips, points.roles), key=lambda one: one[2] != DISABLED):
+        colour = COLOURS[str(role)]
+        if role == DISABLED:
+            cv2.drawMarker(canvas, _whole(place), colour, cv2.MARKER_TILTED_CROSS, 10, 2, cv2.LINE_AA)
+            continue
+        for tint, width in (((20, 20, 20), 5), (colour, 2)):
+            cv2.arrowedLine(canvas, _whole(place), _whole(tip), tint, width, cv2.LINE_AA, tipLength=0.25)
+        cv2.circle(canvas, _whole(place), 4, colour, -1, cv2.LINE_AA)
+    return canvas, times
+
+
+def _whole(place):
+    return tuple(int(v) for v in np.clip(np.rint(place), -10_000, 10_000))
+
+
+def _round_down(value):
+    """1, 2 or 5 times a power of ten."""
+    ten = 10.0 ** np.floor(np.log10(value))
+    return float(max(step * ten for step in (1, 2, 5) if step * ten <= value * (1 + 1e-9)))
+
+
+def _small(path):
+    """((H, W, 3) small copy of the drawn image, pixels per metre, map coordinates of its north-west corner)."""
+    from osgeo import gdal
+
+    gdal.UseExceptions()
+    dataset = gdal.Open(str(path))
+    share = min(1.0, LONGEST / max(dataset.RasterXSize, dataset.RasterYSize))
+    width, height = (max(int(n * share), 1) for n in (dataset.RasterXSize, dataset.RasterYSize))
+    colours = (3, 2, 1) if dataset.RasterCount >= 3 else (1, 1, 1)
+    bands = []
+    for number in colours:
+        band = dataset.GetRasterBand(number)
+        data = band.ReadRaster(0, 0, dataset.RasterXSize, dataset.RasterYSize, width, height, gdal.GDT_Float32,
+                               resample_alg=gdal.GRIORA_Average)
+        bands.append(np.frombuffer(data, np.float32).reshape(height, width))
+    mask = dataset.GetRasterBand(1).GetMaskBand().ReadRaster(0, 0, dataset.RasterXSize, dataset.RasterYSize, width, height, gdal.GDT_Byte)
+    drawn = (np.frombuffer(mask, np.uint8).reshape(height, width) > 127) & np.isfinite(bands[0])
+    values = np.stack(bands, axis=2)
+    if dataset.GetRasterBand(1).DataType != gdal.GDT_Byte and drawn.any():
+        low, high = np.percentile(values[drawn], [1, 99])
+        values = 255.0 * (values - low) / max(float(high - low), 1e-9)
+    canvas = np.full((height, width, 3), 28, np.uint8)
+    canvas[drawn] = np.clip(np.rint(values[drawn]), 0, 255).astype(np.uint8)
+    x0, size, _, y0, _, _ = dataset.GetGeoTransform()
+    return canvas, width / (dataset.RasterXSize * size), (x0, y0)

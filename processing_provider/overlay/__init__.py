@@ -1,0 +1,1 @@
+"""UAV images below the road map."""

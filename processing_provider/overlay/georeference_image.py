@@ -1,0 +1,141 @@
+"""A UAV image placed on the map by ground control points."""
+
+from qgis.core import QgsProcessingParameterCrs, QgsProcessingParameterFile
+
+from ...core.errors import RoadExtractionError
+from ...core.schemas import RESIDUALS
+from ..algorithm import LanewrightAlgorithm
+from ..knobs import Knob
+from ..texts import tr
+from .control_point_layer import read_control_point_layer
+
+GEOREFERENCE = "overlay.georeferencing:GeoreferenceSettings"
+POINTS_FILTER = "Control points (*.points *.csv *.txt *.POINTS *.CSV *.TXT);;All files (*.*)"
+
+GEOREFERENCE_KNOBS = (
+    Knob(
+        "ORDER", GEOREFERENCE, "order", tr("Order of the polynomial (0-3)"),
+        tr("0 only shifts an image that already has a rough position; 1 also turns, scales and shears it (3 points or more), 2 also "
+           "bends it (6), 3 bends it twice (10). Higher follows the points more closely and runs away faster outside them: "
+           "watch the leave-one-out error, which falls only as long as the order is worth it."),
+        minimum=0, maximum=3,
+    ),
+    Knob(
+        "PIXEL_SIZE", GEOREFERENCE, "pixel_size", tr("Pixel size (m)"),
+        tr("Of the result; 0 keeps that of the image. Smaller makes a larger file, not a sharper image. A shift (order 0) of an image "
+           "without position takes this as the image's own pixel size, north up."),
+        minimum=0.0, maximum=999.0,
+    ),
+    Knob(
+        "EXTRAPOLATION", GEOREFERENCE, "extrapolation", tr("Outside the control points"),
+        tr("What becomes of the image outside the hull of the control points, where the polynomial extrapolates: automatic draws it "
+           "up to order 2 and leaves it out at order 3."),
+        choices=("automatic", "draw", "leave-out"), advanced=True,
+    ),
+    Knob(
+        "RESAMPLING", GEOREFERENCE, "resampling", tr("Resampling"),
+        tr("Bilinear is smooth and safe, cubic a little sharper, nearest keeps the values as they are (for classes and temperatures)."),
+        choices=("bilinear", "nearest", "cubic"), advanced=True,
+    ),
+    Knob(
+        "CHECK_DISABLED", GEOREFERENCE, "check_disabled", tr("Disabled points are check points"),
+        tr("Points that are switched off in the georeferencer, or have 0 in a column enable, judge the result instead of being passed "
+           "over. A layer or CSV may name check points in a column role."),
+        advanced=True,
+    ),
+)
+
+NUMBERS = (
+    ("POINTS", tr("Control points")),
+    ("RMSE", tr("RMSE of the control points (m)")),
+    ("LEFT_OUT_RMSE", tr("RMSE of the control points, each left out in turn (m)")),
+    ("CHECK_POINTS", tr("Check points")),
+    ("CHECK_RMSE", tr("RMSE of the check points (m)")),
+    ("LARGEST", tr("Largest residual of a control point (m)")),
+    ("OUTSIDE", tr("Image outside the hull of the control points (%)")),
+)
+
+
+class GeoreferenceImage(LanewrightAlgorithm):
+    ID, TITLE, ROOM = "georeferenceimage", "Georeference image", "Overlay"
+    SUMMARY = "Places a UAV image on the map by ground control points, and tells how well it lies there."
+    HELP = ("Control points come as a layer or as a file, each with pixel, line, easting and northing; pixel and line count from the "
+            "outer corner of the first pixel. The result is a GeoTIFF in the CRS of the control points.")
+    TAGS = ("UAV", "drone", "orthoimage", "GCP", "georeferencer", "polynomial", "warp")
+    TRAJECTORIES = ()
+
+    def initAlgorithm(self, configuration=None):
+        self.add_layer_raster("IMAGE", tr("Image"), tr("TIFF, JPEG, PNG or any other raster, with a position on the map or without."))
+        self.add_layer(
+            "GCPS", tr("Control points (layer)"),
+            tr("A point layer with the fields pixel and line, or a table that also has easting and northing. A field role (control or check) "
+               "sets points aside that only judge the result, a field enable switches points off."),
+            optional=True,
+        )
+        self.add(
+            QgsProcessingParameterFile("GCP_FILE", tr("Control points (file)"), fileFilter=POINTS_FILTER, optional=True),
+            tr("In place of a layer: the .points file of QGIS's georeferencer, or a CSV with the columns pixel, line, easting, northing in any "
+               "order."),
+        )
+        self.add(
+            QgsProcessingParameterCrs("CRS", tr("CRS of the control points"), optional=True),
+            tr("Only for control points that name none of their own. It must be projected, in metres."),
+        )
+        self.add_knobs(GEOREFERENCE_KNOBS)
+        self.add_raster("OUTPUT", tr("Georeferenced image"), tr("GeoTIFF with overviews; transparent or without data where the image ends."))
+        self.add_sink("RESIDUALS", tr("Residuals"), tr("From where the polynomial puts each point to where it was measured."), "LineStringZ",
+                      optional=True, fields=RESIDUALS)
+        self.add_report()
+        for name, label in NUMBERS:
+            self.add_number(name, label)
+
+    def work(self, call, progress):
+        from ...core.overlay.georeferencing import georeference
+        from ...core.overlay.residuals import residual_vectors
+        from ...core.overlay.source_image import open_image
+        from ...core.overlay.warping import draw_image
+        from ...core.report.georeferencing import georeferencing_report
+
+        image = open_image(call.raster("IMAGE"))
+        found = georeference(image, _control_points(call, image), call.settings(GEOREFERENCE_KNOBS))
+        for note in found.notes:
+            progress.warn(note)
+        values = _numbers(found)
+        progress.say(tr("{count} control points, order {order}: RMSE {rmse:.3f} m, each left out in turn {left:.3f} m.").format(
+            count=values["POINTS"], order=found.settings.order, rmse=values["RMSE"], left=found.left_out_rmse))
+        if values["CHECK_POINTS"]:
+            progress.say(tr("{count} check points: RMSE {rmse:.3f} m.").format(count=values["CHECK_POINTS"], rmse=values["CHECK_RMSE"]))
+        drawn = call.new_file("OUTPUT")
+        departure = draw_image(found, drawn, progress.part(0.02, 0.97))
+        call.layer("RESIDUALS", residual_vectors(found))
+        if call.wants("REPORT"):
+            call.text("REPORT", call.in_users_names(georeferencing_report(found, drawn, departure)))
+        return values
+
+
+def _control_points(call, image):
+    """From the layer or the file, whichever was given."""
+    from ...core.overlay.control_point_file import read_control_points
+
+    path = call.algorithm.parameterAsFile(call.parameters, "GCP_FILE", call.context)
+    source = call.source("GCPS")
+    if bool(path) == (source is not None):
+        raise RoadExtractionError(
+            tr("Control points were given twice, as a layer and as a file. Leave one of them empty.") if path else
+            tr("There are no control points. Choose a layer, or a .points or CSV file."))
+    if path:
+        return read_control_points(path, image, call.crs())
+    return read_control_point_layer(source, image, call.label("GCPS"), call.crs())
+
+
+def _numbers(found):
+    from ...core.overlay.control_points import CHECK, CONTROL
+
+    lengths = [float((dx * dx + dy * dy) ** 0.5) for dx, dy in found.errors[found.points.having(CONTROL)]]
+    values = {
+        "POINTS": len(lengths), "RMSE": found.rmse(), "LEFT_OUT_RMSE": found.left_out_rmse,
+        "CHECK_POINTS": len(found.points.having(CHECK)), "CHECK_RMSE": found.rmse(CHECK), "LARGEST": max(lengths),
+        "OUTSIDE": 100.0 * found.outside,
+    }
+    # JSON knows no NaN: what cannot be told is left out
+    return {name: value for name, value in values.items() if value == value}
