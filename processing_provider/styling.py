@@ -15,7 +15,7 @@ from .texts import tr
 
 STYLES = Path(__file__).resolve().parents[1] / "resources" / "styles"
 
-# Output name, with the algorithm's where others use it too -> (style, place in the group: small is drawn below)
+# Output name -> (style, place in the group: small is drawn below)
 LOOKS = {
     "INTENSITY_IMAGE": ("intensity_image", 10),
     "DENSITY": ("density", 11),
@@ -34,18 +34,12 @@ LOOKS = {
     "ASSESSED_POLYGONS": ("assessed_polygons", 35),
     "ASSESSED_LINES": ("assessed_lines", 75),
     "OUTPUT": ("trajectory", 80),
-    "georeferenceimage:OUTPUT": (None, 8),
+    "ORTHOIMAGE": (None, 8),
     "UAV_IMAGE": (None, 7),
     "RESIDUALS": ("residuals", 90),
     "UAV_GCPS": ("control_points", 89),
 }
 TABLES = 5  # tables lie below what is drawn
-
-
-def look_of(algorithm, output):
-    """The key in LOOKS of an algorithm's output."""
-    own = f"{algorithm}:{output}"
-    return own if own in LOOKS else output
 
 
 class Styler(QgsProcessingLayerPostProcessorInterface):

@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 
 from ..errors import RoadExtractionError
-from .control_points import CHECK, CONTROL, ControlPoints
+from .control_points import CONTROL, ControlPoints
 from .polynomial import FEWEST, LINE, WEAK, Fit, fit_polynomial, fit_shift, spread, weakness
 from .source_image import SourceImage
 

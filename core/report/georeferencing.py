@@ -12,7 +12,7 @@ from .page import Page
 LONGEST = 1300    # pixels of the picture
 ARROW = 0.06      # of the picture's longer side, length of the longest arrow
 COLOURS = {CONTROL: (60, 60, 230), CHECK: (230, 190, 40), DISABLED: (150, 150, 150)}  # blue, green, red
-CSS = {role: "#%02x%02x%02x" % colour[::-1] for role, colour in COLOURS.items()}
+CSS = {role: f"#{red:02x}{green:02x}{blue:02x}" for role, (blue, green, red) in COLOURS.items()}
 KINDS = {0: "shift (order 0)", 1: "polynomial of order 1 (affine)", 2: "polynomial of order 2", 3: "polynomial of order 3"}
 
 

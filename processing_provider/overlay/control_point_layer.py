@@ -1,6 +1,6 @@
 """Ground control points from a layer: the map coordinates of its points, the rest from its fields."""
 
-from qgis.core import QgsWkbTypes, Qgis
+from qgis.core import Qgis, QgsWkbTypes
 
 from ...core.errors import RoadExtractionError
 from ..layers import crs_text

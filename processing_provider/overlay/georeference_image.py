@@ -57,12 +57,13 @@ NUMBERS = (
 
 
 class GeoreferenceImage(LanewrightAlgorithm):
-    ID, TITLE, ROOM = "georeferenceimage", "Georeference image", "Overlay"
+    ID, TITLE, ROOM = "georeferenceimage", "Georeference image", "Orthoimages"
     SUMMARY = "Places a UAV image on the map by ground control points, and tells how well it lies there."
     HELP = ("Control points come as a layer or as a file, each with pixel, line, easting and northing; pixel and line count from the "
             "outer corner of the first pixel. The result is a GeoTIFF in the CRS of the control points.")
     TAGS = ("UAV", "drone", "orthoimage", "GCP", "georeferencer", "polynomial", "warp")
     TRAJECTORIES = ()
+    LOOKS = {"OUTPUT": "ORTHOIMAGE"}
 
     def initAlgorithm(self, configuration=None):
         self.add_layer_raster("IMAGE", tr("Image"), tr("TIFF, JPEG, PNG or any other raster, with a position on the map or without."))

@@ -77,7 +77,8 @@ def test_values_beyond_bytes_stay_as_they_are(kind, light, nodata, tmp_path):
     np.testing.assert_equal(dataset.GetRasterBand(1).GetNoDataValue(), nodata)
     fields_lie_where_they_are(dataset, found, light)
     values = dataset.GetRasterBand(1).ReadAsArray().astype(float)
-    assert set(np.unique(values[np.isfinite(values) & (values != 0)]).round(2)) == {round(0.15 * light, 2) if kind != gdal.GDT_Float32 else 3.22, light}
+    found = np.unique(values[np.isfinite(values) & (values != 0)])
+    np.testing.assert_allclose(found, [0.15 * light, light], rtol=1e-3)
 
 
 def test_a_palette_becomes_colours(tmp_path):
