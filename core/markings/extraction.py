@@ -5,7 +5,7 @@ so that "along the road" is an axis of the array and a bend is straight.
 """
 
 from contextlib import nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -15,14 +15,16 @@ from ..progress import Progress
 from ..survey.points import UNIT, Points, chosen
 from ..survey.road_points import RoadPoints
 from .gutters import rim_distance
+from .intensity_peaks import PeakSettings, points_on_peaks
 from .levels import Levels, asphalt_profile, flatten
-from .mask import marking_mask, pixel_centres
+from .mask import burn_points, marking_mask, painted_pixels
 from .morphology import averaged, morphology, strips
+from .point_segments import SegmentSettings, points_in_segments
 from .thresholds import FEWEST, asphalt_bins, bin_edges, scatter_of, split_bins
 
 RIM = 0.60        # m from the rim of the road where gutters end and asphalt is asphalt
 NOISY = 0.40      # of asphalt's level: single points that scatter more are averaged (multi-beam scanners)
-METHODS = ("multi-threshold",)
+METHODS = ("multi-threshold", "intensity-peaks", "point-segments")
 CELL = 400        # units of 0.1 mm: the grid in (s, d) has cells of 4 cm
 WINDOW = 500      # cells: thresholds are taken from 20 m of road
 HALO = 100        # cells: 4 m about a window in which rims and runs are still looked at
@@ -32,13 +34,15 @@ HALO = 100        # cells: 4 m about a window in which rims and runs are still l
 class MarkingSettings:
     """When a spot of road is paint.
 
-    method : how the threshold is found
+    method : "multi-threshold" on the intensity image; "intensity-peaks" of profiles across
+        the road; "point-segments", thresholds on the points and their density
     separation : spreads of asphalt between the mean of paint and the mean of
         asphalt, below which a bin has no paint
     lowest, highest : limits of the threshold in spreads above the median of asphalt
     alone : spreads, the threshold where neither a bin nor its neighbours show two materials
     faint : spreads, the highest threshold on averages of noisy points, where shape must speak too
     close, shortest : m, gaps along the road that are closed, and pieces shorter than that are dropped
+    peaks, segments : what the other two methods go by; all between is the multi-threshold's
     """
 
     method: str = "multi-threshold"
@@ -49,6 +53,8 @@ class MarkingSettings:
     faint: float = 3.0
     close: float = 0.20
     shortest: float = 0.20
+    peaks: PeakSettings = field(default_factory=PeakSettings)
+    segments: SegmentSettings = field(default_factory=SegmentSettings)
 
     def __post_init__(self):
         if self.method not in METHODS:
@@ -99,8 +105,28 @@ def extract_markings(road_points, image, frame, settings=MarkingSettings(), prog
     RoadPoints
     """
     with marking_mask(mask_path, image, frame.origin) if mask_path else nullcontext() as burn:
-        kept = _extract(road_points, image, frame, settings, progress, burn)
+        if settings.method == "multi-threshold":
+            kept = _extract(road_points, image, frame, settings, progress, burn)
+        else:
+            kept = _extract_from_points(road_points, settings, progress)
+            if burn is not None:
+                burn_points(burn, kept, image, frame)
     progress.say(f"{len(kept):,} of {len(road_points):,} road points lie on paint.")
+    return kept
+
+
+def _extract_from_points(road_points, settings, progress):
+    """What the methods find that look at the points and not at the image."""
+    kept = RoadPoints.empty_like(road_points)
+    roads = road_points.roads()
+    for k, road in enumerate(roads):
+        part = progress.part(k / len(roads), (k + 1) / len(roads))
+        if settings.method == "intensity-peaks":
+            found = points_on_peaks(road_points, road, settings.peaks, part)
+        else:
+            found = points_in_segments(road_points, road, settings.segments, part)
+        for records in found:
+            kept.store.append(road, records)
     return kept
 
 
@@ -196,20 +222,8 @@ class _Look:
 
     def _pixels(self, mask, grid):
         """Local x, y of the centres of the image's pixels that lie in painted cells of the window itself."""
-        row, column = np.nonzero(mask[HALO:HALO + WINDOW])
-        quarter = np.array([[-0.25, -0.25], [-0.25, 0.25], [0.25, -0.25], [0.25, 0.25]]) * CELL * UNIT
-        s = (grid.stations()[HALO + row][:, None] + quarter[:, 0]).ravel()
-        d = (grid.offsets()[column][:, None] + quarter[:, 1]).ravel()
-        road = self.frame.road(self.road)
-        x, y, near = pixel_centres(self.image, *road.to_map(s, d), self.frame.origin)
-        s, d = road.locate(x, y, s[near], np.inf)
-        known = np.isfinite(s)
-        x, y, s, d = x[known], y[known], s[known], d[known]
-        row = np.floor(s / UNIT / CELL).astype(np.int64) - grid.first
-        column = np.floor(d / UNIT / CELL).astype(np.int64) - grid.low
-        inside = (row >= HALO) & (row < HALO + WINDOW) & (column >= 0) & (column < grid.shape[1])
-        inside[inside] = mask[row[inside], column[inside]]
-        return x[inside], y[inside]
+        own = mask[HALO:HALO + WINDOW]
+        return painted_pixels(own, (grid.first + HALO, grid.low), self.image, self.frame.origin, self.frame.road(self.road))
 
     def paint(self, window, levels):
         """Records of one window that lie on paint; local x, y of the mask's pixels where one is asked for."""

@@ -4,9 +4,12 @@ from contextlib import contextmanager
 
 import numpy as np
 
+from ..survey.points import UNIT
 from .intensity_raster import new_geotiff
+from .polygons import CELL, CLOSE_ALONG, painted_cells
 
 BLOCK = 2048  # px: cells are burnt in blocks of the image, so that a window in a bend takes no more than it touches
+WINDOW = 500  # cells: 20 m of station burnt at a time
 
 
 @contextmanager
@@ -52,3 +55,52 @@ def pixel_centres(image, x, y, origin):
     _, first = np.unique(row * (image.width + 1) + column, return_index=True)
     left, size, _, top, _, _ = image.geotransform
     return (left - origin[0]) + (column[first] + 0.5) * size, (top - origin[1]) - (row[first] + 0.5) * size, first
+
+
+def painted_pixels(cells, first, image, origin, road):
+    """The image's pixels whose centres lie in painted cells of a road.
+
+    Parameters
+    ----------
+    cells : (A, B) bool in (s, d), 4 cm each
+    first : cell numbers of cells[0, 0]: it begins at first * 4 cm
+    road : Road
+
+    Returns
+    -------
+    x, y : (M,) local centres of the pixels
+    """
+    row, column = np.nonzero(cells)
+    # four places a cell: pixels may be smaller than cells and lie askew to them
+    quarter = np.array([[-0.25, -0.25], [-0.25, 0.25], [0.25, -0.25], [0.25, 0.25]]) * CELL
+    s = ((first[0] + row + 0.5)[:, None] * CELL + quarter[:, 0]).ravel()
+    d = ((first[1] + column + 0.5)[:, None] * CELL + quarter[:, 1]).ravel()
+    x, y, near = pixel_centres(image, *road.to_map(s, d), origin)
+    s, d = road.locate(x, y, s[near], np.inf)
+    known = np.isfinite(s)
+    x, y, s, d = x[known], y[known], s[known], d[known]
+    row, column = (np.floor(c / CELL).astype(np.int64) - f for c, f in ((s, first[0]), (d, first[1])))
+    inside = (row >= 0) & (row < cells.shape[0]) & (column >= 0) & (column < cells.shape[1])
+    inside[inside] = cells[row[inside], column[inside]]
+    return x[inside], y[inside]
+
+
+def burn_points(burn, points, image, frame):
+    """Burn the cells that points lie in, gaps between scan lines closed.
+
+    Parameters
+    ----------
+    burn : of `marking_mask`
+    points : RoadPoints on paint
+    """
+    halo = int(np.ceil(CLOSE_ALONG / CELL)) + 1
+    for road in points.roads():
+        start, end = points.store.span(road)
+        for window in range(int(np.floor(start / CELL / WINDOW)), int(np.ceil(end / CELL / WINDOW))):
+            first, last = window * WINDOW, (window + 1) * WINDOW
+            found = points.window(road, (first - halo) * CELL, (last + halo) * CELL).records
+            if not len(found):
+                continue
+            cells, corner = painted_cells(found["s"] * UNIT, found["d"] * UNIT)
+            top, bottom = max(first - corner[0], 0), max(last - corner[0], 0)
+            burn(*painted_pixels(cells[top:bottom], (corner[0] + top, corner[1]), image, frame.origin, frame.road(road)))

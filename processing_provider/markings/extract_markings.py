@@ -6,40 +6,106 @@ from ..survey_input import bright_road_points_of, frame_of
 from ..texts import tr
 
 EXTRACTION = "markings.extraction:MarkingSettings"
+PEAKS = "markings.intensity_peaks:PeakSettings"
+SEGMENTS = "markings.point_segments:SegmentSettings"
 
 MARKING_KNOBS = (
     Knob(
         "METHOD", EXTRACTION, "method", tr("Method"),
-        tr("Multi-threshold sets a threshold for every strip along the road, so that paint far from the scanner is found too."),
-        choices=("multi-threshold",),
+        tr("multi-threshold sets a threshold for every strip along the road on the intensity image: the one to map with. The "
+           "other two are published methods to compare with. intensity-peaks looks for narrow peaks in profiles across the "
+           "road and finds lines only; point-segments sets thresholds on the points and keeps the dense ones. Neither "
+           "tells concrete gutters from paint."),
+        choices=("multi-threshold", "intensity-peaks", "point-segments"),
     ),
     Knob(
-        "SEPARATION", EXTRACTION, "separation", tr("Least distance of paint from asphalt (σ)"),
+        "SEPARATION", EXTRACTION, "separation", tr("Multi-threshold: least distance of paint from asphalt (σ)"),
         tr("How many spreads of asphalt the paint of a strip must lie above it before the strip counts as painted. Lower "
            "finds fainter paint, but also gutters, patches and noise."),
         minimum=0.5, maximum=20.0, advanced=True,
     ),
     Knob(
-        "SHORTEST_PAINT", EXTRACTION, "shortest", tr("Shortest run of paint along the road (m)"),
+        "SHORTEST_PAINT", EXTRACTION, "shortest", tr("Multi-threshold: shortest run of paint along the road (m)"),
         tr("Longer removes specks, but also worn remains of dashes."), minimum=0.0, maximum=2.0, advanced=True,
     ),
     Knob(
-        "CLOSE", EXTRACTION, "close", tr("Gap in paint closed along the road (m)"),
+        "CLOSE", EXTRACTION, "close", tr("Multi-threshold: gap in paint closed along the road (m)"),
         tr("Longer joins worn paint, but also neighbouring bars and letters."), minimum=0.0, maximum=2.0, advanced=True,
+    ),
+)
+
+PEAK_KNOBS = (
+    Knob(
+        "PROFILE_LENGTH", PEAKS, "profile_length", tr("Intensity peaks: length of a profile (m)"),
+        tr("Longer holds more points and less noise, but blurs lines that are not parallel to the road. It should hold a "
+           "scan line or two."), minimum=0.02, maximum=2.0, advanced=True,
+    ),
+    Knob(
+        "PROMINENCE", PEAKS, "prominence", tr("Intensity peaks: least prominence of a peak (MAD)"),
+        tr("How far a peak must rise above both its feet, in median absolute deviations of its profile. Lower finds fainter "
+           "and worn lines, but also seams and noise."), minimum=0.5, maximum=100.0, advanced=True,
+    ),
+    Knob(
+        "NARROWEST", PEAKS, "narrowest", tr("Intensity peaks: narrowest line (m)"),
+        tr("Narrower peaks are no lines. Lower finds worn lines, but also cracks filled with light sealant."),
+        minimum=0.0, maximum=2.0, advanced=True,
+    ),
+    Knob(
+        "WIDEST", PEAKS, "widest", tr("Intensity peaks: widest line (m)"),
+        tr("Broader peaks are no lines. Higher finds broad lines and zebra bars, but also pale repairs and gutters."),
+        minimum=0.02, maximum=2.0, advanced=True,
+    ),
+    Knob(
+        "JUMP", PEAKS, "jump", tr("Intensity peaks: shift between profiles (m)"),
+        tr("How far across a peak may lie from the last one of its line. Larger follows slanting lines, but also joins "
+           "what only happens to lie near."), minimum=0.01, maximum=1.0, advanced=True,
+    ),
+    Knob(
+        "PEAK_GAP", PEAKS, "gap", tr("Intensity peaks: gap along a line (m)"),
+        tr("Longer follows worn lines, but also joins specks. At least the length of a profile."),
+        minimum=0.02, maximum=10.0, advanced=True,
+    ),
+    Knob(
+        "SHORTEST_LINE", PEAKS, "shortest", tr("Intensity peaks: shortest line (m)"),
+        tr("Longer removes specks, but also short and worn dashes."), minimum=0.0, maximum=50.0, advanced=True,
+    ),
+)
+
+SEGMENT_KNOBS = (
+    Knob(
+        "SEGMENT_LENGTH", SEGMENTS, "length", tr("Point segments: length of a segment (m)"),
+        tr("Longer holds more asphalt and steadies the threshold, but averages over patches and worn stretches."),
+        minimum=0.5, maximum=200.0, advanced=True,
+    ),
+    Knob(
+        "SEGMENT_WIDTH", SEGMENTS, "width", tr("Point segments: width of a segment (m)"),
+        tr("Narrower is scanned more alike, but may hold little asphalt beside the paint."),
+        minimum=0.1, maximum=50.0, advanced=True,
+    ),
+    Knob(
+        "SEGMENT_SEPARATION", SEGMENTS, "separation", tr("Point segments: least distance of paint from asphalt (σ)"),
+        tr("How many spreads of asphalt the bright points of a segment must lie above the rest before it counts as "
+           "painted. Lower finds fainter paint, but takes patches and noise for it."), minimum=0.0, maximum=50.0, advanced=True,
+    ),
+    Knob(
+        "NEIGHBOUR_RADIUS", SEGMENTS, "radius", tr("Point segments: radius in which bright points are counted (m)"),
+        tr("Larger suits sparse surveys; smaller keeps narrow paint beside asphalt."),
+        minimum=0.01, maximum=1.0, advanced=True,
     ),
 )
 
 
 class ExtractMarkings(LanewrightAlgorithm):
     ID, TITLE, ROOM = "extractmarkings", "Extract markings", "Markings"
-    SUMMARY = "Tells paint from asphalt by thresholds of the intensity image and takes the points of it."
-    TAGS = ("road marking", "threshold", "otsu")
+    SUMMARY = "Tells paint from asphalt by its intensity and takes the points of it."
+    TAGS = ("road marking", "threshold", "otsu", "intensity peak", "density")
 
     def initAlgorithm(self, configuration=None):
         self.add_cloud("ROAD_POINTS", tr("Road points"), tr("The file that the intensity image was made from."))
         self.add_layer_raster("INTENSITY_IMAGE", tr("Intensity image"), tr("The GeoTIFF written by Intensity image."))
         self.add_trajectory()
-        self.add_knobs(MARKING_KNOBS)
+        for knobs in (MARKING_KNOBS, PEAK_KNOBS, SEGMENT_KNOBS):
+            self.add_knobs(knobs)
         self.add_laz("MARKING_POINTS", tr("Marking points"))
         self.add_raster(
             "MARKING_MASK", tr("Marking mask"), tr("1 where a pixel is paint, 0 where it is not."), optional=True, by_default=False
@@ -55,8 +121,9 @@ class ExtractMarkings(LanewrightAlgorithm):
         frame = frame_of(call, road_points.crs, progress, road_points)
         image = IntensityImage.open(call.raster("INTENSITY_IMAGE"))
         check_image_shows(image, road_points)
+        settings = call.settings(MARKING_KNOBS, peaks=call.settings(PEAK_KNOBS), segments=call.settings(SEGMENT_KNOBS))
         markings = extract_markings(
-            road_points, image, frame, call.settings(MARKING_KNOBS), progress.part(0.2, 0.95),
+            road_points, image, frame, settings, progress.part(0.2, 0.95),
             mask_path=call.new_file("MARKING_MASK") or None,
         )
         write_road_points(markings, call.new_file("MARKING_POINTS"), progress.part(0.95, 1.0))

@@ -34,7 +34,7 @@ INTERFACE = {
     "assessmarkings": "INPUT REFERENCE TRAJECTORY TOLERANCES TOLERANCE CELL_SIZE AREA IMAGE OUTPUT CELLS REPORT",
     "assessdrivinglines": "INPUT REFERENCE TRAJECTORY TOLERANCES TOLERANCE WIDTH AREA OUTPUT REPORT",
 }
-UNIT = re.compile(r"\((m|m²|s|°|%|points|σ|km/h|per second|per line|cells|whole number|\d+-\d+)\)$")
+UNIT = re.compile(r"\((m|m²|s|°|%|points|σ|MAD|km/h|per second|per line|cells|whole number|\d+-\d+)\)$")
 
 
 @pytest.fixture(params=ALGORITHMS, ids=lambda algorithm: algorithm.ID)
