@@ -1,18 +1,27 @@
 """Where normalized scanlines come from: cut from a survey section by section."""
 
-from .point_scanlines import point_scanlines
+from dataclasses import replace
 
-INTERVAL, CORRIDOR = 0.10, 15.0  # m between section planes; m either side
+from ..progress import Progress
+from ..survey.scan_lattice import find_lattice
+from .section_planes import ScanlineSettings, scanlines_of
 
 
 class SurveyScanlines:
     """The scanlines of a survey, made when they are asked for.
 
-    interval, corridor : metres; sensor_height : m from the trajectory down to the road, 0 = from the data
+    interval, corridor : metres, those of `settings` where they are not given
+    sensor_height : m from the trajectory down to the road, 0 = from the data
+    lattice : ScanLattice; found here where it is not given
     """
 
-    def __init__(self, survey, interval=INTERVAL, corridor=CORRIDOR, sensor_height=0.0):
-        self.survey, self.interval, self.corridor, self.sensor_height = survey, interval, corridor, sensor_height
+    def __init__(self, survey, interval=None, corridor=None, sensor_height=0.0, settings=ScanlineSettings(), lattice=None,
+                 progress=Progress()):
+        given = {name: value for name, value in (("interval", interval), ("corridor", corridor)) if value is not None}
+        self.settings = replace(settings, **given)
+        self.survey, self.interval, self.corridor = survey, self.settings.interval, self.settings.corridor
+        self.sensor_height = sensor_height
+        self.lattice = find_lattice(survey, self.settings.rotation_frequency, progress) if lattice is None else lattice
         self.frame, self.crs = survey.frame, survey.crs
 
     def roads(self):
@@ -29,4 +38,4 @@ class SurveyScanlines:
 
     def scanlines(self, road, start, end):
         """Scanlines with start <= station < end."""
-        return point_scanlines(self.survey, road, start, end, self.interval, self.corridor)
+        return scanlines_of(self.survey, road, start, end, self.settings, self.lattice)

@@ -139,6 +139,7 @@ class Pass:
     d: np.ndarray
     attitude: np.ndarray = field(default=None, repr=False)
     _by_station: tuple = field(default=None, repr=False)
+    _progress: np.ndarray = field(default=None, repr=False)
 
     def position(self, time):
         """Local x, y, z of the vehicle at the given times."""
@@ -147,6 +148,12 @@ class Pass:
     def station_at(self, time):
         """Road station of the vehicle at the given times."""
         return np.interp(time, self.time, self.s)
+
+    def progress_at(self, time):
+        """Metres of road gained since the pass began: stands still while the vehicle waits, trembles or backs up."""
+        if self._progress is None:
+            self._progress = np.maximum.accumulate(self.direction * self.s) - self.direction * self.s[0]
+        return np.interp(time, self.time, self._progress)
 
     def at_station(self, s):
         """Offset and height of the vehicle's track where it passes station s."""

@@ -1,0 +1,175 @@
+"""The mesh between neighbouring scan lines of one scanner, within a window of the road.
+
+Every point of a line and the two points of the next line between which it stands at the
+mirror's phase make a triangle. What the section planes need of it is its rib: the side
+from the point to where the same phase lies on the line ahead. The mesh exists for one
+window at a time.
+"""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from ..survey.points import UNIT, chosen
+from ..survey.scan_lattice import time_order
+
+SLOW = 0.01          # m of driving between lines: nearer ones, of a vehicle that waits, tell nothing new
+LONGEST_RIB = 0.30   # m, or LINES_AHEAD times what was driven during a turn where that is more
+LINES_AHEAD = 3      # at which a point of the same phase is sought
+MISSING = 3          # pulses that may be missing between neighbours on a line
+LONGEST_EDGE = 1.0   # m along a line: ground seen at so flat an angle tells little
+RANGE_JUMP = 0.30    # m
+SAME = 1e-6          # of the way between two points: nearer is the point itself
+SLANT = 0.5          # of what was driven during a turn
+GRAZING = 0.09       # tangent of the angle to the beam below which a jump of range is the edge of something, not ground
+
+
+@dataclass
+class ScanLines:
+    """Points of one pass and scanner in a window, in order of time.
+
+    line is compact and counts kept lines of the window; phase is the mirror's, in turns; reach is how far
+    from the vehicle, metres; joined says whether a point and the next one are neighbours on the surface.
+    """
+
+    line: np.ndarray
+    phase: np.ndarray
+    s: np.ndarray
+    d: np.ndarray
+    z: np.ndarray
+    intensity: np.ndarray
+    reach: np.ndarray
+    joined: np.ndarray
+    driven: np.ndarray     # (lines,) m of road during the turn
+
+    def __len__(self):
+        return len(self.line)
+
+
+@dataclass
+class Ribs:
+    """Sides of the mesh that planes cut: from `point` to a share of the way from point `ahead` to the one after it."""
+
+    point: np.ndarray
+    ahead: np.ndarray
+    share: np.ndarray
+
+    def __add__(self, other):
+        return Ribs(*(np.r_[getattr(self, f.name), getattr(other, f.name)] for f in fields(self)))
+
+    def at_far_end(self, values):
+        """Values where the ribs end, from those of the points."""
+        near = values[self.ahead]
+        return near + self.share * (values[self.ahead + 1] - near)
+
+
+def scan_lines(records, p, clock, corridor):
+    """The points of a scanner as lines.
+
+    Parameters
+    ----------
+    records : survey points of one pass and scanner
+    p : Pass
+    clock : MirrorClock
+    corridor : m either side within which points are used
+
+    Returns
+    -------
+    ScanLines, or None where fewer than two lines are there
+    """
+    d = records["d"]
+    records = chosen(records, np.abs(d) <= int(round(corridor / UNIT)))
+    if len(records) < 4:
+        return None
+    time = np.ascontiguousarray(records["time"])
+    order = time_order(time)
+    records, time = chosen(records, order), time[order]
+    first = int(np.floor(clock.turns_at(time[0])))
+    turns = np.arange(first, int(np.floor(clock.turns_at(time[-1]))) + 2)
+    begins = clock.times_at(turns)
+    begins[0], begins[-1] = min(begins[0], time[0]), max(begins[-1], np.nextafter(time[-1], np.inf))
+    driven = p.progress_at(begins)
+    new = np.floor(driven[:-1] / SLOW) > np.floor(p.progress_at(clock.times_at(turns[:-1] - 1)) / SLOW)
+    bounds = np.searchsorted(time, begins)
+    counts = np.diff(bounds)
+    used = np.flatnonzero(new)
+    if len(used) < 2:
+        return None
+    if not new.all():
+        kept = np.repeat(new, counts)
+        records, time = chosen(records, kept), time[kept]
+        counts = counts[used]
+    line = np.repeat(np.arange(len(used), dtype=np.int32), counts)
+    length = (begins[1:] - begins[:-1])[used]
+    phase = (time - np.repeat(begins[:-1][used], counts)) / np.repeat(length, counts)
+    s, d, z = (records[name] * UNIT for name in ("s", "d", "z"))
+    reach = _reach(s, d, z, p, begins[:-1][used], counts)
+    apart = np.diff(phase)
+    leap = np.abs(np.diff(reach))
+    joined = np.zeros(len(s), bool)
+    joined[:-1] = ((line[1:] == line[:-1]) & (apart <= (MISSING + 1.5) * clock.pulse) & ~_is_jump(leap, reach[:-1], apart)
+                   & (np.abs(np.diff(s)) <= LONGEST_EDGE) & (np.abs(np.diff(d)) <= LONGEST_EDGE))
+    return ScanLines(line, phase, s, d, z, records["intensity"].astype(np.float64), reach, joined, np.diff(driven)[used])
+
+
+def _is_jump(leap, reach, apart):
+    """Whether changes of range are edges of things: beyond RANGE_JUMP and too steep for ground at a grazing angle.
+
+    leap, reach : (N,) metres; apart : (N,) turns of the mirror
+    """
+    return (leap > RANGE_JUMP) & (GRAZING * leap > 2 * np.pi * np.abs(apart) * reach)
+
+
+def _reach(s, d, z, p, time, counts):
+    """(N,) m from the vehicle to its points; within a line the vehicle counts as standing."""
+    away = s - np.repeat(np.interp(time, p.time, p.s), counts)
+    away *= away
+    for values, track in ((d, p.d), (z, p.z)):
+        across = values - np.repeat(np.interp(time, p.time, track), counts)
+        across *= across
+        away += across
+    return np.sqrt(away)
+
+
+def ribs_of(lines, direction, clock):
+    """The ribs of the mesh, from every point that has neighbours ahead.
+
+    Parameters
+    ----------
+    lines : ScanLines
+    direction : 1 where the vehicle drove along the road's stations, -1 against them
+    clock : MirrorClock
+
+    Returns
+    -------
+    Ribs
+    """
+    key = lines.line + lines.phase
+    number = np.arange(len(key), dtype=np.float64)
+    rest = np.arange(len(key))
+    parts = []
+    for step in range(1, LINES_AHEAD * clock.spacing + 1):
+        place = np.interp(key[rest] + step, key, number) + SAME
+        ahead = place.astype(np.int64)
+        found = lines.joined[ahead] & (lines.line[ahead] == lines.line[rest] + step)
+        hit = np.flatnonzero(found)
+        ahead = ahead[hit]
+        share = place[hit] - ahead
+        # a rib that meets a point ends in it exactly, so that no plane slips through between it and the next one
+        parts.append(Ribs(rest[hit], ahead, np.where(share < 2 * SAME, 0.0, share - SAME)))
+        rest = rest[~found]
+        if not len(rest):
+            break
+    ribs = Ribs(*(np.concatenate([getattr(part, name) for part in parts]) for name in ("point", "ahead", "share")))
+    onward = direction * (ribs.at_far_end(lines.s) - lines.s[ribs.point])
+    longest = np.maximum(LONGEST_RIB, LINES_AHEAD * clock.spacing * lines.driven)
+    leap = np.abs(ribs.at_far_end(lines.reach) - lines.reach[ribs.point])
+    good = (onward > 0) & (onward <= longest[lines.line[ribs.point]]) & (leap <= RANGE_JUMP)
+    return Ribs(ribs.point[good], ribs.ahead[good], ribs.share[good])
+
+
+def slanting_edges(lines, clock):
+    """The sides along lines that go so far along the road that a plane may pass between their ends and no rib."""
+    far = np.abs(np.diff(lines.s)) > SLANT * clock.spacing * lines.driven[lines.line[:-1]]
+    point = np.flatnonzero(far & lines.joined[:-1])
+    return Ribs(point, point, np.ones(len(point)))

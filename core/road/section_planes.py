@@ -1,0 +1,188 @@
+"""Normalized scanlines: the mesh of the scan lattice cut by planes across the road.
+
+A plane perpendicular to the road's reference line is, in the road frame, a station. The ribs of the
+mesh are cut at the stations of the planes, and what lies side by side at the mirror's phase is joined.
+Planes never meet within the road, since the frame limits the offset by the bend's radius.
+
+References
+----------
+The scanline paper (ISPRS Archives, 2020), section 2.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import RoadExtractionError
+from ..parallel import in_order
+from ..progress import Progress
+from ..survey.scan_lattice import find_lattice, scanner_runs
+from .mesh import GRAZING, LINES_AHEAD, LONGEST_EDGE, LONGEST_RIB, MISSING, RANGE_JUMP, ribs_of, scan_lines, slanting_edges
+from .point_scanlines import point_scanlines
+from .scanlines import Scanlines
+from .sides import SECTION
+
+BACKWARD = 0.05   # m that a line may go back across the road (noise on a face) before it is parted
+FEWEST = 2        # vertices of a line
+FINENESS = 65535  # steps of a turn by which vertices are put in order
+
+
+@dataclass(frozen=True)
+class ScanlineSettings:
+    """Where planes are laid.
+
+    interval : m between section planes
+    corridor : m either side of the road's reference line
+    rotation_frequency : Hz, scan lines per second of each scanner; 0 = from the data
+    """
+
+    interval: float = 0.10
+    corridor: float = 15.0
+    rotation_frequency: float = 0.0
+
+    def __post_init__(self):
+        for name, value, least, most, unit in (("The interval", self.interval, 0.01, 10.0, "m"),
+                                               ("The corridor", self.corridor, 2.0, 25.0, "m")):
+            if not least <= value <= most:
+                raise RoadExtractionError(f"{name} is {value} {unit}; it must be between {least} and {most} {unit}.")
+        if self.rotation_frequency and not 5.0 <= self.rotation_frequency <= 400.0:
+            raise RoadExtractionError(f"The rotation frequency is {self.rotation_frequency} Hz; it must be 0 (from the data) "
+                                      "or between 5 and 400 Hz.")
+
+
+def scanlines_of(survey, road, start, end, settings=ScanlineSettings(), lattice=None):
+    """The normalized scanlines of planes with start <= station < end.
+
+    Parameters
+    ----------
+    survey : Survey
+    road : number
+    start, end : metres; planes lie at whole multiples of the interval
+    settings : ScanlineSettings
+    lattice : ScanLattice of the survey; found here where it is not given
+
+    Returns
+    -------
+    Scanlines: where a scanner has no lattice, those of the points near the planes
+    """
+    interval = settings.interval
+    first, last = int(np.ceil(start / interval - 1e-9)), int(np.ceil(end / interval - 1e-9))
+    if last <= first:
+        return Scanlines.none()
+    if lattice is None:
+        lattice = find_lattice(survey, settings.rotation_frequency)
+    parts = []
+    if lattice.clocks:
+        margin = _margin(survey, road, lattice)
+        records = survey.window(road, first * interval - margin, (last - 1) * interval + margin).records
+        for key, own in scanner_runs(records):
+            clock = lattice.clocks.get(key)
+            if clock is not None:
+                parts.append(_cut(own, survey.frame.passes[key[0]], key, clock, (first, last), settings))
+    if lattice.without is None or lattice.without:
+        lines = point_scanlines(survey, road, start, end, interval, settings.corridor)
+        lattice_has = np.array([key in lattice.clocks for key in zip(lines.pass_number.tolist(), lines.scanner.tolist())], bool)
+        parts.append(lines[~lattice_has])
+    lines = Scanlines.join(parts)
+    if len(parts) > 1 and len(lines):
+        order = np.lexsort((lines.d[lines.first[:-1]], lines.scanner, lines.pass_number, np.rint(lines.station / interval)))
+        lines = lines[order]
+    return lines
+
+
+def all_scanlines(survey, road, settings=ScanlineSettings(), lattice=None, progress=Progress()):
+    """Yield the Scanlines of a whole road, section by section in order of station; sections are worked side by side."""
+    if lattice is None:
+        lattice = find_lattice(survey, settings.rotation_frequency)
+    start, end = survey.store.span(road)
+    bounds = np.linspace(start, end, max(int(np.ceil((end - start) / SECTION)), 1) + 1)
+
+    def work(section):
+        return scanlines_of(survey, road, *section, settings, lattice)
+
+    yield from in_order(work, list(zip(bounds[:-1].tolist(), bounds[1:].tolist())), progress)
+
+
+def _margin(survey, road, lattice):
+    """m beyond the outer planes within which points have a part in them."""
+    margin = LONGEST_RIB
+    for (number, _), clock in lattice.clocks.items():
+        p = survey.frame.passes[number]
+        if p.road == road:
+            speed = np.diff(p.progress_at(p.time)).max(initial=0.0) / np.diff(p.time).min(initial=np.inf)
+            margin = max(margin, LINES_AHEAD * clock.spacing * min(speed, 60.0) / abs(clock.frequency))
+    return margin + LONGEST_EDGE
+
+
+def _cut(records, p, key, clock, planes, settings):
+    """Scanlines of one pass and scanner."""
+    lines = scan_lines(records, p, clock, settings.corridor)
+    if lines is None:
+        return Scanlines.none()
+    ribs = ribs_of(lines, p.direction, clock) + slanting_edges(lines, clock)
+    near, far = lines.s[ribs.point] / settings.interval, ribs.at_far_end(lines.s) / settings.interval
+    low = np.ceil(np.minimum(near, far)).astype(np.int64)
+    count = np.ceil(np.maximum(near, far)).astype(np.int64) - low
+    rib = np.repeat(np.arange(len(count)), count)
+    plane = low[rib] + np.arange(len(rib)) - np.repeat(np.cumsum(count) - count, count)
+    inside = (plane >= planes[0]) & (plane < planes[1])
+    rib, plane = rib[inside], plane[inside]
+    if not len(rib):
+        return Scanlines.none()
+    along = (plane - near[rib]) / (far[rib] - near[rib])
+    crossed = Crossings(ribs.point[rib], ribs.ahead[rib], ribs.share[rib], along)
+    phase = crossed.of(lines.phase)
+    order = _order(plane - planes[0], phase if clock.leftward else 1.0 - phase)
+    plane, phase, crossed = plane[order], phase[order], crossed[order]
+    d, z = crossed.of(lines.d), crossed.of(lines.z)
+    parted = ((np.diff(plane) != 0) | (np.abs(np.diff(phase)) > (MISSING + 1.5) * clock.pulse) | (np.diff(d) < -BACKWARD)
+              | (np.diff(d) > LONGEST_EDGE) | _edges_of_things(d, z, plane, planes, p, settings.interval))
+    first = np.r_[0, np.flatnonzero(parted) + 1, len(d)]
+    found = Scanlines(plane[first[:-1]] * settings.interval, np.full(len(first) - 1, key[0]), np.full(len(first) - 1, key[1]), first,
+                      _increasing(d, first), z, crossed.of(lines.intensity).astype(np.float32))
+    return found[np.diff(first) >= FEWEST]
+
+
+@dataclass
+class Crossings:
+    """Where planes cut ribs: a share `along` of each."""
+
+    point: np.ndarray
+    ahead: np.ndarray
+    share: np.ndarray
+    along: np.ndarray
+
+    def __getitem__(self, which):
+        return Crossings(self.point[which], self.ahead[which], self.share[which], self.along[which])
+
+    def of(self, values):
+        """Values at the crossings, from those of the points."""
+        near, ahead = values[self.point], values[self.ahead]
+        ahead += self.share * (values[self.ahead + 1] - ahead)
+        ahead -= near
+        ahead *= self.along
+        return near + ahead
+
+
+def _edges_of_things(d, z, plane, planes, p, interval):
+    """(N - 1,) whether a vertex and the next one are seen from the track one behind the other, a jump of range between them."""
+    track_d, track_z = p.at_station(np.arange(*planes) * interval)
+    across, above = d - track_d[plane - planes[0]], z - track_z[plane - planes[0]]
+    away = np.hypot(across, above)
+    leap = np.abs(np.diff(away))
+    aside = np.abs(across[1:] * above[:-1] - across[:-1] * above[1:])
+    return (leap > RANGE_JUMP) & (aside < GRAZING * leap * away[:-1])
+
+
+def _order(plane, phase):
+    """Indices that sort by plane, then phase; short integers are sorted by their digits, in one go."""
+    by_phase = np.argsort((phase * FINENESS).astype(np.uint16), kind="stable")
+    plane = plane[by_phase]
+    return by_phase[np.argsort(plane.astype(np.int16) if plane.max() < 2**15 else plane, kind="stable")]
+
+
+def _increasing(d, first):
+    """Offsets that do not decrease within a line: midway between the greatest before and the least behind."""
+    apart = 1e3 * np.repeat(np.arange(len(first) - 1), np.diff(first))
+    shifted = d + apart
+    return 0.5 * (np.maximum.accumulate(shifted) + np.minimum.accumulate(shifted[::-1])[::-1]) - apart
