@@ -1,0 +1,151 @@
+"""What a user's machine does to a run: cancelled, killed, twice at once, no room, no right to write."""
+
+import os
+import shutil
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+QGIS_PROCESS = str(ROOT / "tools" / "qgis_process")
+
+
+def start(*arguments, folder, **environment):
+    return subprocess.Popen([QGIS_PROCESS, "run", *map(str, arguments)], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE, text=True, start_new_session=True, env={**os.environ, **environment})
+
+
+def run(*arguments, folder, **environment):
+    process = start(*arguments, folder=folder, **environment)
+    out, err = process.communicate()
+    return process.returncode, out, err
+
+
+@pytest.fixture(scope="module")
+def survey(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("survey")
+    code, _, err = run("lanewright:samplesurvey", "--LENGTH=60", "--PULSE_RATE=150000", "--POINT_CLOUD=s.laz", "--TRAJECTORY=drive.gpkg",
+                       folder=folder)
+    assert code == 0, err
+    return folder
+
+
+def road_map(survey):
+    return ("lanewright:roadmap", f"--POINT_CLOUDS={survey / 's.laz'}", f"--TRAJECTORY={survey / 'drive.gpkg'}",
+            "--ROAD_EDGES=edges.gpkg", "--MARKINGS=markings.gpkg", "--INTENSITY_IMAGE=image.tif", "--ROAD_POINTS=road.laz",
+            "--REPORT=report.html")
+
+
+RESULTS = {"edges.gpkg", "markings.gpkg", "image.tif", "road.laz", "report.html"}
+BESIDE = {"image.qml", "image.tif.aux.xml"}  # a style, and the statistics QGIS keeps of a raster
+
+
+def files(folder):
+    """What lies in a folder, hidden files too."""
+    return {path.name for path in folder.iterdir()}
+
+
+def scratch(folder):
+    """A folder for temporary files, so that what is left behind is seen."""
+    (folder / "scratch").mkdir()
+    return {"TMPDIR": str(folder / "scratch")}
+
+
+def ours(folder):
+    """Temporary files of ours; QGIS's own are cleaned up by QGIS."""
+    return [path.name for path in (folder / "scratch").rglob("*") if "lanewright" in path.name]
+
+
+@pytest.mark.parametrize("stage", ["Reading the survey", "Detecting curbs", "Making the intensity image", "Extracting markings"])
+def test_cancel_leaves_nothing_and_says_so(survey, tmp_path, stage):
+    """Ctrl-C reaches the algorithm as Cancel, in whatever stage it is."""
+    process = start(*road_map(survey), folder=tmp_path, **scratch(tmp_path))
+    for line in process.stdout:
+        if stage in line:
+            process.send_signal(signal.SIGINT)
+            break
+    _, err = process.communicate(timeout=60)
+    if process.returncode == 0:  # the last stages were done before the signal came
+        assert RESULTS <= files(tmp_path)
+        return
+    assert "Cancelled" in err
+    assert files(tmp_path) == {"scratch"} and not ours(tmp_path)
+
+
+def test_a_killed_run_is_followed_by_a_whole_one(survey, tmp_path):
+    """kill -9 can clean up nothing: the next run into the same folder is whole all the same."""
+    where = scratch(tmp_path)
+    process = start(*road_map(survey), folder=tmp_path, **where)
+    time.sleep(4.0)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.communicate()
+    code, _, err = run(*road_map(survey), folder=tmp_path, **where)
+    assert code == 0, err
+    assert files(tmp_path) - BESIDE >= RESULTS
+
+
+def test_two_runs_at_once_into_their_own_files_do_not_meet(survey, tmp_path):
+    folders = [tmp_path / name for name in ("one", "two")]
+    for folder in folders:
+        folder.mkdir()
+    processes = [start(*road_map(survey), folder=folder) for folder in folders]
+    for process in processes:
+        _, err = process.communicate()
+        assert process.returncode == 0, err
+    one, two = ((folder / "road.laz").read_bytes() for folder in folders)
+    assert one == two
+
+
+@pytest.fixture
+def locked_folder(tmp_path):
+    """A folder nobody may write to, not even root."""
+    folder = tmp_path / "locked"
+    folder.mkdir()
+    if os.geteuid():
+        folder.chmod(0o555)
+        yield folder
+        folder.chmod(0o755)
+        return
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", "ro", "tmpfs", str(folder)], capture_output=True).returncode:
+        pytest.skip("a disk root cannot write to needs the right to mount")
+    yield folder
+    subprocess.run(["umount", "-l", str(folder)], check=True)
+
+
+def test_a_read_only_folder_is_told_before_the_work(survey, tmp_path, locked_folder):
+    code, out, err = run(*road_map(survey)[:3], f"--ROAD_EDGES={locked_folder / 'edges.gpkg'}", folder=tmp_path)
+    assert code == 1 and "cannot be written" in err and "Reading" not in out
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """A disk of 3 MB."""
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=3m", "tmpfs", str(folder)], capture_output=True).returncode:
+        pytest.skip("making a small disk needs the right to mount")
+    yield folder
+    subprocess.run(["umount", "-l", str(folder)], check=True)
+
+
+def test_a_full_disk_is_one_sentence_and_yesterdays_result_stands(survey, tmp_path, small_disk):
+    shutil.copy(survey / "drive.gpkg", small_disk / "road.laz.keep")
+    (small_disk / "road.laz").write_bytes(b"yesterday")
+    (small_disk / "ballast").write_bytes(b"\0" * 1_500_000)
+    code, _, err = run(*road_map(survey)[:3], f"--ROAD_POINTS={small_disk / 'road.laz'}", folder=tmp_path)
+    said = {line.removeprefix("ERROR:\t").strip() for line in err.splitlines()} - {""}
+    assert code == 1 and len(said) == 1, err
+    assert "space" in said.pop()
+    assert (small_disk / "road.laz").read_bytes() == b"yesterday"
+    assert files(small_disk) == {"road.laz", "road.laz.keep", "ballast"}
+
+
+def test_inputs_are_never_changed(survey, tmp_path):
+    before = {path.name: (path.stat().st_mtime_ns, path.read_bytes()) for path in survey.iterdir() if path.suffix == ".laz"}
+    code, _, err = run(*road_map(survey), folder=tmp_path)
+    assert code == 0, err
+    for name, (changed, content) in before.items():
+        assert (survey / name).stat().st_mtime_ns == changed and (survey / name).read_bytes() == content
