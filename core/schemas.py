@@ -14,16 +14,19 @@ AGREE = Field("agree_cm", float, "Agreement of the two methods (cm)")
 LENGTH = Field("length_m", float, "Length (m)")
 WIDTH = Field("width_m", float, "Width (m)")
 RADIUS = Field("radius_m", float, "Radius (m)")
+# of a curb: the road's own, or one that leads away from it or stands in it
+CURB_KIND = Field("kind", str, "Kind (main/corner/side_street/island)")
 RMSE = Field("rmse_m", float, "RMSE of the fit (m)")
 
 # station_m of a line is where it starts, end_m where it ends, along the road
 END = Field("end_m", float, "End station (m)")
 
 CURB_POINTS = [ROAD, PASS, SIDE, STATUS, STATION, OFFSET, HEIGHT, PART,
-               Field("chain", int, "Chain along the road"), Field("residual_m", float, "Residual (m)"),
+               CURB_KIND, Field("chain", int, "Chain along the curb"), Field("along_m", float, "Distance along the chain (m)"),
+               Field("residual_m", float, "Residual (m)"),
                Field("support", int, "Supporting points")]
 ROAD_EDGES = [ROAD, PASS, SIDE, STATUS, STATION, END, HEIGHT, PART, AGREE, LENGTH, RMSE,
-              Field("chain", int, "Chain along the road")]
+              CURB_KIND, Field("chain", int, "Chain along the curb")]
 ROAD_SURFACE = [ROAD, STATUS, STATION, END, Field("area_m2", float, "Area (m²)"), Field("points", int, "Road points")]
 MARKINGS = [ROAD, Field("cluster", int, "Cluster"), Field("class", str, "Class"), Field("use", str, "Use (keep/other)"),
             STATION, OFFSET, LENGTH, WIDTH, Field("elongation", float, "Elongation"),
@@ -69,3 +72,8 @@ ASSESSED_DRIVING_LINES = [OUTCOME, WHY, Field("line", int, "Row of the line in i
                           Field("max_m", float, "Largest distance (m)")]
 ASSESSED_MARKINGS = [OUTCOME, WHY, Field("source", str, "Of (reference/result)"), Field("class", str, "Class"),
                      Field("share_pct", float, "Share of it in the other layer (%)"), Field("area_m2", float, "Judged area (m²)")]
+
+
+def of_main_curb(row):
+    """Is a row of curb points or road edges of the road's own curb? Layers without `kind` hold nothing else."""
+    return (row.get("kind") or "main") == "main"

@@ -7,7 +7,7 @@ import shapely
 
 from ..features import Features
 from ..progress import Progress
-from ..schemas import CURVE_ELEMENTS, DRIVING_LINES
+from ..schemas import CURVE_ELEMENTS, DRIVING_LINES, of_main_curb
 from .alignment import lane_elements
 from .boundaries import STEP, road_boundaries
 from .direction import divide, driven_offsets, lane_directions, side_votes
@@ -50,7 +50,7 @@ def driving_lines(marking_lines, frame, settings=DrivingSettings(), progress=Pro
     """
     lines = Features("LineStringZ", DRIVING_LINES, crs=marking_lines.crs)
     elements = Features("None", CURVE_ELEMENTS, crs=marking_lines.crs)
-    curbs = road_boundaries(edges, frame) if edges is not None and len(edges) else {}
+    curbs = road_boundaries([(g, r) for g, r in edges or () if of_main_curb(r)], frame)
     found = {}
     boundaries = road_boundaries(marking_lines, frame)
     for count, (number, road_lines) in enumerate(boundaries.items()):

@@ -71,7 +71,7 @@ def _lengths(features, *names):
 def _road(page, road_map):
     page.heading("Road edges and surface")
     if len(road_map.edges):
-        page.table(("Side", "Status", "Length (m)"), _lengths(road_map.edges, "side", "status"))
+        page.table(("Curb", "Side", "Status", "Length (m)"), _lengths(road_map.edges, "kind", "side", "status"))
     else:
         page.text("No curb was found along this road, so no edge line was drawn.")
     if road_map.boundary_differences is not None:

@@ -10,6 +10,7 @@ from .curbs import CurbSettings, detect_curbs
 from .edges import EdgeSettings, fit_road_edges
 from .scanline_boundaries import ScanlineBoundarySettings, curbs_from_scanlines
 from .scanline_source import SurveyScanlines
+from .turned_curbs import add_turned_curbs
 
 METHODS = ("profiles", "scanlines", "both")
 
@@ -50,7 +51,9 @@ def find_curb_points(survey, settings=BoundarySettings(), progress=Progress()):
     if settings.method != "profiles":
         source = SurveyScanlines(survey, sensor_height=settings.scanlines.sensor_height)
         found["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length,
-                                                  progress.part(0.3, 1.0) if both else progress)
+                                                  progress.part(0.3, 1.0) if both else progress.part(0.0, 0.85))
+        if not both:
+            add_turned_curbs(found["scanlines"], survey, settings.curbs, progress.part(0.85, 1.0))
     return found
 
 

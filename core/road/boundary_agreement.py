@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 
 from ..features import Features
-from ..schemas import AGREE, END, LENGTH, ROAD, SIDE, STATION
+from ..schemas import AGREE, END, LENGTH, ROAD, SIDE, STATION, of_main_curb
 from .sides import SIDES
 
 NODE = 0.5           # m along the road between places that are compared
@@ -44,7 +44,8 @@ def trace_edges(edges, frame, road, side):
     trace = EdgeTrace(s, *(np.full(len(s), np.nan) for _ in range(2)), np.zeros(len(s), bool), np.full(len(s), np.inf),
                       np.zeros(len(s)))
     for geometry, row in edges:
-        if row["road"] != road or row["side"] != side or row["status"] == "inferred" or row.get("part", "bottom") != "bottom":
+        if row["road"] != road or row["side"] != side or row["status"] == "inferred" or row.get("part", "bottom") != "bottom" \
+                or not of_main_curb(row):
             continue
         x, y, z = shapely.get_coordinates(geometry, include_z=True).T
         x, y, z = frame.to_local(x, y, z)
@@ -88,9 +89,13 @@ def chosen_points(points, others, edges, other_edges, frame):
             for number, features in enumerate((points, others)):
                 mine = take_second if number else ~take_second
                 for geometry, row in features:
-                    if row["road"] == road.number and row["side"] == side and mine[_node(first.s, row["station_m"])]:
+                    if of_main_curb(row) and row["road"] == road.number and row["side"] == side and mine[_node(first.s, row["station_m"])]:
                         chain = row.get("chain")
                         found.add(geometry, **dict(row, chain=None if chain is None else chain + number * CHAIN_OFFSET))
+    # what leads away from the road is found in plan, the same for both
+    for geometry, row in points if any(not of_main_curb(row) for row in points.rows) else others:
+        if not of_main_curb(row):
+            found.add(geometry, **row)
     return found
 
 
@@ -142,7 +147,7 @@ def note_agreement(edges, first_edges, second_edges, frame):
             first, second, drawn = (trace_edges(e, frame, road.number, side) for e in (first_edges, second_edges, edges))
             apart = np.abs(first.d - second.d)
             for row in edges.rows:
-                if row["road"] == road.number and row["side"] == side:
+                if of_main_curb(row) and row["road"] == road.number and row["side"] == side:
                     beside = apart[(first.s >= row["station_m"]) & (first.s <= row["end_m"])]
                     beside = beside[np.isfinite(beside)]
                     if len(beside):

@@ -81,7 +81,7 @@ def measure_corners(lines, rows, cells, least, highest):
     reach = int(round(max(ROAD_SIDE + CLEARANCE, BEHIND) / lines.spacing)) + 2
     start = lines.starts[rows * cell_count + np.maximum(cells - reach, 0)]
     end = lines.starts[rows * cell_count + np.minimum(cells + reach + 1, cell_count)]
-    owner, index = _expand(start, end)
+    owner, index = expand(start, end)
     ground = lines.ground[index]
     owner, index = owner[ground], index[ground]
     # each step is measured from all points, and from those seen from before and from behind
@@ -91,7 +91,7 @@ def measure_corners(lines, rows, cells, least, highest):
     index = np.concatenate([index, index])
     rows, cells = np.tile(rows, 3), np.tile(cells, 3)
     edge, middle = lines.offset(cells), (lines.first + rows + 0.5) * lines.width
-    near = _Near(owner, lines.u[index] - edge[owner], lines.s[index] - middle[owner], lines.h[index],
+    near = NearSteps(owner, lines.u[index] - edge[owner], lines.s[index] - middle[owner], lines.h[index],
                  lines.noise[rows], least, highest)
     found = near.corners()
     skewed = np.flatnonzero(np.abs(found["skew"]) > TURNED)
@@ -106,7 +106,7 @@ def measure_corners(lines, rows, cells, least, highest):
     return _best_view(Steps(profile=lines.first + rows, usual=lines.noise[rows], **found), good, candidates)
 
 
-class _Near:
+class NearSteps:
     """Ground points about candidate steps: offset and station from each one's own place, outward and along."""
 
     def __init__(self, owner, u, s, h, usual, least, highest):
@@ -119,7 +119,7 @@ class _Near:
         number[which] = np.arange(len(which))
         own = np.flatnonzero(number[self.owner] >= 0)
         owner = number[self.owner[own]]
-        near = _Near(owner, self.u[own] - skew[owner] * self.s[own], self.s[own], self.h[own], self.usual[which],
+        near = NearSteps(owner, self.u[own] - skew[owner] * self.s[own], self.s[own], self.h[own], self.usual[which],
                      self.least, self.highest)
         near.turn = skew
         return near
@@ -191,7 +191,7 @@ def _best_view(steps, good, count):
     return steps[chosen + count * view[chosen]]
 
 
-def _expand(start, end):
+def expand(start, end):
     """Every index of ragged ranges, and which range it belongs to."""
     length = np.maximum(end - start, 0)
     owner = np.repeat(np.arange(len(start)), length)

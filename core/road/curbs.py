@@ -17,6 +17,7 @@ from .profiles import SPREAD_ROWS
 from .shadows import Sight
 from .sides import REACH, SECTION, SIDES, Track, expected_height, profiles_beside, sections_of
 from .steps import find_steps
+from .turned_curbs import add_turned_curbs
 
 VEHICLE_HALF = 0.6      # m from the track: no curb nearer
 MERGE_ACROSS = 0.12     # m between the same step seen in two passes
@@ -26,6 +27,7 @@ STRAIGHT_BLOCK, SHARP_BLOCK = 2.0, 0.5  # m
 TURN_PER_BLOCK = np.radians(1.0)        # a block of road turns no more than this
 BENT = 0.015            # m off its own straight line beyond which a block is cut shorter
 END_STEPS = 3           # profiles that give the end point of a chain
+MAIN_SHARE = 0.6        # of the work
 HIDDEN_STEP = 0.5       # m between rows of hidden curb
 HIDDEN_REACH = 25.0     # m between curbs within which hidden curb is reported
 
@@ -82,11 +84,12 @@ def detect_curbs(survey, settings=CurbSettings(), progress=Progress()):
     found = Features("PointZ", list(CURB_POINTS), crs=survey.crs)
     roads = survey.store.roads()
     for i, road in enumerate(roads):
-        part = progress.part(i / len(roads), (i + 1) / len(roads))
+        part = progress.part(MAIN_SHARE * i / len(roads), MAIN_SHARE * (i + 1) / len(roads))
         steps, sight = _steps_of_road(survey, road, settings, part)
         for side in SIDES:
             _report_side(found, survey, road, side, steps[side], sight[side], settings)
     measured = sum(row["status"] == "measured" for row in found.rows)
+    add_turned_curbs(found, survey, settings, progress.part(MAIN_SHARE, 1.0))
     progress.say(f"{measured:,} curb points measured, {len(found) - measured:,} hidden by something in front.")
     return found
 
@@ -170,7 +173,7 @@ def _report_side(found, survey, road, side, steps, sight, settings):
     x, y, z = frame.to_map(road, s, sign * u, h + expected_height(survey, road, s))
     for point, row in zip(shapely.points(np.round(x, 4), np.round(y, 4), np.round(z, 4)), rows):
         found.add(point, road=road, side=side, station_m=round(row["s"], 4), offset_m=round(sign * row["u"], 4),
-                  part="bottom", **row["fields"])
+                  part="bottom", kind="main", **row["fields"])
 
 
 def block_edges(road, start, end, block_length):

@@ -10,7 +10,8 @@ from scipy.ndimage import median_filter
 from ..errors import RoadExtractionError
 from ..features import Features
 from ..progress import Progress
-from ..schemas import ROAD_EDGES
+from ..schemas import ROAD_EDGES, of_main_curb
+from .turned_edges import draw_turned, turned_lines
 
 CONNECT = 2.5          # m between curb points that are joined as measured
 MEDIAN_WINDOW = 5.0    # m of running median
@@ -58,7 +59,7 @@ def fit_road_edges(curb_points, frame, settings=EdgeSettings(), progress=Progres
     vertices and `chain`.
     """
     edges = Features("LineStringZ", list(ROAD_EDGES), crs=curb_points.crs)
-    table = _table(curb_points)
+    table, turned = _table(curb_points), turned_lines(curb_points)
     lines = 0
     for road in frame.roads:
         for side in ("left", "right"):
@@ -69,6 +70,7 @@ def fit_road_edges(curb_points, frame, settings=EdgeSettings(), progress=Progres
                 lines += 1
             if settings.fallback_width:
                 lines = _draw_fallback(edges, frame, road, side, drawn, settings.fallback_width, lines)
+        lines = draw_turned(edges, road.number, turned.get(road.number, []), lines)
     length = {status: sum(r["length_m"] for r in edges.rows if r["status"] == status) for status in ("measured", "bridged")}
     progress.say(f"Road edges: {length['measured']:.0f} m measured, {length['bridged']:.0f} m bridged.")
     progress.at(1.0)
@@ -79,7 +81,7 @@ def _table(curb_points):
     """The curb points of bottoms as a structured array, sorted by road, side and station."""
     rows = [(r["road"], r["side"], r["status"] == "measured", r["station_m"], r["offset_m"], g.x, g.y, g.z,
              r.get("height_m") or 0.0, -1 if r.get("chain") is None else r["chain"], r.get("residual_m") or 0.0)
-            for g, r in curb_points if r.get("part", "bottom") == "bottom" and r["status"] in ("measured", "occluded")]
+            for g, r in curb_points if of_main_curb(r) and r.get("part", "bottom") == "bottom" and r["status"] in ("measured", "occluded")]
     table = np.array(rows, dtype=[("road", int), ("side", "U5"), ("measured", bool), ("s", float), ("d", float), ("x", float),
                                   ("y", float), ("z", float), ("height", float), ("chain", int), ("residual", float)])
     return table[np.lexsort((table["d"], table["s"], table["side"], table["road"]))]
@@ -169,7 +171,7 @@ def _draw(edges, frame, road, side, piece, number):
         edges.add(shapely.linestrings(np.round(vertices, 4)), road=road.number, side=side,
                   status="bridged" if bridged[i] else "measured",
                   station_m=round(float(rows["s"][0]), 3), end_m=round(float(rows["s"][-1]), 3),
-                  height_m=round(float(np.median(rows["height"])), 3), part="bottom",
+                  height_m=round(float(np.median(rows["height"])), 3), part="bottom", kind="main",
                   length_m=round(float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), 3),
                   rmse_m=round(float(np.sqrt(np.mean(curve.residual[i:j + 1] ** 2))), 4), chain=number)
     return float(points["s"][0]), float(points["s"][-1])
@@ -192,7 +194,7 @@ def _draw_fallback(edges, frame, road, side, drawn, width, number):
         offset = 0.5 * (tracks.min(0) + tracks.max(0)) + (0.5 if side == "left" else -0.5) * width
         x, y, z = frame.to_map(road.number, s, offset, frame.track_height(road.number, s))
         edges.add(shapely.linestrings(np.round(np.c_[x, y, z], 4)), road=road.number, side=side, status="inferred",
-                  station_m=round(float(a), 3), end_m=round(float(b), 3), part="bottom",
+                  station_m=round(float(a), 3), end_m=round(float(b), 3), part="bottom", kind="main",
                   length_m=round(float(np.hypot(np.diff(x), np.diff(y)).sum()), 3), chain=number)
         number += 1
     return number

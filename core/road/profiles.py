@@ -112,7 +112,7 @@ def pseudo_scan_lines(u, s, h, along, profiles, width, spacing, layer_jump, orig
     kept, place = kept[order], place[order]
     u, s, h = u[kept], s[kept], h[kept]
     starts = np.searchsorted(place, np.arange(rows * cells + 1))
-    ground, first_of, count = _lowest_layers(place, h, layer_jump)
+    ground, first_of, count = lowest_layers(place, h, layer_jump)
     low, high, noise = (np.full((rows, cells), np.nan) for _ in range(3))
     owner = place[first_of]
     middle = 0.5 * (h[first_of + (count - 1) // 2] + h[first_of + count // 2])
@@ -124,7 +124,7 @@ def pseudo_scan_lines(u, s, h, along, profiles, width, spacing, layer_jump, orig
                            _spread(h, place, low))
 
 
-def _lowest_layers(place, h, layer_jump):
+def lowest_layers(place, h, layer_jump):
     """Which points are ground; first index and count of the lowest real layer of every occupied cell."""
     if not len(place):
         empty = np.empty(0, np.int64)

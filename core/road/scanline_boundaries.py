@@ -209,7 +209,8 @@ def _report_side(found, source, road, side, corners, sight, settings, block_leng
     s, u, h = (np.array([r[name] for r in rows]) for name in ("s", "u", "h"))
     x, y, z = frame.to_map(road, s, sign * u, h + expected_height(source, road, s))
     for point, row in zip(shapely.points(np.round(x, 4), np.round(y, 4), np.round(z, 4)), rows):
-        found.add(point, road=road, side=side, station_m=round(row["s"], 4), offset_m=round(sign * row["u"], 4), **row["fields"])
+        found.add(point, road=road, side=side, station_m=round(row["s"], 4), offset_m=round(sign * row["u"], 4), kind="main",
+                  **row["fields"])
 
 
 def _block_points(corners, edges, chain):

@@ -3,6 +3,8 @@
 import numpy as np
 import shapely
 
+from ..schemas import of_main_curb
+
 OPENING = 30.0   # m of missing edge across which the road keeps the line from one end to the other
 BEYOND = 5.0     # m that an edge's offset holds on before its first and after its last vertex
 
@@ -28,7 +30,8 @@ def edge_offsets(edges, frame, road, stations):
         offset = np.full(len(stations), np.nan)
         seen = np.zeros(len(stations), bool)
         for geometry, row in edges or ():
-            if row.get("side") != side or row.get("part", "bottom") == "top" or (row.get("road") or 0) != road:
+            if row.get("side") != side or row.get("part", "bottom") == "top" or not of_main_curb(row) \
+                    or (row.get("road") or 0) != road:
                 continue
             s, d = _along(geometry, frame, road)
             if len(s) < 2:

@@ -52,7 +52,8 @@ CURB_KNOBS = (
 class DetectCurbs(LanewrightAlgorithm):
     ID, TITLE, ROOM = "detectcurbs", "Detect curbs", "Road"
     SUMMARY = "Finds the curb nearest to the driven track on each side, on profiles across the road."
-    HELP = "Where there is no curb none is made up; a curb hidden behind parked cars becomes a point of status occluded."
+    HELP = ("Where there is no curb none is made up; a curb hidden behind parked cars becomes a point of status occluded. The field "
+            "kind tells the road's own curbs (main) from those of corners, side streets and islands, which are found in plan.")
     TAGS = ("curb", "kerb", "road edge")
 
     def initAlgorithm(self, configuration=None):

@@ -1,0 +1,189 @@
+"""Lines of steps in plan: what continues in place, direction and height is one curb."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+THIN_ALONG, THIN_ACROSS = 0.12, 0.06  # m within which the better supported of two steps stands for both
+LINK_REACH = 1.2     # m along a curb that a link may span
+SLACK = 0.03         # m across that two steps of one line may differ
+DRIFT = 0.06         # the same per m along
+SHARPEST = 0.4       # m, radius of the sharpest curb; it is that of an island's nose
+TURN_SLACK = np.radians(25.0)
+HEIGHT_SLACK, GRADE = 0.03, 0.08  # m, and m per m along, that bottoms of neighbours may differ
+CONNECT = 2.5        # m between chains of one line
+CONNECT_TURN = np.radians(45.0)
+CONNECT_ACROSS = 0.25  # m, and as much per m, that two such chains may miss each other
+TIP = 0.6            # m at the end of a chain that gives its direction
+BACK = 0.3           # m that two such chains may overlap
+MISS = 0.05          # m across that they may miss each other anyway
+
+
+@dataclass
+class PlanChain:
+    """Steps of one line in order, uphill on the right: indices into the steps; closed where it goes round an island."""
+
+    steps: np.ndarray
+    closed: bool = False
+
+
+def trace_chains(steps):
+    """Chains of steps, the uphill side of each on the right of its direction.
+
+    Parameters
+    ----------
+    steps : PlanSteps
+
+    Returns
+    -------
+    list of PlanChain
+    """
+    kept = thinned(steps)
+    ahead = _links(steps[kept])
+    return [PlanChain(kept[members], closed) for members, closed in _paths(ahead)]
+
+
+def thinned(steps):
+    """Indices of the steps that no better supported one stands for."""
+    if not len(steps):
+        return np.empty(0, np.int64)
+    a, b = cKDTree(np.c_[steps.x, steps.y]).query_pairs(THIN_ALONG, output_type="ndarray").T
+    dx, dy = steps.x[b] - steps.x[a], steps.y[b] - steps.y[a]
+    same = (steps.nx[a] * steps.nx[b] + steps.ny[a] * steps.ny[b] > 0.5) & (np.abs(dx * steps.nx[a] + dy * steps.ny[a]) < THIN_ACROSS)
+    a, b = a[same], b[same]
+    # ties go to the place, not to the order of the work
+    rank = np.empty(len(steps), np.int64)
+    rank[np.lexsort((steps.y, steps.x, -steps.support))] = np.arange(len(steps))
+    beaten = np.zeros(len(steps), bool)
+    beaten[np.where(rank[a] > rank[b], a, b)] = True
+    return np.flatnonzero(~beaten)
+
+
+def _links(steps):
+    """(M,) index of the step that follows each one, -1 where none does; no two are followed by the same."""
+    count = len(steps)
+    following = np.full(count, -1)
+    if count < 2:
+        return following
+    pairs = cKDTree(np.c_[steps.x, steps.y]).query_pairs(LINK_REACH, output_type="ndarray")
+    a, b = np.r_[pairs[:, 0], pairs[:, 1]], np.r_[pairs[:, 1], pairs[:, 0]]
+    dx, dy = steps.x[b] - steps.x[a], steps.y[b] - steps.y[a]
+    # on an arc the chord points in the mean direction of its ends
+    nx, ny = steps.nx[a] + steps.nx[b], steps.ny[a] + steps.ny[b]
+    size = np.maximum(np.hypot(nx, ny), 1e-9)
+    across, along = np.abs(dx * nx + dy * ny) / size, (dy * nx - dx * ny) / size
+    turn = np.abs(np.arctan2(steps.nx[a] * steps.ny[b] - steps.ny[a] * steps.nx[b], steps.nx[a] * steps.nx[b] + steps.ny[a] * steps.ny[b]))
+    up = np.abs(steps.h[b] - steps.h[a])
+    good = (along > 0.02) & (across <= SLACK + DRIFT * along) & (turn <= TURN_SLACK + along / SHARPEST) & (up <= HEIGHT_SLACK + GRADE * along)
+    a, b, along, across, turn, up = (v[good] for v in (a, b, along, across, turn, up))
+    cost = along / 0.3 + (across / SLACK) ** 2 + (turn / TURN_SLACK) ** 2 + (up / HEIGHT_SLACK) ** 2
+    ahead, behind = _cheapest(a, b, cost, count), _cheapest(b, a, cost, count)
+    linked = np.flatnonzero(ahead >= 0)
+    linked = linked[behind[ahead[linked]] == linked]
+    following[linked] = ahead[linked]
+    return following
+
+
+def _cheapest(a, b, cost, count):
+    """For every a the b of the lowest cost, -1 without."""
+    best = np.full(count, -1)
+    order = np.lexsort((b, cost, a))
+    first = order[np.r_[True, np.diff(a[order]) > 0][:len(order)]]
+    best[a[first]] = b[first]
+    return best
+
+
+def _paths(following):
+    """Runs of a successor list: list of (indices in order, is it a ring)."""
+    count = len(following)
+    if not count:
+        return []
+    linked = np.flatnonzero(following >= 0)
+    _, label = connected_components(coo_matrix((np.ones(len(linked)), (linked, following[linked])), shape=(count, count)), directed=False)
+    before = np.full(count, -1)
+    before[following[linked]] = linked
+    ring = np.ones(label.max() + 1, bool)
+    ring[label[before < 0]] = False
+    # a ring is opened at its first step
+    first = np.full(len(ring), count)
+    np.minimum.at(first, label, np.arange(count))
+    cut = first[ring]
+    before[cut] = -1
+    # steps from the head of each run, by doubling
+    rank, jump = (before >= 0).astype(np.int64), before.copy()
+    while (jump >= 0).any():
+        on = np.flatnonzero(jump >= 0)
+        rank[on] += rank[jump[on]]
+        jump[on] = jump[jump[on]]
+    order = np.lexsort((rank, label))
+    runs = np.split(order, np.flatnonzero(np.diff(label[order])) + 1)
+    return [(run, bool(ring[label[run[0]]])) for run in runs]
+
+
+def joined_chains(chains, steps):
+    """Chains with those that lie in one line, a short gap apart, made one."""
+    open_ones = [c for c in chains if not c.closed]
+    tips = Tips.of([(steps.x[c.steps], steps.y[c.steps], steps.h[c.steps]) for c in open_ones])
+    runs = _paths(tips.successors())
+    return [PlanChain(np.concatenate([open_ones[k].steps for k in run]), ring) for run, ring in runs] + [c for c in chains if c.closed]
+
+
+def groups_in_line(places):
+    """(K,) number of the line that each of K polylines belongs to; all have their uphill side on the same hand.
+
+    places : list of (x, y, h), each (N,) metres
+    """
+    following = Tips.of(places).successors()
+    linked = np.flatnonzero(following >= 0)
+    return connected_components(coo_matrix((np.ones(len(linked)), (linked, following[linked])), shape=2 * (len(places),)), directed=False)[1]
+
+
+@dataclass
+class Tips:
+    """Heads and tails of K polylines: (K, 5) x, y, h and the unit vector that leads out of the line."""
+
+    heads: np.ndarray
+    tails: np.ndarray
+
+    @staticmethod
+    def of(places):
+        return Tips(*(np.array([_tip(*(v[::step] for v in place)) for place in places]).reshape(-1, 5) for step in (-1, 1)))
+
+    def successors(self):
+        """(K,) the line whose head goes on where the tail of each one ends, -1 where none does."""
+        count = len(self.heads)
+        following = np.full(count, -1)
+        if not count:
+            return following
+        near = cKDTree(self.tails[:, :2]).sparse_distance_matrix(cKDTree(self.heads[:, :2]), CONNECT, output_type="ndarray")
+        a, b, gap = near["i"], near["j"], near["v"]
+        tail, head = self.tails[a], self.heads[b]
+        dx, dy = head[:, 0] - tail[:, 0], head[:, 1] - tail[:, 1]
+        # the direction in which the one ends and the other begins
+        tx, ty = tail[:, 3] - head[:, 3], tail[:, 4] - head[:, 4]
+        size = np.maximum(np.hypot(tx, ty), 1e-9)
+        turn = np.arccos(np.clip(-(tail[:, 3] * head[:, 3] + tail[:, 4] * head[:, 4]), -1, 1))
+        along, across = (dx * tx + dy * ty) / size, np.abs(dx * ty - dy * tx) / size
+        up = np.abs(head[:, 2] - tail[:, 2])
+        good = (a != b) & (along > -BACK) & (across <= MISS + CONNECT_ACROSS * np.abs(along)) & (turn <= CONNECT_TURN) \
+            & (up <= HEIGHT_SLACK + GRADE * gap)
+        a, b, cost = a[good], b[good], (gap + 2 * across + turn)[good]
+        ahead, behind = _cheapest(a, b, cost, count), _cheapest(b, a, cost, count)
+        linked = np.flatnonzero(ahead >= 0)
+        linked = linked[behind[ahead[linked]] == linked]
+        following[linked] = ahead[linked]
+        return following
+
+
+def _tip(x, y, h):
+    """Where a line ends and the unit vector in which it leaves: x, y, h, tx, ty."""
+    back = np.hypot(x - x[-1], y - y[-1])
+    far = np.flatnonzero(back >= TIP)
+    # a curb that turns leaves in the direction of the last half metre or so
+    k = int(far[-1]) if len(far) else 0
+    tx, ty = x[-1] - x[k], y[-1] - y[k]
+    size = max(np.hypot(tx, ty), 1e-9)
+    return x[-1], y[-1], h[-1], tx / size, ty / size

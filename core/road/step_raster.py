@@ -1,0 +1,234 @@
+"""Steps of the ground in plan, in any direction: a raster of the lowest layer, and where it rises beside driven ground.
+
+Profiles across the road see a curb that runs along it. A curb that turns into a
+side street, or goes round an island, may run any way: it is sought where level
+ground that is connected with the driven track ends at a rise.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage
+
+from .profiles import lowest_layers
+
+CELL = 0.10          # m
+BELOW, ABOVE = 1.0, 1.0  # m about the expected road within which ground is sought
+UNEVEN = 0.7         # share of the least step that level ground may differ within WINDOW cells
+WINDOW = 5           # cells, a square of which is looked at together
+BLOCK, BLOCKS = 5, 5  # cells a side of a block, and blocks a side of the window, that tell the slope of the ground
+STEEPEST = 0.12      # rise over run of a road
+TRACK_HALF = 0.75    # m beside a driven track that is road for certain
+EMPTY_REACH = 3      # cells without ground that a vehicle would drive over between others: scan lines lie apart
+BESIDE_ROAD = 4      # cells from driven ground within which it may end at a step
+ABOUT = 4            # cells about a step whose ground tells its direction and height
+OUTER, STRIP = 0.11, 0.31  # m from the middle of a step beyond which ground is before or after it; m along it
+ROUGH = 0.25         # share of a step's height that the road before it may scatter
+FAINTEST = 0.6       # share of the least step that the cells of one must show
+BACK_DOWN = 0.4      # share of a step's height that the ground behind an island may lie above its bottom
+SPREAD_POINTS, SPREAD_CELLS = 5, 50  # points in a cell, and such cells, that tell the scanner's noise
+USUAL_NOISE, LEAST_NOISE = 0.005, 0.002  # m
+
+
+@dataclass
+class GroundRaster:
+    """Ground of a stretch of road on a grid of local map coordinates.
+
+    x0, y0 : m, the grid's corner, a whole number of cells from 0
+    x, y, h : (N,) the points of the lowest layer, sorted by cell and height; h above the expected road
+    starts : (rows * columns + 1,) index of the first point of every cell
+    low : (rows, columns) m, mean height of the lowest layer, NaN where no point lies
+    noise : m, spread of heights within a cell of level ground
+    """
+
+    x0: float
+    y0: float
+    x: np.ndarray
+    y: np.ndarray
+    h: np.ndarray
+    starts: np.ndarray
+    low: np.ndarray
+    noise: float
+
+    def inside(self, x, y):
+        """(row, column) of those local places that lie on the grid."""
+        row, column = (np.floor(np.asarray(v) / CELL - np.rint(v0 / CELL)).astype(np.int64)
+                       for v, v0 in ((y, self.y0), (x, self.x0)))
+        on = (row >= 0) & (column >= 0) & (row < self.low.shape[0]) & (column < self.low.shape[1])
+        return row[on], column[on]
+
+    def middle(self, row, column):
+        """Local x, y of the middle of cells."""
+        return self.x0 + (column + 0.5) * CELL, self.y0 + (row + 0.5) * CELL
+
+
+def ground_raster(x, y, h, layer_jump):
+    """The ground of points, cell by cell; None where there are none.
+
+    Parameters
+    ----------
+    x, y : (N,) local metres; h : (N,) m above the expected road
+    layer_jump : m of height that parts ground from what is above it
+    """
+    kept = np.flatnonzero((h > -BELOW) & (h < ABOVE))
+    if not len(kept):
+        return None
+    x, y, h = x[kept], y[kept], h[kept]
+    column, row = np.floor(x / CELL).astype(np.int64), np.floor(y / CELL).astype(np.int64)
+    first_column, first_row = int(column.min()), int(row.min())
+    columns, rows = int(column.max()) - first_column + 1, int(row.max()) - first_row + 1
+    place = (row - first_row) * columns + column - first_column
+    # one sort by cell and height: the key holds height in 0.1 mm below the place
+    order = np.argsort((place << 16) + np.rint((h + BELOW) * 1e4).astype(np.int64), kind="stable")
+    place, h = place[order], h[order]
+    ground, _, _ = lowest_layers(place, h, layer_jump)
+    order, place, h = order[ground], place[ground], h[ground]
+    n = np.bincount(place, minlength=rows * columns)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        low = np.bincount(place, h, rows * columns) / n
+        spread = np.sqrt(np.bincount(place, (h - low[place]) ** 2, rows * columns) / (n - 1))
+    tell = spread[n >= SPREAD_POINTS]
+    noise = max(float(np.median(tell)), LEAST_NOISE) if len(tell) >= SPREAD_CELLS else USUAL_NOISE
+    return GroundRaster(first_column * CELL, first_row * CELL, x[order], y[order], h, np.r_[0, np.cumsum(n)], low.reshape(rows, columns), noise)
+
+
+def ground_slopes(low):
+    """Slope of the ground about every cell: two (rows, columns) arrays, m per m along columns and rows.
+
+    The median over a few metres, so that the steps in it do not count; no more than a road's, so that banks are not level.
+    """
+    rows, columns = low.shape
+    padded = np.pad(low, ((0, -rows % BLOCK), (0, -columns % BLOCK)), constant_values=np.nan)
+    blocks = padded.reshape(padded.shape[0] // BLOCK, BLOCK, padded.shape[1] // BLOCK, BLOCK)
+    there = np.isfinite(blocks)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = np.where(there, blocks, 0.0).sum((1, 3)) / there.sum((1, 3))
+    found = []
+    for axis in (1, 0):
+        slope = np.full(mean.shape, np.nan)
+        ahead, behind = (slice(None), slice(1, None)), (slice(None), slice(None, -1))
+        if axis == 0:
+            ahead, behind = ahead[::-1], behind[::-1]
+        slope[behind] = (mean[ahead] - mean[behind]) / (BLOCK * CELL)
+        slope = np.clip(_median_about(slope, BLOCKS), -STEEPEST, STEEPEST)
+        found.append(np.repeat(np.repeat(slope, BLOCK, 0), BLOCK, 1)[:rows, :columns])
+    return found
+
+
+def _median_about(values, size):
+    """Median of a square of cells about each one, without NaN; 0 where there is nothing else."""
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(values, size // 2, constant_values=np.nan), (size, size))
+    around = np.sort(around.reshape(*values.shape, -1), axis=-1)
+    count = np.isfinite(around).sum(-1)
+    middle = np.take_along_axis(around, (np.maximum(count - 1, 0) // 2)[..., None], -1)[..., 0]
+    return np.where(count > 0, middle, 0.0)
+
+
+def driven_ground(raster, slopes, track_x, track_y, barrier_x, barrier_y, least):
+    """Level ground connected with the driven track, and where the ground is stepped.
+
+    Parameters
+    ----------
+    slopes : of `ground_slopes`
+    track_x, track_y : local places along the driven tracks, less than CELL apart
+    barrier_x, barrier_y : the same along lines that are known to bound the road
+    least : m, the least step that is sought
+
+    Returns
+    -------
+    driven : (rows, columns) bool
+    stepped : (rows, columns) bool, occupied cells in whose neighbourhood the ground rises more than its slope says
+    """
+    there = np.isfinite(raster.low)
+    span = ndimage.maximum_filter(np.where(there, raster.low, -np.inf), WINDOW) \
+        - ndimage.minimum_filter(np.where(there, raster.low, np.inf), WINDOW)
+    level = span <= UNEVEN * least + (np.abs(slopes[0]) + np.abs(slopes[1])) * (WINDOW - 1) * CELL
+    passable = level & ndimage.binary_dilation(there, iterations=EMPTY_REACH)
+    barrier = np.zeros(there.shape, bool)
+    barrier[raster.inside(barrier_x, barrier_y)] = True
+    passable &= ~ndimage.binary_dilation(barrier, np.ones((3, 3)))
+    label, _ = ndimage.label(passable)
+    track = np.zeros(there.shape, bool)
+    track[raster.inside(track_x, track_y)] = True
+    track = ndimage.binary_dilation(track, iterations=int(round(TRACK_HALF / CELL)))
+    wanted = np.zeros(label.max() + 1, bool)
+    wanted[label[track & passable]] = True
+    wanted[0] = False
+    return wanted[label], there & ~level
+
+
+def step_places(raster, slopes, driven, stepped, least, highest):
+    """Where the ground rises beside driven ground: place and direction, one for every 0.2 m square at most.
+
+    Returns
+    -------
+    x, y : (M,) local metres
+    nx, ny : (M,) unit vector uphill
+    """
+    beside = ndimage.binary_dilation(driven, iterations=BESIDE_ROAD)
+    row, column = np.nonzero(stepped & beside)
+    padded = np.pad(raster.low, ABOUT, constant_values=np.nan)
+    reach = np.arange(-ABOUT, ABOUT + 1)
+    down, along = (v.ravel() for v in np.meshgrid(reach, reach, indexing="ij"))
+    around = padded[row[:, None] + down + ABOUT, column[:, None] + along + ABOUT]
+    dx, dy = along * CELL, down * CELL
+    sx, sy = (v[row, column] for v in slopes)
+    around -= sx[:, None] * dx + sy[:, None] * dy
+    # what belongs to the step at this cell: neither the wall behind a curb nor what lies under a bridge
+    near = np.isfinite(around) & (np.abs(around - raster.low[row, column][:, None]) <= highest + 0.05)
+    gx, gy = _gradient(around, near, dx, dy)
+    size = np.maximum(np.hypot(gx, gy), 1e-9)
+    nx, ny = gx / size, gy / size
+    u, v = nx[:, None] * dx + ny[:, None] * dy, ny[:, None] * dx - nx[:, None] * dy
+    strip = near & (np.abs(v) <= STRIP)
+    before, after, at = (_mean(around, strip & m) for m in ((u < -OUTER), (u > OUTER), (np.abs(u) < OUTER)))
+    rise = after - before
+    rough = np.sqrt(_mean((around - before[:, None]) ** 2, strip & (u < -OUTER)))
+    with np.errstate(invalid="ignore"):
+        part = (at - before) / rise
+        good = (part > 0.15) & (part < 0.85) & (rise >= FAINTEST * least) & (rise <= highest + 0.05) & (rough <= ROUGH * rise)
+    x, y = raster.middle(row[good], column[good])
+    # the middle of the step, not of the cell
+    best = _one_of_each_square(x, y, np.abs(part - 0.5)[good])
+    return x[best], y[best], nx[good][best], ny[good][best]
+
+
+def _gradient(values, mask, dx, dy):
+    """Slope of the plane through masked values of every row."""
+    z = np.where(mask, values, 0.0)
+    n = mask.sum(1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mx, my, mz = mask @ dx / n, mask @ dy / n, z.sum(1) / n
+        xx, yy, xy = mask @ (dx * dx) / n - mx * mx, mask @ (dy * dy) / n - my * my, mask @ (dx * dy) / n - mx * my
+        xz, yz = z @ dx / n - mx * mz, z @ dy / n - my * mz
+        det = xx * yy - xy * xy + 1e-9
+        return (yy * xz - xy * yz) / det, (xx * yz - xy * xz) / det
+
+
+def _mean(values, mask):
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.where(mask, values, 0.0).sum(1) / mask.sum(1)
+
+
+def _one_of_each_square(x, y, cost):
+    """Indices of the cheapest place of every square of two cells, squares in order."""
+    key = np.floor(y / (2 * CELL)).astype(np.int64) * 10_000_000 + np.floor(x / (2 * CELL)).astype(np.int64)
+    order = np.lexsort((cost, key))
+    return order[np.r_[True, np.diff(key[order]) > 0][:len(order)]]
+
+
+def falls_again(raster, lean, x, y, nx, ny, bottom, height, farthest):
+    """(M,) metres uphill of each step at which the ground is back at the step's bottom; NaN where it stays up.
+
+    lean : m per m along columns and rows, the slope of the road; bottom, height : (M,) metres; farthest : metres
+    """
+    lean = nx * lean[0] + ny * lean[1]
+    out = (np.arange(int(round(farthest / CELL))) + 2) * CELL
+    column = np.floor((x[:, None] + out * nx[:, None]) / CELL - np.rint(raster.x0 / CELL)).astype(np.int64)
+    row = np.floor((y[:, None] + out * ny[:, None]) / CELL - np.rint(raster.y0 / CELL)).astype(np.int64)
+    on = (row >= 0) & (column >= 0) & (row < raster.low.shape[0]) & (column < raster.low.shape[1])
+    there = np.where(on, raster.low[np.where(on, row, 0), np.where(on, column, 0)], np.nan)
+    with np.errstate(invalid="ignore"):
+        down = there < (bottom + BACK_DOWN * height)[:, None] + lean[:, None] * out
+    first = np.argmax(down, axis=1)
+    return np.where(down.any(1), out[first], np.nan)

@@ -1,0 +1,326 @@
+"""Curbs that do not run along the road: around corners, into side streets, about islands.
+
+They are sought in plan where the road is not bounded yet: between the main curbs,
+and where a main curb ends. A line of steps that continues a main curb is a corner,
+and a side street where it runs on straight; one behind which the ground comes down
+again is an island. Any other step is somebody's garden.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from scipy.spatial import cKDTree
+
+from ..parallel import in_order
+from ..progress import Progress
+from ..survey.road_frame import CORRIDOR
+from .chains import ROUGH_ROAD
+from .plan_chains import CONNECT, groups_in_line, joined_chains, trace_chains
+from .plan_steps import PlanSteps, measure_plan_steps
+from .sides import SIDES, expected_height, sections_of
+from .step_raster import CELL, driven_ground, falls_again, ground_raster, ground_slopes, step_places
+
+KINDS = {"main": "of the road's own", "corner": "of corners", "side_street": "of side streets", "island": "of islands"}
+OPENING = 6.0        # m without main curb that are an opening and no driveway
+AT_OPENING = 6.0     # m of main curb beside an opening behind which corners are sought
+BEHIND_CURB = 0.6    # m behind a main curb that are looked at elsewhere
+MARGIN = 2.0         # m of road either side of a section that its own steps need
+ON_MAIN = 0.25       # m from a main curb within which a step is that curb
+RUN_GAP = 2.5        # m between points of one run of main curb
+RUN_ACROSS = 0.5     # m across between such points
+ISLAND_WIDTH = 8.0   # m within which the ground behind an island's curb comes down again
+ISLAND_SHARE = 0.6   # share of an island's steps behind which it does
+SHORTEST = 1.0       # m of a line
+ISLAND_LENGTH = 2.0  # m of lines about one island
+ONE_ISLAND = 3.0     # m between them
+DENSEST = 0.6        # m between the steps of a line, on average, at most: scan lines lie apart
+WANDER = 0.02        # m, scatter about its own running line beyond the scanner's noise
+ALONG = np.cos(np.radians(45.0))  # of its angle to the road above which a curb is the road's own
+STRAIGHT, STRAIGHT_LENGTH = 0.05, 2.0  # m off its chord within which a curb that left the road runs straight; m of it
+
+
+@dataclass
+class TurnedCurb:
+    """One line: steps in order, uphill on the right; kind is main (a piece that profiles missed), corner, side_street or island."""
+
+    steps: PlanSteps
+    s: np.ndarray
+    d: np.ndarray
+    side: str
+    kind: str
+    closed: bool = False
+
+
+def add_turned_curbs(curb_points, survey, settings, progress=Progress()):
+    """Add the points of corners, side streets and islands to those of the main curbs.
+
+    Parameters
+    ----------
+    curb_points : Features CURB_POINTS of every road, kind main; more are added at the end
+    survey : Survey
+    settings : CurbSettings
+    """
+    length = dict.fromkeys(KINDS, 0.0)
+    roads = survey.store.roads()
+    for i, road in enumerate(roads):
+        part = progress.part(i / len(roads), (i + 1) / len(roads))
+        main, chain = _main_curbs(curb_points, survey, road)
+        for number, curb in enumerate(find_turned_curbs(survey, road, main, settings, part), chain):
+            length[curb.kind] += _add_points(curb_points, survey, road, curb, number)
+    found = ", ".join(f"{length[kind]:.0f} m {title}" for kind, title in KINDS.items() if length[kind])
+    progress.say(f"Curbs away from the road's direction: {found or 'none'}.")
+
+
+def _main_curbs(curb_points, survey, road):
+    """Main curbs of a road, side -> (N, 3) station, offset and height, and the first chain number that is free."""
+    main, chain = {}, 0
+    for side in SIDES:
+        rows = [(r["station_m"], r["offset_m"], g.z - survey.frame.origin[2]) for g, r in curb_points
+                if r["road"] == road and r["side"] == side and r.get("part", "bottom") == "bottom"]
+        rows = np.array(rows).reshape(-1, 3)
+        rows = rows[np.argsort(rows[:, 0], kind="stable")]
+        if len(rows):
+            rows[:, 2] -= expected_height(survey, road, rows[:, 0])
+        main[side] = rows
+    for row in curb_points.rows:
+        if row["road"] == road and row.get("chain") is not None:
+            chain = max(chain, row["chain"] + 1)
+    return main, chain
+
+
+def _add_points(curb_points, survey, road, curb, chain):
+    """Add the points of one line; returns its length."""
+    steps, frame = curb.steps, survey.frame
+    z = steps.h + expected_height(survey, road, curb.s) + frame.origin[2]
+    along = np.r_[0.0, np.cumsum(np.hypot(np.diff(steps.x), np.diff(steps.y)))]
+    places = shapely.points(np.round(steps.x + frame.origin[0], 4), np.round(steps.y + frame.origin[1], 4), np.round(z, 4))
+    for k, place in enumerate(places):
+        curb_points.add(place, road=road, side=curb.side, status="measured", station_m=round(float(curb.s[k]), 4),
+                        offset_m=round(float(curb.d[k]), 4), height_m=round(float(steps.height[k]), 4), part="bottom",
+                        kind=curb.kind, chain=chain, along_m=round(float(along[k]), 3), support=int(steps.support[k]))
+    return float(along[-1])
+
+
+def find_turned_curbs(survey, road, main, settings, progress=Progress()):
+    """Corners, side streets and islands of one road.
+
+    Parameters
+    ----------
+    survey : Survey
+    main : dict side -> (N, 3) station, offset and height above the expected road of the main curb's
+        points, measured or hidden, ascending
+    settings : CurbSettings
+
+    Returns
+    -------
+    list of TurnedCurb
+    """
+    limits = {side: _Limit(points, SIDES[side]) for side, points in main.items()}
+    line = survey.frame.road(road)
+    known, barrier = cKDTree(_places_along(line, main, RUN_GAP)), _places_along(line, main, OPENING).T
+
+    def work(section):
+        return _steps_of_section(survey, road, section, limits, known, barrier, settings)
+
+    width = settings.profile_width
+    sections = [(a * width, b * width) for a, b in sections_of(survey, road, width)]
+    found = [part for part in in_order(work, sections, progress) if part is not None]
+    if not found:
+        return []
+    steps, falls = PlanSteps.join([part for part, _, _ in found]), np.concatenate([part for _, part, _ in found])
+    usual = np.concatenate([part for _, _, part in found])
+    chains = [c for c in joined_chains(trace_chains(steps), steps) if _like_a_curb(c, steps, usual, settings)]
+    return _named(chains, steps, falls, _runs(main, line), line, limits, survey.frame.passes_of(road))
+
+
+class _Limit:
+    """How far out one side is looked at: to a little behind the main curb, everywhere at openings."""
+
+    def __init__(self, points, sign):
+        self.sign = sign
+        self.s, self.u = (points[:, 0], sign * points[:, 1]) if len(points) else (np.empty(0), np.empty(0))
+        cuts = np.flatnonzero(np.diff(self.s) > OPENING) + 1
+        self.runs = [(part[0], part[-1]) for part in np.split(self.s, cuts) if len(part)]
+
+    def __call__(self, s, behind=BEHIND_CURB, at_opening=AT_OPENING):
+        """(N,) largest outward offset at stations: `behind` metres behind the curb, but for its last metres beside openings."""
+        if not len(self.s):
+            return np.full(len(s), CORRIDOR)
+        bounded = np.zeros(len(s), bool)
+        for a, b in self.runs:
+            bounded |= (s > a + at_opening) & (s < b - at_opening)
+        return np.where(bounded, np.interp(s, self.s, self.u) + behind, CORRIDOR)
+
+    def between(self, start, end):
+        """Is there a point of main curb between two stations?"""
+        return bool(((self.s > start) & (self.s < end)).any())
+
+
+def _places_along(line, main, gap):
+    """(N, 2) local places along the main curbs, gaps up to `gap` metres between their points closed."""
+    places = [np.empty((0, 2))]
+    for points in main.values():
+        for run in _split(points, gap):
+            s = np.arange(run[0, 0], run[-1, 0] + CELL, CELL)
+            places.append(np.c_[line.to_map(s, np.interp(s, run[:, 0], run[:, 1]))])
+    return np.concatenate(places)
+
+
+def _split(points, gap=RUN_GAP):
+    if not len(points):
+        return []
+    apart = (np.diff(points[:, 0]) > gap) | (np.abs(np.diff(points[:, 1])) > RUN_ACROSS + np.diff(points[:, 0]))
+    return np.split(points, np.flatnonzero(apart) + 1)
+
+
+def _runs(main, line):
+    """Main curbs as polylines in plan with uphill on the right: list of (side, (x, y, h))."""
+    found = []
+    for side, points in main.items():
+        for run in _split(points):
+            if len(run) > 1:
+                run = run[::-1] if side == "left" else run
+                found.append((side, (*line.to_map(run[:, 0], run[:, 1]), run[:, 2])))
+    return found
+
+
+def _steps_of_section(survey, road, section, limits, known, barrier, settings):
+    """(PlanSteps of a section, where the ground behind each falls again, the scanner's noise); None where there are none."""
+    first, last = section[0] - MARGIN, section[1] + MARGIN
+    points = survey.window(road, first, last)
+    s, d = points.s, points.d
+    inside = np.abs(d) <= CORRIDOR
+    for side, sign in SIDES.items():
+        inside &= sign * d <= limits[side](s)
+    points = points[inside]
+    s = s[inside]
+    raster = ground_raster(points.x, points.y, points.z - expected_height(survey, road, s), settings.layer_jump)
+    if raster is None:
+        return None
+    line = survey.frame.road(road)
+    slopes = ground_slopes(raster.low)
+    driven, stepped = driven_ground(raster, slopes, *_track(survey, road, first, last), *barrier, settings.min_height)
+    x, y, nx, ny = step_places(raster, slopes, driven, stepped, settings.min_height, settings.max_height)
+    own, _ = line.locate(x, y)
+    fresh = (own >= section[0]) & (own < section[1])
+    if known.n and len(x):
+        fresh &= known.query(np.c_[x, y])[0] > ON_MAIN
+    if not fresh.any():
+        return None
+    steps = measure_plan_steps(raster, x[fresh], y[fresh], nx[fresh], ny[fresh], 0.5 * settings.min_height, settings.max_height)
+    lean = [float(np.median(slope[driven])) for slope in slopes]
+    falls = falls_again(raster, lean, steps.x, steps.y, steps.nx, steps.ny, steps.h, steps.height, ISLAND_WIDTH)
+    return steps, falls, np.full(len(steps), raster.noise)
+
+
+def _track(survey, road, first, last):
+    """Local places along the tracks of all passes between two stations."""
+    line, xs, ys = survey.frame.road(road), [], []
+    for p in survey.frame.passes_of(road):
+        s = np.arange(max(first, p.span[0]), min(last, p.span[1]), 0.8 * CELL)
+        x, y = line.to_map(s, p.at_station(s)[0])
+        xs.append(x)
+        ys.append(y)
+    return np.concatenate(xs), np.concatenate(ys)
+
+
+def _like_a_curb(chain, steps, usual, settings):
+    """Is a line long, dense, steep and smooth enough?"""
+    own = steps[chain.steps]
+    length = _length(own.x, own.y)
+    if length < SHORTEST or length > DENSEST * len(own):
+        return False
+    height, noise = np.median(own.height), np.median(usual[chain.steps])
+    sharp = max(np.quantile(own.run, 0.3) - 2 * noise, 0.0)
+    if height < settings.min_height or np.degrees(np.arctan2(height, sharp)) < settings.slope:
+        return False
+    return np.median(own.noise) <= max(ROUGH_ROAD, 2 * noise) and np.mean(own.behind >= 2) >= 0.5 \
+        and _wander(own) <= WANDER + noise
+
+
+def _length(x, y):
+    return float(np.hypot(np.diff(x), np.diff(y)).sum())
+
+
+def _wander(own):
+    """Median distance of the steps of a line from the chord of their neighbours."""
+    if len(own) < 3:
+        return 0.0
+    cx, cy = own.x[2:] - own.x[:-2], own.y[2:] - own.y[:-2]
+    off = np.abs(cx * (own.y[1:-1] - own.y[:-2]) - cy * (own.x[1:-1] - own.x[:-2])) / np.maximum(np.hypot(cx, cy), 1e-6)
+    return float(np.median(off))
+
+
+def _named(chains, steps, falls, runs, line, limits, passes):
+    """The lines that are curbs, each with its kind and side."""
+    places = [place for _, place in runs] + [(steps.x[c.steps], steps.y[c.steps], steps.h[c.steps]) for c in chains]
+    if not chains:
+        return []
+    group = groups_in_line(places)
+    sides = {}
+    for number, (side, _) in zip(group, runs):
+        sides.setdefault(number, side)
+    found, islands = [], []
+    for number, chain in zip(group[len(runs):], chains):
+        own = steps[chain.steps]
+        s, d = line.locate(own.x, own.y)
+        if chain.closed or number not in sides:
+            behind = np.any([sign * d > limits[side](s, 0.0, 0.0) for side, sign in SIDES.items()], axis=0)
+            if np.mean(np.isfinite(falls[chain.steps]) & ~behind) >= ISLAND_SHARE:
+                track = np.mean([p.at_station(s)[0] for p in passes], axis=0)
+                islands.append(TurnedCurb(own, s, d, "left" if np.nanmedian(d - track) > 0 else "right", "island", chain.closed))
+            continue
+        found += _away_from(own, s, d, sides[number], line, limits[sides[number]], places[:len(runs)])
+    return found + _whole_islands(islands)
+
+
+def _away_from(own, s, d, side, line, limit, runs):
+    """A line that continues a main curb: a piece of that curb, or a corner with the straight curb of a side street behind it."""
+    dx, dy = _directions(own)
+    along = dx * np.cos(line.heading(s)) + dy * np.sin(line.heading(s))
+    if np.median(np.abs(along)) > ALONG and not limit.between(np.nanmin(s), np.nanmax(s)):
+        return [TurnedCurb(own, s, d, side, "main")]
+    tips = np.array([(run[0][k], run[1][k]) for run in runs for k in (0, -1)])
+    near = [np.hypot(*(tips - (own.x[k], own.y[k])).T).min() for k in (0, -1)]
+    # in order from the main curb outward
+    order = np.arange(len(own)) if near[0] <= near[1] else np.arange(len(own))[::-1]
+    cut = len(own) if max(near) <= CONNECT else _where_straight(own, order, np.abs(along))
+    parts = [(order[:cut + 1], "corner"), (order[cut:], "side_street")]
+    return [TurnedCurb(own[np.sort(part)], s[np.sort(part)], d[np.sort(part)], side, kind) for part, kind in parts if len(part) > 1]
+
+
+def _directions(own):
+    """Unit vectors along a line at its steps, from the neighbours to either side."""
+    k = np.arange(len(own))
+    a, b = np.maximum(k - 2, 0), np.minimum(k + 2, len(own) - 1)
+    dx, dy = own.x[b] - own.x[a], own.y[b] - own.y[a]
+    size = np.maximum(np.hypot(dx, dy), 1e-9)
+    return dx / size, dy / size
+
+
+def _where_straight(own, order, along):
+    """Position in `order` from which a line runs straight to its end, away from the road; its length where it does not."""
+    x, y = own.x[order], own.y[order]
+    for k in range(len(x) - 2):
+        rest = np.hypot(x[-1] - x[k], y[-1] - y[k])
+        if rest < STRAIGHT_LENGTH:
+            break
+        off = np.abs((x[-1] - x[k]) * (y[k:] - y[k]) - (y[-1] - y[k]) * (x[k:] - x[k])) / rest
+        if off.max() <= STRAIGHT and np.median(along[order[k:]]) < ALONG:
+            return k
+    return len(x)
+
+
+def _whole_islands(lines):
+    """Lines about islands that are long enough together."""
+    if not lines:
+        return []
+    trees = [cKDTree(np.c_[line.steps.x, line.steps.y]) for line in lines]
+    length = np.array([_length(line.steps.x, line.steps.y) for line in lines])
+    kept = []
+    for k, line in enumerate(lines):
+        near = [j for j in range(len(lines)) if j == k or trees[k].count_neighbors(trees[j], ONE_ISLAND)]
+        if length[near].sum() >= ISLAND_LENGTH:
+            kept.append(line)
+    return kept
