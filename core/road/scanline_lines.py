@@ -75,7 +75,7 @@ def _draw(lines, points, status, **fields):
         a, b = curve.t[i], curve.t[j]
         vertices = curve.at(np.linspace(a, b, max(int(np.ceil((b - a) / VERTEX)), 1) + 1))
         rows = points[i:j + 1]
-        lines.add(shapely.linestrings(np.round(vertices, 4)), status=str(status[i]),
+        lines.add(shapely.linestrings(np.round(vertices, 4)), status=str(status[i]), kind="main",
                   station_m=round(float(rows["s"][0]), 3), end_m=round(float(rows["s"][-1]), 3),
                   height_m=round(float(np.median(rows["height"])), 3),
                   length_m=round(float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), 3),
