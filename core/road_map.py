@@ -7,6 +7,7 @@ memory; nothing but the intensity image, which is one of the results, goes to di
 import time
 from dataclasses import dataclass, field
 
+from .assess.curvature import marking_curvature
 from .driving.lines import DrivingSettings, driving_lines
 from .features import Features
 from .markings.clusters import ClusterSettings, cluster_markings
@@ -21,6 +22,7 @@ from .road.curbs import CurbSettings
 from .road.edges import EdgeSettings
 from .road.scanline_boundaries import ScanlineBoundarySettings
 from .road.surface import SurfaceSettings, extract_road_surface
+from .survey.cube_density import cube_density
 from .survey.survey import SurveySettings, open_survey
 
 
@@ -75,6 +77,8 @@ class RoadMap:
     seconds: dict = field(default_factory=dict)
     counts: dict = field(default_factory=dict)
     survey_facts: dict = field(default_factory=dict)
+    density: tuple = ()                 # CubeDensity of the points near the road, and of the road surface
+    marking_curvature: object = None    # MarkingCurvature, None without lines
 
 
 class _Stages:
@@ -128,10 +132,12 @@ def make_road_map(paths, trajectory, image_path, settings=RoadMapSettings(), pro
         facts = dict(files=len(survey.files), scanners=len(survey.scanners), passes=len(survey.frame.passes),
                      roads=len(survey.frame.roads), sensor_height=survey.sensor_height, **survey.counts)
         has_intensity = survey.has_intensity
+        density = _density(survey, survey.store), _density(road_points, road_points)
     finally:
         survey.store.close()
     result = RoadMap(survey.frame, survey.crs, curb_points, edges, surface, road_points,
-                     boundaries.differences, boundaries.length_by_method, seconds=stages.seconds, survey_facts=facts)
+                     boundaries.differences, boundaries.length_by_method, seconds=stages.seconds, survey_facts=facts,
+                     density=density)
     result.counts.update(curb_points=len(curb_points), road_points=len(road_points))
     if not has_intensity:
         result.without_paint = ("The point cloud has no intensity (all values are the same), so paint cannot be told from "
@@ -140,6 +146,10 @@ def make_road_map(paths, trajectory, image_path, settings=RoadMapSettings(), pro
         return result
     _paint(result, image_path, settings, stages)
     return result
+
+
+def _density(points, store):
+    return cube_density(points.section(road, number) for road in store.roads() for number in store.sections(road))
 
 
 def _paint(result, image_path, settings, stages):
@@ -164,6 +174,7 @@ def _paint(result, image_path, settings, stages):
                                             points, frame, settings.clusters)
     result.marking_lines = stages.run("lines", "Fitting marking lines …", fit_marking_lines,
                                       clustered, result.markings, frame, settings.lines)
+    result.marking_curvature = marking_curvature(clustered.all_points(), result.marking_lines.geometries, frame.origin)
     result.driving_lines, result.curve_elements = stages.run(
         "driving", "Making driving lines …", driving_lines, result.marking_lines, frame, settings.driving,
         markings=result.markings, edges=result.edges, road_points=result.road_points)

@@ -17,7 +17,7 @@ class Chart:
         self.height = height
         self.x0, self.x1 = _spread(x_range)
         self.y0, self.y1 = _spread(y_range)
-        self.parts, self.labels = [], (x_label, y_label)
+        self.parts, self.levels, self.labels = [], [], (x_label, y_label)
 
     def _x(self, x):
         return LEFT + (np.asarray(x, float) - self.x0) / (self.x1 - self.x0) * (WIDTH - LEFT - RIGHT)
@@ -36,20 +36,22 @@ class Chart:
                                   f'fill="{colour}">{_title(title)}</rect>')
         return np.nan_to_num(values) + base
 
-    def curve(self, x, y, colour, title=""):
+    def curve(self, x, y, colour, title="", width=1.6):
         """A line through the points; NaN interrupts it."""
         known = np.isfinite(x) & np.isfinite(y)
         rows = np.flatnonzero(known)
         for run in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1):
             if len(run):
                 points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(self._x(np.asarray(x)[run]), self._y(np.asarray(y)[run])))
-                self.parts.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="1.6">{_title(title)}</polyline>')
+                self.parts.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="{width}">{_title(title)}</polyline>')
 
     def level(self, y, colour, label=""):
-        """A dashed line across the plot."""
+        """A dashed line across the plot, with its label where no other is in the way."""
         at = float(self._y(y))
-        self.parts.append(f'<line x1="{LEFT}" x2="{END}" y1="{at:.1f}" y2="{at:.1f}" stroke="{colour}" stroke-dasharray="5 4"/>'
-                          f'<text x="{END - 4}" y="{at - 4:.1f}" text-anchor="end" font-size="11" fill="{colour}">{html.escape(label)}</text>')
+        self.parts.append(f'<line x1="{LEFT}" x2="{END}" y1="{at:.1f}" y2="{at:.1f}" stroke="{colour}" stroke-dasharray="5 4"/>')
+        if label and all(abs(at - other) > 12 for other in self.levels):  # labels must not lie over each other
+            self.levels.append(at)
+            self.parts.append(f'<text x="{END - 4}" y="{at - 4:.1f}" text-anchor="end" font-size="11" fill="{colour}">{html.escape(label)}</text>')
 
     def svg(self):
         inner = "".join([self._grid(), *self.parts])

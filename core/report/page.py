@@ -8,7 +8,8 @@ body { font: 15px/1.5 "DejaVu Sans", "Segoe UI", Helvetica, Arial, sans-serif; c
 h1 { font-size: 1.6rem; margin-bottom: .2rem; } h2 { font-size: 1.15rem; margin-top: 2rem; border-bottom: 1px solid #ddd; }
 table { border-collapse: collapse; margin: .6rem 0; } th, td { padding: .22rem .9rem .22rem 0; text-align: left; vertical-align: top; }
 th { font-weight: 600; border-bottom: 1px solid #bbb; } td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
-img { max-width: 100%; border: 1px solid #ccc; } svg { max-width: 100%; height: auto; } .note { color: #555; } .warning { background: #fff3d6; padding: .4rem .8rem; }
+img { max-width: 100%; border: 1px solid #ccc; } .note { color: #555; } .warning { background: #fff3d6; padding: .4rem .8rem; }
+svg { max-width: 100%; height: auto; }
 .key { display: inline-block; width: 1.6rem; height: .5rem; margin: 0 .4rem 0 1rem; vertical-align: middle; }
 """
 

@@ -6,6 +6,7 @@ from ..progress import Progress
 from .background import grey_background
 from .map_picture import draw_map, png
 from .page import Page
+from .road_map_figures import curvature_diagrams, density_table, design_code_table, marking_curvature_table
 
 STAGES = dict(survey="Reading and placing points", curbs="Curbs", edges="Road edges", surface="Road surface",
               intensity="Intensity correction", image="Intensity image", markings="Marking extraction",
@@ -29,9 +30,11 @@ def road_map_report(road_map, image_path=None, progress=Progress()):
         page.warning(road_map.without_paint)
     _picture(page, road_map, image_path)
     _survey(page, road_map)
+    density_table(page, road_map)
     _road(page, road_map)
     if road_map.markings is not None:
         _markings(page, road_map)
+        marking_curvature_table(page, road_map)
         _driving(page, road_map)
     page.heading("Time")
     total = sum(road_map.seconds.values())
@@ -126,8 +129,10 @@ def _driving(page, road_map):
     elements = road_map.curve_elements
     if len(elements):
         names = ("lane", "station_m", "end_m", "turn", "radius_m", "delta_deg", "length_m", "tangent_m", "middle_m",
-                 "chord_m", "ext_m", "code")
-        page.table(("Lane", "From (m)", "To (m)", "Turn", "R (m)", "Δ (°)", "L (m)", "T (m)", "M (m)", "LC (m)", "E (m)",
-                    "Design code"), [[row.get(name) for name in names] for row in elements.rows])
+                 "chord_m", "ext_m")
+        page.table(("Lane", "From (m)", "To (m)", "Turn", "R (m)", "Δ (°)", "L (m)", "T (m)", "M (m)", "LC (m)", "E (m)"),
+                   [[row.get(name) for name in names] for row in elements.rows])
     else:
         page.text("The driving lines have no circular arcs.")
+    curvature_diagrams(page, road_map)
+    design_code_table(page, road_map)

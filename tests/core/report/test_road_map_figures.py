@@ -1,0 +1,24 @@
+"""The curvature diagram of a driving line cut into pieces by status."""
+
+import numpy as np
+import pytest
+from shapely.geometry import LineString
+
+from lanewright.core.report.road_map_figures import _joined
+
+
+def pieces(direction):
+    """A line of 30 m in three pieces along a road, driven along or against it; rows in order of station."""
+    found = []
+    for first, last in ((0.0, 12.0), (12.0, 15.0), (20.0, 30.0)):
+        ends = [(first, 0.0), (last, 0.0)]
+        found.append((LineString(ends[::direction]), dict(direction=direction, station_m=100 + first, end_m=100 + last)))
+    return found
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_pieces_that_touch_are_one_curve_and_a_gap_stays(direction):
+    joined = _joined(pieces(direction))
+    assert sorted(round(line.length, 6) for line, _ in joined) == [10.0, 15.0]
+    for line, station in joined:
+        np.testing.assert_allclose(np.asarray(line.coords)[:, 0], station - 100)
