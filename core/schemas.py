@@ -27,6 +27,7 @@ CURB_POINTS = [ROAD, PASS, SIDE, STATUS, STATION, OFFSET, HEIGHT, PART,
                Field("support", int, "Supporting points")]
 ROAD_EDGES = [ROAD, PASS, SIDE, STATUS, STATION, END, HEIGHT, PART, AGREE, LENGTH, RMSE,
               CURB_KIND, Field("chain", int, "Chain along the curb")]
+SCANLINES = [ROAD, PASS, Field("scanner", int, "Scanner"), STATION, LENGTH, Field("interval_m", float, "Interval of the planes (m)")]
 ROAD_SURFACE = [ROAD, STATUS, STATION, END, Field("area_m2", float, "Area (m²)"), Field("points", int, "Road points")]
 MARKINGS = [ROAD, Field("cluster", int, "Cluster"), Field("class", str, "Class"), Field("use", str, "Use (keep/other)"),
             STATION, OFFSET, LENGTH, WIDTH, Field("elongation", float, "Elongation"),

@@ -38,6 +38,7 @@ ROOMS = ("Survey", "Road", "Markings", "Driving", "Road map", "Assessment", "Ort
 SOURCES = {
     "PointZ": QgsProcessing.SourceType.TypeVectorPoint,
     "LineStringZ": QgsProcessing.SourceType.TypeVectorLine,
+    "LineStringZM": QgsProcessing.SourceType.TypeVectorLine,
     "PolygonZ": QgsProcessing.SourceType.TypeVectorPolygon,
     "MultiLineStringZ": QgsProcessing.SourceType.TypeVectorLine,
     "MultiPolygonZ": QgsProcessing.SourceType.TypeVectorPolygon,

@@ -16,6 +16,7 @@ from .road.detect_boundaries import DetectBoundaries
 from .road.detect_curbs import DetectCurbs
 from .road.extract_road_surface import ExtractRoadSurface
 from .road.fit_road_edges import FitRoadEdges
+from .road.normalized_scanlines import NormalizedScanlines
 from .survey.import_trajectory import ImportTrajectory
 from .survey.inspect_survey import InspectSurvey
 from .survey.sample_survey import SampleSurvey
@@ -24,6 +25,7 @@ ALGORITHMS = (
     ImportTrajectory,
     InspectSurvey,
     SampleSurvey,
+    NormalizedScanlines,
     DetectCurbs,
     FitRoadEdges,
     DetectBoundaries,

@@ -1,5 +1,7 @@
 """Between QGIS layers and the core's Features."""
 
+from itertools import islice
+
 from qgis.core import Qgis, QgsFeature, QgsFeatureSink, QgsField, QgsFields, QgsGeometry, QgsWkbTypes
 from qgis.PyQt.QtCore import QMetaType
 
@@ -10,11 +12,13 @@ from .texts import tr
 WKB_TYPES = {
     "PointZ": Qgis.WkbType.PointZ,
     "LineStringZ": Qgis.WkbType.LineStringZ,
+    "LineStringZM": Qgis.WkbType.LineStringZM,
     "PolygonZ": Qgis.WkbType.PolygonZ,
     "MultiLineStringZ": Qgis.WkbType.MultiLineStringZ,
     "MultiPolygonZ": Qgis.WkbType.MultiPolygonZ,
     "None": Qgis.WkbType.NoGeometry,
 }
+AT_ONCE = 5000  # features handed to a sink together
 COLUMN_TYPES = {int: QMetaType.Type.LongLong, float: QMetaType.Type.Double, str: QMetaType.Type.QString}
 
 
@@ -31,13 +35,8 @@ def qgis_fields(schema, with_aliases=True):
 
 def qgis_features(features, fields):
     """Every row as a QgsFeature, geometries with Z."""
-    import shapely
-
     names = [column.name for column in features.schema]
-    wkb = [None] * len(features)
-    if features.geometry_type != "None" and len(features):
-        wkb = shapely.to_wkb(features.geometries, output_dimension=3, flavor="iso")
-    for binary, row in zip(wkb, features.rows):
+    for binary, row in _as_wkb(features):
         feature = QgsFeature(fields)
         if binary is not None:
             geometry = QgsGeometry()
@@ -45,6 +44,17 @@ def qgis_features(features, fields):
             feature.setGeometry(geometry)
         feature.setAttributes([_plain(row.get(name)) for name in names])
         yield feature
+
+
+def _as_wkb(features):
+    """(WKB or None, row) of every feature; what is WKB already passes through."""
+    import shapely
+
+    if features.geometry_type.endswith("ZM"):
+        return iter(features)
+    if features.geometry_type == "None" or not len(features):
+        return ((None, row) for row in features.rows)
+    return zip(shapely.to_wkb(features.geometries, output_dimension=3, flavor="iso"), features.rows)
 
 
 def _plain(value):
@@ -73,6 +83,10 @@ def read_features(source, schema, geometry_type, label):
         geometry = feature.geometry()
         if geometry.isNull() or geometry.isEmpty():
             continue
+        if geometry_type.endswith("ZM"):
+            for part in _measured_parts(geometry, label):
+                result.add(part, **row)
+            continue
         for part in shapely.get_parts(shapely.from_wkb(bytes(geometry.asWkb()))):
             if not part.has_z:
                 raise RoadExtractionError(
@@ -82,6 +96,16 @@ def read_features(source, schema, geometry_type, label):
                 )
             result.add(part, **row)
     return result
+
+
+def _measured_parts(geometry, label):
+    """WKB of every part of a geometry with Z and M: shapely before 2.1 would lose the M."""
+    for part in geometry.constParts():
+        if not (part.is3D() and part.isMeasure()):
+            raise RoadExtractionError(
+                tr("{label} has geometries without heights (Z) or measures (M). Use the layer that Lanewright wrote.").format(label=label)
+            )
+        yield bytes(part.asWkb())
 
 
 def _check_kind(source, schema, geometry_type, label):
@@ -120,14 +144,15 @@ def crs_text(crs):
 
 
 def write_features(sink, features, fields):
-    """All rows in one go; raises RoadExtractionError when the sink refuses."""
-    rows = list(qgis_features(features, fields))
-    if not sink.addFeatures(rows, QgsFeatureSink.Flag.FastInsert):
-        raise RoadExtractionError(
-            tr("The result could not be written: {reason}. Is the disk full or the file open elsewhere?").format(
-                reason=sink.lastError() or tr("the sink refused the features")
+    """All rows, some thousands at a time; raises RoadExtractionError when the sink refuses."""
+    rows = qgis_features(features, fields)
+    while some := list(islice(rows, AT_ONCE)):
+        if not sink.addFeatures(some, QgsFeatureSink.Flag.FastInsert):
+            raise RoadExtractionError(
+                tr("The result could not be written: {reason}. Is the disk full or the file open elsewhere?").format(
+                    reason=sink.lastError() or tr("the sink refused the features")
+                )
             )
-        )
     # Absent on QGIS 3.40, needed from 3.44 on
     if hasattr(sink, "finalize"):
         sink.finalize()

@@ -20,6 +20,7 @@ LOOKS = {
     "INTENSITY_IMAGE": ("intensity_image", 10),
     "DENSITY": ("density", 11),
     "ROAD_SURFACE": ("road_surface", 20),
+    "SCANLINES": ("scanlines", 25),
     "MARKINGS": ("markings", 30),
     "TRUTH_MARKINGS": ("truth_markings", 31),
     "MARKING_LINES": ("marking_lines", 40),

@@ -42,7 +42,7 @@ class ScanlineSettings:
 
     def __post_init__(self):
         for name, value, least, most, unit in (("The interval", self.interval, 0.01, 10.0, "m"),
-                                               ("The corridor", self.corridor, 2.0, 25.0, "m")):
+                                               ("The corridor", self.corridor, 5.0, 100.0, "m")):
             if not least <= value <= most:
                 raise RoadExtractionError(f"{name} is {value} {unit}; it must be between {least} and {most} {unit}.")
         if self.rotation_frequency and not 5.0 <= self.rotation_frequency <= 400.0:

@@ -1,0 +1,119 @@
+"""Evenly spaced points along normalized scanlines: a cloud as dense where the scanner was far as where it was near."""
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import RoadExtractionError
+from ..survey.points import UNIT
+
+EXTRA = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", None), ("scanner", "uint8", "Scanner", None),
+         ("station_m", "int32", "Station along the road", UNIT), ("offset_m", "int32", "Offset, left positive", UNIT)]
+
+
+@dataclass(frozen=True)
+class ResamplingSettings:
+    """spacing : m between points along a scanline"""
+
+    spacing: float = 0.05
+
+    def __post_init__(self):
+        if not 0.005 <= self.spacing <= 5.0:
+            raise RoadExtractionError(f"The point spacing is {self.spacing} m; it must be between 0.005 and 5 m.")
+
+
+def resampled(lines, spacing):
+    """Points at equal steps along every scanline, from its first vertex on.
+
+    Parameters
+    ----------
+    lines : Scanlines
+    spacing : metres along the line
+
+    Returns
+    -------
+    (N,) number of the line, d, z, intensity of the points
+    """
+    if not len(lines):
+        return np.empty(0, np.int64), np.empty(0), np.empty(0), np.empty(0)
+    first, last = lines.first[:-1], lines.first[1:] - 1
+    step = np.hypot(np.diff(lines.d), np.diff(lines.z))
+    # from one line to the next one steps out of reach, so that no point falls between
+    step[last[:-1]] = 2 * spacing
+    along = np.r_[0.0, np.cumsum(step)]
+    number = np.floor((along[last] - along[first]) / spacing + 1e-9).astype(np.int64) + 1
+    line = np.repeat(np.arange(len(lines)), number)
+    within = np.arange(number.sum()) - np.repeat(np.cumsum(number) - number, number)
+    at = np.minimum(along[first][line] + within * spacing, along[last][line])
+    return (line, *(np.interp(at, along, values) for values in (lines.d, lines.z, lines.intensity)))
+
+
+class ResampledPoints:
+    """A LAZ or LAS file of points along scanlines, written as they come; it appears whole or not at all."""
+
+    def __init__(self, path, origin, crs, settings=ResamplingSettings()):
+        import laspy
+
+        self.path, self.settings = str(path), settings
+        self._header = laspy.LasHeader(point_format=6, version="1.4")
+        self._header.scales, self._header.offsets = np.full(3, UNIT), np.asarray(origin, float)
+        self._header.generating_software = "Lanewright"
+        self._header.add_extra_dims([
+            laspy.ExtraBytesParams(name=name, type=kind, description=text,
+                                   **({} if scale is None else dict(scales=np.array([scale]), offsets=np.array([0.0]))))
+            for name, kind, text, scale in EXTRA])
+        if crs:
+            from ..survey.crs import parse_crs
+
+            self._header.add_crs(parse_crs(crs))
+        suffix = ".las" if self.path.lower().endswith(".las") else ".laz"
+        self._unfinished = f"{self.path}.unfinished{suffix}"
+        self.count = 0
+
+    def __enter__(self):
+        import laspy
+
+        try:
+            self._writer = laspy.open(self._unfinished, mode="w", header=self._header, do_compress=self._unfinished.endswith(".laz"))
+        except OSError as problem:
+            raise self._cannot(problem) from problem
+        return self
+
+    def add(self, lines, frame, road):
+        """Append the points of the scanlines of a road."""
+        import laspy
+
+        line, d, z, intensity = resampled(lines, self.settings.spacing)
+        if not len(line):
+            return
+        s = lines.station[line]
+        x, y = frame.road(road).to_map(s, d)
+        out = laspy.ScaleAwarePointRecord.zeros(len(line), header=self._header)
+        for name, values in zip("XYZ", (x, y, z)):
+            out.array[name] = np.rint(values / UNIT)
+        out["intensity"] = np.clip(np.rint(intensity), 0, 65535)
+        out["return_number"] = out["number_of_returns"] = np.ones(len(line), np.uint8)
+        out["point_source_id"] = lines.scanner[line] + 1
+        out.array["road"], out.array["pass"], out.array["scanner"] = road, lines.pass_number[line], lines.scanner[line]
+        out.array["station_m"], out.array["offset_m"] = np.rint(s / UNIT), np.rint(d / UNIT)
+        try:
+            self._writer.write_points(out)
+        except (OSError, RuntimeError) as problem:  # lazrs raises RuntimeErrors
+            raise self._cannot(problem) from problem
+        self.count += len(line)
+
+    def __exit__(self, kind, problem, trace):
+        try:
+            self._writer.close()
+            if kind is None:
+                os.replace(self._unfinished, self.path)
+        except (OSError, RuntimeError) as failed:
+            if kind is None:
+                raise self._cannot(failed) from failed
+        finally:
+            Path(self._unfinished).unlink(missing_ok=True)
+
+    def _cannot(self, problem):
+        return RoadExtractionError(f"{self.path} cannot be written ({problem}). Choose another folder or free its space.")

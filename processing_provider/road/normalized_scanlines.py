@@ -1,0 +1,77 @@
+"""Normalized scanlines of a survey as a layer, and as evenly spaced points."""
+
+from contextlib import nullcontext
+
+from ...core.schemas import SCANLINES
+from ..algorithm import LanewrightAlgorithm
+from ..knobs import Knob
+from ..survey_input import SURVEY_KNOBS, open_survey_of
+from ..texts import tr
+
+PLANES = "road.section_planes:ScanlineSettings"
+
+SCANLINE_KNOBS = (
+    Knob(
+        "INTERVAL", PLANES, "interval", tr("Interval of section planes along the road (m)"),
+        tr("Smaller gives more scanlines, and more of them than were measured where scan lines lie far apart; larger is quicker."),
+        minimum=0.01, maximum=10.0,
+    ),
+    Knob(
+        "CORRIDOR", PLANES, "corridor", tr("Corridor either side of the road's reference line (m)"),
+        tr("Wider reaches the far side of a broad avenue, but takes longer."),
+        minimum=5.0, maximum=100.0,
+    ),
+    Knob(
+        "ROTATION_FREQUENCY", PLANES, "rotation_frequency", tr("Scan lines of each scanner, 0 = from the data (per second)"),
+        tr("The data know it well. Give it where they are said to show no regular scan lines although the scanner has a rotating "
+           "mirror; the direction of rotation is found anyway."),
+        minimum=0.0, maximum=400.0, advanced=True,
+    ),
+)
+LAYER_KNOBS = (
+    Knob(
+        "SIMPLIFY", "road.scanline_layer:ScanlineLayerSettings", "simplify", tr("Deviation allowed in thinning the scanlines (m)"),
+        tr("Larger draws and writes faster and shows less of the surface; 0 keeps every vertex."),
+        minimum=0.0, maximum=1.0,
+    ),
+)
+POINT_KNOBS = (
+    Knob(
+        "RESAMPLED_SPACING", "road.scanline_resampling:ResamplingSettings", "spacing", tr("Spacing of resampled points along a scanline (m)"),
+        tr("Smaller gives more points, without more being known of the surface."),
+        minimum=0.005, maximum=5.0, advanced=True,
+    ),
+)
+
+
+class NormalizedScanlines(LanewrightAlgorithm):
+    ID, TITLE, ROOM = "normalizedscanlines", "Normalized scanlines", "Road"
+    SUMMARY = "Cuts the measured surface by planes across the road, one scanline for every plane, pass and scanner."
+    HELP = ("The lines of a rotating scanner are told apart by the times and places of the points alone; neighbouring lines make the "
+            "surface that is cut. Where it is interrupted, behind a car say, a new scanline begins. Points without times, or of a "
+            "head with many beams, have no such lines: there the points near each plane make the scanline, and the log says so.")
+    TAGS = ("scanline", "profile", "cross section", "resample")
+
+    def initAlgorithm(self, configuration=None):
+        self.add_survey()
+        self.add_knobs(SCANLINE_KNOBS)
+        self.add_knobs(LAYER_KNOBS)
+        self.add_knobs(POINT_KNOBS)
+        self.add_knobs(SURVEY_KNOBS, only=("SCANNER_FIELD", "TIME"))
+        self.add_sink("SCANLINES", tr("Normalized scanlines"),
+                      tr("Lines with height (Z) and intensity (M)."), fields=SCANLINES, geometry="LineStringZM", optional=True)
+        self.add_laz("RESAMPLED_POINTS", tr("Resampled points"), tr("Points at equal steps along the scanlines, with intensity, station and "
+                     "offset: a cloud of even density."), optional=True, by_default=False)
+
+    def work(self, call, progress):
+        from ...core.road.scanline_layer import write_scanlines
+        from ...core.road.scanline_resampling import ResampledPoints
+
+        survey = open_survey_of(call, progress.part(0.0, 0.5))
+        points = nullcontext()
+        if call.wants("RESAMPLED_POINTS"):
+            points = ResampledPoints(call.new_file("RESAMPLED_POINTS"), survey.frame.origin, survey.crs, call.settings(POINT_KNOBS))
+        layer = call.settings(LAYER_KNOBS) if call.wants("SCANLINES") else None
+        with points as opened:
+            scanlines, _ = write_scanlines(survey, call.settings(SCANLINE_KNOBS), layer, opened, progress.part(0.5, 1.0))
+        call.layer("SCANLINES", scanlines)
