@@ -15,6 +15,8 @@ from plugin_package import ROOT, load
 FOLDER = ROOT / "build" / "demo"
 PACKAGE = FOLDER / "road_map.gpkg"
 TRUTH = FOLDER / "truth.gpkg"
+UAV = FOLDER / "uav.gpkg"
+UAV_IMAGE, ORTHOIMAGE = FOLDER / "uav.tif", FOLDER / "orthoimage.tif"
 TABLES = ("road_surface", "road_edges", "markings", "marking_lines", "driving_lines", "curve_elements")
 
 
@@ -90,13 +92,10 @@ def percent(share):
 def accuracy():
     """Print how far the result is from the truth of the sample survey."""
     load()
-    import shapely
     from lanewright.core.assess.lines import compare_lines
     from lanewright.core.assess.polygons import compare_polygons
 
-    surface = shapely.union_all([g.buffer(0) for g in map(shapely.force_2d, geometries(PACKAGE, "road_surface")[0])])
-    # The truth reaches as far as the street; the survey as far as the scanner saw it
-    area = surface.buffer(1.0)
+    area = road_area()
     edges = compare_lines(geometries(PACKAGE, "road_edges")[0], _curbs(), area=area)
     paint = compare_polygons(geometries(PACKAGE, "markings")[0], geometries(TRUTH, "markings")[0], area=area)
     lanes = compare_lines(geometries(PACKAGE, "driving_lines")[0], geometries(TRUTH, "driving_lines")[0], area=area)
@@ -120,6 +119,32 @@ def _curbs():
     return [g for g, row in zip(found, rows) if row.get("part") != "top" and row.get("kind") != "dropped"]
 
 
+def over_the_uav_image():
+    """Georeference the UAV image, set the driving lines against the lanes seen in it, and say how they compare."""
+    placed = process("georeferenceimage", IMAGE=str(UAV_IMAGE), GCPS=f"{UAV}|layername=control_points", OUTPUT=str(ORTHOIMAGE),
+                     RESIDUALS=table(UAV, "residuals"), REPORT=str(FOLDER / "orthoimage.html"))
+    load()
+    from make_sample import write_layers
+    from uav_validation import comparison, lanes_in_the_image
+
+    write_layers(UAV, {"lanes_in_image": lanes_in_the_image(UAV_IMAGE, geometries(UAV, "control_points"))})
+    process("assessdrivinglines", INPUT=f"{PACKAGE}|layername=driving_lines", REFERENCE=f"{UAV}|layername=lanes_in_image",
+            AREA=f"{PACKAGE}|layername=road_surface", OUTPUT=table(UAV, "driving_lines_by_outcome"), REPORT=str(FOLDER / "over_uav_image.html"))
+    told, accuracy = comparison(geometries(PACKAGE, "driving_lines")[0], geometries(UAV, "lanes_in_image")[0],
+                                geometries(TRUTH, "driving_lines")[0], road_area())
+    if not accuracy.completeness[0.15] > 0.7:
+        stop(f"driving lines agree with the UAV image by {percent(accuracy.completeness[0.15])} only.")
+    return [f"{placed['POINTS']} control points, RMSE {100 * placed['RMSE']:.1f} cm, each left out in turn {100 * placed['LEFT_OUT_RMSE']:.1f} cm; "
+            f"{placed['CHECK_POINTS']} check points, RMSE {100 * placed['CHECK_RMSE']:.1f} cm", *told]
+
+
+def road_area():
+    """The surveyed road with a metre beside it: the truth reaches as far as the street, the survey as far as the scanner saw it."""
+    import shapely
+
+    return shapely.union_all([g.buffer(0) for g in map(shapely.force_2d, geometries(PACKAGE, "road_surface")[0])]).buffer(1.0)
+
+
 def main():
     FOLDER.mkdir(parents=True, exist_ok=True)
     for old in FOLDER.iterdir():
@@ -128,7 +153,7 @@ def main():
     cloud, trajectory = FOLDER / "survey.laz", FOLDER / "trajectory.gpkg"
     process("samplesurvey", POINT_CLOUD=str(cloud), TRAJECTORY=str(trajectory),
             TRUTH_BOUNDARIES=table(TRUTH, "boundaries"), TRUTH_MARKINGS=table(TRUTH, "markings"),
-            TRUTH_DRIVING_LINES=table(TRUTH, "driving_lines"))
+            TRUTH_DRIVING_LINES=table(TRUTH, "driving_lines"), UAV_IMAGE=str(UAV_IMAGE), UAV_GCPS=table(UAV, "control_points"))
     image, road, report = FOLDER / "intensity.tif", FOLDER / "road_points.laz", FOLDER / "report.html"
     results = process("roadmap", POINT_CLOUDS=[str(cloud)], TRAJECTORY=str(trajectory), INTENSITY_IMAGE=str(image),
                       ROAD_POINTS=str(road), REPORT=str(report),
@@ -136,15 +161,20 @@ def main():
     absent = [name for name in (*map(str.upper, TABLES), "INTENSITY_IMAGE", "ROAD_POINTS", "REPORT") if not results.get(name)]
     if absent:
         stop(f"roadmap returned no {', '.join(absent)}.")
-    picture = FOLDER / "map.png"
-    drawn = subprocess.run([sys.executable, str(ROOT / "tools" / "draw_map.py"), str(PACKAGE), str(image), str(picture)])
+    picture, uav_picture = FOLDER / "map.png", FOLDER / "uav.png"
+    validation = over_the_uav_image()
+    drawn = subprocess.run([sys.executable, str(ROOT / "tools" / "draw_map.py"), str(PACKAGE), str(image), str(picture),
+                            str(UAV), str(ORTHOIMAGE), str(uav_picture)])
     if drawn.returncode:
-        stop("the map could not be drawn.")
+        stop("the maps could not be drawn.")
     check_results(image, road, report, picture)
     accuracy()
+    print("\nDriving lines over the georeferenced UAV image, within (simulated data):")
+    print("\n".join(f"  {line}" for line in validation))
     print("\nResults:")
     for path, what in ((PACKAGE, "all layers, styled"), (image, "intensity image"), (road, "road points"),
-                       (report, "numbers of every stage"), (picture, "the map")):
+                       (report, "numbers of every stage"), (picture, "the map"), (ORTHOIMAGE, "UAV image on the map"),
+                       (uav_picture, "driving lines over it")):
         print(f"  {path}  ({what})")
 
 

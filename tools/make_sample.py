@@ -13,14 +13,15 @@ from pathlib import Path
 import numpy as np
 from plugin_package import load
 
+
 def write_layers(path, layers):
-    """Features into the layers of one GeoPackage."""
+    """Features into the layers of one GeoPackage, beside those it has."""
     from osgeo import ogr, osr
 
     ogr.UseExceptions()
     kinds = {"LineStringZ": ogr.wkbLineString25D, "PolygonZ": ogr.wkbPolygon25D}
     types = {int: ogr.OFTInteger, float: ogr.OFTReal, str: ogr.OFTString}
-    source = ogr.GetDriverByName("GPKG").CreateDataSource(str(path))
+    source = ogr.Open(str(path), update=1) if Path(path).exists() else ogr.GetDriverByName("GPKG").CreateDataSource(str(path))
     for name, features in layers.items():
         layer = source.CreateLayer(name, osr.SpatialReference(features.crs) if features.crs else None, kinds[features.geometry_type])
         for column in features.schema:

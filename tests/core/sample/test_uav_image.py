@@ -7,6 +7,7 @@ from lanewright.core.errors import RoadExtractionError
 from lanewright.core.overlay.control_points import control_points
 from lanewright.core.overlay.georeferencing import GeoreferenceSettings, georeference
 from lanewright.core.overlay.source_image import open_image
+from lanewright.core.overlay.warping import draw_image
 from lanewright.core.sample.control_marks import uav_control_points
 from lanewright.core.sample.orthoimage import write_uav_image
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey
@@ -106,6 +107,25 @@ def test_a_second_order_finds_the_true_place_within_two_pixels_between_the_point
         off.append(np.hypot(*(np.array(found.fit.polynomial.to_map(pixel[inside], line[inside])) - truth)).max())
     assert off[1] < 0.08
     assert off[0] > 2 * off[1]
+
+
+def test_paint_lies_in_the_georeferenced_image_where_camera_and_polynomial_put_it(street, image_path, tmp_path):
+    """What the demo takes for drawn over the image is in the image."""
+    image = open_image(image_path)
+    found = georeference(image, points_of(street, image), GeoreferenceSettings(order=2))
+    draw_image(found, tmp_path / "ortho.tif")
+    ortho = gdal.Open(str(tmp_path / "ortho.tif"))
+    x0, size, _, y0, _, _ = ortho.GetGeoTransform()
+    values = ortho.ReadAsArray()[:3].astype(float).mean(axis=0)
+
+    def seen(offset):
+        s = np.arange(3.0, 20.0, 0.25)
+        place = street.camera.to_pixel(*street.scene.axis.to_map(s, np.full(len(s), offset)))
+        east, north = found.fit.polynomial.to_map(*place)
+        return np.median(values[np.floor((y0 - north) / size).astype(int), np.floor((east - x0) / size).astype(int)])
+
+    on, *beside = (seen(3.5 + d) for d in (0.0, -0.14, 0.14))  # a line of 15 cm, and a pixel and a half beside it
+    assert on > max(beside) + 50
 
 
 def test_a_long_road_is_shown_from_its_beginning(street):
