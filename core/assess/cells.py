@@ -33,7 +33,12 @@ class Burner:
         size = (bounds[2] - bounds[0]) / columns
         raster.SetGeoTransform((bounds[0], size, 0.0, bounds[3], 0.0, -size))
         self._layer.SetSpatialFilterRect(*bounds)
-        gdal.RasterizeLayer(raster, [1], self._layer, options=["ATTRIBUTE=number"])
+        # GDAL warns, tile by tile, that two layers without CRS match
+        gdal.PushErrorHandler("CPLQuietErrorHandler")
+        try:
+            gdal.RasterizeLayer(raster, [1], self._layer, options=["ATTRIBUTE=number"])
+        finally:
+            gdal.PopErrorHandler()
         return np.frombuffer(raster.ReadRaster(), np.int32).reshape(shape)
 
 

@@ -14,6 +14,7 @@ from .inputs import (
     layer_and_excluded,
     layer_name,
     layer_of,
+    shares_of,
     tolerances,
 )
 
@@ -108,7 +109,11 @@ class AssessBoundaries(LanewrightAlgorithm):
         call.layer("OUTPUT", layer)
         if call.wants("REPORT"):
             call.text("REPORT", boundary_report(accuracy, layer, (layer_name(call, "INPUT"), layer_name(call, "REFERENCE")), warnings))
-        return found_numbers(_numbers(accuracy))
+        numbers = found_numbers(_numbers(accuracy))
+        progress.say(tr("{correct:.0f} intervals are correct, {missed:.0f} missed and {false:.0f} false within {tolerance:g} cm: {rates}.").format(
+            correct=numbers["CORRECT"], missed=numbers["MISSED"], false=numbers["FALSE"], tolerance=100 * settings.tolerance,
+            rates=shares_of(numbers, ("PRECISION", "RECALL", "F1"))))
+        return numbers
 
 
 def _numbers(accuracy):

@@ -8,7 +8,7 @@ from ...core.schemas import ASSESSED_DRIVING_LINES
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob, settings_class
 from ..texts import tr
-from .inputs import add_area, add_tolerances, area_of, found_numbers, frame_of_drive, layer_name, layer_of, tolerances
+from .inputs import add_area, add_tolerances, area_of, found_numbers, frame_of_drive, layer_name, layer_of, shares_of, tolerances
 
 LINES = "assess.lines:LineSettings"
 WIDTHS = ("half-width", "total-width")
@@ -101,7 +101,10 @@ class AssessDrivingLines(LanewrightAlgorithm):
             call.text("REPORT", driving_report(
                 match, accuracy, settings, layer, (layer_name(call, "INPUT"), layer_name(call, "REFERENCE")), station, along,
                 call.choice("WIDTH") == "total-width", warnings))
-        return found_numbers(_numbers(accuracy, settings.tolerance))
+        numbers = found_numbers(_numbers(accuracy, settings.tolerance))
+        progress.say(tr("Within {tolerance:g} cm to either side: {rates}.").format(
+            tolerance=100 * settings.tolerance, rates=shares_of(numbers, ("COMPLETENESS", "CORRECTNESS", "MISCODING"))))
+        return numbers
 
     def _settings(self, call):
         """The core works with half-widths."""

@@ -6,7 +6,7 @@ from ...core.schemas import ASSESSED_MARKINGS
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob, settings_class
 from ..texts import tr
-from .inputs import add_area, add_tolerances, area_of, found_numbers, frame_of_drive, layer_name, painted_of, tolerances
+from .inputs import add_area, add_tolerances, area_of, found_numbers, frame_of_drive, layer_name, painted_of, shares_of, tolerances
 
 MARKINGS = "assess.markings:MarkingAccuracySettings"
 PAINTED = [QgsProcessing.SourceType.TypeVectorPolygon, QgsProcessing.SourceType.TypeVectorLine, QgsProcessing.SourceType.TypeRaster]
@@ -109,7 +109,11 @@ class AssessMarkings(LanewrightAlgorithm):
         call.layer("OUTPUT", layer)
         if call.wants("REPORT"):
             self._report(call, accuracy, layer, frame, image, warnings)
-        return found_numbers(_numbers(accuracy))
+        numbers = found_numbers(_numbers(accuracy))
+        progress.say(tr("Cells, strict: {strict}; with a tolerance of {cells}: {tolerant}.").format(
+            cells=settings.tolerance, strict=shares_of(numbers, ("PRECISION", "RECALL", "F1")),
+            tolerant=shares_of(numbers, ("PRECISION_TOLERANT", "RECALL_TOLERANT", "F1_TOLERANT"))))
+        return numbers
 
     def _report(self, call, accuracy, layer, frame, image, warnings):
         from ...core.assess.stationing import stations_of_blocks

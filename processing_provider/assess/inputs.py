@@ -177,3 +177,10 @@ def layer_name(call, name):
 def found_numbers(numbers):
     """The numbers that there are: a share of nothing is left out."""
     return {name: float(value) for name, value in numbers.items() if value is not None and value == value}
+
+
+def shares_of(numbers, names):
+    """Shares as the log tells them: precision 99.5 %, recall 98.0 %."""
+    told = [f"{name.split('_')[0].capitalize() if name.startswith('F1') else name.split('_')[0].lower()} {numbers[name]:.1f} %"
+            for name in names if name in numbers]
+    return ", ".join(told)

@@ -199,6 +199,38 @@ class TestWhatCannotBeJudged:
         assert "points" in refusal(algorithm, INPUT=points, REFERENCE=self.good(kind)).lower()
 
 
+def test_a_model_hands_on_layers_and_numbers(provider, tmp_path):
+    """The number of one step decides in an expression of the next."""
+    from qgis.core import QgsProcessingContext, QgsProcessingModelAlgorithm, QgsProcessingModelChildAlgorithm, QgsProcessingModelChildParameterSource
+    from qgis.core import QgsProcessingFeatureSourceDefinition, QgsProcessingModelParameter, QgsProcessingParameterFeatureSource
+
+    model = QgsProcessingModelAlgorithm("check", "check")
+    for name in ("MADE", "TRUTH"):
+        model.addModelParameter(QgsProcessingParameterFeatureSource(name, name), QgsProcessingModelParameter(name))
+    source = QgsProcessingModelChildParameterSource
+    first = QgsProcessingModelChildAlgorithm("lanewright:assessdrivinglines")
+    first.setChildId("assess")
+    first.addParameterSources("INPUT", [source.fromModelParameter("MADE")])
+    first.addParameterSources("REFERENCE", [source.fromModelParameter("TRUTH")])
+    model.addChildAlgorithm(first)
+    second = QgsProcessingModelChildAlgorithm("lanewright:assessdrivinglines")
+    second.setChildId("again")
+    second.addParameterSources("INPUT", [source.fromChildOutput("assess", "OUTPUT")])
+    second.addParameterSources("REFERENCE", [source.fromModelParameter("TRUTH")])
+    second.addParameterSources("TOLERANCE", [source.fromExpression("@assess_MISCODING / 250")])
+    model.addChildAlgorithm(second)
+    assert model.validate()[0]
+    made, reference = layer("LineString", ["LineString (0 0, 75 0, 75 0.3, 100 0.3)"]), layer("LineString", ["LineString (0 0, 100 0)"])
+    context = QgsProcessingContext()
+    given = {}
+    for name, given_layer in (("MADE", made), ("TRUTH", reference)):
+        context.temporaryLayerStore().addMapLayer(given_layer)
+        given[name] = QgsProcessingFeatureSourceDefinition(given_layer.id())
+    results, ok = model.create().run(given, context, QgsProcessingFeedback())
+    assert ok and results["CHILD_RESULTS"]["assess"]["MISCODING"] == pytest.approx(25, abs=0.5)
+    assert float(results["CHILD_INPUTS"]["again"]["TOLERANCE"]) == pytest.approx(0.1, abs=0.002)
+
+
 def test_a_trajectory_of_another_street_is_refused(provider):
     elsewhere = layer("LineStringZ", ["LineStringZ (0 800 1, 100 800 1)"])
     assert "does not pass" in refusal("assessboundaries", INPUT=street(), REFERENCE=street(), TRAJECTORY=elsewhere)
