@@ -63,7 +63,7 @@ def _pieces(points, hidden, max_gap):
     covered = HIDDEN_STEP * (np.searchsorted(hidden, points["s"][1:]) - np.searchsorted(hidden, points["s"][:-1], side="right"))
     status = np.where(near, "measured", np.where(covered >= HIDDEN_SHARE * gap, "occluded", "bridged"))
     breaks = np.flatnonzero(~joined) + 1
-    parts = zip(np.split(points, breaks), np.split(np.r_[status, ""], breaks))
+    parts = zip(np.split(points, breaks), np.split(np.append(status, ""), breaks))
     return [(part, flags[:-1]) for part, flags in parts if len(part) >= 2 and part["s"][-1] - part["s"][0] >= SHORTEST]
 
 

@@ -1,9 +1,14 @@
-"""Where normalized scanlines come from: cut from a survey section by section."""
+"""Where normalized scanlines come from: cut from a survey section by section, or read from a layer."""
 
 from dataclasses import replace
 
+import numpy as np
+
+from ..errors import RoadExtractionError
 from ..progress import Progress
 from ..survey.scan_lattice import find_lattice
+from ..survey.sensor_height import DEFAULT_HEIGHT, height_above
+from .scanline_grid import FAR
 from .section_planes import ScanlineSettings, scanlines_of
 
 
@@ -39,3 +44,72 @@ class SurveyScanlines:
     def scanlines(self, road, start, end):
         """Scanlines with start <= station < end."""
         return scanlines_of(self.survey, road, start, end, self.settings, self.lattice)
+
+
+class LayerScanlines:
+    """The scanlines of a layer, with the frame of the trajectory they were made along.
+
+    Parameters
+    ----------
+    lines : dict of road number to Scanlines, each ordered by station
+    frame : RoadFrame
+    crs : WKT
+    sensor_height : m from the trajectory down to the road, 0 = from the data
+
+    Raises
+    ------
+    RoadExtractionError
+        If there are too few scanlines to tell how far they lie apart.
+    """
+
+    def __init__(self, lines, frame, crs, sensor_height=0.0):
+        self.lines = {road: found for road, found in sorted(lines.items()) if len(found)}
+        self.frame, self.crs = frame, crs
+        steps = np.concatenate([np.empty(0), *(np.diff(np.unique(np.round(found.station, 4))) for found in self.lines.values())])
+        if not len(steps):
+            raise RoadExtractionError("The scanlines lie on fewer than two section planes of one road, so no curb can be followed from one "
+                                      "to the next. Make them with Normalized scanlines along the whole trajectory.")
+        self.interval = round(float(np.median(steps)), 4)
+        self.corridor = max(float(np.abs(found.d).max()) for found in self.lines.values())
+        self.heights = {p.number: sensor_height for p in frame.passes} if sensor_height else self._sensor_heights()
+
+    def _sensor_heights(self):
+        """m from the trajectory down to the road, by pass, where its scanlines cross its own track."""
+        known = {}
+        for p in self.frame.passes:
+            drops = []
+            if p.road in self.lines:
+                lines = self.lines[p.road]
+                lines = lines[lines.pass_number == p.number]
+                drops = _drops(lines, *p.at_station(lines.station))
+            height = height_above(drops)
+            if height is not None:
+                known[p.number] = height
+        usual = float(np.median(list(known.values()))) if known else DEFAULT_HEIGHT
+        return {p.number: known.get(p.number, usual) for p in self.frame.passes}
+
+    def roads(self):
+        return list(self.lines)
+
+    def span(self, road):
+        stations = self.lines[road].station
+        return float(stations[0]), float(stations[-1])
+
+    def road_height(self, road, s):
+        """(N,) local z at which the road is expected."""
+        return self.frame.track_height(road, s, self.heights)
+
+    def scanlines(self, road, start, end):
+        """Scanlines with start <= station < end."""
+        first, last = np.searchsorted(self.lines[road].station, (start, end))
+        return self.lines[road][first:last]
+
+
+def _drops(lines, track_d, track_z):
+    """Metres from the track down to every line that passes under it."""
+    if not len(lines):
+        return np.empty(0)
+    under = (lines.d[lines.first[:-1]] <= track_d) & (lines.d[lines.first[1:] - 1] >= track_d)
+    number = np.arange(len(lines)) * FAR
+    z = np.interp(number + track_d, np.repeat(number, np.diff(lines.first)) + lines.d, lines.z)
+    return (track_z - z)[under]
