@@ -22,7 +22,7 @@ from ..schemas import CURB_POINTS
 from .chains import choose_along, curb_chains, link_chains, long_enough
 from .curbs import END_STEPS, MERGE_ACROSS, MERGE_UP, VEHICLE_HALF, block_edges, block_numbers, hidden_points
 from .profiles import LEAST_NOISE
-from .scanline_candidates import NEIGHBOURS, find_candidates
+from .scanline_candidates import NEIGHBOURS, find_candidates, rows_filled
 from .scanline_corners import CurbCorners, corners_of
 from .scanline_grid import side_scanlines
 from .shadows import Sight
@@ -111,7 +111,7 @@ def _corners_of_road(source, road, settings, progress):
     interval = source.interval
     sections = _sections(*source.span(road), interval)
     first, last = sections[0][0], sections[-1][1]
-    margin = max(int(np.ceil(settings.distance_along / interval)), NEIGHBOURS) + 1
+    margin = max(int(np.ceil(settings.distance_along / interval)), NEIGHBOURS + rows_filled(interval)) + 1
     sight = {side: Sight(interval, first, last - first, REACH) for side in SIDES}
     tracks = {side: Track(source.frame, road, sign) for side, sign in SIDES.items()}
 

@@ -22,6 +22,7 @@ LEAST_ROAD = 6       # cells of road before a rise
 BEHIND = (0.06, 0.40)  # m beyond a rise where the ground must stay up
 LOW_SHARE = 0.25     # share of it that may lie below half the rise
 FEWEST_BEHIND = 4    # cells of it that must be seen
+FILLED = 0.30        # m along the road to either side from which a scanline's gaps are closed
 SAME_ACROSS, SAME_UP = 0.08, 0.04  # m that candidates of neighbouring scanlines differ at most
 NEIGHBOURS, PERSISTENT = 2, 3      # scanlines either side; of those, itself included, that must show a candidate
 
@@ -64,7 +65,7 @@ def find_candidates(side, nearest, settings):
     -------
     Candidates
     """
-    low = side.low
+    low = _filled(side.low, rows_filled(side.interval))
     base, slope, rough, count = road_before(low, SPACING)
     span = max(int(round(settings.search_width / SPACING)), 2)
     with np.errstate(invalid="ignore"):
@@ -80,6 +81,20 @@ def find_candidates(side, nearest, settings):
     chosen = Candidates(row, cell, side.offset(cell), *(values[row, cell] for values in (base, slope, step, rough)))
     chosen = chosen[_stays_up(low, chosen)]
     return chosen[_persistent(chosen)]
+
+
+def rows_filled(interval):
+    """Scanlines either side that close a scanline's gaps."""
+    return max(int(round(FILLED / interval)), 1)
+
+
+def _filled(low, reach):
+    """Heights with the gaps of a scanline closed by its neighbours': lost pulses and shadows leave different ones."""
+    filled = low.copy()
+    for ahead in range(1, min(reach, len(low) - 1) + 1):
+        for shifted, own in ((low[ahead:], filled[:-ahead]), (low[:-ahead], filled[ahead:])):
+            np.copyto(own, shifted, where=np.isnan(own))
+    return filled
 
 
 def _stays_up(low, candidates):
