@@ -79,7 +79,7 @@ def find_candidates(side, nearest, settings):
     nearer = max_ahead(score[:, ::-1], span, inclusive=False)[:, ::-1]
     row, cell = np.nonzero(found & (score >= np.maximum(beyond, nearer)))
     chosen = Candidates(row, cell, side.offset(cell), *(values[row, cell] for values in (base, slope, step, rough)))
-    chosen = chosen[_stays_up(low, chosen)]
+    chosen = chosen[_stays_up(low, chosen) & _own(side.low, chosen, span)]
     return chosen[_persistent(chosen)]
 
 
@@ -95,6 +95,12 @@ def _filled(low, reach):
         for shifted, own in ((low[ahead:], filled[:-ahead]), (low[:-ahead], filled[ahead:])):
             np.copyto(own, shifted, where=np.isnan(own))
     return filled
+
+
+def _own(low, candidates, span):
+    """Did the scanline itself see something about the rise? Its neighbours alone would draw it beyond their ends."""
+    cells = np.clip(candidates.cell[:, None] + np.arange(-span, span + 1), 0, low.shape[1] - 1)
+    return np.isfinite(low[candidates.row[:, None], cells]).any(1)
 
 
 def _stays_up(low, candidates):

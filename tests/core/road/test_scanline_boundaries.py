@@ -57,7 +57,7 @@ def test_a_bevelled_curb_is_found_where_its_slope_is_asked_for():
     assert len(found(bevelled)) == 0
     curbs = found(bevelled, ScanlineBoundarySettings(vertical_angle=40.0))
     np.testing.assert_allclose(corners(curbs, "left")[:, 1], 3.5, atol=0.005)
-    np.testing.assert_allclose(corners(curbs, "left", "top")[:, 1], 3.6, atol=0.005)
+    np.testing.assert_allclose(corners(curbs, "left", "top")[1:-1, 1], 3.6, atol=0.005)
 
 
 def test_in_a_gutter_the_corner_lies_at_its_bottom():
