@@ -175,7 +175,8 @@ def _fill_empty(body, mark):
 
 def _parse_mixed(body, columns, chunk=200_000):
     """Values of a table in which some fields are words; those become NaN."""
-    fields = body.split()
+    # bytes.split() would part at vertical tabs and form feeds too, which the rows were not counted by
+    fields = re.split(rb"[ \t\n]+", body.strip(b" \t\n"))
     parts = []
     step = chunk // columns * columns or columns
     for start in range(0, len(fields), step):

@@ -4,10 +4,12 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..errors import RoadExtractionError
+from ..errors import Cancelled, RoadExtractionError
+from .laz_check import damage
 
 BLOCK = 200_000  # points decoded at a time
 SUFFIXES = (".las", ".laz")
+NOT_THE_FILE = (KeyboardInterrupt, SystemExit, GeneratorExit, Cancelled)
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,8 @@ def open_cloud(path, wanted=None):
         raise RoadExtractionError(f"There is no file {path}. Check the path of the point cloud.")
     if not path.lower().endswith(SUFFIXES):
         raise RoadExtractionError(f"{path} is not a LAS or LAZ file. Lanewright reads .las, .laz and .copc.laz; convert other formats first.")
+    if wrong := damage(path):
+        raise RoadExtractionError(f"{path} is damaged or cut off: {wrong}. Copy or export the file again.")
     try:
         if wanted is None:
             return laspy.open(path)
@@ -52,7 +56,9 @@ def open_cloud(path, wanted=None):
         for name in wanted:
             selection = getattr(selection, f"decompress_{name}")()
         return laspy.open(path, decompression_selection=selection)
-    except Exception as problem:  # laspy and its backends raise many kinds for a damaged file
+    except BaseException as problem:  # laspy and its backends raise many kinds for a damaged file, no Exceptions among them
+        if isinstance(problem, NOT_THE_FILE):
+            raise
         raise RoadExtractionError(f"{path} cannot be read as a LAS/LAZ file ({problem}). It may be damaged or cut off; copy or export it again.") from problem
 
 
@@ -97,9 +103,9 @@ def read_blocks(path, size=BLOCK, wanted=None):
             for points in reader.chunk_iterator(size):
                 read += len(points)
                 yield points
-        except RoadExtractionError:
-            raise
-        except Exception as problem:
+        except BaseException as problem:
+            if isinstance(problem, (RoadExtractionError, *NOT_THE_FILE)):
+                raise
             raise RoadExtractionError(
                 f"{path} is damaged: its header promises {promised} points, {read} could be read ({problem}). "
                 "Copy or export the file again.") from problem

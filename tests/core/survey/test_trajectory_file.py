@@ -290,3 +290,12 @@ def test_a_layer_without_heights_is_refused():
 def test_vertices_of_a_line_are_driven_in_their_order():
     found = trajectory_from_columns({"x": EAST + np.arange(50.0), "y": np.full(50, NORTH), "z": np.full(50, 100.0)}, crs="EPSG:32632")
     assert not found.has_time and (np.diff(found.time) > 0).all() and np.isnan(found.heading).all()
+
+
+def test_a_vertical_tab_in_a_field_costs_that_field_only(tmp_path):
+    path = tmp_path / "drive.csv"
+    rows = [f"{t},{500000 + 2 * t},{5000000 + t},100" for t in range(50)]
+    rows[20] = rows[20].replace(",100", ",1\x0b00")
+    path.write_text("time,x,y,z\n" + "\n".join(rows))
+    found = read_trajectory(path)
+    assert len(found) == 50 and np.isnan(found.z[20]) and found.x[21] == 500042

@@ -1,0 +1,64 @@
+"""Damaged lengths in a LAS or LAZ header are told before the decoder believes them and ends the program."""
+
+import struct
+
+import laspy
+import numpy as np
+import pytest
+
+from lanewright.core.errors import RoadExtractionError
+from lanewright.core.survey.laz_check import damage
+from lanewright.core.survey.point_cloud import read_blocks
+
+
+@pytest.fixture(params=[("1.2", 1, "laz"), ("1.4", 6, "laz"), ("1.4", 6, "las")], ids=lambda kind: " ".join(map(str, kind)))
+def cloud(request, tmp_path):
+    version, point_format, suffix = request.param
+    las = laspy.LasData(laspy.LasHeader(version=version, point_format=point_format))
+    las.x, las.y, las.z = np.arange(300.0), np.arange(300.0), np.zeros(300)
+    path = tmp_path / f"cloud.{suffix}"
+    las.write(str(path))
+    return path
+
+
+def changed(path, at, kind, value):
+    data = bytearray(path.read_bytes())
+    struct.pack_into(kind, data, at, value)
+    path.write_bytes(data)
+    return path
+
+
+def read(path):
+    return sum(len(block) for block in read_blocks(path))
+
+
+def test_a_whole_file_has_no_damage(cloud):
+    assert damage(cloud) == "" and read(cloud) == 300
+
+
+@pytest.mark.parametrize("at, kind, value, says", [
+    (96, "<I", 0xFFFFFFF0, "points are said to begin"), (96, "<I", 10, "points are said to begin"),
+    (100, "<I", 0x7FFFFFFF, "header records"), (94, "<H", 60000, "points are said to begin"),
+])
+def test_wrong_lengths_are_told_in_one_sentence(cloud, at, kind, value, says):
+    with pytest.raises(RoadExtractionError, match=says):
+        read(changed(cloud, at, kind, value))
+
+
+def test_more_chunks_than_bytes_are_not_believed(cloud):
+    """The decoder would ask for memory for every one of them, and end QGIS."""
+    if cloud.suffix == ".las":
+        return
+    data = cloud.read_bytes()
+    points_at = struct.unpack_from("<I", data, 96)[0]
+    table = struct.unpack_from("<q", data, points_at)[0]
+    with pytest.raises(RoadExtractionError, match="chunks in"):
+        read(changed(cloud, table + 4, "<I", 1_800_000_000))
+
+
+def test_a_table_of_chunks_outside_the_file_is_told(cloud):
+    if cloud.suffix == ".las":
+        return
+    points_at = struct.unpack_from("<I", cloud.read_bytes(), 96)[0]
+    with pytest.raises(RoadExtractionError, match="table of chunks"):
+        read(changed(cloud, points_at, "<q", 10**15))

@@ -1,0 +1,146 @@
+"""Feeds the readers broken files for a while: fuzz.py [--seconds 60] [--seed 0] [--keep FOLDER]
+
+Bytes of whole files are changed, cut, doubled and filled up. A reader may accept what is left or refuse it with
+one sentence (RoadExtractionError); anything else, a run of more than ten seconds and memory beyond reason
+included, is printed with the file that caused it, and kept.
+"""
+
+import argparse
+import resource
+import struct
+import sys
+import tempfile
+import time
+import traceback
+from pathlib import Path
+
+import numpy as np
+from plugin_package import load
+
+SLOW = 10.0            # s
+MEMORY = 6 * 1024**3   # bytes
+
+
+def seeds(folder):
+    """Whole files of every kind, by the reader they are for."""
+    import laspy
+    from pyproj import CRS
+
+    from lanewright.core.survey.point_cloud import read_blocks, read_header
+    from lanewright.core.survey.trajectory_file import read_trajectory
+
+    def cloud(path):
+        read_header(path)
+        for block in read_blocks(path, 1000):
+            np.asarray(block.array["X"])
+
+    rng = np.random.default_rng(0)
+    made = []
+    for version, point_format in (("1.2", 1), ("1.4", 6), ("1.2", 3)):
+        header = laspy.LasHeader(version=version, point_format=point_format)
+        header.scales, header.offsets = [0.001] * 3, [500000.0, 5000000.0, 0.0]
+        header.add_crs(CRS.from_epsg(32632))
+        las = laspy.LasData(header)
+        las.x, las.y, las.z = (rng.uniform(0, 50, 400) + offset for offset in header.offsets)
+        las.gps_time = np.linspace(0, 4, 400)
+        las.intensity = rng.integers(0, 65535, 400)
+        for suffix in ("las", "laz"):
+            path = folder / f"seed_{version}_{point_format}.{suffix}"
+            las.write(str(path))
+            made.append((path.read_bytes(), f".{suffix}", cloud))
+    time_, angle = np.linspace(100.0, 200.0, 60), np.linspace(0, 1.5, 60)
+    x, y = 500000 + 300 * np.sin(angle), 5000000 + 300 * np.cos(angle)
+    rows = np.c_[time_, x, y, 100 + 0 * x, 0.1 + 0 * x, 0.2 + 0 * x, 90 + np.degrees(angle)]
+    for delimiter, header in ((",", "time,x,y,z,roll,pitch,heading"), (";", ""), ("\t", "GPSTime\tEasting\tNorthing\tHeight\tRoll\tPitch\tYaw")):
+        text = "\n".join([header] * bool(header) + [delimiter.join(f"{v:.4f}" for v in row) for row in rows])
+        made.append((text.encode(), ".csv", read_trajectory))
+    records = b"".join(struct.pack("<17d", t, 0.85, 0.15 + 1e-7 * t, 100.0, *([0.0] * 13)) for t in time_)
+    made.append((records, ".out", read_trajectory))
+    made += points_files()
+    return made
+
+
+def points_files():
+    """Control points, where this version reads them."""
+    try:
+        from lanewright.core.overlay.gcp_file import read_gcp_file
+    except ImportError:
+        return []
+    points = ('#CRS: PROJCRS["x"]\nmapX,mapY,sourceX,sourceY,enable,dX,dY,residual\n'
+              + "\n".join(f"{500000 + 10 * k},{5000000 + k * k},{100 * k},{-50 * k},1,0,0,0" for k in range(8)))
+    table = "pixel,line,easting,northing\n" + "\n".join(f"{100 * k},{50 * k},{500000 + 10 * k},{5000000 + k * k}" for k in range(8))
+    return [(points.encode(), ".points", read_gcp_file), (table.encode(), ".csv", read_gcp_file)]
+
+
+def broken(content, rng):
+    """One of the ways a file is damaged, or several."""
+    data = bytearray(content)
+    for _ in range(rng.integers(1, 4)):
+        way = rng.integers(0, 7)
+        if not data:
+            break
+        at = int(rng.integers(0, len(data)))
+        if way == 0:
+            for place in rng.integers(0, len(data), rng.integers(1, 20)):
+                data[place] = int(rng.integers(0, 256))
+        elif way == 1:  # in the header, where numbers say how long things are
+            data[int(rng.integers(0, min(len(data), 400)))] = int(rng.choice([0, 1, 127, 128, 255]))
+        elif way == 2:
+            del data[at:]
+        elif way == 3:
+            del data[at:at + int(rng.integers(1, 200))]
+        elif way == 4:
+            data[at:at] = data[at:at + int(rng.integers(1, 300))]
+        elif way == 5:
+            data[at:at] = bytes(rng.integers(0, 256, int(rng.integers(1, 100)), dtype=np.uint8))
+        else:
+            words = [b"nan", b"1e999", b"-", b"\0", b"inf", b",", b";", b"\n\n", b"'", b'"', b"9" * 400, "é".encode("latin-1")]
+            data[at:at] = words[int(rng.integers(0, len(words)))]
+    return bytes(data)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--keep", type=Path, default=Path("build/fuzz"))
+    options = parser.parse_args()
+    load()
+    from lanewright.core.errors import RoadExtractionError
+
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    options.keep.mkdir(parents=True, exist_ok=True)
+    rng, tried, refused, found = np.random.default_rng(options.seed), 0, 0, 0
+    with tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
+        whole = seeds(folder)
+        end = time.process_time() + options.seconds
+        while time.process_time() < end:
+            content, suffix, reader = whole[int(rng.integers(0, len(whole)))]
+            path = folder / f"broken{suffix}"
+            path.write_bytes(broken(content, rng))
+            began = time.monotonic()
+            problem = ""
+            try:
+                reader(path)
+            except RoadExtractionError as error:
+                refused += 1
+                problem = "" if 20 < len(str(error)) < 1500 else f"message of {len(str(error))} characters: {str(error)[:200]}"
+            except BaseException:
+                problem = traceback.format_exc()
+            if time.monotonic() - began > SLOW:
+                problem += f"\n{time.monotonic() - began:.0f} s"
+            tried += 1
+            if problem:
+                found += 1
+                kept = options.keep / f"{options.seed}_{tried}{suffix}"
+                kept.write_bytes(path.read_bytes())
+                print(f"{kept}\n{problem}", flush=True)
+                if isinstance(sys.exc_info()[1], KeyboardInterrupt):
+                    break
+    print(f"{tried} files tried, {refused} refused, {found} problems")
+    sys.exit(bool(found))
+
+
+if __name__ == "__main__":
+    main()
