@@ -71,18 +71,19 @@ def scanlines_of(survey, road, start, end, settings=ScanlineSettings(), lattice=
         return Scanlines.none()
     if lattice is None:
         lattice = find_lattice(survey, settings.rotation_frequency)
-    parts = []
+    parts, apart = [], not lattice.clocks
     if lattice.clocks:
         margin = _margin(survey, road, lattice)
         records = survey.window(road, first * interval - margin, (last - 1) * interval + margin).records
         for key, own in scanner_runs(records):
             clock = lattice.clocks.get(key)
+            apart |= clock is None
             if clock is not None:
                 parts.append(_cut(own, survey.frame.passes[key[0]], key, clock, (first, last), settings))
-    if lattice.without is None or lattice.without:
+    if apart:
         lines = point_scanlines(survey, road, start, end, interval, settings.corridor)
-        lattice_has = np.array([key in lattice.clocks for key in zip(lines.pass_number.tolist(), lines.scanner.tolist())], bool)
-        parts.append(lines[~lattice_has])
+        meshed = [key in lattice.clocks for key in zip(lines.pass_number.tolist(), lines.scanner.tolist())]
+        parts.append(lines[~np.array(meshed, bool)])
     lines = Scanlines.join(parts)
     if len(parts) > 1 and len(lines):
         order = np.lexsort((lines.d[lines.first[:-1]], lines.scanner, lines.pass_number, np.rint(lines.station / interval)))

@@ -34,7 +34,7 @@ DIRECTIONS = 360      # about the trajectory, for which the mounting of a scanne
 class ScanLattice:
     """The mirror clocks of a survey, by (pass number, scanner); those without a lattice are not there.
 
-    `without` lists the (pass number, scanner) that have points and no lattice, `notes` says so in words.
+    `without` lists the (pass number, scanner) that were looked at in vain, `notes` says so in words.
     """
 
     clocks: dict = field(default_factory=dict)
@@ -58,7 +58,6 @@ def find_lattice(survey, rotation_frequency=0.0, progress=Progress()):
     if not survey.has_time:
         lattice.notes.append("The points have no gps_time, so there are no scan lines to tell apart; "
                              "scanlines are made of the points near each section plane.")
-        lattice.without = None
         progress.warn(lattice.notes[0])
         return lattice
     roads = survey.store.roads()
@@ -80,8 +79,12 @@ def find_lattice(survey, rotation_frequency=0.0, progress=Progress()):
 
 def _tell(lattice, survey, progress):
     if lattice.clocks:
-        rates = sorted({f"{abs(clock.frequency):.2f}" for clock in lattice.clocks.values()}, key=float)
+        rates = sorted({f"{abs(clock.frequency) / clock.spacing:.2f}" for clock in lattice.clocks.values()}, key=float)
         progress.say(f"Scan lattice found for {len(lattice.clocks)} run(s) of a scanner: {', '.join(rates)} lines per second.")
+    if not lattice.clocks and not lattice.without:
+        lattice.notes.append(f"There are too few points to tell scan lines apart (fewer than {FEWEST} in {WINDOW:g} s of each scanner); "
+                             "scanlines are made of the points near each section plane.")
+        progress.warn(lattice.notes[-1])
     if lattice.without:
         note = (f"{len(lattice.without)} of {len(lattice.clocks) + len(lattice.without)} run(s) of a scanner show no regular scan lines "
                 "(a head with many beams, or a thinned cloud); there scanlines are made of the points near each section plane.")
