@@ -49,12 +49,12 @@ class PlanSteps:
         return PlanSteps(*(np.concatenate([getattr(p, name) for p in parts]) for name in PlanSteps.__dataclass_fields__))
 
 
-def measure_plan_steps(raster, x, y, nx, ny, least, highest):
+def measure_plan_steps(rasters, x, y, nx, ny, least, highest):
     """The steps at places in plan that prove to be ones.
 
     Parameters
     ----------
-    raster : GroundRaster
+    rasters : list of GroundRaster: views of the ground; what one does not show is sought in the next
     x, y : (M,) local metres near which a step lies
     nx, ny : (M,) unit vectors uphill, good to some 30 degrees
     least, highest : metres
@@ -65,12 +65,15 @@ def measure_plan_steps(raster, x, y, nx, ny, least, highest):
     """
     line_x, line_y, in_line = _line_directions(x, y, nx, ny)
     # the slope of the ground tells the direction where it is densely seen, else the line that the steps make
-    steps, good = _measured(raster, x, y, nx, ny, SHORT, least, highest)
-    found, left = [steps], np.flatnonzero(~good & in_line)
-    for half in (SHORT, LONG):
-        steps, good = _measured(raster, x[left], y[left], line_x[left], line_y[left], half, least, highest)
+    found, left = [], np.arange(len(x))
+    for raster in rasters:
+        steps, good = _measured(raster, x[left], y[left], nx[left], ny[left], SHORT, least, highest)
         found.append(steps)
-        left = left[~good]
+        left = left[~good & in_line[left]]
+        for half in (SHORT, LONG):
+            steps, good = _measured(raster, x[left], y[left], line_x[left], line_y[left], half, least, highest)
+            found.append(steps)
+            left = left[~good]
     return PlanSteps.join(found)
 
 

@@ -52,7 +52,7 @@ def profiles_beside(survey, road, section, tracks, settings):
     width = settings.profile_width
     points = survey.window(road, section[0] * width, section[1] * width)
     s, d = points.s, points.d
-    along = _ahead_of_vehicle(survey, points, s)
+    along = ahead_of_vehicle(survey, points, s)
     near = np.flatnonzero(np.abs(along) < BESIDE + np.abs(d))
     points, s, d, along = points[near], s[near], d[near], along[near]
     h = points.z - expected_height(survey, road, s)
@@ -81,7 +81,7 @@ def expected_height(survey, road, s):
     return nodes[k] + (at - k) * (nodes[k + 1] - nodes[k])
 
 
-def _ahead_of_vehicle(survey, points, s):
+def ahead_of_vehicle(survey, points, s):
     """(N,) metres along the road from the vehicle to the point when it was measured (0 without times).
 
     What is seen from far behind or ahead lies at a flat angle and carries the drift

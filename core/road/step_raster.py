@@ -14,6 +14,7 @@ from .profiles import lowest_layers
 
 CELL = 0.10          # m
 BELOW, ABOVE = 1.0, 1.0  # m about the expected road within which ground is sought
+FINE_CELL = 0.05     # m, cells whose points are averaged for a noisy scanner
 UNEVEN = 0.7         # share of the least step that level ground may differ within WINDOW cells
 WINDOW = 5           # cells, a square of which is looked at together
 BLOCK, BLOCKS = 5, 5  # cells a side of a block, and blocks a side of the window, that tell the slope of the ground
@@ -90,6 +91,21 @@ def ground_raster(x, y, h, layer_jump):
     tell = spread[n >= SPREAD_POINTS]
     noise = max(float(np.median(tell)), LEAST_NOISE) if len(tell) >= SPREAD_CELLS else USUAL_NOISE
     return GroundRaster(first_column * CELL, first_row * CELL, x[order], y[order], h, np.r_[0, np.cumsum(n)], low.reshape(rows, columns), noise)
+
+
+def averaged(raster, layer_jump):
+    """A raster of means: the points of every FINE_CELL made one, so that the noise of single heights goes down.
+
+    None where there are no points. `noise` is what is left of it.
+    """
+    if raster is None:
+        return None
+    column, row = np.floor(raster.x / FINE_CELL).astype(np.int64), np.floor(raster.y / FINE_CELL).astype(np.int64)
+    _, member = np.unique((row - row.min()) * (column.max() - column.min() + 1) + column - column.min(), return_inverse=True)
+    count = np.bincount(member)
+    mean = ground_raster(*(np.bincount(member, v) / count for v in (raster.x, raster.y, raster.h)), layer_jump)
+    mean.noise = max(raster.noise / np.sqrt(np.median(count)), LEAST_NOISE)
+    return mean
 
 
 def ground_slopes(low):

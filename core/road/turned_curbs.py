@@ -18,14 +18,15 @@ from ..survey.road_frame import CORRIDOR
 from .chains import ROUGH_ROAD
 from .plan_chains import CONNECT, groups_in_line, joined_chains, trace_chains
 from .plan_steps import PlanSteps, measure_plan_steps
-from .sides import SIDES, expected_height, sections_of
-from .step_raster import CELL, driven_ground, falls_again, ground_raster, ground_slopes, step_places
+from .sides import BESIDE, SIDES, ahead_of_vehicle, expected_height, sections_of
+from .step_raster import CELL, averaged, driven_ground, falls_again, ground_raster, ground_slopes, step_places
 
 KINDS = {"main": "of the road's own", "corner": "of corners", "side_street": "of side streets", "island": "of islands"}
 OPENING = 6.0        # m without main curb that are an opening and no driveway
 AT_OPENING = 6.0     # m of main curb beside an opening behind which corners are sought
 BEHIND_CURB = 0.6    # m behind a main curb that are looked at elsewhere
 MARGIN = 2.0         # m of road either side of a section that its own steps need
+NOISY = 0.18         # share of the least curb: a scanner whose heights in a cell scatter more is averaged
 ON_MAIN = 0.25       # m from a main curb within which a step is that curb
 RUN_GAP = 2.5        # m between points of one run of main curb
 RUN_ACROSS = 0.5     # m across between such points
@@ -33,6 +34,7 @@ ISLAND_WIDTH = 8.0   # m within which the ground behind an island's curb comes d
 ISLAND_SHARE = 0.6   # share of an island's steps behind which it does
 SHORTEST = 1.0       # m of a line
 ISLAND_LENGTH = 2.0  # m of lines about one island
+ALONE = 5.0          # m of a line that is a side street's although nothing joins it to the main curb
 ONE_ISLAND = 3.0     # m between them
 DENSEST = 0.6        # m between the steps of a line, on average, at most: scan lines lie apart
 WANDER = 0.02        # m, scatter about its own running line beyond the scanner's noise
@@ -193,9 +195,11 @@ def _steps_of_section(survey, road, section, limits, known, barrier, settings):
     inside = np.abs(d) <= CORRIDOR
     for side, sign in SIDES.items():
         inside &= sign * d <= limits[side](s)
-    points = points[inside]
-    s = s[inside]
-    raster = ground_raster(points.x, points.y, points.z - expected_height(survey, road, s), settings.layer_jump)
+    along = ahead_of_vehicle(survey, points, s)
+    inside &= np.abs(along) < BESIDE + np.abs(d)
+    points, s, along = points[inside], s[inside], along[inside]
+    place = points.x, points.y, points.z - expected_height(survey, road, s)
+    raster = ground_raster(*place, settings.layer_jump)
     if raster is None:
         return None
     line = survey.frame.road(road)
@@ -208,10 +212,17 @@ def _steps_of_section(survey, road, section, limits, known, barrier, settings):
         fresh &= known.query(np.c_[x, y])[0] > ON_MAIN
     if not fresh.any():
         return None
-    steps = measure_plan_steps(raster, x[fresh], y[fresh], nx[fresh], ny[fresh], 0.5 * settings.min_height, settings.max_height)
+    views = [raster] if raster.noise <= NOISY * settings.min_height else _averaged_views(raster, place, along, settings.layer_jump)
+    steps = measure_plan_steps(views, x[fresh], y[fresh], nx[fresh], ny[fresh], 0.5 * settings.min_height, settings.max_height)
     lean = [float(np.median(slope[driven])) for slope in slopes]
     falls = falls_again(raster, lean, steps.x, steps.y, steps.nx, steps.ny, steps.h, steps.height, ISLAND_WIDTH)
-    return steps, falls, np.full(len(steps), raster.noise)
+    return steps, falls, np.full(len(steps), views[0].noise)
+
+
+def _averaged_views(raster, place, along, layer_jump):
+    """Averages of all points, of those seen from before and of those from behind: positions that drifted in between blur a curb."""
+    halves = (ground_raster(*(v[half] for v in place), layer_jump) for half in (along > 0, along <= 0))
+    return [averaged(view, layer_jump) for view in (raster, *halves) if view is not None]
 
 
 def _track(survey, road, first, last):
@@ -267,9 +278,12 @@ def _named(chains, steps, falls, runs, line, limits, passes):
         s, d = line.locate(own.x, own.y)
         if chain.closed or number not in sides:
             behind = np.any([sign * d > limits[side](s, 0.0, 0.0) for side, sign in SIDES.items()], axis=0)
+            side = "left" if np.nanmedian(d - np.mean([p.at_station(s)[0] for p in passes], axis=0)) > 0 else "right"
             if np.mean(np.isfinite(falls[chain.steps]) & ~behind) >= ISLAND_SHARE:
-                track = np.mean([p.at_station(s)[0] for p in passes], axis=0)
-                islands.append(TurnedCurb(own, s, d, "left" if np.nanmedian(d - track) > 0 else "right", "island", chain.closed))
+                islands.append(TurnedCurb(own, s, d, side, "island", chain.closed))
+            elif _length(own.x, own.y) >= ALONE and not behind.any() and np.median(_along(own, s, line)) < ALONG:
+                # of a street whose corner something hides
+                found.append(TurnedCurb(own, s, d, side, "side_street"))
             continue
         found += _away_from(own, s, d, sides[number], line, limits[sides[number]], places[:len(runs)])
     return found + _whole_islands(islands)
@@ -277,26 +291,24 @@ def _named(chains, steps, falls, runs, line, limits, passes):
 
 def _away_from(own, s, d, side, line, limit, runs):
     """A line that continues a main curb: a piece of that curb, or a corner with the straight curb of a side street behind it."""
-    dx, dy = _directions(own)
-    along = dx * np.cos(line.heading(s)) + dy * np.sin(line.heading(s))
-    if np.median(np.abs(along)) > ALONG and not limit.between(np.nanmin(s), np.nanmax(s)):
+    along = _along(own, s, line)
+    if np.median(along) > ALONG and not limit.between(np.nanmin(s), np.nanmax(s)):
         return [TurnedCurb(own, s, d, side, "main")]
     tips = np.array([(run[0][k], run[1][k]) for run in runs for k in (0, -1)])
     near = [np.hypot(*(tips - (own.x[k], own.y[k])).T).min() for k in (0, -1)]
     # in order from the main curb outward
     order = np.arange(len(own)) if near[0] <= near[1] else np.arange(len(own))[::-1]
-    cut = len(own) if max(near) <= CONNECT else _where_straight(own, order, np.abs(along))
+    cut = len(own) if max(near) <= CONNECT else _where_straight(own, order, along)
     parts = [(order[:cut + 1], "corner"), (order[cut:], "side_street")]
     return [TurnedCurb(own[np.sort(part)], s[np.sort(part)], d[np.sort(part)], side, kind) for part, kind in parts if len(part) > 1]
 
 
-def _directions(own):
-    """Unit vectors along a line at its steps, from the neighbours to either side."""
+def _along(own, s, line):
+    """(N,) cosine of the angle between a line and the road at its steps."""
     k = np.arange(len(own))
     a, b = np.maximum(k - 2, 0), np.minimum(k + 2, len(own) - 1)
     dx, dy = own.x[b] - own.x[a], own.y[b] - own.y[a]
-    size = np.maximum(np.hypot(dx, dy), 1e-9)
-    return dx / size, dy / size
+    return np.abs(dx * np.cos(line.heading(s)) + dy * np.sin(line.heading(s))) / np.maximum(np.hypot(dx, dy), 1e-9)
 
 
 def _where_straight(own, order, along):

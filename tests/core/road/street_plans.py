@@ -9,15 +9,15 @@ SPACING = 0.08
 WIDTH, LENGTH = 13.0, 36.0  # m either side of the driven line, m driven
 
 
-def scan(raised, height=0.12, noise=0.003, grade=0.0, hidden=None, seed=8):
+def scan(raised, height=0.12, noise=0.003, grade=0.0, hidden=None, spacing=SPACING, seed=8):
     """(x, y, z, time) of level ground with raised areas, their faces upright.
 
     raised : polygon or collection of them; hidden : polygon within which nothing is seen
-    grade : rise across, m per m
+    grade : rise across, m per m; spacing : m between points
     """
     rng = np.random.default_rng(seed)
-    x, y = (v.ravel() for v in np.meshgrid(np.arange(-3.0, LENGTH + 3.0, SPACING), np.arange(-WIDTH, WIDTH, SPACING)))
-    x, y = x + rng.uniform(0, SPACING, len(x)), y + rng.uniform(0, SPACING, len(y))
+    x, y = (v.ravel() for v in np.meshgrid(np.arange(-3.0, LENGTH + 3.0, spacing), np.arange(-WIDTH, WIDTH, spacing)))
+    x, y = x + rng.uniform(0, spacing, len(x)), y + rng.uniform(0, spacing, len(y))
     z = np.where(shapely.contains_xy(raised, x, y), height, 0.0)
     faces = shapely.get_coordinates(shapely.segmentize(shapely.boundary(raised), 0.05))
     up = np.arange(0.01, height, 0.02)

@@ -54,6 +54,23 @@ def test_the_curb_goes_round_the_corner_into_the_side_street(radius):
     assert {row["side"] for row in edges.rows if row["kind"] != "main"} == {"left"}
 
 
+def test_a_dense_scan_with_centimetres_of_noise_shows_the_corner():
+    ground = side_street()
+    edges = edges_of(scan(ground, noise=0.02, spacing=0.04))
+    lines = in_plan(edges, "corner", "side_street")
+    assert farthest(lines, shapely.boundary(ground)) < 0.06
+    assert shapely.union_all(lines).length > 10.0
+    assert not in_plan(edges, "island")
+
+
+def test_a_street_whose_corner_is_hidden_is_drawn_where_it_is_seen():
+    ground = side_street(start=14.0, end=24.0)
+    edges = edges_of(scan(ground, hidden=shapely.box(5, 3.2, 14.3, 6.5)))
+    lines = [line for line in in_plan(edges, "side_street") if line.bounds[0] < 15]
+    assert shapely.union_all(lines).length > 4.0
+    assert farthest(lines, shapely.boundary(ground)) < 0.04
+
+
 def test_a_corner_begins_where_the_main_edge_ends():
     edges = edges_of_a_side_street()
     ends = {g.coords[k] for g, row in edges if row["kind"] == "main" for k in (0, -1)}
