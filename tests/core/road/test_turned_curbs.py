@@ -56,7 +56,7 @@ def test_the_curb_goes_round_the_corner_into_the_side_street(radius):
 
 def test_a_dense_scan_with_centimetres_of_noise_shows_the_corner():
     ground = side_street()
-    edges = edges_of(scan(ground, noise=0.02, spacing=0.04))
+    edges = edges_of(scan(ground, noise=0.02, spacing=0.035))
     lines = in_plan(edges, "corner", "side_street")
     assert farthest(lines, shapely.boundary(ground)) < 0.06
     assert shapely.union_all(lines).length > 10.0
