@@ -1,9 +1,9 @@
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench package manual window lint translations
+.PHONY: help setup demo test bench package manual window lint translations test-newer models
 
 help: ## this list
-	@grep -hE '^[a-z]+:.*## ' $(firstword $(MAKEFILE_LIST)) | sed -E 's/^([a-z]+):.*## /make \1\t/' | expand -t 16
+	@grep -hE '^[a-z-]+:.*## ' $(firstword $(MAKEFILE_LIST)) | sed -E 's/^([a-z-]+):.*## /make \1\t/' | expand -t 16
 
 setup: ## install what is missing (QGIS too, on Debian) and prepare build/
 	@tools/setup.sh
@@ -31,3 +31,9 @@ lint: setup ## style, spelling, and the scans QGIS's plugin repository makes of 
 
 translations: setup ## new texts into resources/i18n/*.ts for the translators, and the .qm that QGIS loads
 	@tools/translations.sh
+
+models: setup ## the graphical models, after an algorithm gained or lost a parameter
+	@tools/make_model.sh
+
+test-newer: ## the tests on QGIS 3.44, in a Debian forky of its own under build/ (root, debootstrap)
+	@tools/test_newer.sh

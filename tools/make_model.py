@@ -1,63 +1,51 @@
-"""Builds resources/models/road_map.model3: the stages of the road map, chained as a graphical model.
+"""Builds the graphical models of resources/models from the recipes in models.py.
 
-Run with QGIS's Python after a stage gained or lost a parameter: tools/make_model.sh
+Run with QGIS's Python after an algorithm gained or lost a parameter: tools/make_model.sh
 """
 
 import sys
 
+from models import RECIPES
 from plugin_package import ROOT, load
 
-TARGET = ROOT / "resources" / "models" / "road_map.model3"
-NAME, GROUP = "Road map stages", "Models"
+FOLDER = ROOT / "resources" / "models"
+GROUP = "Models"
 STEP_X, STEP_Y = 300, 130
 
-# child -> (its inputs, the outputs that are the model's). "@NAME" is a model input,
-# "child.NAME" another stage's output; what is not named keeps its default.
-SURVEY = {"POINT_CLOUDS": "@POINT_CLOUDS", "TRAJECTORY": "@TRAJECTORY", "CRS": "@CRS"}
-DRIVE = {"TRAJECTORY": "@TRAJECTORY"}
-STAGES = {
-    "detectboundaries": ({**SURVEY, "BOUNDARY_METHOD": "@BOUNDARY_METHOD"}, ("ROAD_EDGES",)),
-    "extractroadsurface": ({**SURVEY, "ROAD_EDGES": "detectboundaries.ROAD_EDGES"}, ("ROAD_SURFACE",)),
-    "correctintensity": ({"ROAD_POINTS": "extractroadsurface.ROAD_POINTS", **DRIVE}, (("OUTPUT", "ROAD_POINTS"),)),
-    "intensityimage": ({"ROAD_POINTS": "correctintensity.OUTPUT"}, ("INTENSITY_IMAGE",)),
-    "extractmarkings": (
-        {"ROAD_POINTS": "correctintensity.OUTPUT", "INTENSITY_IMAGE": "intensityimage.INTENSITY_IMAGE", **DRIVE}, ()),
-    "removeoutliers": ({"INPUT": "extractmarkings.MARKING_POINTS"}, ()),
-    "clustermarkings": ({"MARKING_POINTS": "removeoutliers.OUTPUT", **DRIVE}, ("MARKINGS",)),
-    "fitmarkinglines": (
-        {"CLUSTERED_POINTS": "clustermarkings.CLUSTERED_POINTS", "MARKINGS": "clustermarkings.MARKINGS", **DRIVE},
-        ("MARKING_LINES",)),
-    "drivinglines": (
-        {"MARKING_LINES": "fitmarkinglines.MARKING_LINES", "MARKINGS": "clustermarkings.MARKINGS",
-         "ROAD_EDGES": "detectboundaries.ROAD_EDGES", "ROAD_POINTS": "correctintensity.OUTPUT", **DRIVE},
-        ("DRIVING_LINES", "CURVE_ELEMENTS")),
-}
 
+def definitions():
+    """Every input a model may have, by name."""
+    from qgis.core import (
+        QgsProcessing,
+        QgsProcessingParameterCrs,
+        QgsProcessingParameterFeatureSource,
+        QgsProcessingParameterMultipleLayers,
+    )
 
-OUTPUT_ORDER = [
-    "detectboundaries:Road edges", "extractroadsurface:Road surface", "correctintensity:Road points",
-    "intensityimage:Intensity image", "clustermarkings:Markings", "fitmarkinglines:Marking lines",
-    "drivinglines:Driving lines", "drivinglines:Curve elements",
-]
-
-
-def add_inputs(model):
-    from qgis.core import (QgsProcessing, QgsProcessingModelParameter, QgsProcessingParameterCrs,
-                           QgsProcessingParameterFeatureSource, QgsProcessingParameterMultipleLayers)
-    from qgis.PyQt.QtCore import QPointF
     from lanewright.processing_provider.road.detect_boundaries import METHOD_KNOB
 
-    inputs = (
-        QgsProcessingParameterMultipleLayers("POINT_CLOUDS", "Point clouds", QgsProcessing.SourceType.TypeFile),
-        QgsProcessingParameterFeatureSource("TRAJECTORY", "Trajectory", [QgsProcessing.SourceType.TypeVector]),
+    source = QgsProcessing.SourceType
+    made = (
+        QgsProcessingParameterMultipleLayers("POINT_CLOUDS", "Point clouds", source.TypeFile),
+        QgsProcessingParameterFeatureSource("TRAJECTORY", "Trajectory", [source.TypeVector]),
+        QgsProcessingParameterFeatureSource("REFERENCE_MARKINGS", "Reference markings", [source.TypeVectorPolygon]),
+        QgsProcessingParameterFeatureSource("REFERENCE_LINES", "Reference driving lines", [source.TypeVectorLine]),
         METHOD_KNOB.parameter(),
         QgsProcessingParameterCrs("CRS", "CRS of the point clouds, where they carry none", optional=True),
     )
-    for row, definition in enumerate(inputs):
-        component = QgsProcessingModelParameter(definition.name())
+    return {definition.name(): definition for definition in made}
+
+
+def add_inputs(model, names):
+    from qgis.core import QgsProcessingModelParameter
+    from qgis.PyQt.QtCore import QPointF
+
+    known = definitions()
+    for row, name in enumerate(names):
+        component = QgsProcessingModelParameter(name)
         component.setPosition(QPointF(150, 80 + STEP_Y * row))
-        model.addModelParameter(definition, component)
-    model.setParameterOrder([definition.name() for definition in inputs])
+        model.addModelParameter(known[name], component)
+    model.setParameterOrder(list(names))
 
 
 def source(text):
@@ -69,12 +57,12 @@ def source(text):
     return Source.fromChildOutput(child, output)
 
 
-def add_stages(model):
+def add_stages(model, stages):
     from qgis.core import QgsApplication, QgsProcessingModelChildAlgorithm, QgsProcessingModelOutput
     from qgis.PyQt.QtCore import QPointF
 
     registry = QgsApplication.processingRegistry()
-    for number, (stage, (inputs, results)) in enumerate(STAGES.items()):
+    for number, (stage, (inputs, results)) in enumerate(stages.items()):
         child = QgsProcessingModelChildAlgorithm(f"lanewright:{stage}")
         child.setChildId(stage)
         child.setDescription(registry.algorithmById(f"lanewright:{stage}").displayName())
@@ -95,8 +83,24 @@ def add_stages(model):
         model.addChildAlgorithm(child)
 
 
+def build(recipe):
+    """Write one model; its inputs and results by name."""
+    from qgis.core import QgsProcessingModelAlgorithm
+
+    model = QgsProcessingModelAlgorithm(recipe.name, GROUP)
+    add_inputs(model, recipe.inputs)
+    add_stages(model, recipe.stages)
+    model.setHelpContent({"ALG_DESC": recipe.description, "ALG_VERSION": "1"})
+    model.setOutputOrder(list(recipe.results))
+    model.updateDestinationParameters()
+    path = FOLDER / f"{recipe.file}.model3"
+    if not model.toFile(str(path)):
+        sys.exit(f"{path} could not be written.")
+    return [definition.name() for definition in model.parameterDefinitions()]
+
+
 def main():
-    from qgis.core import QgsApplication, QgsProcessingModelAlgorithm
+    from qgis.core import QgsApplication
 
     application = QgsApplication([], False)
     application.initQgis()
@@ -105,20 +109,9 @@ def main():
 
     plugin = classFactory(None)
     plugin.initProcessing()
-    model = QgsProcessingModelAlgorithm(NAME, GROUP)
-    add_inputs(model)
-    add_stages(model)
-    model.setHelpContent({
-        "ALG_DESC": "The stages of the road map, one by one, with their results handed on through files: the same result as "
-                    "Road map. Copy it and change a stage to your needs.",
-        "ALG_VERSION": "1",
-    })
-    model.setOutputOrder(OUTPUT_ORDER)
-    model.updateDestinationParameters()
-    TARGET.parent.mkdir(parents=True, exist_ok=True)
-    if not model.toFile(str(TARGET)):
-        sys.exit(f"{TARGET} could not be written.")
-    print(TARGET, *(p.name() for p in model.parameterDefinitions()))
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    for recipe in RECIPES:
+        print(recipe.file, *build(recipe))
     plugin.unload()
 
 

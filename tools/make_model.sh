@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Rebuilds the graphical model of the chain; see make_model.py.
+# Rebuilds the graphical models; see make_model.py.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/env.sh"
 # One order of attributes, so that a diff shows what changed

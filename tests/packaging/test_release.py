@@ -90,3 +90,33 @@ def test_libraries_are_looked_for_after_those_of_qgis(monkeypatch, tmp_path):
     lanewright.add_library_folders()
     lanewright.add_library_folders()
     assert sys.path[: len(before)] == before and sys.path.count(str(tmp_path)) == 1
+
+
+def shipped():
+    """The code users get."""
+    return [ROOT / "__init__.py", ROOT / "plugin.py", *(file for room in ("core", "processing_provider", "desktop") for file in (ROOT / room).rglob("*.py"))]
+
+
+def test_nothing_is_fetched_or_sent():
+    network = re.compile(r"^\s*(?:import|from)\s+(?:urllib|requests|http|socket|ftplib|smtplib|aiohttp)\b|QtNetwork|QgsNetwork|QgsBlockingNetwork", re.M)
+    assert not [path for path in shipped() if network.search(path.read_text(encoding="utf-8"))]
+
+
+def test_no_input_is_ever_run():
+    """Not as Python, not as a program, not unpickled, not unpacked."""
+    acting = re.compile(r"(?<![\w.])(?:eval|exec|compile|__import__)\(|\bpickle\b|\bmarshal\b|\bsubprocess\b|os\.system|os\.popen|\bshelve\b|allow_pickle=True"
+                        r"|\bzipfile\b|\btarfile\b|rmtree")
+    found = [(path.name, match.group()) for path in shipped() for match in acting.finditer(path.read_text(encoding="utf-8"))
+             if not re.match(r"\s*(#|\"\"\")", path.read_text(encoding="utf-8")[:match.start()].rpartition("\n")[2])]
+    assert not found
+
+
+def test_every_test_that_a_promise_names_is_there():
+    named = re.findall(r"`(tests/[\w/]+\.py)`", (ROOT / "docs" / "reliability.md").read_text(encoding="utf-8"))
+    assert len(named) > 10 and not [name for name in named if not (ROOT / name).exists()]
+
+
+def test_the_version_stands_in_one_place_and_the_changelog_knows_it(metadata):
+    assert f"## {metadata['version']}" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    code = [path for path in shipped() if re.search(rf"['\"]{re.escape(metadata['version'])}['\"]", path.read_text(encoding="utf-8"))]
+    assert not code
