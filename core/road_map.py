@@ -21,6 +21,7 @@ from .road.boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from .road.curbs import CurbSettings
 from .road.edges import EdgeSettings
 from .road.scanline_boundaries import ScanlineBoundarySettings
+from .road.section_planes import ScanlineSettings
 from .road.surface import SurfaceSettings, extract_road_surface
 from .survey.cube_density import cube_density
 from .survey.survey import SurveySettings, open_survey
@@ -33,6 +34,7 @@ class RoadMapSettings:
     survey: SurveySettings = SurveySettings()
     boundary_method: str = BoundarySettings.method
     curbs: CurbSettings = CurbSettings()
+    planes: ScanlineSettings = ScanlineSettings()
     scanlines: ScanlineBoundarySettings = ScanlineBoundarySettings()
     edges: EdgeSettings = EdgeSettings()
     surface: SurfaceSettings = SurfaceSettings()
@@ -47,7 +49,7 @@ class RoadMapSettings:
 
     @property
     def boundaries(self):
-        return BoundarySettings(self.boundary_method, self.curbs, self.scanlines)
+        return BoundarySettings(self.boundary_method, self.curbs, self.scanlines, self.planes)
 
 
 @dataclass

@@ -12,6 +12,7 @@ from .markings.fit_marking_lines import FitMarkingLines
 from .markings.intensity_image import IntensityImage
 from .markings.remove_outliers import RemoveOutliers
 from .overlay.georeference_image import GeoreferenceImage
+from .road.boundaries_from_scanlines import BoundariesFromScanlines
 from .road.detect_boundaries import DetectBoundaries
 from .road.detect_curbs import DetectCurbs
 from .road.extract_road_surface import ExtractRoadSurface
@@ -26,6 +27,7 @@ ALGORITHMS = (
     InspectSurvey,
     SampleSurvey,
     NormalizedScanlines,
+    BoundariesFromScanlines,
     DetectCurbs,
     FitRoadEdges,
     DetectBoundaries,

@@ -2,7 +2,7 @@
 
 from itertools import islice
 
-from qgis.core import Qgis, QgsFeature, QgsFeatureSink, QgsField, QgsFields, QgsGeometry, QgsWkbTypes
+from qgis.core import Qgis, QgsFeature, QgsFeatureRequest, QgsFeatureSink, QgsField, QgsFields, QgsGeometry, QgsWkbTypes
 from qgis.PyQt.QtCore import QMetaType
 
 from ..core.errors import RoadExtractionError
@@ -75,7 +75,7 @@ def read_features(source, schema, geometry_type, label):
     _check_kind(source, schema, geometry_type, label)
     result = Features(geometry_type, list(schema), crs=crs_text(source.sourceCrs()))
     index = {column.name: source.fields().lookupField(column.name) for column in schema}
-    for feature in source.getFeatures():
+    for feature in _features(source, geometry_type):
         row = {column.name: _typed(feature.attribute(index[column.name]), column) for column in schema}
         if geometry_type == "None":
             result.add(None, **row)
@@ -96,6 +96,13 @@ def read_features(source, schema, geometry_type, label):
                 )
             result.add(part, **row)
     return result
+
+
+def _features(source, geometry_type):
+    """The rows of a source. Scanlines run straight up a wall, which seen from above is no valid line."""
+    if geometry_type.endswith("ZM"):
+        return source.getFeatures(QgsFeatureRequest(), Qgis.ProcessingFeatureSourceFlag.SkipGeometryValidityChecks)
+    return source.getFeatures()
 
 
 def _measured_parts(geometry, label):

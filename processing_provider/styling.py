@@ -25,6 +25,7 @@ LOOKS = {
     "TRUTH_MARKINGS": ("truth_markings", 31),
     "MARKING_LINES": ("marking_lines", 40),
     "ROAD_EDGES": ("road_edges", 50),
+    "BOUNDARIES": ("boundaries", 52),
     "TRUTH_BOUNDARIES": ("truth_boundaries", 51),
     "CURB_POINTS": ("curb_points", 60),
     "DRIVING_LINES": ("driving_lines", 70),

@@ -10,6 +10,7 @@ from .curbs import CurbSettings, detect_curbs
 from .edges import EdgeSettings, fit_road_edges
 from .scanline_boundaries import ScanlineBoundarySettings, curbs_from_scanlines
 from .scanline_source import SurveyScanlines
+from .section_planes import ScanlineSettings
 from .turned_curbs import add_turned_curbs
 
 METHODS = ("profiles", "scanlines", "both")
@@ -21,11 +22,13 @@ class BoundarySettings:
 
     method : "profiles", "scanlines", or "both": the two check each other
     curbs, scanlines : settings of the one and of the other
+    planes : where the scanlines lie
     """
 
     method: str = "profiles"
     curbs: CurbSettings = CurbSettings()
     scanlines: ScanlineBoundarySettings = ScanlineBoundarySettings()
+    planes: ScanlineSettings = ScanlineSettings()
 
     def __post_init__(self):
         if self.method not in METHODS:
@@ -49,7 +52,7 @@ def find_curb_points(survey, settings=BoundarySettings(), progress=Progress()):
     if settings.method != "scanlines":
         found["profiles"] = detect_curbs(survey, settings.curbs, progress.part(0.0, 0.3) if both else progress)
     if settings.method != "profiles":
-        source = SurveyScanlines(survey, sensor_height=settings.scanlines.sensor_height)
+        source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, progress=progress.part(0.3, 0.35))
         found["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length,
                                                   progress.part(0.3, 1.0) if both else progress.part(0.0, 0.85))
         if not both:

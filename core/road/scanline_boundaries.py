@@ -28,6 +28,8 @@ from .scanline_grid import side_scanlines
 from .shadows import Sight
 from .sides import REACH, SECTION, SIDES, Track, expected_height
 
+CORNER_BLOCK = 0.5   # m of road per corner where corners are asked for
+
 
 @dataclass(frozen=True)
 class ScanlineBoundarySettings:

@@ -1,7 +1,5 @@
 """Where normalized scanlines come from: cut from a survey section by section, or read from a layer."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from ..errors import RoadExtractionError
@@ -15,17 +13,14 @@ from .section_planes import ScanlineSettings, scanlines_of
 class SurveyScanlines:
     """The scanlines of a survey, made when they are asked for.
 
-    interval, corridor : metres, those of `settings` where they are not given
+    settings : ScanlineSettings
     sensor_height : m from the trajectory down to the road, 0 = from the data
     lattice : ScanLattice; found here where it is not given
     """
 
-    def __init__(self, survey, interval=None, corridor=None, sensor_height=0.0, settings=ScanlineSettings(), lattice=None,
-                 progress=Progress()):
-        given = {name: value for name, value in (("interval", interval), ("corridor", corridor)) if value is not None}
-        self.settings = replace(settings, **given)
+    def __init__(self, survey, settings=ScanlineSettings(), sensor_height=0.0, lattice=None, progress=Progress()):
+        self.settings, self.sensor_height = settings, sensor_height
         self.survey, self.interval, self.corridor = survey, self.settings.interval, self.settings.corridor
-        self.sensor_height = sensor_height
         self.lattice = find_lattice(survey, self.settings.rotation_frequency, progress) if lattice is None else lattice
         self.frame, self.crs = survey.frame, survey.crs
 
@@ -53,23 +48,22 @@ class LayerScanlines:
     ----------
     lines : dict of road number to Scanlines, each ordered by station
     frame : RoadFrame
+    interval : m between their section planes
     crs : WKT
     sensor_height : m from the trajectory down to the road, 0 = from the data
 
     Raises
     ------
     RoadExtractionError
-        If there are too few scanlines to tell how far they lie apart.
+        If no road has scanlines on two planes.
     """
 
-    def __init__(self, lines, frame, crs, sensor_height=0.0):
+    def __init__(self, lines, frame, interval, crs, sensor_height=0.0):
         self.lines = {road: found for road, found in sorted(lines.items()) if len(found)}
-        self.frame, self.crs = frame, crs
-        steps = np.concatenate([np.empty(0), *(np.diff(np.unique(np.round(found.station, 4))) for found in self.lines.values())])
-        if not len(steps):
+        self.frame, self.interval, self.crs = frame, interval, crs
+        if not any(len(np.unique(found.station)) > 1 for found in self.lines.values()):
             raise RoadExtractionError("The scanlines lie on fewer than two section planes of one road, so no curb can be followed from one "
                                       "to the next. Make them with Normalized scanlines along the whole trajectory.")
-        self.interval = round(float(np.median(steps)), 4)
         self.corridor = max(float(np.abs(found.d).max()) for found in self.lines.values())
         self.heights = {p.number: sensor_height for p in frame.passes} if sensor_height else self._sensor_heights()
 

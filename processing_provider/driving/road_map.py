@@ -14,7 +14,7 @@ from ..markings.fit_marking_lines import LINE_KNOBS
 from ..markings.intensity_image import IMAGE_KNOBS
 from ..markings.remove_outliers import OUTLIER_KNOBS
 from ..road.boundaries_from_scanlines import DOOR_KNOBS
-from ..road.detect_boundaries import METHOD_KNOB
+from ..road.detect_boundaries import METHOD_KNOB, PLANE_KNOBS
 from ..road.detect_curbs import CURB_KNOBS
 from ..road.extract_road_surface import SURFACE_KNOBS
 from ..road.fit_road_edges import EDGE_KNOBS
@@ -25,6 +25,7 @@ from .driving_lines import DRIVING_KNOBS
 # Field of RoadMapSettings -> its knobs
 STAGES = {
     "curbs": CURB_KNOBS,
+    "planes": PLANE_KNOBS,
     "scanlines": DOOR_KNOBS,
     "edges": EDGE_KNOBS,
     "surface": SURFACE_KNOBS,
@@ -40,7 +41,7 @@ STAGES = {
 # The dialog shows what one turns from survey to survey, folds away what one turns now and then,
 # and leaves the rest to the single stages
 SHOWN = ("MIN_HEIGHT", "MAX_HEIGHT", "MAX_GAP", "CELL_SIZE", "LANE_WIDTH", "TRAFFIC_SIDE")
-FOLDED = ("SLOPE", "SCANLINE_MIN_HEIGHT", "BLOCK_LENGTH", "FALLBACK_WIDTH", "MAX_WIDTH", "METHOD", "CURVE", "DEGREE", "LINE_DISTANCE")
+FOLDED = ("SLOPE", "INTERVAL", "SCANLINE_MIN_HEIGHT", "BLOCK_LENGTH", "FALLBACK_WIDTH", "MAX_WIDTH", "METHOD", "CURVE", "DEGREE", "LINE_DISTANCE")
 
 LAYERS = (
     ("ROAD_EDGES", "edges", "LineStringZ", ROAD_EDGES, tr("Road edges")),

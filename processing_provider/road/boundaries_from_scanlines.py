@@ -1,6 +1,9 @@
 """Corners and boundary lines from normalized scanlines."""
 
+from ...core.schemas import CURB_POINTS, ROAD_EDGES, SCANLINES
+from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob
+from ..survey_input import frame_of
 from ..texts import tr
 
 SCANLINE_BOUNDARIES = "road.scanline_boundaries:ScanlineBoundarySettings"
@@ -66,3 +69,37 @@ DOOR_KNOBS = (
     ),
     *SHARED_KNOBS,
 )
+
+
+class BoundariesFromScanlines(LanewrightAlgorithm):
+    ID, TITLE, ROOM = "boundariesfromscanlines", "Boundaries from scanlines", "Road"
+    SUMMARY = "Bottom and top corners of curbs on normalized scanlines, and the boundary lines through them."
+    HELP = ("From the vehicle outward every scanline is searched for a step. About each step the points of the neighbouring scanlines "
+            "give three planes: road, curb face and sidewalk. Where they meet the scanline's own plane lie the corners. Lines are cut "
+            "by status: measured; bridged, a gap between corners; occluded, a gap that something hides.")
+    TAGS = ("curb", "kerb", "boundary", "scanline", "ransac", "corner")
+    LOOKS = {"CORNERS": "CURB_POINTS"}
+
+    def initAlgorithm(self, configuration=None):
+        self.add_layer("SCANLINES", tr("Normalized scanlines"), tr("The layer written by Normalized scanlines."), "LineStringZM")
+        self.add_trajectory()
+        self.add_knobs(BOUNDARY_KNOBS)
+        self.add_sink("CORNERS", tr("Curb corners"), tr("Bottoms and tops, one of each per half metre and side."), fields=CURB_POINTS,
+                      geometry="PointZ", optional=True)
+        self.add_sink("BOUNDARIES", tr("Road boundaries"), tr("Bottom and top lines of either side."), fields=ROAD_EDGES,
+                      geometry="LineStringZ", optional=True)
+
+    def work(self, call, progress):
+        from ...core.road.scanline_boundaries import CORNER_BLOCK, curbs_from_scanlines
+        from ...core.road.scanline_layer import scanlines_from_features
+        from ...core.road.scanline_lines import boundary_lines
+        from ...core.road.scanline_source import LayerScanlines
+
+        settings = call.settings(BOUNDARY_KNOBS)
+        layer = call.features("SCANLINES", SCANLINES, "LineStringZM")
+        frame = frame_of(call, layer.crs, progress)
+        lines, interval = scanlines_from_features(layer, frame)
+        source = LayerScanlines(lines, frame, interval, layer.crs, settings.sensor_height)
+        corners = curbs_from_scanlines(source, settings, CORNER_BLOCK, progress.part(0.3, 0.95))
+        call.layer("CORNERS", corners)
+        call.layer("BOUNDARIES", boundary_lines(corners, frame, settings.max_gap, progress.part(0.95, 1.0)))

@@ -43,3 +43,19 @@ def test_the_road_map_report_shows_how_far_apart_the_methods_are(survey, tmp_pat
         "POINT_CLOUDS": [survey["POINT_CLOUD"]], "TRAJECTORY": survey["TRAJECTORY"], "BOUNDARY_METHOD": "both", "REPORT": str(report),
     })
     assert "Agreement of the two methods" in report.read_text(encoding="utf-8")
+
+
+def test_scanlines_of_a_layer_give_corners_and_boundaries(survey, tmp_path):
+    import processing
+
+    scanlines, corners, boundaries = (str(tmp_path / f"{name}.gpkg") for name in ("scanlines", "corners", "boundaries"))
+    processing.run("lanewright:normalizedscanlines", {
+        "POINT_CLOUDS": [survey["POINT_CLOUD"]], "TRAJECTORY": survey["TRAJECTORY"], "SCANLINES": scanlines,
+    })
+    processing.run("lanewright:boundariesfromscanlines", {
+        "SCANLINES": scanlines, "TRAJECTORY": survey["TRAJECTORY"], "CORNERS": corners, "BOUNDARIES": boundaries,
+    })
+    assert {(row["side"], row["part"]) for row in edges_of(boundaries)} == {(s, p) for s in ("left", "right") for p in ("bottom", "top")}
+    measured = [row for row in edges_of(corners) if row["status"] == "measured"]
+    assert len(measured) > 100 and {row["part"] for row in measured} == {"bottom", "top"}
+    assert all(row["height_m"] > 0.03 and row["support"] >= 30 for row in measured)

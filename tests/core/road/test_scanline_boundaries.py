@@ -9,10 +9,11 @@ from lanewright.core.errors import RoadExtractionError
 from lanewright.core.road.edges import fit_road_edges
 from lanewright.core.road.scanline_boundaries import ScanlineBoundarySettings, curbs_from_scanlines
 from lanewright.core.road.scanline_source import SurveyScanlines
+from lanewright.core.road.section_planes import ScanlineSettings
 
 
 def found(points, settings=ScanlineBoundarySettings(), interval=0.10, **survey):
-    return curbs_from_scanlines(SurveyScanlines(survey_of(points, **survey), interval), settings)
+    return curbs_from_scanlines(SurveyScanlines(survey_of(points, **survey), ScanlineSettings(interval=interval)), settings)
 
 
 def corners(features, side, part="bottom", status="measured"):

@@ -17,7 +17,7 @@ from lanewright.core.schemas import CURB_POINTS
 def layer_of(surveyed, **options):
     """The scanlines of a survey as a layer holds them."""
     source = SurveyScanlines(surveyed)
-    return LayerScanlines({0: source.scanlines(0, *source.span(0))}, surveyed.frame, "", **options)
+    return LayerScanlines({0: source.scanlines(0, *source.span(0))}, surveyed.frame, source.interval, "", **options)
 
 
 @pytest.fixture(scope="module")
@@ -96,4 +96,4 @@ def test_behind_a_parked_car_nothing_is_measured():
 
 def test_a_layer_without_neighbouring_scanlines_is_refused(frame):
     with pytest.raises(RoadExtractionError, match="section planes"):
-        LayerScanlines({0: Scanlines.none()}, frame, "")
+        LayerScanlines({0: Scanlines.none()}, frame, 0.1, "")
