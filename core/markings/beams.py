@@ -21,6 +21,7 @@ RINGS = 1.5          # how much fuller than the mean of a degree about them ring
 UNEQUAL = 0.05       # of asphalt's level: beams that differ less from those beside them are alike
 BESIDE = 3           # beams either side
 WINDOWS, WINDOW = 12, 5.0   # how many windows of a road are looked at to tell whether there are beams; m
+MOST = 20_000        # points of a window that are looked at
 LONGEST_FRAME = 1.0  # s that a turn of a spinning scanner may last
 TILTS = ((0, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))  # signs in which roll and pitch are told
 
@@ -39,10 +40,11 @@ class Frames:
         first, last = np.full(65536, np.inf), np.full(65536, -np.inf)
         for key in road_points.all_sections():
             points = road_points.section(*key)
-            source, time = points.source, points.time
-            begins = np.flatnonzero(np.r_[True, np.diff(source.astype(np.int64)) != 0])
-            np.minimum.at(first, source[begins], time[begins])
-            np.maximum.at(last, source[begins], time[np.r_[begins[1:], len(time)] - 1])
+            order = np.argsort(points.source, kind="stable")
+            source, time = points.source[order], points.time[order]
+            begins = np.flatnonzero(np.r_[True, source[1:] != source[:-1]])
+            first[source[begins]] = np.minimum(first[source[begins]], np.minimum.reduceat(time, begins))
+            last[source[begins]] = np.maximum(last[source[begins]], np.maximum.reduceat(time, begins))
         number = np.flatnonzero(np.isfinite(first))
         number = number[np.argsort(first[number], kind="stable")]
         begin, end = first[number], last[number]
@@ -186,7 +188,7 @@ def _samples(road_points, frame, scanner):
             points = road_points.window(road, s, s + WINDOW)
             rows = np.flatnonzero(points.scanner == scanner)
             if len(rows) >= FEWEST:
-                yield points[rows]
+                yield points[rows[::-(-len(rows) // MOST)]]
 
 
 def _sharpest(samples, passes, frames):

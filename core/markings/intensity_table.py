@@ -14,6 +14,7 @@ BINS = int(2 * REACH / BIN)
 MIXED = 1.5         # times the spread of its neighbours: a bin of paint and asphalt, left out
 PAINT_SIGMA = 3.0   # brighter than asphalt by this many of its lower spread is not asphalt
 ACROSS, AWAY = 0, 1  # how distance is told
+LEVEL_OF = np.clip(np.rint(np.log2(np.arange(2**16) + 1.0) * PER_DOUBLING), 0, LEVELS - 1).astype(np.int32)  # of whole numbers
 
 
 def distances_from_vehicle(points, passes):
@@ -38,24 +39,34 @@ def distances_from_vehicle(points, passes):
     distance = np.full((2, len(points)), np.nan)
     time, number = points.time, points.pass_number
     for p in passes:
-        rows = np.flatnonzero((number == p.number) & (time >= p.time[0] - 1.0) & (time <= p.time[-1] + 1.0))
-        if not len(rows):
+        rows = (number == p.number) & (time >= p.time[0] - 1.0) & (time <= p.time[-1] + 1.0)
+        whole = rows.all()
+        if not whole and not rows.any():
             continue
+        rows = slice(None) if whole else np.flatnonzero(rows)
         here = points[rows]
-        px, py, _ = p.position(time[rows])
-        across = (here.d - np.interp(time[rows], p.time, p.d)) * p.direction
+        px, py, pd = p.at(time[rows], "x", "y", "d")
+        across = (here.d - pd) * p.direction
+        px -= here.x
+        py -= here.y
+        px *= px
+        py *= py
+        px += py
         distance[ACROSS, rows] = across
-        distance[AWAY, rows] = np.copysign(np.hypot(here.x - px, here.y - py), across)
+        distance[AWAY, rows] = np.copysign(np.sqrt(px, out=px), across)
     return distance
 
 
 def distance_bin(distance):
-    """Bin of a signed distance."""
-    return np.clip(np.floor((distance + REACH) / BIN), 0, BINS - 1).astype(np.int64)
+    """(N,) int32 bin of a signed distance."""
+    return np.clip((distance + REACH) * (1.0 / BIN), 0, BINS - 1).astype(np.int32)
 
 
 def to_level(intensity):
-    return np.clip(np.rint(np.log2(np.maximum(intensity, 0) + 1.0) * PER_DOUBLING), 0, LEVELS - 1).astype(np.int64)
+    """(N,) int32 level of intensities."""
+    if intensity.dtype == np.uint16:
+        return LEVEL_OF.take(intensity)
+    return np.clip(np.rint(np.log2(np.maximum(intensity, 0) + 1.0) * PER_DOUBLING), 0, LEVELS - 1).astype(np.int32)
 
 
 def to_intensity(level):
@@ -65,8 +76,10 @@ def to_intensity(level):
 def count_levels(scanner, distances, intensity, scanners):
     """(2, scanners, BINS, LEVELS) int64: how many points have each level, by each way of telling the distance."""
     known = np.isfinite(distances[ACROSS])
-    level, scanner = to_level(intensity[known]), scanner[known].astype(np.int64)
-    return np.stack([np.bincount((scanner * BINS + distance_bin(row[known])) * LEVELS + level,
+    if not known.all():
+        distances, intensity, scanner = distances[:, known], intensity[known], scanner[known]
+    place = scanner.astype(np.int32) * (BINS * LEVELS) + to_level(intensity)
+    return np.stack([np.bincount(distance_bin(row) * np.int32(LEVELS) + place,
                                  minlength=scanners * BINS * LEVELS).reshape(scanners, BINS, LEVELS) for row in distances])
 
 
@@ -141,12 +154,17 @@ class AsphaltTable:
 
     def correct(self, intensity, scanner, distances):
         """Corrected intensities, (N,) float32; NaN where asphalt is unknown."""
-        distance = distances[self.told_by[scanner], np.arange(len(scanner))]
-        position = np.clip((distance + REACH) / BIN - 0.5, 0, BINS - 1)
-        k = np.nan_to_num(np.floor(position)).astype(np.int64)
-        after = np.minimum(k + 1, BINS - 1)
-        share = position - k
-        asphalt = (1 - share) * self.asphalt[scanner, k] + share * self.asphalt[scanner, after]
+        told_by = self.told_by[np.flatnonzero(np.bincount(scanner))]
+        alike = len(told_by) and (told_by == told_by[0]).all()
+        distance = distances[told_by[0]] if alike else np.where(self.told_by[scanner] == ACROSS, *distances)
+        position = np.clip((distance + REACH) * (1.0 / BIN) - 0.5, 0, BINS - 1)
+        k = np.nan_to_num(position).astype(np.intp)
+        position -= k
+        k += scanner.astype(np.intp) * BINS
+        asphalt = self.asphalt.ravel().take(k)
+        after = np.append(self.asphalt, self.asphalt[:, -1:], axis=1)[:, 1:].ravel().take(k)
+        after -= asphalt
+        asphalt += after * position
         if self.logarithmic:
             return (intensity + (self.reference - asphalt)).astype(np.float32)
         return (intensity * (self.reference / np.maximum(asphalt, 1e-6))).astype(np.float32)

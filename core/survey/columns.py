@@ -11,11 +11,12 @@ class Columns:
     only when a column of the result is asked for: most steps look at few.
     """
 
-    __slots__ = ("_arrays", "_make", "_chosen", "_length", "dtype")
+    __slots__ = ("_arrays", "_make", "_chosen", "_locked", "_length", "dtype")
 
     def __init__(self, arrays, dtype, length=None, make=None, chosen=None):
         self._arrays, self._make = arrays, make
         self._chosen = chosen  # (Columns, rows) that these were chosen from
+        self._locked = False
         self.dtype = np.dtype(dtype)
         self._length = len(next(iter(arrays.values()))) if length is None else length
 
@@ -54,7 +55,10 @@ class Columns:
             if found is None:
                 if which not in self.dtype.names:
                     raise KeyError(which)
-                found = self._arrays[which] = self._make(which)
+                found = self._make(which)
+                if self._locked:
+                    found.flags.writeable = False
+                self._arrays[which] = found
             return found
         if isinstance(which, slice):
             return Columns({}, self.dtype, len(range(*which.indices(self._length))), lambda name: self[name][which])
@@ -82,12 +86,13 @@ class Columns:
         """These columns, every one of them made, and what they were made of let go."""
         for name in self.dtype.names:
             self[name]
-        self._make = self._chosen = None
+        self._make = self._chosen = None  # arrays are there for every name, so it is not missed
         return self
 
     def locked(self):
         """The same, not to be written to."""
-        for array in self.whole()._arrays.values():
+        self._locked = True
+        for array in self._arrays.values():
             array.flags.writeable = False
         return self
 

@@ -10,9 +10,8 @@ beside the road) are followed step by step with `Road.locate`.
 import numpy as np
 
 from .reference_line import NODE
+from .road_frame import MOST_TICKS, TICK
 
-TICK = 0.005          # s between the places at which the vehicle's station is looked up
-MOST_TICKS = 20_000_000
 AT_ONCE = 1 << 15     # points worked at a time: what fits the processor's cache
 CLOCK_SLACK = 1.0     # s that a cloud may begin before or end after the trajectory
 
@@ -90,7 +89,7 @@ class _Ticks:
         self.first, span = driven.time[0], driven.time[-1] - driven.time[0]
         self.tick = max(TICK, span / MOST_TICKS)
         times = self.first + self.tick * np.arange(int(span / self.tick) + 2)
-        self.nodes = np.clip((driven.station_at(times) - road.start) / NODE, 0, len(road.x) - 2).astype(np.int32)
+        self.nodes = np.clip((np.interp(times, driven.time, driven.s) - road.start) / NODE, 0, len(road.x) - 2).astype(np.int32)
 
     def node(self, time):
         """(N,) intp node numbers; the ends serve times before and after the pass."""

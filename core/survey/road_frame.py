@@ -16,6 +16,8 @@ from .reference_line import EXTENSION, JUNCTION, NODE, continued, reference_node
 from .trajectory import clean_trajectory
 
 CORRIDOR = 25.0    # m either side
+TICK = 0.005       # s between the times at which a pass is looked up
+MOST_TICKS = 20_000_000
 JOIN_DISTANCE = 12.0          # m between two passes over one carriageway
 JOIN_REACH = 15.0             # m at most, where the lanes of one drift apart
 JOIN_ANGLE = np.radians(30.0)
@@ -140,14 +142,42 @@ class Pass:
     attitude: np.ndarray = field(default=None, repr=False)
     _by_station: tuple = field(default=None, repr=False)
     _progress: np.ndarray = field(default=None, repr=False)
+    _by_tick: dict = field(default_factory=dict, repr=False)
+
+    def at(self, time, *names):
+        """What the vehicle did at (N,) times: (N,) values of each of "x", "y", "z", "s", "d", as at its ends beyond them.
+
+        Values lie on a line between ticks of 5 ms, so that many times in any order cost little.
+        """
+        if not self._by_tick:
+            span = self.time[-1] - self.time[0]
+            tick = max(TICK, span / MOST_TICKS)
+            self._by_tick["time"] = tick, self.time[0] + tick * np.arange(int(np.ceil(span / tick)) + 2)
+        tick, times = self._by_tick["time"]
+        at = (np.asarray(time, float) - times[0]) * (1.0 / tick)
+        np.clip(at, 0.0, len(times) - 1.5, out=at)
+        k = at.astype(np.intp)
+        at -= k
+        found = []
+        for name in names:
+            if name not in self._by_tick:
+                self._by_tick[name] = np.interp(times, self.time, getattr(self, name))
+            table = self._by_tick[name]
+            here = table.take(k, mode="clip")
+            step = table[1:].take(k, mode="clip")
+            step -= here
+            step *= at
+            here += step
+            found.append(here)
+        return found
 
     def position(self, time):
         """Local x, y, z of the vehicle at the given times."""
-        return tuple(np.interp(time, self.time, c) for c in (self.x, self.y, self.z))
+        return tuple(self.at(time, "x", "y", "z"))
 
     def station_at(self, time):
         """Road station of the vehicle at the given times."""
-        return np.interp(time, self.time, self.s)
+        return self.at(time, "s")[0]
 
     def progress_at(self, time):
         """Metres of road gained since the pass began: stands still while the vehicle waits, trembles or backs up."""

@@ -170,13 +170,13 @@ class SectionStore:
             self._kept_bytes -= 0 if records is None else records.nbytes
 
     def _read_piece(self, offset, count):
-        """Columns of a piece of the file; they share what was read."""
-        data = self._read_at(offset, count * self.dtype.itemsize)
-        arrays, first = {}, 0
-        for name in self._names:
-            arrays[name] = np.frombuffer(data, self.dtype[name], count, first)
-            first += arrays[name].nbytes
-        return Columns(arrays, self.dtype, count)
+        """Columns of a piece of the file, each read when it is asked for."""
+        starts = dict(zip(self._names, offset + count * np.cumsum([0] + [self.dtype[name].itemsize for name in self._names])))
+
+        def read(name):
+            return np.frombuffer(self._read_at(int(starts[name]), count * self.dtype[name].itemsize), self.dtype[name])
+
+        return Columns({}, self.dtype, count, read)
 
     def _write(self, offset, records):
         for name in self._names:
