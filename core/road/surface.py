@@ -18,7 +18,7 @@ from .surface_limits import edge_offsets
 from .surface_outline import add_outlines
 from .surface_verge import Profiles, grown_offsets
 
-WINDOW_ROWS = 40      # rows of cells made at a time: 20 m
+WINDOW_ROWS = 10      # rows of cells made at a time: 5 m
 TOLERANCE_FLOOR = 0.03  # m
 TOLERANCE_SIGMAS = 4.0
 

@@ -4,10 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..survey.points import UNIT, order_by
+
 ROW, COLUMN = 0.5, 0.25   # m along and across the road
 LAYER_JUMP = 0.06         # m between two layers: ground below, a car's sill above
 LAYER_DEPTH = 0.12        # m of the lowest layer that count as ground: a wall has no upper end
 SHARE = 0.08              # of a cell's points that the lowest layer holds at least: less is multipath below the road
+MOST = 200                # points of a cell that are looked at: more tell nothing new of it
 FEWEST_LAYER = 3          # points of a layer
 FEWEST_TILT = 6           # points from which a cell's plane and roughness are taken
 NEAR, PER_METRE = 0.7, 0.12  # m about the vehicle's road height, and per metre beside the track, where ground may lie
@@ -76,28 +79,49 @@ def ground_cells(points, first_row, rows, reach, road_height, row_size=ROW, colu
     """
     half = int(np.ceil(reach / column_size))
     columns = 2 * half
-    s, d, z = points.s, points.d, points.z
-    row, column = np.floor(s / row_size).astype(np.int64) - first_row, np.floor(d / column_size).astype(np.int64) + half
-    stations = (first_row + np.arange(rows) + 0.5) * row_size
-    prior = road_height(stations)
-    inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
-    inside[inside] &= np.abs(z[inside] - prior[row[inside]]) < NEAR + PER_METRE * np.abs(d[inside])
-    kept = np.flatnonzero(inside)
-    cell = row[kept] * columns + column[kept]
-    up = points.records["z"][kept].astype(np.int64)
-    order = np.argsort(cell * 2**22 + (up - (up.min() if len(up) else 0)), kind="stable")
-    kept, cell = kept[order], cell[order]
+    prior = road_height((first_row + np.arange(rows) + 0.5) * row_size)
+    kept, cell = _near_ground(points.records, first_row, rows, half, prior, row_size, column_size)
+    kept, cell = _thinned(kept, cell, rows * columns)
+    z = points.records["z"].take(kept)
+    order = order_by(z, cell)
+    kept, cell, z = kept[order], cell[order].astype(np.int64), z[order] * UNIT
     total = np.bincount(cell, minlength=rows * columns)
-    low = kept[_in_lowest_layer(cell, z[kept], total)]
-    at = row[low] * columns + column[low]
-    u = d[low] - (column[low] - half + 0.5) * column_size
-    v = s[low] - (row[low] + first_row + 0.5) * row_size
-    height, rough = _planes(at, u, v, z[low], rows * columns)
-    brightness, scatter = _medians(at, points.intensity[low], rows * columns)
+    low = np.flatnonzero(_in_lowest_layer(cell, z, total))
+    kept, at, z = kept[low], cell[low], z[low]
+    u = points.records["d"].take(kept) * UNIT - (at % columns - half + 0.5) * column_size
+    v = points.records["s"].take(kept) * UNIT - (at // columns + first_row + 0.5) * row_size
+    height, rough = _planes(at, u, v, z, rows * columns)
+    brightness, scatter = _medians(at, points.intensity[kept], rows * columns)
     shape = rows, columns
     count = np.bincount(at, minlength=rows * columns)
     return Cells(first_row, -half, row_size, column_size,
                  *(values.reshape(shape).astype(np.float32) for values in (height, rough, brightness, scatter, count)))
+
+
+def _near_ground(records, first_row, rows, half, prior, row_size, column_size):
+    """Indices of the records in the window and near the road's height, and the cell of each."""
+    s, d = records["s"], records["d"]
+    row = s // int(round(row_size / UNIT))
+    row -= first_row
+    column = d // int(round(column_size / UNIT))
+    column += half
+    inside = (row >= 0) & (row < rows) & (column >= 0) & (column < 2 * half)
+    above = records["z"] - np.rint(prior / UNIT).astype(np.int32).take(row, mode="clip")
+    inside &= np.abs(above) < np.abs(d * np.float32(PER_METRE)) + np.float32(NEAR / UNIT)
+    kept = np.flatnonzero(inside)
+    return kept, row.take(kept) * (2 * half) + column.take(kept)
+
+
+def _thinned(kept, cell, cells):
+    """At most about MOST of the indices of each cell, evenly spread over their order along the road; sorted by cell."""
+    order = order_by(cell)
+    count = np.bincount(cell, minlength=cells)
+    step = -(-count // MOST)
+    if step.max(initial=0) > 1:
+        first = np.cumsum(count) - count
+        rank = np.arange(len(order), dtype=np.int32) - np.repeat(first.astype(np.int32), count)
+        order = order[rank % np.repeat(step.astype(np.int32), count) == 0]
+    return kept[order], cell[order]
 
 
 def _in_lowest_layer(cell, z, total):

@@ -86,6 +86,22 @@ def canonical_order(records):
     return order
 
 
+def order_by(*keys):
+    """Indices that sort by the last of some integer keys, then by those before it; what is equal keeps its order.
+
+    Keys are taken apart into digits of 16 bits, which are sorted in linear time.
+    """
+    order = None
+    for key in keys:
+        if not len(key):
+            return np.empty(0, np.intp)
+        key = _above_least(np.asarray(key, np.int32))
+        for shift in range(0, max(int(key.max()).bit_length(), 1), BITS):
+            digit = (key >> shift).astype(np.uint16)
+            order = np.argsort(digit, kind="stable") if order is None else order[np.argsort(digit[order], kind="stable")]
+    return order
+
+
 def _above_least(values):
     """(N,) uint32 of int32 less the least of them."""
     return (values - values.min()).view(np.uint32)
