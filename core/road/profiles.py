@@ -18,6 +18,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..survey.points import order_by
+
+MOST = 24           # points of a cell that are looked at: more hardly tell its layers better
 HIGH = 0.9          # quantile of the lowest layer that stands for its highest point
 HIGH_SIGMA = 1.2816  # the same quantile of a normal distribution, in sigmas
 GHOST_SHARE = 0.15  # a lowest layer with less than this share of its cell is multipath, not ground
@@ -102,14 +105,9 @@ def pseudo_scan_lines(u, s, h, along, profiles, width, spacing, layer_jump, orig
     """
     first, last = profiles
     rows, cells = last - first, max(int(np.ceil((reach - origin) / spacing)), 1)
-    profile = np.floor(s / width).astype(np.int64) - first
-    cell = np.floor((u - origin) / spacing).astype(np.int64)
-    kept = np.flatnonzero((profile >= 0) & (profile < rows) & (cell >= 0) & (cell < cells)
-                          & (h > -DEPTH) & (h < REACH))
-    place = profile[kept] * cells + cell[kept]
-    # One sort by cell and height: the key holds height in 0.1 mm below the place
-    order = np.argsort((place << 17) + np.rint((h[kept] + DEPTH) * 1e4).astype(np.int64), kind="stable")
-    kept, place = kept[order], place[order]
+    kept, place = _places(u, s, h, first, rows, cells, width, spacing, origin)
+    order = order_by(np.rint((h[kept] + DEPTH) * 1e4).astype(np.int32), place)
+    kept, place = kept[order], place[order].astype(np.int64)
     u, s, h = u[kept], s[kept], h[kept]
     starts = np.searchsorted(place, np.arange(rows * cells + 1))
     ground, first_of, count = lowest_layers(place, h, layer_jump)
@@ -122,6 +120,34 @@ def pseudo_scan_lines(u, s, h, along, profiles, width, spacing, layer_jump, orig
     noise.flat[owner[many]] = (top - middle)[many] / HIGH_SIGMA
     return PseudoScanLines(first, width, spacing, origin, u, s, h, along[kept], ground, starts, low, high, _profile_noise(noise),
                            _spread(h, place, low))
+
+
+def thinned(u, s, h, profiles, width, spacing, origin, reach):
+    """Indices of the points of profiles, of every cell no more than about MOST, evenly spread along the road.
+
+    Parameters as of `pseudo_scan_lines`; the points in order of station.
+    """
+    first, last = profiles
+    rows, cells = last - first, max(int(np.ceil((reach - origin) / spacing)), 1)
+    kept, place = _places(u, s, h, first, rows, cells, width, spacing, origin)
+    if len(kept) <= MOST:
+        return kept
+    count = np.bincount(place - place.min())
+    step = -(-count // MOST)
+    if step.max() == 1:
+        return kept
+    order = order_by(place)
+    start = np.cumsum(count) - count
+    rank = np.arange(len(order), dtype=np.int32) - np.repeat(start.astype(np.int32), count)
+    return kept[order[rank % np.repeat(step.astype(np.int32), count) == 0]]
+
+
+def _places(u, s, h, first, rows, cells, width, spacing, origin):
+    """Indices of the points within profiles and cells, and the place of each: profile * cells + cell."""
+    profile = np.floor(s / width).astype(np.int32) - first
+    cell = np.floor((u - origin) / spacing).astype(np.int32)
+    kept = np.flatnonzero((profile >= 0) & (profile < rows) & (cell >= 0) & (cell < cells) & (h > -DEPTH) & (h < REACH))
+    return kept, profile[kept] * np.int32(cells) + cell[kept]
 
 
 def lowest_layers(place, h, layer_jump):

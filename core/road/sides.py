@@ -2,10 +2,13 @@
 
 import numpy as np
 
-from .profiles import pseudo_scan_lines
+from .profiles import pseudo_scan_lines, thinned
+from .shadows import TALL
 
 SIDES = {"left": 1, "right": -1}
-SECTION = 20.0  # m of road worked at a time
+SECTION = 20.0  # m of road for which the length of blocks is decided
+WORK = 10.0     # m of road worked at a time
+PIECE = 100_000  # points looked at together
 REACH = 20.0    # m from the reference line beyond which no curb is sought
 NODE = 0.25     # m between the nodes of the expected height
 BESIDE = 4.0    # m along the road, and as much again as across, from which a point is used
@@ -28,10 +31,10 @@ class Track:
 
 
 def sections_of(survey, road, width):
-    """The profiles of a road parted for work: list of (first, last + 1) profile numbers, about 20 m each."""
+    """The profiles of a road parted for work: list of (first, last + 1) profile numbers, about 10 m each."""
     start, end = survey.store.span(road)
     first, last = int(np.floor(start / width)), int(np.ceil(end / width))
-    count = max(int(np.ceil((end - start) / SECTION)), 1)
+    count = max(int(np.ceil((end - start) / WORK)), 1)
     bounds = np.unique(np.rint(np.linspace(first, last, count + 1)).astype(int))
     return [(int(a), int(b)) for a, b in zip(bounds[:-1], bounds[1:])]
 
@@ -47,26 +50,48 @@ def profiles_beside(survey, road, section, tracks, settings):
 
     Yields
     ------
-    side, pass number, (u, s, h) of the points, PseudoScanLines
+    side, pass number, (u, s, h) of the tall points, PseudoScanLines
     """
-    width = settings.profile_width
+    width, spacing = settings.profile_width, settings.point_spacing
     points = survey.window(road, section[0] * width, section[1] * width)
-    s, d = points.s, points.d
-    along = ahead_of_vehicle(survey, points, s)
-    near = np.flatnonzero(np.abs(along) < BESIDE + np.abs(d))
-    points, s, d, along = points[near], s[near], d[near], along[near]
-    h = points.z - expected_height(survey, road, s)
     stations = (np.arange(*section) + 0.5) * width
-    for side, sign in SIDES.items():
-        u = sign * d
-        origin = np.floor(tracks[side](stations).min())
-        outward = (u > origin) & (u < REACH)
-        for number in np.unique(points.pass_number):
-            own = np.flatnonzero(outward & (points.pass_number == number))
-            beside = u[own], s[own], h[own]
-            lines = pseudo_scan_lines(*beside, along[own], section, width, settings.point_spacing,
-                                      settings.layer_jump, origin, REACH)
-            yield side, int(number), beside, lines
+    origins = {side: np.floor(tracks[side](stations).min()) for side in SIDES}
+    ground, tall = {}, {}
+    for part in _pieces(points, section, width):
+        s, d = part.s, part.d
+        along = ahead_of_vehicle(survey, part, s)
+        near = np.abs(along) < BESIDE + np.abs(d)
+        h = part.z - expected_height(survey, road, s)
+        for side, sign in SIDES.items():
+            u = sign * d
+            outward = near & (u > origins[side]) & (u < REACH)
+            for number, own in _by_pass(part.pass_number, outward):
+                beside = u[own], s[own], h[own]
+                kept = thinned(*beside, section, width, spacing, origins[side], REACH)
+                ground.setdefault((side, number), []).append([v[kept] for v in (*beside, along[own])])
+                kept = np.flatnonzero(beside[2] > TALL)
+                tall.setdefault((side, number), []).append([v[kept] for v in beside])
+    for side, number in sorted(ground, key=lambda key: (list(SIDES).index(key[0]), key[1])):
+        seen = (np.concatenate(column) for column in zip(*ground[side, number]))
+        lines = pseudo_scan_lines(*seen, section, width, spacing, settings.layer_jump, origins[side], REACH)
+        yield side, number, tuple(np.concatenate(column) for column in zip(*tall[side, number])), lines
+
+
+def _pieces(points, section, width):
+    """The points of a section in runs of whole profiles, small enough for the processor's cache."""
+    count = max(int(np.ceil(len(points) / PIECE)), 1)
+    edges = np.unique(np.rint(np.linspace(*section, count + 1))).astype(int)[1:-1] * width
+    cuts = [0, *np.searchsorted(points.s, edges).tolist(), len(points)]
+    return [points[a:b] for a, b in zip(cuts[:-1], cuts[1:]) if b > a]
+
+
+def _by_pass(numbers, chosen):
+    """[(pass number, indices)] of the chosen points."""
+    if len(numbers) and numbers.min() == numbers.max():
+        own = np.flatnonzero(chosen)
+        return [(int(numbers[0]), own)] if len(own) else []
+    found = np.flatnonzero(np.bincount(numbers[chosen]))
+    return [(int(number), np.flatnonzero(chosen & (numbers == number))) for number in found]
 
 
 def expected_height(survey, road, s):
@@ -76,9 +101,13 @@ def expected_height(survey, road, s):
     first = int(np.floor(np.min(s) / NODE))
     last = int(np.floor(np.max(s) / NODE)) + 1
     nodes = survey.road_height(road, np.arange(first, last + 1) * NODE)
-    at = s / NODE - first
-    k = np.floor(at).astype(np.int64)
-    return nodes[k] + (at - k) * (nodes[k + 1] - nodes[k])
+    at = s * (1.0 / NODE)
+    at -= first
+    k = at.astype(np.intp)
+    at -= k
+    h = nodes.take(k)
+    h += at * np.diff(nodes).take(k)
+    return h
 
 
 def ahead_of_vehicle(survey, points, s):
@@ -89,7 +118,9 @@ def ahead_of_vehicle(survey, points, s):
     """
     along = np.zeros(len(points))
     if survey.has_time:
-        for p in survey.frame.passes:
-            own = np.flatnonzero(points.pass_number == p.number)
-            along[own] = s[own] - p.station_at(points.time[own])
+        for number, own in _by_pass(points.pass_number, np.ones(len(points), bool)):
+            driven = survey.frame.passes[number]
+            if len(own) == len(s):
+                return s - driven.station_at(points.time)
+            along[own] = s[own] - driven.station_at(points.time[own])
     return along
