@@ -9,15 +9,15 @@ import numpy as np
 from ..errors import RoadExtractionError
 from ..parallel import in_order
 from ..progress import Progress
+from ..survey.points import UNIT
 from .intensity_raster import NODATA, TILE, IntensityImage, new_geotiff, write_display_image
+from .interpolation import interpolation_sums
 
 __all__ = ["ImageSettings", "IntensityImage", "write_intensity_image", "write_display_image"]
 
 WINDOW = 20.0          # m of station over which intensities are ranked for the second rule
-NEAREST = 1e-3         # m added to a distance, so that a point on a cell's centre has a finite weight
-STRIP = 64             # rows of a tile summed at once: what fits the processor's cache
 LARGEST = 2_000_000    # px, side of an image: beyond it a coordinate is wrong
-KEPT = 4_000_000       # points of prepared windows kept: neighbouring tiles ask for them again
+KEPT = 3_000_000       # points of prepared windows kept: neighbouring tiles ask for them again
 
 
 @dataclass(frozen=True)
@@ -129,13 +129,21 @@ def _survey_window(road_points, window, settings):
         return (0.0, 1.0), None, np.empty((0, 2), np.int64)
     reach = int(np.ceil(settings.radius_cells))
     column, row = _map_cells(points, road_points.origin, settings.cell_size)
-    coarse = np.unique((column // 64) * 2**32 + (row // 64 + 2**31))
-    corners = np.c_[coarse // 2**32 * 64, (coarse % 2**32 - 2**31) * 64]
+    corners = 64 * _each_once(column >> 6, row >> 6)
     # a block of 64 px, widened by the reach, can touch the tiles its corners lie in
     touched = np.concatenate([corners + np.array([dx, dy]) for dx in (-reach, 63 + reach) for dy in (-reach, 63 + reach)])
     extent = (int(column.min()) - reach, int(column.max()) + reach, int(row.min()) - reach, int(row.max()) + reach)
     touched = np.clip(touched, [extent[0], extent[2]], [extent[1], extent[3]])
     return tuple(np.percentile(points.value, [1.0, 99.0])), extent, np.unique(touched, axis=0)
+
+
+def _each_once(column, row):
+    """(M, 2) the different pairs of column and row, in order."""
+    low = np.array([column.min(), row.min()])
+    shape = column.max() - low[0] + 1, row.max() - low[1] + 1
+    seen = np.zeros(shape, bool)
+    seen[column - low[0], row - low[1]] = True
+    return np.argwhere(seen) + low
 
 
 def _map_cells(points, origin, cell):
@@ -145,7 +153,7 @@ def _map_cells(points, origin, cell):
 
 
 class _Windows:
-    """Windows made ready for weighting: x, y, value and brightness weight; the last used are kept."""
+    """Windows made ready for weighting: x, y (0.1 mm), value and brightness weight; the last used are kept."""
 
     def __init__(self, road_points, ranks):
         self.road_points, self.ranks = road_points, ranks
@@ -162,10 +170,10 @@ class _Windows:
 
     def _made_ready(self, window, beta):
         points = _window_points(self.road_points, window)
-        value = points.value.astype(float)
+        value = points.value
         low, high = self.ranks[window]
-        brightness = np.clip((value - low) / max(high - low, 1e-9), 0.0, 1.0)
-        ready = points.x, points.y, value, 1.0 - beta + beta * brightness
+        brightness = np.clip((value - np.float32(low)) / np.float32(max(high - low, 1e-9)), 0.0, 1.0)
+        ready = points.records["x"], points.records["y"], value, np.float32(1.0 - beta) + np.float32(beta) * brightness
         with self._lock:
             self._kept[window] = ready
             self._count += len(value)
@@ -191,55 +199,15 @@ class _Grid:
         parts = []
         for window in windows:
             x, y, value, weight = reader.get(window, self.settings.beta)
-            u, v = (x - left) / cell, (top - y) / cell
-            near = np.flatnonzero((u >= -reach) & (v >= -reach) & (u < width + reach) & (v < height + reach))
-            parts.append((u[near], v[near], value[near], weight[near]))
+            low = np.floor((np.array([left, top]) - np.array([reach, height + reach]) * cell) / UNIT) - 1
+            high = np.ceil((np.array([left, top]) + np.array([width + reach, reach]) * cell) / UNIT) + 1
+            near = np.flatnonzero((x >= low[0]) & (x <= high[0]) & (y >= low[1]) & (y <= high[1]))
+            u, v = (x[near] * UNIT - left) / cell, (top - y[near] * UNIT) / cell
+            inside = (u >= -reach) & (v >= -reach) & (u < width + reach) & (v < height + reach)
+            if not inside.all():
+                near, u, v = near[inside], u[inside], v[inside]
+            parts.append((u, v, value[near], weight[near]))
         u, v, value, weight = (np.concatenate(column) for column in zip(*parts))
-        order = np.argsort(np.floor(v), kind="stable")
-        u, v, value, weight = u[order], v[order], value[order], weight[order]
-        whole_row = np.floor(v)
-        image = np.empty((height, width), np.float32)
-        for row in range(0, height, STRIP):
-            rows = min(STRIP, height - row)
-            a, b = np.searchsorted(whole_row, [row - reach, row + rows + reach])
-            total, weights = interpolation_sums(u[a:b], v[a:b] - row, value[a:b], weight[a:b], width, rows, self.settings)
-            with np.errstate(invalid="ignore"):
-                image[row:row + rows] = np.where(weights > 0, total / weights, NODATA)
-        return image
-
-
-def interpolation_sums(u, v, value, weight, width, height, settings):
-    """Weighted sums of values and of weights per cell.
-
-    Parameters
-    ----------
-    u, v : (N,) column and row of the points in cells, cell 0 from 0 to 1, at most the radius outside the grid
-    value, weight : (N,) intensity and brightness weight
-
-    Returns
-    -------
-    two (height, width) float64 arrays; both 0 where no point is within the radius
-    """
-    radius, reach = settings.radius_cells, int(np.ceil(settings.radius_cells))
-    margin = 2 * reach
-    columns, rows = width + 2 * margin, height + 2 * margin
-    column, row = np.floor(u).astype(np.int64), np.floor(v).astype(np.int64)
-    cell = (row + margin) * columns + column + margin
-    to_centre_u, to_centre_v = u - column - 0.5, v - row - 0.5
-    total, weights = np.zeros(rows * columns), np.zeros(rows * columns)
-    for dv in range(-reach, reach + 1):
-        for du in range(-reach, reach + 1):
-            if np.hypot(max(abs(du) - 0.5, 0), max(abs(dv) - 0.5, 0)) >= radius:
-                continue
-            distance2 = (to_centre_u - du) ** 2 + (to_centre_v - dv) ** 2
-            target, bright, intensity = cell, weight, value
-            if np.hypot(abs(du) + 0.5, abs(dv) + 0.5) > radius:
-                inside = np.flatnonzero(distance2 <= radius * radius)
-                distance2, target, bright, intensity = distance2[inside], cell[inside], weight[inside], value[inside]
-            distance = np.sqrt(distance2) * settings.cell_size + NEAREST
-            share = bright / (distance * distance if settings.power == 2.0 else distance ** settings.power)
-            target = target + (dv * columns + du)
-            weights += np.bincount(target, share, rows * columns)
-            total += np.bincount(target, share * intensity, rows * columns)
-    kept = slice(margin, margin + height), slice(margin, margin + width)
-    return total.reshape(rows, columns)[kept], weights.reshape(rows, columns)[kept]
+        total, weights = interpolation_sums(u, v, value, weight, width, height, self.settings)
+        with np.errstate(invalid="ignore"):
+            return np.where(weights > 0, total / weights, NODATA).astype(np.float32)

@@ -20,7 +20,7 @@ import numpy as np
 
 from ..survey.points import order_by
 
-MOST = 24           # points of a cell that are looked at: more hardly tell its layers better
+MOST = 60           # points of a cell that are looked at: more hardly tell its layers better
 HIGH = 0.9          # quantile of the lowest layer that stands for its highest point
 HIGH_SIGMA = 1.2816  # the same quantile of a normal distribution, in sigmas
 GHOST_SHARE = 0.15  # a lowest layer with less than this share of its cell is multipath, not ground

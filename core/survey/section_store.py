@@ -219,11 +219,16 @@ class SectionStore:
         return Points(Columns.joined(parts, self.dtype))
 
     def span(self, road):
-        """(start, end) of the sections of a road that have points, metres."""
+        """Stations between which the points of a road lie, start <= station < end; (0, 0) where there are none."""
         sections = self.sections(road)
-        if not sections:
-            return 0.0, 0.0
-        return sections[0] * self.section_length, (sections[-1] + 1) * self.section_length
+        ends = []
+        for numbers, row in ((sections, 0), (sections[::-1], -1)):
+            # a section may be left empty when it is finished
+            stations = next((s for number in numbers if len(s := self.section(road, number)["s"])), None)
+            if stations is None:
+                return 0.0, 0.0
+            ends.append(int(stations[row]))
+        return ends[0] * UNIT, (ends[1] + 1) * UNIT
 
     def close(self):
         """Forget everything and give the disk space back."""
