@@ -12,6 +12,7 @@ import numpy as np
 import shapely
 
 from ..errors import RoadExtractionError
+from ..progress import Progress
 from .lines import checked_tolerances
 from .places import Places, Segments, pieces_of, places_along, runs_of, single_lines
 from .rates import NAN, Errors, Rates
@@ -106,7 +107,8 @@ class _Group:
     interval: np.ndarray
 
 
-def assess_boundaries(result, reference, settings=BoundarySettings(), frame=None, excluded=(), reasons=(), area=None, sides=None):
+def assess_boundaries(result, reference, settings=BoundarySettings(), frame=None, excluded=(), reasons=(), area=None, sides=None,
+                      progress=Progress()):
     """Judge boundary lines.
 
     Parameters
@@ -131,19 +133,21 @@ def assess_boundaries(result, reference, settings=BoundarySettings(), frame=None
     reference_segments, excluded_segments = Segments(theirs), Segments(others)
     my_places = places_along(mine).inside(area)
     # of excluded lines only what judged ones do not cover counts, so both are looked at together
-    aside = excluded_segments.nearest(my_places.xy).distance
-    feet = reference_segments.nearest(my_places.xy)
+    aside = excluded_segments.nearest(my_places.xy, progress=progress.part(0.0, 0.2)).distance
+    feet = reference_segments.nearest(my_places.xy, progress=progress.part(0.2, 0.4))
     judged = ~((aside < BESIDE) & (aside < feet.distance))
     my_places = my_places.only(judged)
-    feet = reference_segments.nearest(my_places.xy)
+    feet = feet.only(judged)
     their_places, other_places = places_along(theirs).inside(area), places_along(others).inside(area)
     placed = [along.of_result(my_places, feet), along.of_reference(their_places),
               _of_excluded(along, other_places, reference_segments)]
+    progress.at(0.6)
     keys, intervals = _intervals(placed, settings.interval)
     groups = [_Group(*group) for group in zip((mine, theirs, others), (mine_owner, theirs_owner, others_owner),
                                               (my_places, their_places, other_places), placed, intervals)]
     signed = np.where(np.isfinite(feet.distance), along.outward(my_places, feet, placed[0]) * feet.distance, NAN)
     table = _judge(keys, groups, feet, signed, settings, reasons)
+    progress.at(0.9)
     beyond = float(my_places.length[groups[0].interval < 0].sum())
     by_side, total = _summary(table, groups[0], feet, signed, settings)
     return BoundaryAccuracy(by_side, total, table, beyond, settings, along, *groups, signed)

@@ -4,25 +4,31 @@ import numpy as np
 import shapely
 
 from ..features import Features
+from ..progress import Progress
 from ..schemas import ASSESSED_BOUNDARIES, ASSESSED_DRIVING_LINES, ASSESSED_MARKINGS
 from .boundaries import SIDES, interval_lines
 from .lines import ASSOCIATED
 
+TOLD = 100  # rows between two looks at Cancel
 
-def boundary_layer(accuracy, crs):
+
+def boundary_layer(accuracy, crs, progress=Progress()):
     """One row an interval and outcome: as many correct, missed and false ones as the table of the report counts."""
     settings, table = accuracy.settings, accuracy.intervals
     layer = Features("MultiLineStringZ", ASSESSED_BOUNDARIES, crs=crs)
     step, k = settings.interval, settings.tolerances.index(settings.tolerance)
-    for outcome, row, geometry in interval_lines(accuracy, settings.tolerance):
+    for number, (outcome, row, geometry) in enumerate(interval_lines(accuracy, settings.tolerance)):
+        if number % TOLD == 0:
+            progress.at(row / len(table.unit))
         largest, lateral = table.largest[row], table.lateral[row]
         measured = outcome in ("correct", "false") and table.judged[row]
         layer.add(
-            _multi(geometry), outcome=outcome, why=_why_interval(table, row, outcome, k, settings), side=SIDES[int(table.side[row])] or None,
+            geometry, outcome=outcome, why=_why_interval(table, row, outcome, k, settings), side=SIDES[int(table.side[row])] or None,
             road=int(table.unit[row]), station_m=float(table.station[row]), end_m=float(table.station[row] + step),
             covered_m=float(table.covered[row]), lateral_m=float(lateral) if measured else None,
             max_m=float(largest) if measured else None, height_m=float(table.height[row]) if measured else None,
             length_m=float(geometry.length))
+    layer.geometries = _multi(layer.geometries)
     return layer
 
 
@@ -41,18 +47,21 @@ def _why_interval(table, row, outcome, k, settings):
     return f"a line up to {100 * table.largest[row]:.0f} cm beside the reference"
 
 
-def driving_line_layer(match, settings, crs):
+def driving_line_layer(match, settings, crs, progress=Progress()):
     """The result's lines cut into correct and false pieces, and the pieces of the reference that were missed."""
     layer = Features("MultiLineStringZ", ASSESSED_DRIVING_LINES, crs=crs)
-    for outcome, owner, geometry, first, last in match.pieces(settings.tolerance):
+    for number, (outcome, owner, geometry, first, last) in enumerate(match.pieces(settings.tolerance)):
+        if number % TOLD == 0:
+            progress.at(0.5 * (first / max(len(match.theirs), 1) + 1) if outcome == "missed" else 0.5 * first / len(match.mine))
         rows = slice(first, last + 1)
         places = match.theirs if outcome == "missed" else match.mine
         distance = (match.to_result if outcome == "missed" else match.to_reference)[rows]
         near = distance[distance <= ASSOCIATED]
         layer.add(
-            _multi(geometry), outcome=outcome, why=_why_piece(outcome, distance, settings), line=int(owner),
+            geometry, outcome=outcome, why=_why_piece(outcome, distance, settings), line=int(owner),
             station_m=float(places.station[first] - places.length[first] / 2), end_m=float(places.station[last] + places.length[last] / 2),
             length_m=float(geometry.length), lateral_m=float(near.mean()) if len(near) else None, max_m=float(near.max()) if len(near) else None)
+    layer.geometries = _multi(layer.geometries)
     return layer
 
 
@@ -82,6 +91,7 @@ def marking_layer(accuracy, result, reference, result_classes, reference_classes
             layer.add(polygon, outcome=str(outcome), why=_why_object(outcome, source, share), source=source,
                       **{"class": None if classes is None or classes[k] is None else str(classes[k])},
                       share_pct=share, area_m2=float(cells[k] * size))
+    layer.geometries = _with_z(layer.geometries) if len(layer) else []
     return layer
 
 
@@ -93,19 +103,20 @@ def _why_object(outcome, source, share):
     return f"{share:.0f} % of it is painted in the reference"
 
 
-def _multi(line):
-    parts = shapely.get_parts(line)
-    return _with_z(shapely.multilinestrings(parts))
+def _multi(lines):
+    """Lines of one part or many as multi-lines."""
+    parts, owner = shapely.get_parts(np.asarray(lines, object), return_index=True)
+    return _with_z(shapely.multilinestrings(parts, indices=owner)) if len(lines) else []
 
 
 def _polygons(shape):
     """The areas of a shape as one multi-polygon; None where it has none."""
     parts = shapely.get_parts(shapely.get_parts(shape))
     parts = parts[shapely.get_type_id(parts) == shapely.GeometryType.POLYGON]
-    return _with_z(shapely.multipolygons(parts)) if len(parts) else None
+    return shapely.multipolygons(parts) if len(parts) else None
 
 
-def _with_z(geometry):
-    """Heights where there are any, 0 where there are none: layers of other software may be flat."""
-    lifted = shapely.force_3d(geometry)
-    return shapely.transform(lifted, lambda xyz: np.nan_to_num(xyz), include_z=True)
+def _with_z(geometries):
+    """A list with heights where there are any, 0 where there are none: layers of other software may be flat."""
+    lifted = shapely.force_3d(np.asarray(geometries, object))
+    return list(shapely.transform(lifted, np.nan_to_num, include_z=True))

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..errors import RoadExtractionError
+from ..progress import Progress
 from .places import Places, Segments, pieces_of, places_along, runs_of, single_lines
 from .rates import NAN, Errors
 
@@ -148,7 +149,7 @@ class LineMatch:
             yield "missed", self.reference_owner[self.theirs.line[first[k]]], geometry, first[k], last[k]
 
 
-def match_lines(result, reference, area=None, max_angle=90.0):
+def match_lines(result, reference, area=None, max_angle=90.0, progress=Progress()):
     """Set two groups of lines against each other in plan.
 
     Parameters
@@ -165,7 +166,8 @@ def match_lines(result, reference, area=None, max_angle=90.0):
     result, result_owner = single_lines([g for g in result if g is not None])
     reference, reference_owner = single_lines([g for g in reference if g is not None])
     mine, theirs = places_along(result).inside(area), places_along(reference).inside(area)
-    feet, back = _feet(mine, reference, max_angle), _feet(theirs, result, max_angle)
+    feet = _feet(mine, reference, max_angle, progress.part(0.0, 0.5))
+    back = _feet(theirs, result, max_angle, progress.part(0.5, 1.0))
     near = feet.distance <= ASSOCIATED
     return LineMatch(result, reference, result_owner, reference_owner, mine, theirs, feet.distance, back.distance,
                      np.where(near, feet.side * feet.distance, NAN), np.where(near, mine.z - feet.z, NAN),
@@ -177,11 +179,11 @@ def compare_lines(result, reference, tolerances=LineSettings.tolerances, area=No
     return match_lines(result, reference, area, max_angle).accuracy(tolerances)
 
 
-def _feet(places, lines, max_angle):
+def _feet(places, lines, max_angle, progress):
     # the nearest line counts where any direction will do, however far: then the distance is known
     if max_angle >= 90.0:
-        return Segments(lines).nearest(places.xy)
-    return Segments(lines).nearest(places.xy, places.heading, np.radians(max_angle), ASSOCIATED)
+        return Segments(lines).nearest(places.xy, progress=progress)
+    return Segments(lines).nearest(places.xy, places.heading, np.radians(max_angle), ASSOCIATED, progress)
 
 
 def _share(part, whole):

@@ -4,10 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from shapely.ops import substring
+
+from ..progress import Progress
 
 STEP = 0.1       # m between compared places along a line
-BATCH = 200_000  # places asked for at a time: neighbours within a reach are many
+BASE = 0.5       # m to either side over which a line's direction is taken: vertices a decimetre apart jitter
+BATCH = 20_000  # places asked for at a time: neighbours within a reach are many
 
 
 def single_lines(geometries):
@@ -65,8 +67,9 @@ def places_along(lines, step=STEP):
     piece = (total / count)[which]
     number = np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)
     segments = Segments(lines)
-    xy, z, heading = segments.at(which, (number + 0.5) * piece)
-    return Places(xy, z, which, (number + 0.5) * piece, piece, heading)
+    station = (number + 0.5) * piece
+    xy, z = segments.at(which, station)
+    return Places(xy, z, which, station, piece, segments.heading_at(which, station))
 
 
 def runs_of(places, key):
@@ -87,7 +90,20 @@ def pieces_of(lines, places, first, last):
     """The stretches of the lines from the first to the last place of each run."""
     start = places.station[first] - places.length[first] / 2
     end = places.station[last] + places.length[last] / 2
-    return [substring(lines[k], max(a, 0.0), b) for k, a, b in zip(places.line[first], start, end)]
+    found, vertices = [], {}
+    for k, a, b in zip(places.line[first].tolist(), start.tolist(), end.tolist()):
+        if k not in vertices:
+            points = shapely.get_coordinates(lines[k], include_z=shapely.has_z(lines[k]))
+            vertices[k] = points, np.r_[0.0, np.cumsum(np.hypot(*np.diff(points[:, :2], axis=0).T))]
+        found.append(_cut(*vertices[k], a, b))
+    return found
+
+
+def _cut(points, along, start, end):
+    """The part of a line from one station to another."""
+    inner = slice(np.searchsorted(along, start + 1e-6, side="right"), np.searchsorted(along, end - 1e-6, side="left"))
+    ends = np.stack([np.interp([start, end], along, axis) for axis in points.T], axis=1)
+    return shapely.LineString(np.concatenate([ends[:1], points[inner], ends[1:]]))
 
 
 @dataclass(frozen=True)
@@ -104,6 +120,9 @@ class Feet:
     line: np.ndarray
     station: np.ndarray
 
+    def only(self, mask):
+        return Feet(*(getattr(self, name)[mask] for name in Feet.__dataclass_fields__))
+
 
 class Segments:
     """All straight pieces of some LineStrings, searchable."""
@@ -118,19 +137,27 @@ class Segments:
         self.a, self.b, self.line = points[own], points[own + 1], owner[own]
         self.length = run[own]
         self.start = along[own] - along[begins[self.line]] if len(own) else np.empty(0)
-        self.heading = np.arctan2(*(self.b - self.a)[:, 1::-1].T)
         self._along = along[own] if len(own) else np.empty(0)
         self._line_start = along[begins] if len(points) else np.empty(0)
+        ends = np.searchsorted(owner, np.arange(len(lines)), side="right") - 1
+        self._line_length = along[ends] - self._line_start if len(points) else np.empty(0)
+        self._heading = None
         self._tree = None
 
     def at(self, line, station):
-        """(xy, z, heading) at stations along the lines of these numbers."""
+        """(xy, z) at stations along the lines of these numbers."""
         k = np.clip(np.searchsorted(self._along, self._line_start[line] + station, side="right") - 1, 0, len(self.a) - 1)
         share = np.clip((station - self.start[k]) / self.length[k], 0.0, 1.0)[:, None]
         spot = self.a[k] + share * (self.b[k] - self.a[k])
-        return spot[:, :2], spot[:, 2], self.heading[k]
+        return spot[:, :2], spot[:, 2]
 
-    def nearest(self, xy, heading=None, max_angle=None, reach=np.inf):
+    def heading_at(self, line, station):
+        """Direction of the lines there, radians, over BASE metres behind and ahead."""
+        behind, ahead = np.maximum(station - BASE, 0.0), np.minimum(station + BASE, self._line_length[line])
+        step = self.at(line, ahead)[0] - self.at(line, behind)[0]
+        return np.arctan2(step[:, 1], step[:, 0])
+
+    def nearest(self, xy, heading=None, max_angle=None, reach=np.inf, progress=Progress()):
         """Feet of (N, 2) places.
 
         With `max_angle` (radians) only segments count that run within this angle of the place's `heading`,
@@ -140,17 +167,23 @@ class Segments:
             return _no_feet(len(xy))
         if self._tree is None:
             self._tree = shapely.STRtree(shapely.linestrings(np.stack([self.a[:, :2], self.b[:, :2]], axis=1)))
-        if max_angle is None:
-            (place, segment), _ = self._tree.query_nearest(shapely.points(xy), return_distance=True, all_matches=False)
-            return self._feet(xy, place, segment)
-        parts = [self._feet(xy[k:k + BATCH], *self._parallel(xy[k:k + BATCH], heading[k:k + BATCH], max_angle, reach))
-                 for k in range(0, len(xy), BATCH)]
+        parts = []
+        for k in range(0, len(xy), BATCH):
+            progress.at(k / len(xy))
+            some = slice(k, k + BATCH)
+            if max_angle is not None and self._heading is None:
+                self._heading = self.heading_at(self.line, self.start + self.length / 2)
+            if max_angle is None:
+                pairs = self._tree.query_nearest(shapely.points(xy[some]), all_matches=False)
+            else:
+                pairs = self._parallel(xy[some], heading[some], max_angle, reach)
+            parts.append(self._feet(xy[some], *pairs))
         return Feet(*(np.concatenate([getattr(part, name) for part in parts]) for name in Feet.__dataclass_fields__))
 
     def _parallel(self, xy, heading, max_angle, reach):
         """(place, segment) pairs: of the segments within reach that run the same way, the nearest."""
         place, segment = self._tree.query(shapely.points(xy), predicate="dwithin", distance=reach)
-        turned = np.abs((heading[place] - self.heading[segment] + np.pi / 2) % np.pi - np.pi / 2)
+        turned = np.abs((heading[place] - self._heading[segment] + np.pi / 2) % np.pi - np.pi / 2)
         place, segment = place[turned <= max_angle], segment[turned <= max_angle]
         order = np.lexsort((segment, self._to(xy[place], segment)[2], place))
         first = order[np.unique(place[order], return_index=True)[1]]

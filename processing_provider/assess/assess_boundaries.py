@@ -103,9 +103,9 @@ class AssessBoundaries(LanewrightAlgorithm):
         progress.at(0.4)
         accuracy = assess_boundaries(
             result.geometries, judged.geometries, settings, frame, reference.only(excluded).geometries,
-            [kind for kind, out in zip(kinds, excluded) if out], area, judged.column("side"))
+            [kind for kind, out in zip(kinds, excluded) if out], area, judged.column("side"), progress.part(0.4, 0.8))
         progress.at(0.8)
-        layer = boundary_layer(accuracy, crs)
+        layer = boundary_layer(accuracy, crs, progress.part(0.8, 0.95))
         call.layer("OUTPUT", layer)
         if call.wants("REPORT"):
             call.text("REPORT", boundary_report(accuracy, layer, (layer_name(call, "INPUT"), layer_name(call, "REFERENCE")), warnings))

@@ -91,10 +91,10 @@ class AssessDrivingLines(LanewrightAlgorithm):
         frame, area = frame_of_drive(call, crs), area_of(call, crs, warn)
         check_reference(reference, result, frame, area, warn=warn)
         progress.at(0.3)
-        match = match_lines(result.geometries, reference.geometries, area, settings.max_angle)
+        match = match_lines(result.geometries, reference.geometries, area, settings.max_angle, progress.part(0.3, 0.7))
         accuracy = match.accuracy(settings.tolerances)
         progress.at(0.7)
-        layer = driving_line_layer(match, settings, crs)
+        layer = driving_line_layer(match, settings, crs, progress.part(0.7, 0.95))
         call.layer("OUTPUT", layer)
         if call.wants("REPORT"):
             station, along = stations_of_match(match, frame)
