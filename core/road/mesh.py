@@ -16,7 +16,8 @@ from ..survey.scan_lattice import time_order
 SLOW = 0.01          # m of driving between lines: nearer ones, of a vehicle that waits, tell nothing new
 LONGEST_RIB = 0.30   # m, or LINES_AHEAD times what was driven during a turn where that is more
 LINES_AHEAD = 3      # at which a point of the same phase is sought
-MISSING = 3          # pulses that may be missing between neighbours on a line
+MISSING = 3          # pulses that may be missing between neighbours on a line,
+NEIGHBOURS = 0.15    # or m between them, whatever is missing
 LONGEST_EDGE = 1.0   # m along a line: ground seen at so flat an angle tells little
 RANGE_JUMP = 0.30    # m
 SAME = 1e-6          # of the way between two points: nearer is the point itself
@@ -104,20 +105,21 @@ def scan_lines(records, p, clock, corridor):
     phase = (time - np.repeat(begins[:-1][used], counts)) / np.repeat(length, counts)
     s, d, z = (records[name] * UNIT for name in ("s", "d", "z"))
     reach = _reach(s, d, z, p, begins[:-1][used], counts)
-    apart = np.diff(phase)
-    leap = np.abs(np.diff(reach))
     joined = np.zeros(len(s), bool)
-    joined[:-1] = ((line[1:] == line[:-1]) & (apart <= (MISSING + 1.5) * clock.pulse) & ~_is_jump(leap, reach[:-1], apart)
-                   & (np.abs(np.diff(s)) <= LONGEST_EDGE) & (np.abs(np.diff(d)) <= LONGEST_EDGE))
+    joined[:-1] = (line[1:] == line[:-1]) & _side_by_side(np.diff(phase), reach, np.abs(np.diff(s)), np.abs(np.diff(d)), np.diff(z), clock)
     return ScanLines(line, phase, s, d, z, records["intensity"].astype(np.float64), reach, joined, np.diff(driven)[used])
 
 
-def _is_jump(leap, reach, apart):
-    """Whether changes of range are edges of things: beyond RANGE_JUMP and too steep for ground at a grazing angle.
+def _side_by_side(apart, reach, ds, dd, dz, clock):
+    """(N - 1,) whether points that follow on each other are neighbours on a surface.
 
-    leap, reach : (N,) metres; apart : (N,) turns of the mirror
+    apart : turns of the mirror between them; reach : (N,) m from the vehicle; ds, dd, dz : metres between them
     """
-    return (leap > RANGE_JUMP) & (GRAZING * leap > 2 * np.pi * np.abs(apart) * reach)
+    leap = np.abs(np.diff(reach))
+    edge = (leap > RANGE_JUMP) & (GRAZING * leap > 2 * np.pi * apart * reach[:-1])
+    near = apart <= (MISSING + 1.5) * clock.pulse
+    near |= ds * ds + dd * dd + dz * dz <= NEIGHBOURS**2
+    return near & ~edge & (ds <= LONGEST_EDGE) & (dd <= LONGEST_EDGE)
 
 
 def _reach(s, d, z, p, time, counts):

@@ -17,14 +17,13 @@ from ..errors import RoadExtractionError
 from ..parallel import in_order
 from ..progress import Progress
 from ..survey.scan_lattice import find_lattice, scanner_runs
-from .mesh import GRAZING, LINES_AHEAD, LONGEST_EDGE, LONGEST_RIB, MISSING, RANGE_JUMP, ribs_of, scan_lines, slanting_edges
+from .mesh import LINES_AHEAD, LONGEST_EDGE, LONGEST_RIB, ribs_of, scan_lines, slanting_edges
 from .point_scanlines import point_scanlines
+from .scanline_chains import PlaneVertices, increasing, plane_order
 from .scanlines import Scanlines
 from .sides import SECTION
 
-BACKWARD = 0.05   # m that a line may go back across the road (noise on a face) before it is parted
-FEWEST = 2        # vertices of a line
-FINENESS = 65535  # steps of a turn by which vertices are put in order
+FEWEST = 2  # vertices of a line
 
 
 @dataclass(frozen=True)
@@ -85,10 +84,10 @@ def scanlines_of(survey, road, start, end, settings=ScanlineSettings(), lattice=
         meshed = [key in lattice.clocks for key in zip(lines.pass_number.tolist(), lines.scanner.tolist())]
         parts.append(lines[~np.array(meshed, bool)])
     lines = Scanlines.join(parts)
-    if len(parts) > 1 and len(lines):
-        order = np.lexsort((lines.d[lines.first[:-1]], lines.scanner, lines.pass_number, np.rint(lines.station / interval)))
-        lines = lines[order]
-    return lines
+    if not len(lines):
+        return lines
+    order = np.lexsort((lines.d[lines.first[:-1]], lines.scanner, lines.pass_number, np.rint(lines.station / interval)))
+    return lines if (np.diff(order) == 1).all() else lines[order]
 
 
 def all_scanlines(survey, road, settings=ScanlineSettings(), lattice=None, progress=Progress()):
@@ -133,14 +132,15 @@ def _cut(records, p, key, clock, planes, settings):
     along = (plane - near[rib]) / (far[rib] - near[rib])
     crossed = Crossings(ribs.point[rib], ribs.ahead[rib], ribs.share[rib], along)
     phase = crossed.of(lines.phase)
-    order = _order(plane - planes[0], phase if clock.leftward else 1.0 - phase)
+    order = plane_order(plane - planes[0], phase if clock.leftward else 1.0 - phase)
     plane, phase, crossed = plane[order], phase[order], crossed[order]
-    d, z = crossed.of(lines.d), crossed.of(lines.z)
-    parted = ((np.diff(plane) != 0) | (np.abs(np.diff(phase)) > (MISSING + 1.5) * clock.pulse) | (np.diff(d) < -BACKWARD)
-              | (np.diff(d) > LONGEST_EDGE) | _edges_of_things(d, z, plane, planes, p, settings.interval))
-    first = np.r_[0, np.flatnonzero(parted) + 1, len(d)]
-    found = Scanlines(plane[first[:-1]] * settings.interval, np.full(len(first) - 1, key[0]), np.full(len(first) - 1, key[1]), first,
-                      _increasing(d, first), z, crossed.of(lines.intensity).astype(np.float32))
+    d, z, intensity = (crossed.of(values) for values in (lines.d, lines.z, lines.intensity))
+    order, first = PlaneVertices.seen_from(p, settings.interval, clock, plane, phase, d, z).lines()
+    if order is not None:
+        plane, d, z, intensity = plane[order], d[order], z[order], intensity[order]
+    count = len(first) - 1
+    found = Scanlines(plane[first[:-1]] * settings.interval, np.full(count, key[0]), np.full(count, key[1]), first,
+                      increasing(d, first), z, intensity.astype(np.float32))
     return found[np.diff(first) >= FEWEST]
 
 
@@ -163,27 +163,3 @@ class Crossings:
         ahead -= near
         ahead *= self.along
         return near + ahead
-
-
-def _edges_of_things(d, z, plane, planes, p, interval):
-    """(N - 1,) whether a vertex and the next one are seen from the track one behind the other, a jump of range between them."""
-    track_d, track_z = p.at_station(np.arange(*planes) * interval)
-    across, above = d - track_d[plane - planes[0]], z - track_z[plane - planes[0]]
-    away = np.hypot(across, above)
-    leap = np.abs(np.diff(away))
-    aside = np.abs(across[1:] * above[:-1] - across[:-1] * above[1:])
-    return (leap > RANGE_JUMP) & (aside < GRAZING * leap * away[:-1])
-
-
-def _order(plane, phase):
-    """Indices that sort by plane, then phase; short integers are sorted by their digits, in one go."""
-    by_phase = np.argsort((phase * FINENESS).astype(np.uint16), kind="stable")
-    plane = plane[by_phase]
-    return by_phase[np.argsort(plane.astype(np.int16) if plane.max() < 2**15 else plane, kind="stable")]
-
-
-def _increasing(d, first):
-    """Offsets that do not decrease within a line: midway between the greatest before and the least behind."""
-    apart = 1e3 * np.repeat(np.arange(len(first) - 1), np.diff(first))
-    shifted = d + apart
-    return 0.5 * (np.maximum.accumulate(shifted) + np.minimum.accumulate(shifted[::-1])[::-1]) - apart

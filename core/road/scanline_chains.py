@@ -1,0 +1,84 @@
+"""Where planes cut the mesh, side by side: the vertices of section planes chained into lines."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .mesh import GRAZING, LONGEST_EDGE, MISSING, NEIGHBOURS, RANGE_JUMP
+
+BACKWARD = 0.05   # m that a line may go back across the road (noise on a face) before it is parted
+BETWEEN = 3       # pieces of something else that may lie between two pieces of one line: a scanner that looks ahead
+#                   sees a car and the ground beside it at one phase of its mirror, in different turns
+FINENESS = 65535  # steps of a turn by which vertices are put in order
+
+
+@dataclass
+class PlaneVertices:
+    """(N,) vertices of one pass and scanner, by plane and then by mirror phase from right to left.
+
+    across, above : metres from the track where it passes the plane; gap : turns that neighbours may be apart
+    """
+
+    plane: np.ndarray
+    phase: np.ndarray
+    d: np.ndarray
+    z: np.ndarray
+    across: np.ndarray
+    above: np.ndarray
+    gap: float
+
+    @classmethod
+    def seen_from(cls, p, interval, clock, plane, phase, d, z):
+        """The vertices as the track of pass `p` sees them."""
+        first = int(plane[0])
+        track_d, track_z = p.at_station(np.arange(first, int(plane[-1]) + 1) * interval)
+        return cls(plane, phase, d, z, d - track_d[plane - first], z - track_z[plane - first], (MISSING + 1.5) * clock.pulse)
+
+    def __post_init__(self):
+        self.away = np.hypot(self.across, self.above)
+
+    def side_by_side(self, i, j):
+        """Whether vertices j are the next ones to the left of vertices i on one surface (i and j index alike)."""
+        step, rise = self.d[j] - self.d[i], self.z[j] - self.z[i]
+        near = (np.abs(self.phase[j] - self.phase[i]) <= self.gap) | (step * step + rise * rise <= NEIGHBOURS**2)
+        # seen from the track one behind the other, with a jump of range between them: the edge of a thing and what lies behind
+        leap = np.abs(self.away[j] - self.away[i])
+        aside = np.abs(self.across[j] * self.above[i] - self.across[i] * self.above[j])
+        edge = (leap > RANGE_JUMP) & (aside < GRAZING * leap * self.away[i])
+        return near & ~edge & (self.plane[j] == self.plane[i]) & (step >= -BACKWARD) & (step <= LONGEST_EDGE)
+
+    def lines(self):
+        """(order of the vertices, None where it stays; (L + 1,) first vertex of each line in that order)."""
+        count = len(self.d)
+        begin = np.r_[0, np.flatnonzero(~self.side_by_side(slice(0, count - 1), slice(1, count))) + 1]
+        end = np.r_[begin[1:], count] - 1
+        before = np.full(len(begin), -1)   # the piece that a piece goes on from
+        ahead = np.zeros(len(begin), bool)
+        for lag in range(2, min(BETWEEN + 2, len(begin))):
+            free = np.flatnonzero(~ahead[:-lag] & (before[lag:] < 0))
+            free = free[self.side_by_side(end[free], begin[free + lag])]
+            before[free + lag], ahead[free] = free, True
+        if not ahead.any():
+            return None, np.r_[begin, count]
+        head = np.where(before < 0, np.arange(len(begin)), before)
+        while (head[head] != head).any():
+            head = head[head]
+        pieces = np.argsort(head, kind="stable")
+        lengths = (end - begin + 1)[pieces]
+        starts = np.cumsum(lengths) - lengths
+        order = np.repeat(begin[pieces] - starts, lengths) + np.arange(count)
+        return order, np.r_[starts[np.r_[True, np.diff(head[pieces]) > 0]], count]
+
+
+def plane_order(plane, phase):
+    """Indices that sort by plane (whole numbers from 0), then phase; short integers are sorted by their digits, in linear time."""
+    by_phase = np.argsort((phase * FINENESS).astype(np.uint16), kind="stable")
+    plane = plane[by_phase]
+    return by_phase[np.argsort(plane.astype(np.int16) if plane.max() < 2**15 else plane, kind="stable")]
+
+
+def increasing(d, first):
+    """Offsets that do not decrease within a line: midway between the greatest before and the least behind."""
+    apart = 1e3 * np.repeat(np.arange(len(first) - 1), np.diff(first))
+    shifted = d + apart
+    return 0.5 * (np.maximum.accumulate(shifted) + np.minimum.accumulate(shifted[::-1])[::-1]) - apart
