@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 from .places import Segments, single_lines
 
 KERNEL = 0.2         # m, radius of the neighbourhood, as the driving-line thesis has it
-SAMPLE = 4000        # marking points whose curvature is taken, spread evenly
+SAMPLE = 1500        # marking points whose curvature is taken, spread evenly
 LEAST = 12           # neighbours that a quadric of six coefficients needs to mean something
 FLAT = 0.03          # least share of the second principal direction: below, the neighbours lie in a line
 STEADY = 1e3         # largest condition of the equations for the quadric

@@ -43,7 +43,7 @@ def polygons_of_raster(path, progress=Progress()):
         layer = source.CreateLayer("painted", None, ogr.wkbPolygon)
         layer.CreateField(ogr.FieldDefn("value", ogr.OFTInteger))
         band = values.GetRasterBand(1)
-        gdal.Polygonize(band, band, layer, 0, ["8CONNECTED=8"], callback=lambda share, *_: progress.at(0.7 + 0.3 * share) or 1)
+        _polygonize(band, layer, progress.part(0.7, 1.0))
         found, kinds = [], []
         for feature in layer:
             found.append(shapely.from_wkb(bytes(feature.GetGeometryRef().ExportToWkb())))
@@ -54,6 +54,29 @@ def polygons_of_raster(path, progress=Progress()):
     crs = raster.GetProjection()
     # patches that touch themselves at a corner are no valid polygons
     return list(shapely.make_valid(np.asarray(found, object))) if found else [], np.array(kinds, int), crs
+
+
+def _polygonize(band, layer, progress):
+    """GDAL cannot pass an exception through its own code: what Cancel raises is kept and raised again."""
+    from osgeo import gdal
+
+    stopped = []
+
+    def tell(share, *_):
+        try:
+            progress.at(share)
+        except Exception as reason:
+            stopped.append(reason)
+            return 0
+        return 1
+
+    try:
+        gdal.Polygonize(band, band, layer, 0, ["8CONNECTED=8"], callback=tell)
+    except RuntimeError:
+        if not stopped:
+            raise
+    if stopped:
+        raise stopped[0]
 
 
 def _values(raster, path, progress):

@@ -191,6 +191,10 @@ class TestWhatCannotBeJudged:
         results, report = run(algorithm, tmp_path, INPUT=self.good(kind, crs=""), REFERENCE=self.good(kind))
         assert results["F1"] == 100 and "has no CRS" in report
 
+    def test_layers_of_a_local_system_without_any_crs_are_judged(self, provider, tmp_path, algorithm, kind):
+        results, _ = run(algorithm, tmp_path, INPUT=self.good(kind, crs=""), REFERENCE=self.good(kind, crs=""))
+        assert results["F1"] == 100 and not results["OUTPUT"].crs().isValid()
+
     def test_an_area_elsewhere_is_refused(self, provider, algorithm, kind):
         area = layer("Polygon", ["Polygon ((500 500, 510 500, 510 510, 500 500))"])
         assert "inside the area" in refusal(algorithm, INPUT=self.good(kind), REFERENCE=self.good(kind), AREA=area)

@@ -8,7 +8,8 @@ from shapely.geometry import LineString, box
 
 from lanewright.core.assess.markings import FALSE, FALSE_BESIDE, HIT, MISSED, MarkingAccuracySettings, assess_markings
 from lanewright.core.assess.painted import polygons_of_raster, strips
-from lanewright.core.errors import RoadExtractionError
+from lanewright.core.errors import Cancelled, RoadExtractionError
+from lanewright.core.progress import Progress
 
 CELL = 0.04
 LINE = box(0.0, 0.0, 10.0, 4 * CELL)      # 250 x 4 cells
@@ -133,3 +134,15 @@ def test_a_line_with_a_width_is_paint():
 def test_cells_that_cannot_be_meant_are_refused():
     with pytest.raises(RoadExtractionError, match="cell size is 4 m; it must be between"):
         MarkingAccuracySettings(cell_size=4)
+
+
+def test_cancel_is_heard_while_a_mask_is_read(tmp_path):
+    class Impatient(Progress):
+        def at(self, fraction):
+            if fraction > 0.7:
+                raise Cancelled
+
+    mask = np.zeros((400, 400), np.uint8)
+    mask[::3, ::3] = 1
+    with pytest.raises(Cancelled):
+        polygons_of_raster(raster(tmp_path / "mask.tif", mask), Impatient())
