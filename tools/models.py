@@ -83,4 +83,4 @@ ASSESSED_ROAD_MAP = Recipe(
      "assessdrivinglines:Driving lines report"),
 )
 
-RECIPES = (ROAD_MAP, ASSESSED_ROAD_MAP)
+RECIPES = (ROAD_MAP, SCANLINE_BOUNDARIES, ASSESSED_ROAD_MAP)

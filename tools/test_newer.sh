@@ -29,10 +29,13 @@ cp -L /etc/resolv.conf "$system/etc/resolv.conf"
 cp -L /etc/ssl/certs/ca-certificates.crt "$system/root/ca.crt"
 for file in /etc/pip.conf; do [ -e "$file" ] && sed 's#^cert *=.*#cert = /root/ca.crt#' "$file" >"$system$file"; done
 
-# The committed state, with the build folder of the last time kept
+# Mirrors of a release in the making lag behind
+echo 'Acquire::Check-Valid-Until "false";' >"$system/etc/apt/apt.conf.d/99lagging"
+
+# This checkout's files, with the build folder of the last time kept
 mkdir -p "$system/lanewright"
 find "$system/lanewright" -mindepth 1 -maxdepth 1 ! -name build -exec rm -rf {} +
-git archive HEAD | tar -x -C "$system/lanewright"
+git ls-files -z | tar -c --null -T - | tar -x -C "$system/lanewright"
 run() { chroot "$system" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 PIP_CERT=/root/ca.crt SSL_CERT_FILE=/root/ca.crt "$@"; }
 run make -C /lanewright setup
 run qgis_process --version | head -n 1
