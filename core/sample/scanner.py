@@ -60,7 +60,10 @@ class Scanner:
         return origin.reshape(3, -1), direction.reshape(3, -1), times.ravel(), np.tile(angle, len(lines))
 
 
-def butterfly(rotation_rate, pulse_rate):
-    """Left and right scanner behind and above the trajectory's point, as on a roof-mounted two-scanner system."""
-    return [Scanner(1, rotation_rate, pulse_rate, -45.0, -20.0, (-2.45, 0.32, 0.0), 1.0),
-            Scanner(2, rotation_rate, pulse_rate, 45.0, -20.0, (-2.45, -0.32, 0.0), 0.94)]
+def butterfly(rotation_rate, pulse_rate, yaw):
+    """Left and right scanner behind and above the trajectory's point, as on a roof-mounted two-scanner system.
+
+    yaw : degrees by which their planes are turned from straight across, one either way
+    """
+    return [Scanner(1, rotation_rate, pulse_rate, -yaw, -20.0, (-2.45, 0.32, 0.0), 1.0),
+            Scanner(2, rotation_rate, pulse_rate, yaw, -20.0, (-2.45, -0.32, 0.0), 0.94)]

@@ -49,6 +49,7 @@ class SampleSettings:
     speed_kmh: float = 50.0        # of the vehicle
     pulse_rate: float = 300_000.0  # pulses per second of each scanner
     rotation_rate: float = 200.0   # lines per second of each scanner
+    mount_yaw: float = 45.0        # degrees of the scanners' planes from straight across, one turned either way
     radius: float = 120.0          # m, of the bends
     curb_height: float = 0.13      # m
     gutter: float = 0.0            # m, width of a concrete gutter along the curbs
@@ -61,7 +62,7 @@ class SampleSettings:
             raise RoadExtractionError(f"There is no sample scene {self.scene!r}. Choose one of: {', '.join(SCENES)}.")
         for name, low, high, unit in (
                 ("length", 20, 20_000, "m"), ("seed", 0, 2**31, ""), ("speed_kmh", 5, 120, "km/h"), ("pulse_rate", 5_000, 2e6, "Hz"),
-                ("rotation_rate", 10, 400, "Hz"), ("radius", 60, 5_000, "m"), ("curb_height", 0.04, 0.30, "m"),
+                ("rotation_rate", 10, 400, "Hz"), ("mount_yaw", 0, 60, "°"), ("radius", 60, 5_000, "m"), ("curb_height", 0.04, 0.30, "m"),
                 ("gutter", 0, 1, "m"), ("reach", 12, 24, "m")):
             value = getattr(self, name)
             if not low <= value <= high:
@@ -107,7 +108,7 @@ class SampleSurvey:
         self.scene = build_scene(settings.scene, float(settings.length), settings.seed, settings.radius,
                                  settings.curb_height, settings.gutter)
         self.camera = camera_over(self.scene)
-        self.scanners = butterfly(settings.rotation_rate, settings.pulse_rate)
+        self.scanners = butterfly(settings.rotation_rate, settings.pulse_rate, settings.mount_yaw)
         phases = np.random.default_rng([settings.seed, 2]).uniform(0, 2 * np.pi, len(self.scene.passes))
         self.drives, start = [], _START_TIME
         for (direction, offset, haste), phase in zip(self.scene.passes, phases):

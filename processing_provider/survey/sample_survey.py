@@ -40,6 +40,11 @@ SAMPLE_KNOBS = (
         tr("More brings the lines closer together, with fewer points on each."), minimum=10.0, maximum=400.0, advanced=True,
     ),
     Knob(
+        "MOUNT_YAW", SAMPLE, "mount_yaw", tr("Scanners' planes turned from straight across (°)"),
+        tr("0 scans straight across the road; more sees the faces of things from ahead and behind, one scanner either way."),
+        minimum=0.0, maximum=60.0, advanced=True,
+    ),
+    Knob(
         "RADIUS", SAMPLE, "radius", tr("Radius of the bends (m)"), tr("Smaller makes sharper bends."),
         minimum=60.0, maximum=5000.0, advanced=True,
     ),

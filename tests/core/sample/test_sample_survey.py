@@ -254,6 +254,17 @@ def test_the_street_has_every_kind_of_marking():
     assert "hatching" in survey("urban", length=120.0).truth_markings.column("class")
 
 
+@pytest.mark.parametrize("yaw, slant", [(0.0, 0.0), (30.0, 0.577), (45.0, 1.0)])
+def test_a_turned_scanner_looks_ahead_on_one_side_and_back_on_the_other(yaw, slant):
+    points = survey(length=40.0, mount_yaw=yaw).points(noise=False)
+    # out of one turn the points of one scanner on the road
+    own = points[(points["scanner"] == 1) & (points["time"] - points["time"][0] > 1.5) & np.isin(points["label"], GROUND)]
+    own = own[own["time"] - own["time"][0] < 0.01]
+    right, left = own["offset"].argmin(), own["offset"].argmax()
+    apart = (own["station"][left] - own["station"][right]) / (own["offset"][left] - own["offset"][right])
+    assert abs(abs(apart) - slant) < 0.12
+
+
 @pytest.mark.parametrize("scene", ["street", "rural", "urban"])
 def test_driving_lines_run_in_the_direction_of_travel_on_the_right_side(scene):
     sample = survey(scene, length=120.0)
