@@ -209,8 +209,15 @@ class TestWhatCannotBeJudged:
 
 def test_a_model_hands_on_layers_and_numbers(provider, tmp_path):
     """The number of one step decides in an expression of the next."""
-    from qgis.core import QgsProcessingContext, QgsProcessingModelAlgorithm, QgsProcessingModelChildAlgorithm, QgsProcessingModelChildParameterSource
-    from qgis.core import QgsProcessingFeatureSourceDefinition, QgsProcessingModelParameter, QgsProcessingParameterFeatureSource
+    from qgis.core import (
+        QgsProcessingContext,
+        QgsProcessingFeatureSourceDefinition,
+        QgsProcessingModelAlgorithm,
+        QgsProcessingModelChildAlgorithm,
+        QgsProcessingModelChildParameterSource,
+        QgsProcessingModelParameter,
+        QgsProcessingParameterFeatureSource,
+    )
 
     model = QgsProcessingModelAlgorithm("check", "check")
     for name in ("MADE", "TRUTH"):

@@ -4,14 +4,13 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from shapely import MultiLineString, reverse
-from shapely.affinity import translate
-from shapely.geometry import LineString, box
-
 from lanewright.core.assess.boundaries import BoundarySettings, assess_boundaries, interval_lines
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.survey.road_frame import build_frame
 from lanewright.core.survey.trajectory import Trajectory
+from shapely import MultiLineString, reverse
+from shapely.affinity import translate
+from shapely.geometry import LineString, box
 
 LENGTH = 100.0
 

@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from shapely.geometry import LineString
-
 from lanewright.core.assess.curvature import curvature_along, marking_curvature, mean_curvature
+from shapely.geometry import LineString
 
 
 def strip(length=20.0, width=0.15, spacing=0.02):

@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
-from shapely import reverse
-from shapely.geometry import LineString, MultiLineString, box
-
 from lanewright.core.assess.lines import compare_lines, match_lines
 from lanewright.core.assess.polygons import compare_polygons
+from shapely import reverse
+from shapely.geometry import LineString, MultiLineString, box
 
 REFERENCE = LineString([(0, 0, 10), (100, 0, 10)])
 

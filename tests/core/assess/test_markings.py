@@ -2,14 +2,13 @@
 
 import numpy as np
 import pytest
-from osgeo import gdal
-from shapely.affinity import translate
-from shapely.geometry import LineString, box
-
 from lanewright.core.assess.markings import FALSE, FALSE_BESIDE, HIT, MISSED, MarkingAccuracySettings, assess_markings
 from lanewright.core.assess.painted import polygons_of_raster, strips
 from lanewright.core.errors import Cancelled, RoadExtractionError
 from lanewright.core.progress import Progress
+from osgeo import gdal
+from shapely.affinity import translate
+from shapely.geometry import LineString, box
 
 CELL = 0.04
 LINE = box(0.0, 0.0, 10.0, 4 * CELL)      # 250 x 4 cells

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from lanewright.core.assess.rates import Errors, Rates, f1_of
 
 # Published recall, precision and F1, per cent, of the driving-line thesis (tables 4.13 and 4.14)

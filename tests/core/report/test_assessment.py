@@ -4,13 +4,12 @@ import re
 
 import numpy as np
 import pytest
-from shapely.geometry import LineString
-
 from lanewright.core.assess.boundaries import assess_boundaries
 from lanewright.core.assess.layers import boundary_layer
 from lanewright.core.report.assessment import bins_of
 from lanewright.core.report.assessment_boundaries import boundary_report
 from lanewright.core.report.chart import Chart, ticks
+from shapely.geometry import LineString
 
 
 def test_ticks_are_round_numbers_within_the_range():

@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from shapely.geometry import LineString
-
 from lanewright.core.report.road_map_figures import _joined
+from shapely.geometry import LineString
 
 
 def pieces(direction):

@@ -4,7 +4,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-
 from lanewright.core.survey.cube_density import cube_density
 
 
