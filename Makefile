@@ -1,6 +1,6 @@
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench package manual window lint translations test-newer models
+.PHONY: help setup demo test bench accuracy package manual window lint translations test-newer models
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(firstword $(MAKEFILE_LIST)) | sed -E 's/^([a-z-]+):.*## /make \1\t/' | expand -t 16
@@ -16,6 +16,9 @@ test: setup ## core tests without QGIS, then the plugin in QGIS, then real qgis_
 
 bench: setup ## seconds per stage and peak memory on 5 and 20 million points
 	@tools/bench.sh
+
+accuracy: setup ## every method over surveys with truth (SURVEYS=folder; default: the sample scenes), into docs/accuracy.md
+	@tools/accuracy.sh $(if $(SURVEYS),--surveys "$(SURVEYS)")
 
 package: ## the zip for QGIS's plugin manager, into dist/
 	@tools/package.sh

@@ -90,8 +90,7 @@ def points_on_peaks(road_points, road, settings, progress):
     row, left, right = (np.concatenate([f[k] for f in found]) for k in range(3))
     kept = chained(row, (left + right) / 2, settings)
     row, left, right = row[kept], left[kept], right[kept]
-    for window in in_order(lambda window: _between(*records_of(window), row, left, right), windows, progress.part(0.6, 1.0)):
-        yield window
+    yield from in_order(lambda window: _between(*records_of(window), row, left, right), windows, progress.part(0.6, 1.0))
 
 
 def _window(road_points, road, first, last, profile):

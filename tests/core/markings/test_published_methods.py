@@ -4,13 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from painted_streets import ASPHALT, PAINT, assert_same_points, drive, records_at, road_points, shuffled, street, strip
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.markings.extraction import MarkingSettings, extract_markings
 from lanewright.core.markings.image import IntensityImage, write_intensity_image
 from lanewright.core.markings.intensity_peaks import PeakSettings, chained, peaks_of
 from lanewright.core.markings.point_segments import SegmentSettings, dense_enough, segment_thresholds
+from painted_streets import ASPHALT, PAINT, assert_same_points, drive, records_at, road_points, shuffled, street, strip
 
 FRAME = drive()
 METHODS = ("intensity-peaks", "point-segments")

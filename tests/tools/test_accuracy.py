@@ -1,0 +1,119 @@
+"""`make accuracy`: surveys with truth in, a page out."""
+
+import json
+from importlib import import_module
+
+import numpy as np
+import pytest
+from shapely import LineString, Polygon, box
+
+pytest.importorskip("osgeo.gdal")
+
+from accuracy import judge, published  # noqa: E402
+from accuracy.ablations import ABLATIONS, nearest_steps  # noqa: E402
+from accuracy.chain import STAGES, swapped  # noqa: E402
+from accuracy.figures import figures_of  # noqa: E402
+from accuracy.page import page  # noqa: E402
+from accuracy.surveys import _make_sample, read_case, surveys_in  # noqa: E402
+from lanewright.core.features import Features, Field  # noqa: E402
+from lanewright.core.road.corners import Steps  # noqa: E402
+from lanewright.core.sample.survey import SampleSettings  # noqa: E402
+from make_sample import write_layers  # noqa: E402
+
+
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory):
+    """A survey of 40 m, and its figures without the long tables."""
+    folder = tmp_path_factory.mktemp("surveys")
+    _make_sample(folder / "short", SampleSettings(length=40.0, speed_kmh=60.0, pulse_rate=150_000.0), "a short street")
+    return folder, figures_of(folder / "short", quick=True)
+
+
+def test_a_made_survey_is_found_and_says_that_it_is_simulated(measured):
+    folder, figures = measured
+    assert [path.name for path in surveys_in(folder)] == ["short"]
+    assert figures["kind"] == "simulated" and figures["points"] > 50_000
+    assert read_case(folder / "short").seen is not None
+
+
+def test_every_method_is_measured(measured):
+    _, figures = measured
+    assert set(figures["boundaries"]) == {"profiles", "scanlines", "both"}
+    assert set(figures["methods"]) == set(published.METHODS)
+    assert figures["whole"]["markings"]["tolerant"]["f1"] > 90
+    assert figures["methods"]["multi-threshold"]["polygons"]["tolerant"] == figures["whole"]["markings"]["tolerant"]
+    assert figures["boundaries"]["profiles"]["total"] == figures["whole"]["boundaries"]["total"]
+
+
+def test_the_page_sets_published_figures_beside_ours_and_survives_json(measured):
+    _, figures = measured
+    text = page(json.loads(json.dumps([figures])), samples=True)
+    assert "short (simulated)" in text and "**simulated**" in text
+    for part in ("table 4.2", "table 4.12", "table 4.13", "table 4.14", "table 4.15", "table 3", "76.9 / 91.3 / 83.4"):
+        assert part in text
+    assert "What each improvement brings" not in text
+    assert "nan" not in text and "None" not in text
+
+
+def test_truth_of_another_kind_is_read(tmp_path):
+    (tmp_path / "one" / "truth").mkdir(parents=True)
+    words = [Field(name, str) for name in ("side", "scope", "kind", "mark_class")]
+    line, square = LineString([(0, 0, 0), (10, 0, 0)]), Polygon([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)])
+    curbs, paint = Features("LineStringZ", words), Features("PolygonZ", words)
+    for kind, scope in (("curb", "main"), ("dropped", "main"), ("curb", "island")):
+        curbs.add(line, side="left", kind=kind, scope=scope)
+    paint.add(square, mark_class="stop_line")
+    write_layers(tmp_path / "one" / "truth" / "truth.gpkg", {"curb_bottom": curbs, "markings": paint})
+    for name in ("cloud.laz", "trajectory.csv"):
+        (tmp_path / "one" / name).touch()
+    case = read_case(surveys_in(tmp_path)[0])
+    assert len(case.truth.curbs) == 1 and len(case.truth.aside) == 2
+    assert case.truth.classes == ["stop line"]
+    assert case.truth.area is None and case.seen is None and case.kind == "not stated"
+    assert case.truth.has == {"boundaries", "markings"}
+
+
+def test_the_truth_itself_scores_full_marks(measured):
+    folder, _ = measured
+    case = read_case(folder / "short")
+    found = judge.paint(case, case.truth.markings)
+    assert found["strict"]["f1"] == 100 and min(found["classes"].values()) == 100
+    driving = judge.driving(case, [(line, {}) for line in case.truth.driving])
+    assert driving["recall"]["5"] == pytest.approx(100) and driving["miscoding"]["5"] == pytest.approx(0)
+
+
+def test_paint_beyond_the_judged_area_costs_nothing_and_beside_the_road_it_does(measured):
+    folder, _ = measured
+    case = read_case(folder / "short")
+    middle = case.truth.area.centroid
+    far, near = (box(middle.x + away, middle.y, middle.x + away + 0.2, middle.y + 5) for away in (500, 0))
+    assert judge.paint(case, [*case.truth.markings, far])["strict"]["precision"] == 100
+    assert judge.paint(case, [*case.truth.markings, near])["strict"]["precision"] < 100
+
+
+@pytest.mark.parametrize("ablation", ABLATIONS, ids=lambda ablation: ablation.text[:40])
+def test_what_an_ablation_switches_off_is_there_to_be_switched_off(ablation):
+    assert ablation.first in STAGES and set(ablation.stages) <= set(STAGES)
+    assert ablation.swaps or ablation.stages or ablation.settings != ABLATIONS[0].settings
+    for module, name, _ in ablation.swaps:
+        assert callable(getattr(import_module(f"lanewright.core.{module}"), name))
+
+
+def test_a_step_is_back_in_its_place_after_an_error():
+    from lanewright.core.markings import levels
+
+    before = levels.gutter_cells
+    with pytest.raises(ValueError), swapped("markings.levels", "gutter_cells", None):
+        assert levels.gutter_cells is None
+        raise ValueError
+    assert levels.gutter_cells is before
+
+
+def test_the_thesis_takes_the_step_nearest_the_vehicle_that_is_high_and_steep_enough():
+    names = ("s", "u", "h", "skew", "height", "run", "noise", "usual", "support", "behind")
+    values = {name: np.zeros(5) for name in names}
+    values.update(s=np.array([0.0, 0.0, 0.25, 0.25, 0.5]), u=np.array([4.0, 2.0, 3.0, 5.0, 3.0]),
+                  height=np.array([0.1, 0.1, 0.02, 0.1, 0.1]), run=np.array([0.02, 0.02, 0.01, 0.02, 0.5]))
+    chain, = nearest_steps(Steps(profile=np.array([0, 0, 1, 1, 2]), **values), None, 0.25, 0.05, np.radians(60))
+    np.testing.assert_array_equal(chain.steps, [1, 3])
+    assert (chain.start, chain.end) == (0.0, 0.25)

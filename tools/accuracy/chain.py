@@ -1,0 +1,116 @@
+"""The chain stage by stage, so that one stage can be run again another way on what the others gave."""
+
+import time
+from contextlib import ExitStack, contextmanager
+from dataclasses import replace
+from importlib import import_module
+
+from lanewright.core.driving.lines import driving_lines
+from lanewright.core.markings.clusters import cluster_markings
+from lanewright.core.markings.extraction import extract_markings
+from lanewright.core.markings.image import IntensityImage, write_intensity_image
+from lanewright.core.markings.intensity import correct_intensity
+from lanewright.core.markings.lines import fit_marking_lines
+from lanewright.core.markings.outliers import remove_outliers
+from lanewright.core.road.boundaries import draw_boundaries, find_curb_points
+from lanewright.core.road.surface import extract_road_surface
+from lanewright.core.road_map import RoadMapSettings
+
+
+class Work:
+    """What the stages have made so far: survey, curbs, edges, road, bright, image, points, kept, markings, ..."""
+
+    def __init__(self, survey, scratch):
+        self.survey, self.frame, self.scratch = survey, survey.frame, scratch
+        self.seconds, self.beams = {}, 0
+
+    def copy(self):
+        other = Work(self.survey, self.scratch)
+        other.__dict__.update({name: value for name, value in self.__dict__.items() if name != "seconds"})
+        return other
+
+
+def _curbs(w, settings):
+    w.found = find_curb_points(w.survey, settings.boundaries)
+
+
+def _edges(w, settings):
+    w.edges = draw_boundaries(w.found, w.frame, settings.edges).edges
+
+
+def _surface(w, settings):
+    w.road, w.surface = extract_road_surface(w.survey, w.edges, settings.surface)
+
+
+def _intensity(w, settings):
+    w.bright, w.beams = w.road, 0
+    if settings.correct:
+        w.bright, report = correct_intensity(w.road, w.frame, settings.intensity)
+        w.beams = report.beams
+
+
+def _image(w, settings):
+    w.image_path = w.scratch / f"image_{len(list(w.scratch.iterdir()))}.tif"
+    write_intensity_image(w.bright, w.image_path, settings.image)
+
+
+def _markings(w, settings):
+    w.points = extract_markings(w.bright, IntensityImage.open(w.image_path), w.frame, settings.markings)
+
+
+def _outliers(w, settings):
+    w.kept = remove_outliers(w.points, settings.outliers) if len(w.points) else w.points
+
+
+def _clusters(w, settings):
+    w.markings, w.clustered = cluster_markings(w.kept, w.frame, settings.clusters)
+
+
+def _lines(w, settings):
+    w.lines = fit_marking_lines(w.clustered, w.markings, w.frame, settings.lines)
+
+
+def _driving(w, settings):
+    w.driving, _ = driving_lines(w.lines, w.frame, settings.driving, markings=w.markings, edges=w.edges, road_points=w.bright)
+
+
+STAGES = dict(curbs=_curbs, edges=_edges, surface=_surface, intensity=_intensity, image=_image, markings=_markings,
+              outliers=_outliers, clusters=_clusters, lines=_lines, driving=_driving)
+
+
+def run(work, first="curbs", last="driving", settings=RoadMapSettings(), swaps=(), stages=None):
+    """The work with the stages from `first` to `last` run anew.
+
+    Parameters
+    ----------
+    work : Work that holds what the stages before `first` gave; it is left as it is
+    swaps : ((module in core, name in it, what to put there), ...) while the stages run
+    stages : stage name to a function(work, settings) that takes its place
+    """
+    names = list(STAGES)
+    done = work.copy()
+    with ExitStack() as stack:
+        for module, name, stand_in in swaps:
+            stack.enter_context(swapped(module, name, stand_in))
+        for name in names[names.index(first):names.index(last) + 1]:
+            began = time.perf_counter()
+            (stages or {}).get(name, STAGES[name])(done, settings)
+            done.seconds[name] = time.perf_counter() - began
+    return done
+
+
+@contextmanager
+def swapped(module, name, stand_in):
+    """A function of the core replaced for a while: how the chain does without one of its steps."""
+    module = import_module(f"lanewright.core.{module}")
+    original = getattr(module, name)
+    setattr(module, name, stand_in)
+    try:
+        yield
+    finally:
+        setattr(module, name, original)
+
+
+def set_in(settings, stage, **values):
+    """RoadMapSettings with some settings of one stage changed."""
+    return replace(settings, **{stage: replace(getattr(settings, stage), **values)})

@@ -1,0 +1,116 @@
+"""All numbers of one survey, as a dict that JSON can hold."""
+
+import tempfile
+import time
+from dataclasses import replace
+from pathlib import Path
+
+from lanewright.core.errors import RoadExtractionError
+from lanewright.core.markings.extraction import METHODS, extract_markings
+from lanewright.core.markings.image import IntensityImage
+from lanewright.core.road.boundaries import draw_boundaries
+from lanewright.core.road_map import RoadMapSettings
+from lanewright.core.survey.survey import open_survey
+from lanewright.core.survey.trajectory_file import read_trajectory
+
+from . import judge
+from .ablations import ABLATIONS
+from .chain import Work, run, set_in
+from .surveys import read_case
+
+DEFAULT = RoadMapSettings()
+CELLS = (0.02, 0.04, 0.06, 0.08, 0.10)
+
+
+def figures_of(folder, quick=False):
+    from osgeo import gdal
+
+    # every raster made in memory would be said to lack a CRS
+    gdal.PushErrorHandler("CPLQuietErrorHandler")
+    case = read_case(folder)
+    with tempfile.TemporaryDirectory() as scratch:
+        began = time.perf_counter()
+        survey = open_survey([case.cloud], read_trajectory(case.trajectory))
+        reading = time.perf_counter() - began
+        try:
+            work = run(Work(survey, Path(scratch)))
+            figures = dict(
+                name=case.name, kind=case.kind, text=case.text, points=len_of(case.cloud), road_points=len(work.road),
+                metres=sum(road.length for road in survey.frame.roads), has=sorted(case.truth.has), beams=work.beams,
+                seconds={"survey": reading, **work.seconds}, whole=judged(case, work))
+            figures["boundaries"] = boundary_methods(case, work)
+            figures["methods"] = marking_methods(case, work)
+            if not quick:
+                figures["cells"] = resolutions(case, work)
+                figures["ablations"] = ablations(case, work)
+        finally:
+            survey.store.close()
+    return figures
+
+
+def len_of(cloud):
+    import laspy
+
+    with laspy.open(cloud) as reader:
+        return reader.header.point_count
+
+
+def judged(case, work):
+    """What the ablation compares: boundaries, markings and driving lines of one run."""
+    has = case.truth.has
+    return dict(boundaries=judge.boundaries(case, work.edges, work.frame) if case.truth.curbs else None,
+                markings=judge.markings(case, work.markings) if "markings" in has else None,
+                driving=judge.driving(case, work.driving) if "driving_lines" in has else None)
+
+
+def boundary_methods(case, work):
+    """Boundary accuracy of profiles, scanlines and both."""
+    if "boundaries" not in case.truth.has:
+        return {}
+    both = run(work, "curbs", "curbs", replace(DEFAULT, boundary_method="both")).found
+    given = {"profiles": {"profiles": both["profiles"]}, "scanlines": {"scanlines": both["scanlines"]}, "both": both}
+    return {name: judge.boundaries(case, draw_boundaries(found, work.frame).edges, work.frame) for name, found in given.items()}
+
+
+def marking_methods(case, work):
+    """Marking accuracy of each method: its mask as extracted, and its polygons after the same later stages."""
+    if "markings" not in case.truth.has:
+        return {}
+    found = {}
+    for method in METHODS:
+        settings = set_in(DEFAULT, "markings", method=method)
+        mask = work.scratch / f"{method}.tif"
+        one = work.copy()
+        began = time.perf_counter()
+        one.points = extract_markings(one.bright, IntensityImage.open(one.image_path), one.frame, settings.markings, mask_path=mask)
+        seconds = time.perf_counter() - began
+        one = run(one, "outliers", "clusters", settings)
+        found[method] = dict(mask=judge.mask(case, mask), polygons=judge.markings(case, one.markings), seconds=seconds)
+    return found
+
+
+def resolutions(case, work):
+    """Size of the image and what is seen in it, by cell size in cm."""
+    if "markings" not in case.truth.has:
+        return {}
+    found = {}
+    for cell in CELLS:
+        one = run(work, "image", "clusters", set_in(DEFAULT, "image", cell_size=cell))
+        found[f"{100 * cell:.0f}"] = dict(megabytes=one.image_path.stat().st_size / 1e6, **judge.markings(case, one.markings))
+        one.image_path.unlink()
+    return found
+
+
+def ablations(case, work):
+    """What each ablation gives; None where it does not apply to the survey."""
+    found = []
+    for ablation in ABLATIONS:
+        if ablation.needs_beams and not work.beams:
+            found.append(None)
+            continue
+        try:
+            one = run(work, ablation.first, settings=ablation.settings, swaps=ablation.swaps, stages=ablation.stages)
+            found.append(judged(case, one))
+        except RoadExtractionError as problem:
+            found.append(dict(refused=str(problem)))
+    return found
