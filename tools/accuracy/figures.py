@@ -36,7 +36,7 @@ def figures_of(folder, quick=False):
             work = run(Work(survey, Path(scratch)))
             figures = dict(
                 name=case.name, kind=case.kind, text=case.text, points=len_of(case.cloud), road_points=len(work.road),
-                metres=sum(road.length for road in survey.frame.roads), has=sorted(case.truth.has), beams=work.beams,
+                has=sorted(case.truth.has), beams=work.beams,
                 seconds={"survey": reading, **work.seconds}, whole=judged(case, work))
             figures["boundaries"] = boundary_methods(case, work)
             figures["methods"] = marking_methods(case, work)

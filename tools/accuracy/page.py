@@ -9,7 +9,7 @@ STAGES = {"Road surface": ("survey", "curbs", "edges", "surface"), "Marking extr
 
 def page(figures, samples):
     sections = (_intro(figures, samples), _road_points(figures), _cells(figures), _classes(figures), _seconds(figures),
-                _markings(figures), _methods(figures), _driving(figures), _boundaries(figures), _ablation(figures))
+                _markings(figures), _methods(figures), _driving(figures), _boundaries(figures), _ablation(figures, samples))
     return "\n\n".join(section for section in sections if section) + "\n"
 
 
@@ -41,7 +41,7 @@ def _intro(figures, samples):
     what = ("`make accuracy` makes the sample scenes anew, runs every method over them and writes this page. The surveys are "
             "**simulated**: figures on them say how the methods compare and what a change does, not what they reach on your road."
             if samples else "`make accuracy SURVEYS=folder` ran every method over the surveys of a folder and wrote this page.")
-    rows = [[_label(f), f["text"] or "–", f"{f['points']:,}", f"{f['metres']:.0f}"] for f in figures]
+    rows = [[_label(f), f["text"] or "–", f"{f['points']:,}"] for f in figures]
     return "\n\n".join((
         "# Accuracy", what,
         "Beside our figures stand those of the two papers that the methods come from, measured by their authors on other, real roads: "
@@ -49,7 +49,7 @@ def _intro(figures, samples):
         "They are there for the order of magnitude; only rows of one survey can be compared with each other. All our figures are with "
         "default parameters, the same for every survey, and are per cent where no unit is given. Except for the seconds, which are those "
         "of the machine, the command writes the same page every time.",
-        table(["survey", "what it is", "points", "metres of road"], rows, words=2),
+        table(["survey", "what it is", "points"], rows, words=2),
         "To measure on surveys of your own: `make accuracy SURVEYS=folder`, where each survey is a folder with `cloud.laz`, "
         "`trajectory.csv` (time, x, y, z) and `truth.gpkg` (or `truth/truth.gpkg`) with any of the layers `boundaries` or "
         "`curb_bottom` (lines; `side`; `kind` = *curb*, other kinds are not judged), `markings` (polygons; `class`), `driving_lines` and "
@@ -167,11 +167,12 @@ def _driving(figures):
 
 def _boundaries(figures):
     figures = _with(figures, "boundaries")
-    rows, silent = [], []
+    rows, notes = [], []
     for f in figures:
+        silent = []
         for method, found in f["boundaries"].items():
             if not any(found["total"]["10"][name] for name in ("right", "missed")):
-                silent.append(f"{_label(f)} has no curbs; {method} drew a line in {found['total']['10']['false']:.0f} intervals.")
+                silent.append(f"{found['total']['10']['false']:.0f} by {method}")
                 continue
             for side in ("left", "right", "total"):
                 if side in found:
@@ -180,7 +181,9 @@ def _boundaries(figures):
                     rmse = [found["rmse_cm"], found["height_rmse_cm"]] if side == "total" else [None, None]
                     rows.append([f"{_label(f)}, {method}", side, *(number(at[n]) for n in ("precision", "recall", "f1")),
                                  *(number(v) for v in spread), " / ".join(number(v) for v in rmse) if side == "total" else ""])
-    if not rows and not silent:
+        if silent:
+            notes.append(f"{_label(f)} has no curbs; intervals in which a line was drawn all the same: {', '.join(silent)}.")
+    if not rows and not notes:
         return ""
     for name, row in published.BOUNDARIES.items():
         rows.append(["paper", name, *(number(v) for v in row), "–", "–", ""])
@@ -188,10 +191,10 @@ def _boundaries(figures):
     return ("## Road boundaries (paper, table 3)\n\nIntervals of 2 m along the trajectory, by side; an interval is right when our line covers "
             "half of it and lies within 10 cm of the true curb bottom. The paper states no tolerance. Curbs hidden by parked cars count as "
             "missed unless we bridge them rightly; dropped curbs are left out.\n\n"
-            + table(head, rows, words=2) + ("\n\n" + " ".join(silent) if silent else ""))
+            + table(head, rows, words=2) + ("\n\n" + " ".join(notes) if notes else ""))
 
 
-def _ablation(figures):
+def _ablation(figures, samples):
     figures = _with(figures, "ablations")
     if not figures:
         return ""
@@ -210,7 +213,9 @@ def _ablation(figures):
             change = mean(steps)
             cells.append("–" if change is None else "·" if abs(change) < 0.05 else f"{change:+.1f}")
         rows.append([ablation.text + (f" (refused on {refused})" if refused else ""), *cells])
-    note = "".join(f"\n\nNot told by these surveys: {text[0].lower() + text[1:]}." for text in unused)
+    note = ("\n\nMost of these steps were made for surveys harder than these: worn paint, noisy or unlike scanners, islands and verges. "
+            "A · says that nothing here needs the step, not that it is not needed." if samples else "")
+    note += "".join(f"\n\nNot told by these surveys: {text[0].lower() + text[1:]}." for text in unused)
     return ("## What each improvement brings\n\nEach is switched off alone, everything else at its default; the first row is the mean over "
             "the surveys, the others the change in points (· is less than 0.05). A minus is what the improvement is worth; for miscoding, a plus."
             "\n\n" + table(["switched off", "boundaries, F at 10 cm", "markings, F1", "driving lines, recall at 10 cm",

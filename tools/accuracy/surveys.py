@@ -23,6 +23,9 @@ from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 LAYERS = dict(boundaries=("boundaries", "curb_bottom"), markings=("markings",), driving_lines=("driving_lines",),
               surface=("surface", "road_surface"), area=("survey_area",))
 SAMPLES = {
+    "difficult": (SampleSettings(seed=2, length=160.0, speed_kmh=70.0, pulse_rate=100_000.0, rotation_rate=100.0, radius=60.0,
+                                 curb_height=0.08, gutter=0.30),
+                  "the street scene in sharp bends, low curbs, concrete gutters, scan lines 19 cm apart, a fifth of the points"),
     "street": (SampleSettings(), "two lanes, parked cars, one pass"),
     "rural": (SampleSettings(scene="rural"), "country road without curbs, one pass"),
     "urban": (SampleSettings(scene="urban", gutter=0.30), "four lanes, concrete gutters, parked cars, two passes"),
