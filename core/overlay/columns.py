@@ -14,7 +14,7 @@ NAMES = {
     "height": "mapz z h geoz height elevation elev altitude alt".split(),
     "name": "name point id pointid label gcp gcpname gcpid number no nr".split(),
     "enable": "enable enabled active use used".split(),
-    "role": "role type kind".split(),
+    "role": "role type".split(),
     "check": "check ischeck checkpoint".split(),
 }
 NEEDED = ("pixel", "line", "easting", "northing")

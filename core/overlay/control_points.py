@@ -14,6 +14,7 @@ from .columns import find_columns, guess_columns
 
 CONTROL, CHECK, DISABLED = "control", "check", "disabled"
 _OFF = ("0", "false", "no", "off", "n", "f")
+_CHECK = ("check", "checkpoint", "check point", "chk", "cp", "test")
 
 
 @dataclass(frozen=True)
@@ -76,10 +77,11 @@ def control_points(names, rows, image, what, crs=""):
         raise RoadExtractionError(
             f"{what} holds no row with numbers for pixel, line, easting and northing. "
             "Write numbers with a decimal point (a comma only where semicolons part the columns).")
-    pixel, line = _in_the_image(table["pixel"][known], table["line"][known], image, what)
     kept = [row for row, good in zip(rows, known) if good]
+    roles = _roles(kept, where)
+    pixel, line = _in_the_image(table["pixel"][known], table["line"][known], roles != DISABLED, image, what)
     return ControlPoints(pixel, line, *(table[key][known] for key in ("easting", "northing", "height")),
-                         _names(kept, where.get("name")), _roles(kept, where), crs, int((~known).sum()))
+                         _names(kept, where.get("name")), roles, crs, int((~known).sum()))
 
 
 def _numbers(rows, column):
@@ -94,20 +96,24 @@ def as_number(value):
         return np.nan
 
 
-def _in_the_image(pixel, line, image, what):
-    """Pixel and line, lines downwards; source coordinates of an image that had a place become pixels."""
+def _in_the_image(pixel, line, used, image, what):
+    """Pixel and line, lines downwards; source coordinates of an image that had a place become pixels.
+
+    Where disabled points lie is their own affair, unless there are no others.
+    """
+    used = used if used.any() else np.ones(len(pixel), dtype=bool)
     margin = 1.0 + 0.02 * max(image.width, image.height)
-    forms = [(pixel, -line) if np.median(line) < 0 else (pixel, line)]
+    forms = [(pixel, -line) if np.median(line[used]) < 0 else (pixel, line)]
     if image.geotransform is not None:
         # QGIS writes these where the image it worked on had a place on the map
         forms.append(image.pixel_of(pixel, line))
     for columns, lines in forms:
-        if image.holds(columns, lines, margin).all():
+        if image.holds(columns, lines, margin)[used].all():
             return columns, lines
-    columns, lines = max(forms, key=lambda form: image.holds(*form, margin).sum())
+    columns, lines = (axis[used] for axis in max(forms, key=lambda form: image.holds(*form, margin)[used].sum()))
     outside = int((~image.holds(columns, lines, margin)).sum())
     raise RoadExtractionError(
-        f"{outside} of {len(pixel)} points of {what} lie outside the image: pixels run from {columns.min():.0f} to {columns.max():.0f} "
+        f"{outside} of {len(columns)} points of {what} lie outside the image: pixels run from {columns.min():.0f} to {columns.max():.0f} "
         f"and lines from {lines.min():.0f} to {lines.max():.0f}, the image has {image.width} by {image.height}. "
         "Are they of another image, of one in another size, or are pixel and line swapped?")
 
@@ -130,7 +136,7 @@ def _roles(rows, where):
     for number, row in enumerate(rows):
         role = _text(row, where["role"]).lower() if "role" in where else ""
         check = _text(row, where["check"]).lower() if "check" in where else ""
-        if role.startswith("check") or role in ("cp", "test") or (check and check not in _OFF):
+        if role in _CHECK or (check and check not in _OFF):
             roles[number] = CHECK
         if role.startswith(("disab", "off", "unused")) or ("enable" in where and _text(row, where["enable"]).lower() in _OFF):
             roles[number] = DISABLED

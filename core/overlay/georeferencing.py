@@ -219,6 +219,7 @@ def _notes(found):
     if not points.crs:
         yield ("The control points carry no CRS, and neither does the result: it lies in their own coordinates. Where these are "
                "map coordinates, give their CRS.")
+    yield from _map_metres(points)
     if points.left_out:
         yield f"{points.left_out} rows of the control points hold no numbers and were left out."
     if order and fit.free == 0:
@@ -238,6 +239,32 @@ def _notes(found):
     for index in _misfits(found):
         yield (f"Point {points.names[index]} does not fit the others: it lies {np.hypot(*found.left_out[index]):.2f} m from where "
                "they place it. Check its coordinates.")
+
+
+def _map_metres(points):
+    """A word where a metre on the map is none on the ground, as in web maps."""
+    from ..survey.crs import horizontal, parse_crs
+
+    if not points.crs:
+        return
+    crs = horizontal(parse_crs(points.crs))
+    scale = _scale_of_map(crs, points)
+    if np.isfinite(scale) and abs(scale - 1.0) > 0.01:
+        yield (f"In {crs.name} a metre of the map is {1.0 / scale:.2f} m on the ground here, and all errors are in metres of the map. "
+               "For measuring, use control points in the CRS of the survey.")
+
+
+def _scale_of_map(crs, points):
+    """Metres of the map for one on the ground at the middle of the points; NaN where the CRS, a local one, does not tell."""
+    from pyproj import Proj
+    from pyproj.exceptions import CRSError, ProjError
+
+    try:
+        projection = Proj(crs)
+        longitude, latitude = projection(float(points.easting.mean()), float(points.northing.mean()), inverse=True)
+        return float(np.sqrt(projection.get_factors(longitude, latitude).areal_scale))
+    except (CRSError, ProjError):
+        return float("nan")
 
 
 def _ring_leverage(found):

@@ -11,8 +11,9 @@ from ..progress import Progress
 from .georeferencing import lattice, own_pixel_size
 
 TILE = 512
-MEMORY = 256             # MB for GDAL's working window, whatever the image's size
+MEMORY = 128_000_000     # bytes of GDAL's cache: blocks beyond it are written while the work goes on, not all at its end
 LARGEST = 4e9            # pixels of the result; beyond this the polynomial or the pixel size is wrong
+_APPROXIMATION = 0.05    # px, within which GDAL interpolates places along a row
 _NODES = 21              # per side, of the lattice that tells GDAL the polynomial
 _MARGINS = (0.2, 0.1, 0.04, 0.0)  # of the area, by which the lattice reaches beyond it
 _SMALLEST_OVERVIEW = 256
@@ -77,13 +78,18 @@ def draw_image(found, path, progress=None):
     gdal.UseExceptions()
     progress = progress or Progress()
     bounds, width, height = output_grid(found)
-    unfinished = Path(path).with_name(Path(path).name + ".unfinished.tif")
-    source = result = None
+    unfinished, tiled = (Path(path).with_name(Path(path).name + end) for end in (".unfinished.tif", ".source.tif"))
+    source = view = result = None
     caught = []
+    cache = gdal.GetCacheMax()
+    gdal.SetCacheMax(min(cache, MEMORY))
     try:
-        source = _with_lattice(gdal, found)
-        off = _departure(gdal, source, found)
-        result = gdal.Warp(str(unfinished), source, **_warp_options(found, bounds), callback=_callback(progress, 0.0, 0.8, caught))
+        source = _with_lattice(gdal, found, _tiled(gdal, found.image, tiled, _callback(progress, 0.0, 0.1, caught)))
+        off = _departure(gdal, source, found) + _APPROXIMATION
+        # Drawn block by block as it is written: each tile is compressed once, and Cancel is heard in between
+        view = gdal.Warp("", source, **_warp_options(found, bounds))
+        result = gdal.GetDriverByName("GTiff").CreateCopy(str(unfinished), view, options=_file_options(found.image),
+                                                          callback=_callback(progress, 0.1, 0.8, caught))
         if caught:
             raise caught[0]
         levels = [2**k for k in range(1, 16) if max(width, height) / 2**k >= _SMALLEST_OVERVIEW]
@@ -102,9 +108,10 @@ def draw_image(found, path, progress=None):
         raise RoadExtractionError(
             f"The image could not be drawn to {path} ({problem}). Is {found.image.path} whole, and is there room on the disk?") from problem
     finally:
-        source = result = None
-        unfinished.unlink(missing_ok=True)
-        Path(f"{unfinished}.aux.xml").unlink(missing_ok=True)
+        source = view = result = None
+        gdal.SetCacheMax(cache)
+        for leftover in (unfinished, Path(f"{unfinished}.aux.xml"), tiled):
+            leftover.unlink(missing_ok=True)
 
 
 def _callback(progress, start, end, caught):
@@ -122,7 +129,21 @@ def _callback(progress, start, end, caught):
     return tell
 
 
-def _with_lattice(gdal, found):
+def _tiled(gdal, image, path, callback):
+    """The image's path; that of a copy in tiles where it is large and stored line by line (JPEG, PNG).
+
+    A turned image is read across its lines, and such a file begins anew each time.
+    """
+    dataset = gdal.Open(image.path)
+    band = dataset.GetRasterBand(1)
+    size = image.width * image.height * image.bands * gdal.GetDataTypeSize(band.DataType) // 8
+    if size < MEMORY // 2 or band.GetBlockSize()[0] < image.width:
+        return image.path
+    gdal.Translate(str(path), dataset, format="GTiff", creationOptions=["TILED=YES", "BIGTIFF=IF_SAFER", "COMPRESS=LZW"], callback=callback)
+    return str(path)
+
+
+def _with_lattice(gdal, found, path):
     """The image as GDAL opens it, with points in place of a position.
 
     GDAL would fit a polynomial of its own from the map to the image, which is no
@@ -139,7 +160,7 @@ def _with_lattice(gdal, found):
     easting, northing = polynomial.to_map(pixel, line)
     points = [gdal.GCP(*map(float, place)) for place in zip(easting, northing, np.zeros(len(pixel)), pixel, line)]
     more = {"rgbExpand": "rgb"} if found.image.palette else {}
-    return gdal.Translate("", found.image.path, format="VRT", GCPs=points, outputSRS=found.points.crs or None, **more)
+    return gdal.Translate("", path, format="VRT", GCPs=points, outputSRS=found.points.crs or None, **more)
 
 
 def _method(found):
@@ -175,7 +196,10 @@ def _warp_options(found, bounds):
     if found.cut:
         options.append(f"CUTLINE={shapely.to_wkt(drawn_area(found), rounding_precision=3)}")
     return {
-        "format": "GTiff", "outputBounds": bounds, "xRes": size, "yRes": size, "resampleAlg": _ALGORITHMS[found.settings.resampling],
-        "dstSRS": found.points.crs or None, "errorThreshold": 0.05, "warpMemoryLimit": MEMORY, "warpOptions": options, **transform, **ends,
-        "creationOptions": ["TILED=YES", f"BLOCKXSIZE={TILE}", f"BLOCKYSIZE={TILE}", "COMPRESS=DEFLATE", "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS",
-                            f"PREDICTOR={3 if image.kind == 'real' else 2}"]}
+        "format": "VRT", "outputBounds": bounds, "xRes": size, "yRes": size, "resampleAlg": _ALGORITHMS[found.settings.resampling],
+        "dstSRS": found.points.crs or None, "errorThreshold": _APPROXIMATION, "warpOptions": options, **transform, **ends}
+
+
+def _file_options(image):
+    return ["TILED=YES", f"BLOCKXSIZE={TILE}", f"BLOCKYSIZE={TILE}", "COMPRESS=DEFLATE", "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS",
+            f"PREDICTOR={3 if image.kind == 'real' else 2}"]

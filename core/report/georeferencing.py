@@ -34,7 +34,7 @@ def georeferencing_report(found, drawn, departure):
     page.facts((
         ("Image", image.path), ("Pixels and lines", f"{image.width} × {image.height}"), ("Placed by", KINDS[found.settings.order]),
         ("CRS", horizontal(parse_crs(crs)).name if crs else "none"), ("Result", f"{width} × {height} pixels of {found.pixel_size:g} m"),
-        ("Drawn within", f"{max(departure, 0.001):.3f} pixels of the polynomial, everywhere"),
+        ("Drawn within", f"{departure:.2f} pixels of the polynomial, everywhere"),
         ("Outside the hull of the control points", f"{100 * found.outside:.0f} % of the image" + (", left out" if found.cut else ""))))
     _errors(page, found)
     picture, times = residual_picture(found, drawn)

@@ -60,7 +60,11 @@ class GeoreferenceImage(LanewrightAlgorithm):
     ID, TITLE, ROOM = "georeferenceimage", "Georeference image", "Orthoimages"
     SUMMARY = "Places a UAV image on the map by ground control points, and tells how well it lies there."
     HELP = ("Control points come as a layer or as a file, each with pixel, line, easting and northing; pixel and line count from the "
-            "outer corner of the first pixel. The result is a GeoTIFF in the CRS of the control points.")
+            "outer corner of the first pixel. The result is a GeoTIFF in the CRS of the control points.\n\n"
+            "Spread the points over the whole image, its corners first: between them the polynomial is held, outside it runs away. Take twice "
+            "as many as the order needs. Judge the result by check points, or by the error of each point without itself (leave-one-out), not by "
+            "the residuals, which the polynomial was bent to make small. Control points taken from the point cloud tell how "
+            "well the image fits the cloud, not how well either fits the ground.")
     TAGS = ("UAV", "drone", "orthoimage", "GCP", "georeferencer", "polynomial", "warp")
     TRAJECTORIES = ()
     LOOKS = {"OUTPUT": "ORTHOIMAGE"}
@@ -98,7 +102,7 @@ class GeoreferenceImage(LanewrightAlgorithm):
         from ...core.report.georeferencing import georeferencing_report
 
         image = open_image(call.raster("IMAGE"))
-        found = georeference(image, _control_points(call, image), call.settings(GEOREFERENCE_KNOBS))
+        found = georeference(image, _control_points(call, image, progress), call.settings(GEOREFERENCE_KNOBS))
         for note in found.notes:
             progress.warn(note)
         values = _numbers(found)
@@ -114,10 +118,12 @@ class GeoreferenceImage(LanewrightAlgorithm):
         return values
 
 
-def _control_points(call, image):
+def _control_points(call, image, progress):
     """From the layer or the file, whichever was given."""
     from ...core.overlay.control_point_file import read_control_points
+    from ...core.survey.crs import horizontal, parse_crs, same_place
 
+    given = call.crs()
     path = call.algorithm.parameterAsFile(call.parameters, "GCP_FILE", call.context)
     source = call.source("GCPS")
     if bool(path) == (source is not None):
@@ -125,8 +131,13 @@ def _control_points(call, image):
             tr("Control points were given twice, as a layer and as a file. Leave one of them empty.") if path else
             tr("There are no control points. Choose a layer, or a .points or CSV file."))
     if path:
-        return read_control_points(path, image, call.crs())
-    return read_control_point_layer(source, image, call.label("GCPS"), call.crs())
+        points = read_control_points(path, image, given)
+    else:
+        points = read_control_point_layer(source, image, call.label("GCPS"), given)
+    if given and not same_place(parse_crs(given), parse_crs(points.crs)):
+        progress.warn(tr("The control points say that they are in {own}; the CRS given is for points that name none and was not used.").format(
+            own=horizontal(parse_crs(points.crs)).name))
+    return points
 
 
 def _numbers(found):

@@ -63,6 +63,13 @@ def test_names_come_with_the_points_and_disabled_ones_are_told(tmp_path):
     assert list(points.with_disabled_as_checks().roles) == ["control", "check", "check"]
 
 
+def test_a_disabled_point_may_lie_anywhere():
+    table = [[10, 20, 1.0, 2.0, 1], [300, 200, 3.0, 4.0, 1], [9000, 20, 5.0, 6.0, 0]]
+    assert len(control_points(["pixel", "line", "x", "y", "enable"], table, image(), "The table")) == 3
+    with pytest.raises(RoadExtractionError, match="1 of 3 points"):
+        control_points(["pixel", "line", "x", "y"], table, image(), "The table")
+
+
 def test_names_may_stand_first_where_nothing_has_a_header(tmp_path):
     path = tmp_path / "gcps.txt"
     path.write_text("".join(f"P{k} {p} {q} {e} {n}\n" for k, (e, n, p, q) in enumerate(POINTS)))

@@ -81,6 +81,18 @@ def test_control_points_in_degrees_are_refused_by_name():
     assert "degrees" in refusal(1, measured(crs="EPSG:4326"))
 
 
+def test_a_web_map_is_warned_of_since_its_metres_are_none():
+    points = measured(crs="EPSG:3857")
+    points.easting[:], points.northing[:] = points.easting - 610_400 + 935_000, points.northing - 5_710_200 + 6_275_000  # 49° north
+    assert "a metre of the map is 0.66 m on the ground" in notes(placed(2, points))
+    assert "on the ground" not in notes(placed(2))
+
+
+def test_a_local_system_of_a_building_site_will_do():
+    local = 'LOCAL_CS["Site",LOCAL_DATUM["Site",0],UNIT["metre",1],AXIS["X",EAST],AXIS["Y",NORTH]]'
+    assert placed(2, measured(crs=local)).rmse() < 1e-6
+
+
 def test_swapped_pixel_and_line_are_told_as_a_mirror_image():
     points = measured(count=9, places=[(p, q) for p in (20, 200, 390) for q in (30, 150, 380)])
     swapped = control_points(["line", "pixel", "x", "y"], list(zip(points.pixel, points.line, points.easting, points.northing)),
