@@ -267,7 +267,7 @@ def _usual(windows, clock):
         usual = np.median(step[step > 0])
         # the mean, for clocks that count in steps as long as the pulses are apart
         gaps.append(np.mean(step[(step > 0) & (step < 1.5 * usual)]))
-        apart.append(np.diff(np.flatnonzero(np.bincount((clock.turns_at(w.time) - clock.turns_at(w.time[0])).astype(np.int64)))))
+        apart.append(np.diff(np.unique(clock.lines_and_phase(w.time)[0])))
         onward += np.sign(np.diff(w.offset)).sum()
     apart = np.concatenate(apart)
     return dict(pulse=float(np.median(gaps) * abs(clock.frequency)), spacing=int(np.median(apart)) if len(apart) else 1,
