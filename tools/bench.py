@@ -52,6 +52,37 @@ def measure(folder):
                 length_m=road_map.frame.roads[0].length, driving_lines=len(road_map.driving_lines or ()))
 
 
+def measure_scanlines(folder):
+    """Normalized scanlines and boundaries on them, in memory; the layer apart: a dict of figures."""
+    from plugin_package import load
+
+    load()
+    from lanewright.core.road.boundaries import BoundarySettings, find_curb_points
+    from lanewright.core.road.scanline_layer import ScanlineLayerSettings, write_scanlines
+    from lanewright.core.survey.survey import open_survey
+    from lanewright.core.survey.trajectory_file import read_trajectory
+
+    cloud, seconds = folder / "survey.laz", {}
+    read_seconds, count = read_with_laspy(cloud)
+    survey = open_survey([cloud], read_trajectory(folder / "trajectory.csv"))
+    for section in survey.store.sections(0):  # sections are put in order when they are first read
+        survey.section(0, section)
+    for stage, work in (("scanlines", lambda: write_scanlines(survey)[1]),
+                        ("with boundaries", lambda: len(find_curb_points(survey, BoundarySettings(method="scanlines"))["scanlines"])),
+                        ("with layer", lambda: len(write_scanlines(survey, layer=ScanlineLayerSettings())[0]))):
+        began = time.perf_counter(), time.process_time()
+        made = work()
+        seconds[stage] = time.perf_counter() - began[0], time.process_time() - began[1], made
+    read_seconds = (read_seconds + read_with_laspy(cloud)[0]) / 2
+    return dict(points=count, read=read_seconds, seconds=seconds)
+
+
+def show_scanlines(figures):
+    print(f"  normalized scanlines, each line a run of its own; one laspy read {figures['read']:.1f} s")
+    for stage, (seconds, cpu, made) in figures["seconds"].items():
+        print(f"  {stage:<16} {seconds:5.1f} s  {seconds / figures['read']:6.2f} x reading   ({cpu:.1f} CPU s, {made:,} made)")
+
+
 def make(folder, points):
     """A sample survey of about `points` points: the same street, as long as it takes."""
     from plugin_package import load
@@ -82,13 +113,16 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--folder", type=Path, default=Path(__file__).resolve().parents[1] / "build" / "bench")
     parser.add_argument("--sizes", type=int, nargs="+", default=SIZES, help="points")
-    parser.add_argument("--child", choices=("make", "measure"), help=argparse.SUPPRESS)
+    parser.add_argument("--child", choices=("make", "measure", "scanlines"), help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if arguments.child == "make":
         make(arguments.folder, arguments.sizes[0])
         return
     if arguments.child == "measure":
         print(json.dumps(measure(arguments.folder)))
+        return
+    if arguments.child == "scanlines":
+        print(json.dumps(measure_scanlines(arguments.folder)))
         return
     print(f"load {os.getloadavg()[0]:.1f}, {os.cpu_count()} cores")
     runs = []
@@ -101,6 +135,8 @@ def main():
         figures = json.loads(found.strip().splitlines()[-1])
         show(figures, figures["read"])
         runs.append(figures)
+        found = subprocess.run([*child, "scanlines"], check=True, stdout=subprocess.PIPE, text=True).stdout
+        show_scanlines(json.loads(found.strip().splitlines()[-1]))
     if len(runs) == 2:
         points, wall, cpu, peak = (runs[1][name] / runs[0][name] for name in ("points", "wall", "cpu", "peak_mib"))
         print(f"\n{points:.1f} x the points take {wall:.1f} x the time, {cpu:.1f} x the CPU seconds and {peak:.2f} x the memory")

@@ -11,11 +11,6 @@ MIRROR_IMAGE = 1.5             # times as clear as the same frequency backwards
 LEAST_PEAK = 0.5
 
 
-def scan_angle(across, above):
-    """(N,) radians about the trajectory, seen along the road: 0 at the zenith, positive to the left, +-pi below."""
-    return np.arctan2(across, above)
-
-
 def spectrum(time, phasor):
     """How clearly points turn with each frequency.
 

@@ -18,11 +18,13 @@ from ..parallel import in_order
 from ..progress import Progress
 from .mirror_clock import clock_from_phasors
 from .points import BITS, UNIT, chosen
-from .rotation import LEAST_PEAK, WINDOW, clearest_rotation, scan_angle, spectrum
+from .rotation import LEAST_PEAK, WINDOW, clearest_rotation, spectrum
 
 SAMPLES = 12          # places along a pass at which the frequency is sought
 SAMPLE_LENGTH = 30.0  # m of road about them: lines slant, and of a short piece of road see little each
 FEWEST = 200          # points of a scanner in a window
+LEAST_TIMED = 0.7     # of the points: where more share their times, these do not tell their order on the line
+NEAR, ONE_WAY = 0.5, 0.75  # m across from point to point of a line, and the share of steps that go one way
 TICK = 2.0**-22       # s: finer than any clock's steps
 BIN_TURNS = 10        # turns whose points tell one phase
 POINTS_PER_TURN = 40  # looked at for it; more tell no more
@@ -87,7 +89,7 @@ def _tell(lattice, survey, progress):
         progress.warn(lattice.notes[-1])
     if lattice.without:
         note = (f"{len(lattice.without)} of {len(lattice.clocks) + len(lattice.without)} run(s) of a scanner show no regular scan lines "
-                "(a head with many beams, or a thinned cloud); there scanlines are made of the points near each section plane.")
+                "(a head with many beams, a thinned cloud, or times too coarse); there scanlines are made of the points near each section plane.")
         lattice.notes.append(note)
         progress.warn(note)
 
@@ -163,12 +165,13 @@ def _rotation(windows, given):
 
 
 def _in_order(windows):
-    """Whether points that follow on each other lie side by side, as on a line, and mostly one way."""
-    steps = np.concatenate([np.diff(w.offset)[np.diff(w.time) > 0] for w in windows])
-    if len(steps) < FEWEST:
+    """Whether points that follow on each other have times of their own and lie side by side, as on a line, mostly one way."""
+    later = np.concatenate([np.diff(w.time) > 0 for w in windows])
+    steps = np.concatenate([np.diff(w.offset) for w in windows])[later]
+    if len(steps) < FEWEST or np.mean(later) < LEAST_TIMED:
         return False
     onward = np.mean(steps > 0)
-    return bool(np.median(np.abs(steps)) < 0.5 and max(onward, 1 - onward) > 0.75)
+    return bool(np.median(np.abs(steps)) < NEAR and max(onward, 1 - onward) > ONE_WAY)
 
 
 def _clocks(survey, road, rotations, samples, progress):

@@ -114,6 +114,11 @@ def test_a_spinning_head_of_many_beams_is_said_to_have_no_lines():
     assert len(told) == 1 and "no regular scan lines" in told[0]
 
 
+def test_times_too_coarse_for_the_order_of_points_are_no_lattice():
+    assert find_lattice(survey_of(scanned(rounded=2e-5))).without == [(0, 0)]
+    assert find_lattice(survey_of(scanned(rounded=1e-5))).without == []
+
+
 def test_without_times_there_are_no_lines_to_tell():
     lattice = find_lattice(survey_of(scanned(), has_time=False))
     assert lattice.clocks == {} and "no gps_time" in lattice.notes[0]
