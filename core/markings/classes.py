@@ -18,6 +18,9 @@ STRIPES = 3
 STOP_WIDTH = (0.18, 0.90)
 STOP_LENGTH = 1.5
 COVER = (0.30, 1.15)  # m, diameter of manhole covers
+ROUND = 1.7           # a cover is not longer for its width than this
+FILLED = 0.7          # of its length times its width: a stop line is a full bar, the outline of hatching with its bars is not
+TOUCHING = 0.3        # m from a bar of hatching to its outline
 RIM = 0.60            # m from the road edge where verge, gutter and curb may look like paint
 BEYOND = 0.80         # m outside an edge line that strips are mistrusted
 AT_RIM, NO_LANE = 0.10, 2.6  # m: what lies this near the road edge is mistrusted as far out as no lane has room
@@ -80,6 +83,8 @@ def classify(shapes, half_widths, settings=ClassSettings()):
         else:
             kind = _other_kind(shape)
         found.append((kind, "keep" if kind in LINES else "other"))
+    for k in _outlines(column, [kind for kind, _ in found]):
+        found[k] = "hatch", "other"
     return found
 
 
@@ -140,6 +145,16 @@ def _beyond_the_edge_line(column, line, room):
     return result
 
 
+def _outlines(column, kinds):
+    """What looked like a sign, and is the outline of hatching: a bar runs into it."""
+    kinds = np.array(kinds, dtype=object)
+    bars, rows = np.flatnonzero(kinds == "hatch"), np.flatnonzero(kinds == "symbol")
+    touch = np.ones((len(rows), len(bars)), bool)
+    for low, high in (("s0", "s1"), ("d0", "d1")):
+        touch &= (column[low][rows][:, None] < column[high][bars] + TOUCHING) & (column[high][rows][:, None] > column[low][bars] - TOUCHING)
+    return rows[touch.any(axis=1)]
+
+
 def _line_kind(shape, room, double):
     if room < LANE and not double:
         return "edge"
@@ -153,7 +168,9 @@ def _speck(shape):
 def _round_cover(shape):
     along, across = shape.s1 - shape.s0, shape.d1 - shape.d0
     longer, shorter = max(along, across), min(along, across)
-    return COVER[0] <= longer <= COVER[1] and shorter > 0.7 * longer and shape.area > 0.5 * along * across
+    # a dash askew fills a square, too
+    return COVER[0] <= longer <= COVER[1] and shorter > 0.7 * longer and shape.area > 0.5 * along * across \
+        and shape.elongation < ROUND
 
 
 def _curb(shape, room):
@@ -168,7 +185,8 @@ def _gutter(shape, room, line, zebra):
 
 def _other_kind(shape):
     turn = abs(shape.direction)
-    if turn > np.radians(60) and STOP_WIDTH[0] <= shape.width <= STOP_WIDTH[1] and shape.length >= STOP_LENGTH:
+    if turn > np.radians(60) and STOP_WIDTH[0] <= shape.width <= STOP_WIDTH[1] and shape.length >= STOP_LENGTH \
+            and shape.area >= FILLED * shape.length * shape.width:
         return "stop"
     along, across = shape.s1 - shape.s0, shape.d1 - shape.d0
     if 1.5 <= along <= 8.0 and 0.3 <= across <= 1.8 and shape.area < 0.7 * along * across and turn < np.radians(25):

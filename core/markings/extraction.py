@@ -14,18 +14,20 @@ from ..parallel import in_order
 from ..progress import Progress
 from ..survey.points import UNIT, Points, chosen
 from ..survey.road_points import RoadPoints
+from .averages import Averages
 from .gutters import rim_distance
 from .intensity_peaks import PeakSettings, points_on_peaks
 from .levels import Levels, asphalt_profile, flatten
 from .mask import burn_points, marking_mask, painted_pixels
-from .morphology import averaged, morphology, strips
+from .morphology import morphology
 from .point_segments import SegmentSettings, points_in_segments
+from .road_grid import CELL, RoadGrid
+from .strokes import Witnesses, stroke_cells, views
 from .thresholds import FEWEST, asphalt_bins, bin_edges, scatter_of, split_bins
 
 RIM = 0.60        # m from the rim of the road where gutters end and asphalt is asphalt
 NOISY = 0.40      # of asphalt's level: single points that scatter more are averaged (multi-beam scanners)
 METHODS = ("multi-threshold", "intensity-peaks", "point-segments")
-CELL = 400        # units of 0.1 mm: the grid in (s, d) has cells of 4 cm
 WINDOW = 500      # cells: thresholds are taken from 20 m of road
 HALO = 100        # cells: 4 m about a window in which rims and runs are still looked at
 
@@ -40,7 +42,7 @@ class MarkingSettings:
         asphalt, below which a bin has no paint
     lowest, highest : limits of the threshold in spreads above the median of asphalt
     alone : spreads, the threshold where neither a bin nor its neighbours show two materials
-    faint : spreads, the highest threshold on averages of noisy points, where shape must speak too
+    faint : spreads, the threshold on averages of noisy points, where shape must speak too
     close, shortest : m, gaps along the road that are closed, and pieces shorter than that are dropped
     peaks, segments : what the other two methods go by; all between is the multi-threshold's
     """
@@ -65,29 +67,6 @@ class MarkingSettings:
                 "least 1 and not above the second.")
         if min(self.close, self.shortest) < 0:
             raise RoadExtractionError("Lengths along the road must be 0 m or more.")
-
-
-class RoadGrid:
-    """A window of the road in cells of 4 cm: rows along the road, columns across it."""
-
-    def __init__(self, first, last, low, high):
-        self.first, self.last, self.low, self.high = first, last, low, high
-
-    @property
-    def shape(self):
-        return self.last - self.first, self.high - self.low
-
-    def stations(self):
-        return (np.arange(self.first, self.last) + 0.5) * CELL * UNIT
-
-    def offsets(self):
-        return (np.arange(self.low, self.high) + 0.5) * CELL * UNIT
-
-    def read(self, image, frame, road):
-        """(rows, columns) float32 brightness, NaN where nothing was scanned."""
-        s, d = np.meshgrid(self.stations(), self.offsets(), indexing="ij")
-        x, y = frame.road(road).to_map(s.ravel(), d.ravel())
-        return np.asarray(image.sample(x, y, frame.origin), np.float32).reshape(self.shape)
 
 
 def extract_markings(road_points, image, frame, settings=MarkingSettings(), progress=Progress(), mask_path=None):
@@ -140,13 +119,15 @@ def _extract(road_points, image, frame, settings, progress, burn):
         # a scanner is noisy or it is not: every fourth window tells
         scatter = [value for value in in_order(look.scatter, [w for w in windows if w % 4 == 0] or windows, part.part(0.0, 0.1))
                    if value is not None]
-        look.noisy = bool(scatter) and float(np.median(scatter)) > NOISY
-        if look.noisy:
+        if scatter and float(np.median(scatter)) > NOISY:
             progress.say(f"Intensities scatter by {100 * np.median(scatter):.0f} % about asphalt: paint is sought in averages "
-                         "over a decimetre, and markings smaller than that are not seen.")
-        bins = dict(zip(windows, in_order(look.bins, windows, part.part(0.1, 0.5))))
-        levels = Levels({w: found for w, found in bins.items() if found}, WINDOW * CELL * UNIT, settings)
-        for records, x, y in in_order(lambda w: look.paint(w, levels), windows, part.part(0.5, 1.0)):
+                         "over a decimetre, as strokes and rows of dashes; other markings are not seen.")
+            painted = in_order(look.strokes, windows, part.part(0.1, 1.0))
+        else:
+            bins = dict(zip(windows, in_order(look.bins, windows, part.part(0.1, 0.5))))
+            levels = Levels({w: found for w, found in bins.items() if found}, WINDOW * CELL * UNIT, settings)
+            painted = in_order(lambda w, levels=levels: look.paint(w, levels), windows, part.part(0.5, 1.0))
+        for records, x, y in painted:
             kept.store.append(road, records)
             if burn is not None:
                 burn(x, y)
@@ -158,7 +139,6 @@ class _Look:
 
     def __init__(self, road_points, image, frame, road, settings, masked=False):
         self.road_points, self.image, self.frame, self.road, self.settings = road_points, image, frame, road, settings
-        self.noisy = False
         self.masked = masked
 
     def windows(self):
@@ -177,7 +157,7 @@ class _Look:
         return scatter_of(points)
 
     def _grid(self, window):
-        """The grid of a window with its halo, the records in it with row and column, brightness and rim distance."""
+        """The grid of a window with its halo, the records in it with row and column, which are its own, and rim distance."""
         first, last = window * WINDOW - HALO, (window + 1) * WINDOW + HALO
         records = self.road_points.window(self.road, (first - 1) * CELL * UNIT, (last + 1) * CELL * UNIT).records
         row = records["s"] // CELL - first
@@ -192,18 +172,15 @@ class _Look:
         grid = RoadGrid(first, last, low, high)
         occupied = np.zeros(grid.shape, bool)
         occupied[row, column] = True
-        if self.noisy:
-            brightness = averaged(row * grid.shape[1] + column, Points(records).value, grid.shape)
-        else:
-            brightness = grid.read(self.image, self.frame, self.road)
-        return grid, records, row, column, own, brightness, rim_distance(occupied)
+        return grid, records, row, column, own, rim_distance(occupied)
 
     def bins(self, window):
         """Bins of asphalt and Otsu's splits of one window; an empty list where there is nothing to see."""
         found = self._grid(window)
         if found is None:
             return []
-        grid, records, _, _, own, brightness, rim = found
+        grid, records, _, _, own, rim = found
+        brightness = grid.read(self.image, self.frame, self.road)
         rows = slice(HALO, HALO + WINDOW)
         offsets = np.broadcast_to(grid.offsets(), grid.shape)
         seen = np.isfinite(brightness)
@@ -229,21 +206,37 @@ class _Look:
         """Records of one window that lie on paint; local x, y of the mask's pixels where one is asked for."""
         found = self._grid(window)
         if found is None or not len(levels.numbers):
-            return self.road_points.window(self.road, 0, 0).records, np.empty(0), np.empty(0)
-        grid, records, row, column, own, brightness, rim = found
+            return self._nothing()
+        grid, records, row, column, own, rim = found
+        brightness = grid.read(self.image, self.frame, self.road)
         median, spread, scale, threshold = levels.at(grid)
         z, gutter = flatten(brightness, median, spread, rim)
-        if self.noisy:
-            mask = strips(z / scale, np.minimum(threshold, self.settings.faint), gutter, rim)
-        else:
-            with np.errstate(invalid="ignore"):
-                mask = morphology((z > threshold * scale) & ~gutter, self.settings)
+        with np.errstate(invalid="ignore"):
+            mask = morphology((z > threshold * scale) & ~gutter, self.settings)
+        # what was taken from the cell as background is taken from the point as well
+        least = (brightness - z * spread) + (threshold - 0.5) * (spread * scale)
+        bright = Points(records).value > least[row, column]
+        return self._handed_out(grid, mask, records, row, column, own, bright)
+
+    def strokes(self, window):
+        """The same where single points are noisy: what is as bright as paint must have its shape too."""
+        found = self._grid(window)
+        if found is None:
+            return self._nothing()
+        grid, records, row, column, own, rim = found
+        cell, points = row * grid.shape[1] + column, Points(records)
+        averages = Averages.of(cell, points.value, records["z"], grid.shape)
+        witnesses = Witnesses(cell, points.value, points.covered > 0, views(points, self.frame))
+        mask = stroke_cells(averages, rim, witnesses, self.settings.faint)
+        return self._handed_out(grid, mask, records, row, column, own, np.ones(len(records), bool))
+
+    def _nothing(self):
+        return self.road_points.window(self.road, 0, 0).records, np.empty(0), np.empty(0)
+
+    def _handed_out(self, grid, mask, records, row, column, own, bright):
+        """Records of the window itself that are bright in painted cells, and the mask's pixels."""
         records, row, column = chosen(records, own), row[own], column[own]
-        kept = mask[row, column]
-        if not self.noisy:  # else a single point says nothing
-            # what was taken from the cell as background is taken from the point as well
-            ground = (brightness - z * spread)[row, column]
-            kept &= Points(records).value > ground + (threshold[row, column] - 0.5) * (spread * scale)[row, column]
+        kept = mask[row, column] & bright[own]
         if not self.masked:
             return chosen(records, kept), np.empty(0), np.empty(0)
         # the image spreads a point over its neighbours: a cell whose own points are dark is no marking

@@ -12,6 +12,7 @@ from ..schemas import ROAD_SURFACE
 from ..survey.points import UNIT
 from ..survey.road_frame import CORRIDOR
 from ..survey.road_points import RoadPoints
+from .cover import HIGH, LOW, SQUARE, covered
 from .surface_cells import COLUMN, ROW, Cells, ground_cells
 from .surface_growth import follow_road, smooth_road
 from .surface_limits import edge_offsets
@@ -161,12 +162,16 @@ def _take_points(survey, road, carriageway, road_points, progress):
     sections = survey.store.sections(road)
 
     def take(number):
-        points = survey.section(road, number)
-        on_road, half_width = select_points(points, carriageway)
-        count = len(on_road)
-        records = points[on_road].records.with_columns(
-            corrected=np.full(count, np.nan, np.float32), cluster=np.zeros(count, np.int32),
-            half_width=np.clip(np.rint(half_width * 1e3), 0, 65535).astype(np.uint16))
+        start, end = (np.array([number, number + 1]) * survey.store.section_length).tolist()
+        # what stands beside a point may stand in the next section
+        points = survey.window(road, np.floor(start / SQUARE - 1.01) * SQUARE, np.ceil(end / SQUARE + 1.01) * SQUARE)
+        on_road, half_width, above = select_points(points, carriageway)
+        beneath = covered(points[on_road], points[above])
+        own = np.floor(points.s[on_road] / survey.store.section_length) == number
+        count = np.count_nonzero(own)
+        records = points[on_road[own]].records.with_columns(
+            corrected=np.full(count, np.nan, np.float32), cluster=np.zeros(count, np.int32), covered=beneath[own].astype(np.uint8),
+            half_width=np.clip(np.rint(half_width[own] * 1e3), 0, 65535).astype(np.uint16))
         return number, records.whole()
 
     for number, records in in_order(take, sections, progress):
@@ -177,11 +182,12 @@ def _take_points(survey, road, carriageway, road_points, progress):
 
 
 def select_points(points, carriageway):
-    """Indices of the points on the road surface, and the half width of the road on each one's side.
+    """Points on the road surface, and what stands on it.
 
     Returns
     -------
-    (M,) indices; (M,) metres from the reference line to the limit of the point's side
+    (M,) indices of points on the road; (M,) metres from the reference line to the limit of each one's side
+    (K,) indices of points above it
     """
     cells = carriageway.cells
     s, d = points.s, points.d
@@ -192,10 +198,10 @@ def select_points(points, carriageway):
     row, column = row[inside], d[inside] / COLUMN - cells.first_column - 0.5
     column = np.clip(column, 0, cells.height.shape[1] - 1)
     height = _bilinear(carriageway.height, row, column)
-    near = np.abs(points.records["z"][inside] * UNIT - height) < carriageway.tolerance
-    kept = inside[near]
+    rise = points.records["z"][inside] * UNIT - height
+    kept = inside[np.abs(rise) < carriageway.tolerance]
     half_width = np.where(d[kept] >= 0, left[kept], -right[kept])
-    return kept, np.maximum(half_width, np.abs(d[kept]))
+    return kept, np.maximum(half_width, np.abs(d[kept])), inside[(rise > LOW) & (rise < HIGH)]
 
 
 def _at_rows(values, row):

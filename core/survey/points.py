@@ -15,8 +15,8 @@ SURVEY_POINT = np.dtype([
 ])
 
 # `half_width` is in millimetres; `corrected` is NaN where intensity was not corrected;
-# `cluster` is 0 before clustering.
-ROAD_POINT = np.dtype(SURVEY_POINT.descr + [("corrected", "f4"), ("half_width", "u2"), ("cluster", "i4")])
+# `cluster` is 0 before clustering; `covered` is 1 beneath and right beside what stands on the road.
+ROAD_POINT = np.dtype(SURVEY_POINT.descr + [("corrected", "f4"), ("half_width", "u2"), ("cluster", "i4"), ("covered", "u1")])
 
 
 def to_units(metres):
@@ -28,7 +28,7 @@ class Points:
     """A metric view over Columns (or a structured array) of points; metres are computed on access.
 
     Attributes: x, y, z, s, d, half_width (metres, float64), time (seconds), and the raw
-    columns intensity, corrected, source, pass_number, scanner, returns, cluster.
+    columns intensity, corrected, source, pass_number, scanner, returns, cluster, covered.
     """
 
     METRIC = {"x", "y", "z", "s", "d"}

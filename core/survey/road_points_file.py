@@ -19,7 +19,7 @@ SCALE = UNIT
 # back is to the bit what was passed on in memory.
 EXTRA = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", None), ("scanner", "uint8", "Scanner", None),
          ("station_m", "int32", "Station along the road", UNIT), ("offset_m", "int32", "Offset, left positive", UNIT),
-         ("half_width", "uint16", "Half width of the road", 1e-3)]
+         ("half_width", "uint16", "Half width of the road", 1e-3), ("covered", "uint8", "Beneath something on the road", None)]
 CORRECTED = ("intensity_corrected", "float32", "Intensity, range corrected", None)
 CLUSTER = ("cluster", "int32", "Cluster of paint", None)
 NEEDED = ("road", "pass", "station_m", "offset_m", "half_width")
@@ -84,7 +84,7 @@ def _record(road_points, road, number, header):
     out.array["road"], out.array["pass"] = road, records["pass_number"]
     out.array["scanner"] = records["scanner"]
     out.array["station_m"], out.array["offset_m"] = records["s"], records["d"]
-    out.array["half_width"] = records["half_width"]
+    out.array["half_width"], out.array["covered"] = records["half_width"], records["covered"]
     if road_points.has_corrected:
         out.array["intensity_corrected"] = records["corrected"]
     if road_points.has_cluster:
@@ -129,6 +129,7 @@ def read_road_points(path, progress=Progress()):
         records["half_width"] = np.rint(np.asarray(block["half_width"], float) / 1e-3)
         records["corrected"] = block["intensity_corrected"] if has_corrected else np.nan
         records["cluster"] = block["cluster"] if has_cluster else 0
+        records["covered"] = block["covered"] if "covered" in names else 0
         roads = np.asarray(block["road"])
         for road in np.unique(roads):
             store.append(int(road), records[roads == road])

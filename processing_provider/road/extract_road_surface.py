@@ -39,7 +39,7 @@ class ExtractRoadSurface(LanewrightAlgorithm):
         self.add_knobs(SURVEY_KNOBS)
         self.add_laz(
             "ROAD_POINTS", tr("Road points"),
-            tr("Class 11, with the extra fields road, pass, station_m, offset_m and half_width for the stages that follow."),
+            tr("Class 11, with the extra fields road, pass, station_m, offset_m, half_width and covered for the stages that follow."),
         )
         self.add_sink("ROAD_SURFACE", tr("Road surface"), fields=ROAD_SURFACE, geometry="PolygonZ", optional=True)
 

@@ -2,68 +2,19 @@
 
 import numpy as np
 import pytest
+from spun_streets import BEAMS, spun
 
 from lanewright.core.markings.beams import Beams
 from lanewright.core.markings.clusters import cluster_markings
 from lanewright.core.markings.extraction import extract_markings
 from lanewright.core.markings.image import IntensityImage, write_intensity_image
 from lanewright.core.markings.intensity import correct_intensity
-from lanewright.core.survey.points import ROAD_POINT, to_units
-from lanewright.core.survey.road_frame import build_frame
-from lanewright.core.survey.road_points import RoadPoints
-from lanewright.core.survey.section_store import SectionStore
-from lanewright.core.survey.trajectory import Trajectory
-
-LENGTH, HEIGHT, SPEED, HALF = 45.0, 1.8, 5.0, 7.0
-TURN = 0.1      # s
-BEAMS = 40
-ELEVATIONS = np.radians(np.linspace(-26.0, -7.0, BEAMS))
-
-
-def drive(rolling=True):
-    """A drive to the east in a vehicle that rolls and pitches by a degree."""
-    time = np.arange(0.0, LENGTH / SPEED + 0.05, 0.05)
-    roll, pitch = (rolling * np.sin(time), rolling * np.cos(1.7 * time))
-    return Trajectory(1000 + time, SPEED * time + 500_000, np.full(len(time), 5_400_000.0), np.full(len(time), 100 + HEIGHT),
-                      roll, pitch, np.full(len(time), 90.0))
-
 
 def hatching(x, y):
     """An island beside the lane: bars of 0.3 m across a strip, within a frame of lines of 0.15 m."""
     inside = (x > 20) & (x < 26) & (y > 2.5) & (y < 5.0)
     frame = (np.abs(y - 2.575) < 0.075) | (np.abs(y - 4.925) < 0.075)
     return inside & (frame | ((x + y) % 1.5 < 0.3))
-
-
-def spun(paint=None, by_turn=False, unequal=True, seed=5, section_length=20.0):
-    """Road points of a spinning scanner and its frame; `by_turn` brings each turn to the place of its middle, as clouds of frames do."""
-    rng = np.random.default_rng(seed)
-    trajectory = drive()
-    frame = build_frame(trajectory)
-    angle = np.arange(0, 2 * np.pi, np.radians(0.6))
-    turns = np.arange(0.0, LENGTH / SPEED - TURN / 2, TURN)
-    turn, azimuth, beam = (a.ravel() for a in np.meshgrid(turns, angle, np.arange(BEAMS), indexing="ij"))
-    time = turn + TURN * azimuth / (2 * np.pi)
-    seen = turn + TURN / 2 if by_turn else time
-    roll, pitch = (np.radians(np.interp(1000 + seen, trajectory.time, a)) for a in (trajectory.roll, trajectory.pitch))
-    # in the vehicle a beam keeps its elevation; where it meets the road follows from the tilt
-    ahead, left = np.cos(azimuth), np.sin(azimuth)
-    elevation = ELEVATIONS[beam] + rng.normal(0, np.radians(0.03), len(beam))
-    level = np.tan(elevation) + roll * left - pitch * ahead
-    x, y = SPEED * seen - HEIGHT / level * ahead, -HEIGHT / level * left
-    gain = np.where(unequal, rng.uniform(-14, 8, BEAMS), 0.0)
-    value = 28 + gain[beam] + rng.normal(0, 3, len(x)) + (np.where(paint(x, y), 25, 0) if paint else 0)
-    kept = (np.abs(y) < HALF) & (x > 0) & (x < LENGTH)
-    records = np.zeros(kept.sum(), ROAD_POINT)
-    for name, values in (("x", x), ("y", y), ("s", x), ("d", y), ("z", np.full(len(x), 100 - frame.origin[2]))):
-        records[name] = to_units(values[kept])
-    records["time"] = 1000 + time[kept]
-    records["source"] = 1 + np.rint(turn[kept] / TURN)
-    records["intensity"] = np.clip(np.rint(value[kept]), 0, 255) * 256
-    records["corrected"], records["half_width"] = np.nan, HALF * 1000
-    found = RoadPoints(SectionStore(ROAD_POINT, section_length), frame.origin)
-    found.store.append(0, records)
-    return found, frame
 
 
 def scatter(values):

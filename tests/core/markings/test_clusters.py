@@ -145,3 +145,24 @@ def test_where_there_is_no_paint_there_are_no_markings():
 def test_settings_without_sense_are_refused(wrong):
     with pytest.raises(RoadExtractionError):
         ClusterSettings(**wrong)
+
+
+def askew(s0, d0, length, width, turn=0.75):
+    """A stroke from s0, d0 on, turned to the left of the road."""
+    def painted(s, d):
+        along, across = (s - s0) * np.cos(turn) + (d - d0) * np.sin(turn), (d - d0) * np.cos(turn) - (s - s0) * np.sin(turn)
+        return (along >= 0) & (along < length) & (np.abs(across) < width / 2)
+    return painted
+
+
+def test_a_short_dash_askew_to_the_road_is_no_manhole_cover():
+    assert len(markings_of([askew(20, 1, 0.7, 0.15)])) == 1
+    assert len(markings_of([disc(20, 1, 0.7)])) == 0
+
+
+def test_the_outline_of_hatching_across_the_road_is_hatching_and_no_stop_line():
+    outline = [strip(20, 20.15, -3, 0), strip(20.15, 20.6, -3, -2.8)]
+    bar = askew(20.3, 0.2, 1.6, 0.3)
+    assert classes(markings_of(outline + [bar])) == ["hatch", "hatch"]
+    assert "stop" not in classes(markings_of(outline))
+    assert classes(markings_of([strip(20, 20.4, -3, 0)])) == ["stop"]

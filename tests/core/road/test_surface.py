@@ -134,6 +134,21 @@ def test_a_parked_car_is_not_road_and_the_road_beside_it_is():
     assert np.count_nonzero(beside & (points.d < 2.0)) > 0.99 * 200 * 4.5 * 6.0 * 0.97
 
 
+def test_road_beneath_a_parked_car_says_so_and_the_road_beside_it_does_not():
+    # laser pulses reach all of the road beneath it here, as they do from the far side of the street
+    surveyed = survey(curbs(), extra=parked_car())
+    points, _ = taken(surveyed, road_edges())
+    beneath = (points.s > 25.2) & (points.s < 29.3) & (points.d > 2.3) & (points.d < 3.7)
+    away = (points.s < 24.5) | (points.s > 30.0) | (points.d < 1.6)
+    assert points.covered[beneath].mean() > 0.98 and not points.covered[away].any()
+
+
+def test_branches_high_above_a_road_do_not_cover_it():
+    x, y, z = parked_car()
+    points, _ = taken(survey(curbs(), extra=(x, y, z + 2.5)), road_edges())
+    assert not points.covered.any()
+
+
 def test_an_island_is_not_road_and_the_far_lane_behind_it_is():
     island = lambda s, d: np.where((s > 20) & (s < 40) & (d > 2) & (d < 3.6), 0.15, 0.0) + np.where(np.abs(d) > 7, 0.12, 0.0) - 0.02 * np.abs(d)
     surveyed = survey(island)
@@ -241,10 +256,10 @@ def test_every_point_says_how_far_the_road_reaches_on_its_side():
 @pytest.mark.parametrize("section_length", [5.0, 13.0, 60.0])
 def test_the_length_of_sections_changes_nothing(section_length):
     height = lambda s, d: curbs(3.5, 0.08)(s, d) - 0.02 * np.abs(d)
-    usual, first = taken(survey(height, density=80))
-    other, second = taken(survey(height, density=80, section_length=section_length))
+    usual, first = taken(survey(height, density=80, extra=parked_car()))
+    other, second = taken(survey(height, density=80, extra=parked_car(), section_length=section_length))
     order = [np.lexsort((p.records["z"], p.records["y"], p.records["x"])) for p in (usual, other)]
-    for name in ("x", "y", "z", "half_width", "time"):
+    for name in ("x", "y", "z", "half_width", "covered", "time"):
         np.testing.assert_array_equal(usual.records[name][order[0]], other.records[name][order[1]])
     assert [g.wkt for g in first.geometries] == [g.wkt for g in second.geometries]
 

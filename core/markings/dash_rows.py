@@ -1,0 +1,75 @@
+"""Rows of dashes: short pieces that follow on each other at an even pace, each along the row.
+
+One bright spot of half a metre may be anything. Four of them in a line, evenly
+spaced and all pointing along it, were painted, or are the stones of one curb.
+"""
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+REACH = 3.0        # m between the middles of neighbours in a row
+SHORTEST = 0.25    # m between them at least
+BROADEST = 0.45    # m that a dash may reach across its row
+LATERAL = 0.12     # m off the line through its neighbours
+GAP = 3.0          # times the length of the longer dash: no gap of a row is longer
+UNEVEN = 2.5       # times: how much one step of a row may be longer than the next, a dash worn away between them
+TURN = np.cos(np.radians(12.0))   # by which a row may turn from dash to dash
+FEWEST = 4
+
+
+def in_rows(shapes):
+    """Pieces that stand in rows.
+
+    Parameters
+    ----------
+    shapes : list of N Shape
+
+    Returns
+    -------
+    list of ascending int arrays, the pieces of each row; a piece where rows meet is in several
+    """
+    if len(shapes) < FEWEST:
+        return []
+    middle = np.array([((shape.s0 + shape.s1) / 2, (shape.d0 + shape.d1) / 2) for shape in shapes])
+    length, width, turn = (np.array([getattr(shape, name) for shape in shapes]) for name in ("length", "width", "direction"))
+    pairs = cKDTree(middle).query_pairs(REACH, output_type="ndarray")
+    pairs = np.concatenate([pairs, pairs[:, ::-1]])
+    pairs = pairs[np.lexsort(pairs.T[::-1])]
+    step = middle[pairs[:, 1]] - middle[pairs[:, 0]]
+    apart = np.hypot(*step.T)
+    ways = step / np.maximum(apart, 1e-9)[:, None]
+    links = _narrow(length, width, turn, pairs, ways) & (apart >= SHORTEST) \
+        & (apart - length[pairs].mean(axis=1) <= GAP * length[pairs].max(axis=1))
+    return _chains(pairs[links], apart[links], ways[links])
+
+
+def _narrow(length, width, turn, pairs, ways):
+    """(P,) whether both pieces of each pair are narrow across the way from one to the other."""
+    heading = np.arctan2(ways[:, 1], ways[:, 0])
+    narrow = np.ones(len(pairs), bool)
+    for k in pairs.T:
+        off = turn[k] - heading
+        narrow &= length[k] * np.abs(np.sin(off)) + width[k] * np.abs(np.cos(off)) <= BROADEST
+    return narrow
+
+
+def _chains(pairs, apart, ways):
+    """Arrays of the pieces of each row, from steps between neighbours."""
+    # a step from i to j goes on in one from j to k
+    order = np.argsort(pairs[:, 0], kind="stable")
+    first, last = (np.searchsorted(pairs[order, 0], pairs[:, 1], side=side) for side in ("left", "right"))
+    count = last - first
+    before = np.repeat(np.arange(len(pairs)), count)
+    after = order[np.arange(len(before)) - np.repeat(np.cumsum(count) - count - first, count)]
+    even = np.maximum(apart[before], apart[after]) <= UNEVEN * np.minimum(apart[before], apart[after])
+    straight = (ways[before] * ways[after]).sum(axis=1) >= TURN
+    off = apart[after] * np.abs(ways[before, 0] * ways[after, 1] - ways[before, 1] * ways[after, 0])
+    joined = even & straight & (off <= LATERAL)
+    graph = coo_matrix((np.ones(joined.sum(), bool), (before[joined], after[joined])), shape=(len(pairs),) * 2)
+    number, row = connected_components(graph, directed=False)
+    # a row is found twice, forwards and backwards
+    found = {tuple(np.unique(pairs[row == k]).tolist())
+             for k in np.flatnonzero(np.bincount(row, minlength=number) >= FEWEST - 1)}
+    return [np.array(members) for members in sorted(found) if len(members) >= FEWEST]
