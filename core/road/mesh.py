@@ -49,14 +49,23 @@ class ScanLines:
 
 @dataclass
 class Ribs:
-    """Sides of the mesh that planes cut: from `point` to a share of the way from point `ahead` to the one after it."""
+    """Sides of the mesh that planes cut: from `point` to a share of the way from point `ahead` to the one after it.
+
+    near, far : stations of their ends in intervals of the planes
+    """
 
     point: np.ndarray
     ahead: np.ndarray
     share: np.ndarray
+    near: np.ndarray
+    far: np.ndarray
 
-    def __add__(self, other):
-        return Ribs(*(np.r_[getattr(self, f.name), getattr(other, f.name)] for f in fields(self)))
+    @classmethod
+    def joined(cls, parts):
+        return cls(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(cls)))
+
+    def __getitem__(self, which):
+        return Ribs(*(getattr(self, f.name)[which] for f in fields(self)))
 
     def at_far_end(self, values):
         """Values where the ribs end, from those of the points."""
@@ -105,21 +114,25 @@ def scan_lines(records, p, clock, corridor):
     phase = (time - np.repeat(begins[:-1][used], counts)) / np.repeat(length, counts)
     s, d, z = (records[name] * UNIT for name in ("s", "d", "z"))
     reach = _reach(s, d, z, p, begins[:-1][used], counts)
-    joined = np.zeros(len(s), bool)
-    joined[:-1] = (line[1:] == line[:-1]) & _side_by_side(np.diff(phase), reach, np.abs(np.diff(s)), np.abs(np.diff(d)), np.diff(z), clock)
+    joined = _side_by_side(line, phase, reach, (s, d, z), clock)
     return ScanLines(line, phase, s, d, z, records["intensity"].astype(np.float64), reach, joined, np.diff(driven)[used])
 
 
-def _side_by_side(apart, reach, ds, dd, dz, clock):
-    """(N - 1,) whether points that follow on each other are neighbours on a surface.
-
-    apart : turns of the mirror between them; reach : (N,) m from the vehicle; ds, dd, dz : metres between them
-    """
+def _side_by_side(line, phase, reach, places, clock):
+    """(N,) whether a point and the next one are neighbours on a surface; `places` are its three coordinates."""
+    apart = np.diff(phase)
+    joined = np.zeros(len(phase), bool)
+    joined[:-1] = same = line[1:] == line[:-1]
+    # few pairs need a closer look: those with points missing between them, and those with a jump of range
+    far = np.flatnonzero(same & (apart > (MISSING + 1.5) * clock.pulse))
+    joined[far[sum((c[far + 1] - c[far]) ** 2 for c in places) > NEIGHBOURS**2]] = False
     leap = np.abs(np.diff(reach))
-    edge = (leap > RANGE_JUMP) & (GRAZING * leap > 2 * np.pi * apart * reach[:-1])
-    near = apart <= (MISSING + 1.5) * clock.pulse
-    near |= ds * ds + dd * dd + dz * dz <= NEIGHBOURS**2
-    return near & ~edge & (ds <= LONGEST_EDGE) & (dd <= LONGEST_EDGE)
+    jump = np.flatnonzero(same & (leap > RANGE_JUMP))
+    edge = GRAZING * leap[jump] > 2 * np.pi * apart[jump] * reach[jump]
+    for c in places[:2]:
+        edge |= np.abs(c[jump + 1] - c[jump]) > LONGEST_EDGE
+    joined[jump[edge]] = False
+    return joined
 
 
 def _reach(s, d, z, p, time, counts):
@@ -133,14 +146,15 @@ def _reach(s, d, z, p, time, counts):
     return np.sqrt(away)
 
 
-def ribs_of(lines, direction, clock):
-    """The ribs of the mesh, from every point that has neighbours ahead.
+def ribs_of(lines, direction, clock, interval):
+    """The ribs of the mesh that planes cut, from points that have neighbours ahead.
 
     Parameters
     ----------
     lines : ScanLines
     direction : 1 where the vehicle drove along the road's stations, -1 against them
     clock : MirrorClock
+    interval : m between planes
 
     Returns
     -------
@@ -148,30 +162,32 @@ def ribs_of(lines, direction, clock):
     """
     key = lines.line + lines.phase
     number = np.arange(len(key), dtype=np.float64)
+    station = lines.s / interval
     rest = np.arange(len(key))
-    parts = []
+    found = []
     for step in range(1, LINES_AHEAD * clock.spacing + 1):
         place = np.interp(key[rest] + step, key, number) + SAME
         ahead = place.astype(np.int64)
-        found = lines.joined[ahead] & (lines.line[ahead] == lines.line[rest] + step)
-        hit = np.flatnonzero(found)
-        ahead = ahead[hit]
-        share = place[hit] - ahead
+        hit = lines.joined[ahead] & (lines.line[ahead] == lines.line[rest] + step)
+        share = place - ahead
         # a rib that meets a point ends in it exactly, so that no plane slips through between it and the next one
-        parts.append(Ribs(rest[hit], ahead, np.where(share < 2 * SAME, 0.0, share - SAME)))
-        rest = rest[~found]
+        share = np.where(share < 2 * SAME, 0.0, share - SAME)
+        near, far = station[rest], station[ahead]
+        far = far + share * (station[np.minimum(ahead + 1, len(key) - 1)] - far)
+        cut = np.flatnonzero(hit & (np.ceil(near) != np.ceil(far)))
+        found.append(Ribs(rest[cut], ahead[cut], share[cut], near[cut], far[cut]))
+        rest = rest[~hit]
         if not len(rest):
             break
-    ribs = Ribs(*(np.concatenate([getattr(part, name) for part in parts]) for name in ("point", "ahead", "share")))
-    onward = direction * (ribs.at_far_end(lines.s) - lines.s[ribs.point])
+    ribs = Ribs.joined(found)
+    onward = direction * interval * (ribs.far - ribs.near)
     longest = np.maximum(LONGEST_RIB, LINES_AHEAD * clock.spacing * lines.driven)
     leap = np.abs(ribs.at_far_end(lines.reach) - lines.reach[ribs.point])
-    good = (onward > 0) & (onward <= longest[lines.line[ribs.point]]) & (leap <= RANGE_JUMP)
-    return Ribs(ribs.point[good], ribs.ahead[good], ribs.share[good])
+    return ribs[(onward > 0) & (onward <= longest[lines.line[ribs.point]]) & (leap <= RANGE_JUMP)]
 
 
-def slanting_edges(lines, clock):
+def slanting_edges(lines, clock, interval):
     """The sides along lines that go so far along the road that a plane may pass between their ends and no rib."""
     far = np.abs(np.diff(lines.s)) > SLANT * clock.spacing * lines.driven[lines.line[:-1]]
     point = np.flatnonzero(far & lines.joined[:-1])
-    return Ribs(point, point, np.ones(len(point)))
+    return Ribs(point, point, np.ones(len(point)), lines.s[point] / interval, lines.s[point + 1] / interval)

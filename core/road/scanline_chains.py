@@ -39,13 +39,18 @@ class PlaneVertices:
 
     def side_by_side(self, i, j):
         """Whether vertices j are the next ones to the left of vertices i on one surface (i and j index alike)."""
-        step, rise = self.d[j] - self.d[i], self.z[j] - self.z[i]
-        near = (np.abs(self.phase[j] - self.phase[i]) <= self.gap) | (step * step + rise * rise <= NEIGHBOURS**2)
-        # seen from the track one behind the other, with a jump of range between them: the edge of a thing and what lies behind
+        step = self.d[j] - self.d[i]
+        side = (self.plane[j] == self.plane[i]) & (step >= -BACKWARD) & (step <= LONGEST_EDGE)
         leap = np.abs(self.away[j] - self.away[i])
-        aside = np.abs(self.across[j] * self.above[i] - self.across[i] * self.above[j])
-        edge = (leap > RANGE_JUMP) & (aside < GRAZING * leap * self.away[i])
-        return near & ~edge & (self.plane[j] == self.plane[i]) & (step >= -BACKWARD) & (step <= LONGEST_EDGE)
+        # few pairs need a closer look: those with points missing between them, and those with a jump of range
+        far = np.flatnonzero(side & (np.abs(self.phase[j] - self.phase[i]) > self.gap))
+        side[far] = step[far] ** 2 + (self.z[j] - self.z[i])[far] ** 2 <= NEIGHBOURS**2
+        # seen from the track one behind the other: the edge of a thing and what lies behind
+        jump = np.flatnonzero(side & (leap > RANGE_JUMP))
+        across, above, away = ((values[i][jump], values[j][jump]) for values in (self.across, self.above, self.away))
+        aside = np.abs(across[1] * above[0] - across[0] * above[1])
+        side[jump[aside < GRAZING * leap[jump] * away[0]]] = False
+        return side
 
     def lines(self):
         """(order of the vertices, None where it stays; (L + 1,) first vertex of each line in that order)."""

@@ -17,7 +17,7 @@ from ..errors import RoadExtractionError
 from ..parallel import in_order
 from ..progress import Progress
 from ..survey.scan_lattice import find_lattice, scanner_runs
-from .mesh import LINES_AHEAD, LONGEST_EDGE, LONGEST_RIB, ribs_of, scan_lines, slanting_edges
+from .mesh import LINES_AHEAD, LONGEST_EDGE, LONGEST_RIB, Ribs, ribs_of, scan_lines, slanting_edges
 from .point_scanlines import point_scanlines
 from .scanline_chains import PlaneVertices, increasing, plane_order
 from .scanlines import Scanlines
@@ -119,18 +119,12 @@ def _cut(records, p, key, clock, planes, settings):
     lines = scan_lines(records, p, clock, settings.corridor)
     if lines is None:
         return Scanlines.none()
-    ribs = ribs_of(lines, p.direction, clock) + slanting_edges(lines, clock)
-    near, far = lines.s[ribs.point] / settings.interval, ribs.at_far_end(lines.s) / settings.interval
-    low = np.ceil(np.minimum(near, far)).astype(np.int64)
-    count = np.ceil(np.maximum(near, far)).astype(np.int64) - low
-    rib = np.repeat(np.arange(len(count)), count)
-    plane = low[rib] + np.arange(len(rib)) - np.repeat(np.cumsum(count) - count, count)
-    inside = (plane >= planes[0]) & (plane < planes[1])
-    rib, plane = rib[inside], plane[inside]
+    ribs = Ribs.joined([ribs_of(lines, p.direction, clock, settings.interval), slanting_edges(lines, clock, settings.interval)])
+    rib, plane = _planes_through(ribs, planes)
     if not len(rib):
         return Scanlines.none()
-    along = (plane - near[rib]) / (far[rib] - near[rib])
-    crossed = Crossings(ribs.point[rib], ribs.ahead[rib], ribs.share[rib], along)
+    near = ribs.near[rib]
+    crossed = Crossings(ribs.point[rib], ribs.ahead[rib], ribs.share[rib], (plane - near) / (ribs.far[rib] - near))
     phase = crossed.of(lines.phase)
     order = plane_order(plane - planes[0], phase if clock.leftward else 1.0 - phase)
     plane, phase, crossed = plane[order], phase[order], crossed[order]
@@ -142,6 +136,19 @@ def _cut(records, p, key, clock, planes, settings):
     found = Scanlines(plane[first[:-1]] * settings.interval, np.full(count, key[0]), np.full(count, key[1]), first,
                       increasing(d, first), z, intensity.astype(np.float32))
     return found[np.diff(first) >= FEWEST]
+
+
+def _planes_through(ribs, planes):
+    """(rib, plane) of every plane that cuts a rib, among planes (first, last + 1)."""
+    low = np.ceil(np.minimum(ribs.near, ribs.far)).astype(np.int64)
+    count = np.ceil(np.maximum(ribs.near, ribs.far)).astype(np.int64) - low
+    if (count == 1).all():
+        rib = np.flatnonzero((low >= planes[0]) & (low < planes[1]))
+        return rib, low[rib]
+    rib = np.repeat(np.arange(len(count)), count)
+    plane = low[rib] + np.arange(len(rib)) - np.repeat(np.cumsum(count) - count, count)
+    inside = (plane >= planes[0]) & (plane < planes[1])
+    return rib[inside], plane[inside]
 
 
 @dataclass
