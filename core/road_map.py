@@ -87,8 +87,8 @@ class _Stages:
     """Runs the stages one after the other, each with its share of the bar, and takes their times."""
 
     # shares of the whole as measured on sample surveys
-    SHARES = dict(survey=0.24, curbs=0.16, edges=0.02, surface=0.14, intensity=0.08, image=0.12, markings=0.10,
-                  outliers=0.03, clusters=0.05, lines=0.03, driving=0.03)
+    SHARES = dict(survey=0.22, curbs=0.28, edges=0.01, surface=0.09, intensity=0.07, image=0.08, markings=0.08,
+                  outliers=0.06, clusters=0.06, lines=0.02, driving=0.03)
 
     def __init__(self, progress):
         self.progress, self.done, self.seconds = progress, 0.0, {}
@@ -158,11 +158,8 @@ def _paint(result, image_path, settings, stages):
     """Intensity, markings and lines, added to the result."""
     frame = result.frame
     if settings.correct:
-        uncorrected = result.road_points
         result.road_points, result.intensity_report = stages.run(
-            "intensity", "Correcting intensity …", correct_intensity, uncorrected, frame, settings.intensity)
-        if result.road_points is not uncorrected:
-            uncorrected.store.close()
+            "intensity", "Correcting intensity …", correct_intensity, result.road_points, frame, settings.intensity)
     stages.run("image", "Making the intensity image …", write_intensity_image,
                result.road_points, image_path, settings.image)
     result.image = IntensityImage.open(image_path)

@@ -11,13 +11,13 @@ from ..parallel import in_order
 from ..progress import Progress
 from ..survey.points import UNIT
 from .intensity_raster import NODATA, TILE, IntensityImage, new_geotiff, write_display_image
-from .interpolation import interpolation_sums
+from .interpolation import InCells, interpolation_sums, reach_of
 
 __all__ = ["ImageSettings", "IntensityImage", "write_intensity_image", "write_display_image"]
 
 WINDOW = 20.0          # m of station over which intensities are ranked for the second rule
 LARGEST = 2_000_000    # px, side of an image: beyond it a coordinate is wrong
-KEPT = 3_000_000       # points of prepared windows kept: neighbouring tiles ask for them again
+KEPT = 2_000_000       # points of prepared windows kept: neighbouring tiles ask for them again
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,7 @@ def _survey_window(road_points, window, settings):
     points = _window_points(road_points, window)
     if not len(points):
         return (0.0, 1.0), None, np.empty((0, 2), np.int64)
-    reach = int(np.ceil(settings.radius_cells))
+    reach = reach_of(settings)
     column, row = _map_cells(points, road_points.origin, settings.cell_size)
     corners = 64 * _each_once(column >> 6, row >> 6)
     # a block of 64 px, widened by the reach, can touch the tiles its corners lie in
@@ -191,7 +191,7 @@ class _Grid:
 
     def tile(self, tile, reader, windows):
         """(height, width) float32 of one tile, interpolated from the windows that touch it."""
-        cell, reach = self.settings.cell_size, int(np.ceil(self.settings.radius_cells))
+        cell, reach = self.settings.cell_size, reach_of(self.settings)
         first_column, first_row = tile[0] * TILE, tile[1] * TILE
         width, height = min(TILE, self.width - first_column), min(TILE, self.height - first_row)
         left = (self.column + first_column) * cell - self.origin[0]
@@ -206,8 +206,9 @@ class _Grid:
             inside = (u >= -reach) & (v >= -reach) & (u < width + reach) & (v < height + reach)
             if not inside.all():
                 near, u, v = near[inside], u[inside], v[inside]
-            parts.append((u, v, value[near], weight[near]))
-        u, v, value, weight = (np.concatenate(column) for column in zip(*parts))
-        total, weights = interpolation_sums(u, v, value, weight, width, height, self.settings)
+            parts.append((InCells.of(u, v, width, self.settings), value[near], weight[near]))
+        points, value, weight = zip(*parts)
+        total, weights = interpolation_sums(InCells.joined(points), np.concatenate(value), np.concatenate(weight),
+                                            width, height, self.settings)
         with np.errstate(invalid="ignore"):
             return np.where(weights > 0, total / weights, NODATA).astype(np.float32)

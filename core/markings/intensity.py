@@ -1,13 +1,12 @@
 """Intensity freed of range and incidence, scanner by scanner, from the road's own asphalt."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ..errors import RoadExtractionError
 from ..parallel import in_order
 from ..progress import Progress
-from ..survey.road_points import RoadPoints
 from .beams import Beams
 from .intensity_table import BIN, REACH, AsphaltTable, asphalt_of, count_levels, distances_from_vehicle
 
@@ -99,9 +98,10 @@ def correct_intensity(road_points, frame, settings=IntensitySettings(), progress
 
     Returns
     -------
-    RoadPoints with `corrected` (the raw intensity stays), IntensityReport. Where
-    the vehicle's place at a point's time is not known the points come back as
-    they were, and the report says why.
+    RoadPoints with `corrected` (the raw intensity stays, and all other columns are
+    shared with `road_points`), IntensityReport. Where the vehicle's place at a
+    point's time is not known the points come back as they were, and the report
+    says why.
     """
     reason = _why_not(road_points, frame)
     if reason:
@@ -138,13 +138,12 @@ def correct_intensity(road_points, frame, settings=IntensitySettings(), progress
         points = road_points.section(*key)
         distance = distances_from_vehicle(points, frame.passes)
         corrected = table.correct(even(points), points.scanner, distance)
-        return key, points.records.with_columns(corrected=corrected), count_levels(points.scanner, distance, corrected, scanners)
+        return key, corrected, count_levels(points.scanner, distance, corrected, scanners)
 
-    result = RoadPoints.empty_like(road_points)
-    result.has_corrected = True
+    result = replace(road_points, store=road_points.store.with_column("corrected"), has_corrected=True)
     after = 0
-    for key, records, counts in in_order(correct, sections, progress.part(0.5, 1.0)):
-        result.store.put(*key, records)
+    for key, corrected, counts in in_order(correct, sections, progress.part(0.5, 1.0)):
+        result.store.put(*key, corrected)
         after = after + counts
     report = _report(before, after, table)
     report.beams = beams.count if beams else 0

@@ -67,7 +67,9 @@ def neighbour_distances(places, neighbours):
     k = min(neighbours, len(places) - 1)
     if k < 1:
         return np.full(len(places), np.inf), np.empty((len(places), 0), np.int64)
-    distances, nearest = cKDTree(places).query(places, k + 1)
+    # splits in the middle of a cell are made quicker than splits at the median, and found as quickly
+    tree = cKDTree(places, balanced_tree=False, compact_nodes=False)
+    distances, nearest = tree.query(places, k + 1)
     return distances[:, 1:].mean(axis=1), nearest[:, 1:]
 
 

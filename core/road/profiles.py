@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..survey.points import order_by
+from ..survey.sorting import order_by, thinned
 
 MOST = 60           # points of a cell that are looked at: more hardly tell its layers better
 HIGH = 0.9          # quantile of the lowest layer that stands for its highest point
@@ -122,7 +122,7 @@ def pseudo_scan_lines(u, s, h, along, profiles, width, spacing, layer_jump, orig
                            _spread(h, place, low))
 
 
-def thinned(u, s, h, profiles, width, spacing, origin, reach):
+def crowds_thinned(u, s, h, profiles, width, spacing, origin, reach):
     """Indices of the points of profiles, of every cell no more than about MOST, evenly spread along the road.
 
     Parameters as of `pseudo_scan_lines`; the points in order of station.
@@ -132,14 +132,8 @@ def thinned(u, s, h, profiles, width, spacing, origin, reach):
     kept, place = _places(u, s, h, first, rows, cells, width, spacing, origin)
     if len(kept) <= MOST:
         return kept
-    count = np.bincount(place - place.min())
-    step = -(-count // MOST)
-    if step.max() == 1:
-        return kept
-    order = order_by(place)
-    start = np.cumsum(count) - count
-    rank = np.arange(len(order), dtype=np.int32) - np.repeat(start.astype(np.int32), count)
-    return kept[order[rank % np.repeat(step.astype(np.int32), count) == 0]]
+    place -= place.min()
+    return kept if np.bincount(place).max() <= MOST else kept[thinned(place, MOST)]
 
 
 def _places(u, s, h, first, rows, cells, width, spacing, origin):

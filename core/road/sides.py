@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .profiles import pseudo_scan_lines, thinned
+from .profiles import crowds_thinned, pseudo_scan_lines
 from .shadows import TALL
 
 SIDES = {"left": 1, "right": -1}
@@ -67,7 +67,7 @@ def profiles_beside(survey, road, section, tracks, settings):
             outward = near & (u > origins[side]) & (u < REACH)
             for number, own in _by_pass(part.pass_number, outward):
                 beside = u[own], s[own], h[own]
-                kept = thinned(*beside, section, width, spacing, origins[side], REACH)
+                kept = crowds_thinned(*beside, section, width, spacing, origins[side], REACH)
                 ground.setdefault((side, number), []).append([v[kept] for v in (*beside, along[own])])
                 kept = np.flatnonzero(beside[2] > TALL)
                 tall.setdefault((side, number), []).append([v[kept] for v in beside])

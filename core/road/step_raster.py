@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
+from ..survey.sorting import order_by
 from .profiles import lowest_layers
 
 CELL = 0.10          # m
@@ -79,8 +80,7 @@ def ground_raster(x, y, h, layer_jump):
     first_column, first_row = int(column.min()), int(row.min())
     columns, rows = int(column.max()) - first_column + 1, int(row.max()) - first_row + 1
     place = (row - first_row) * columns + column - first_column
-    # one sort by cell and height: the key holds height in 0.1 mm below the place
-    order = np.argsort((place << 16) + np.rint((h + BELOW) * 1e4).astype(np.int64), kind="stable")
+    order = order_by(np.rint((h + BELOW) * 1e4).astype(np.int32), place)
     place, h = place[order], h[order]
     ground, _, _ = lowest_layers(place, h, layer_jump)
     order, place, h = order[ground], place[ground], h[ground]

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..survey.points import UNIT, order_by
+from ..survey.points import UNIT
+from ..survey.sorting import order_by, thinned
 
 ROW, COLUMN = 0.5, 0.25   # m along and across the road
 LAYER_JUMP = 0.06         # m between two layers: ground below, a car's sill above
@@ -81,7 +82,8 @@ def ground_cells(points, first_row, rows, reach, road_height, row_size=ROW, colu
     columns = 2 * half
     prior = road_height((first_row + np.arange(rows) + 0.5) * row_size)
     kept, cell = _near_ground(points.records, first_row, rows, half, prior, row_size, column_size)
-    kept, cell = _thinned(kept, cell, rows * columns)
+    some = thinned(cell, MOST)
+    kept, cell = kept[some], cell[some]
     z = points.records["z"].take(kept)
     order = order_by(z, cell)
     kept, cell, z = kept[order], cell[order].astype(np.int64), z[order] * UNIT
@@ -110,18 +112,6 @@ def _near_ground(records, first_row, rows, half, prior, row_size, column_size):
     inside &= np.abs(above) < np.abs(d * np.float32(PER_METRE)) + np.float32(NEAR / UNIT)
     kept = np.flatnonzero(inside)
     return kept, row.take(kept) * (2 * half) + column.take(kept)
-
-
-def _thinned(kept, cell, cells):
-    """At most about MOST of the indices of each cell, evenly spread over their order along the road; sorted by cell."""
-    order = order_by(cell)
-    count = np.bincount(cell, minlength=cells)
-    step = -(-count // MOST)
-    if step.max(initial=0) > 1:
-        first = np.cumsum(count) - count
-        rank = np.arange(len(order), dtype=np.int32) - np.repeat(first.astype(np.int32), count)
-        order = order[rank % np.repeat(step.astype(np.int32), count) == 0]
-    return kept[order], cell[order]
 
 
 def _in_lowest_layer(cell, z, total):

@@ -3,6 +3,7 @@
 import numpy as np
 
 from .columns import Columns
+from .sorting import BITS, above_least
 
 UNIT = 1e-4  # m: coordinates are kept as integers of 0.1 mm, exact for every LAS scale in use
 
@@ -61,15 +62,12 @@ class Points:
         return np.where(np.isnan(corrected), self.records["intensity"].astype(np.float32), corrected)
 
 
-BITS = 16  # numpy sorts integers of so many bits in linear time
-
-
 def canonical_order(records):
     """Indices that sort records by station, offset, height and time: the same whatever order files came in."""
     s, d = records["s"], records["d"]
     if not len(s):
         return np.empty(0, np.intp)
-    across, along = _above_least(d), _above_least(s)
+    across, along = above_least(d), above_least(s)
     across = (across >> max(int(across.max()).bit_length() - BITS, 0)).astype(np.uint16)
     order = np.argsort(across, kind="stable")
     for shift in range(0, max(int(along.max()).bit_length(), 1), BITS):
@@ -84,32 +82,6 @@ def canonical_order(records):
         keys = [records[name][rows] for name in ("returns", "source", "y", "x", "intensity", "time", "z", "d")]
         order[tied] = rows[np.lexsort([*keys, np.cumsum(~as_before[tied])])]
     return order
-
-
-def order_by(*keys):
-    """Indices that sort by the last of some integer keys, then by those before it; what is equal keeps its order.
-
-    Keys are taken apart into digits of 16 bits, which are sorted in linear time.
-    """
-    order = None
-    for key in keys:
-        if not len(key):
-            return np.empty(0, np.intp)
-        key = _above_least(np.asarray(key, np.int32))
-        for shift in range(0, max(int(key.max()).bit_length(), 1), BITS):
-            digit = (key >> shift).astype(np.uint16)
-            order = np.argsort(digit, kind="stable") if order is None else order[np.argsort(digit[order], kind="stable")]
-    return order
-
-
-def _above_least(values):
-    """(N,) uint32 of int32 less the least of them."""
-    return (values - values.min()).view(np.uint32)
-
-
-def in_canonical_order(records):
-    """The records sorted by station, offset, height and time."""
-    return chosen(records, canonical_order(records))
 
 
 def chosen(records, which):

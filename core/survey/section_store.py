@@ -124,7 +124,7 @@ class SectionStore:
                     self._kept.move_to_end(key)
                     return records
             records = self._read(key)
-            if key not in self._in_order:
+            if len(records) and key not in self._in_order:
                 records = self._put_in_order(key, records)
             records.locked()
             if key in self._spilled:
@@ -230,6 +230,10 @@ class SectionStore:
             ends.append(int(stations[row]))
         return ends[0] * UNIT, (ends[1] + 1) * UNIT
 
+    def with_column(self, name):
+        """A store of the same points in which one column is put anew, section by section; it shares all others with this one."""
+        return _WithColumn(self, name)
+
     def close(self):
         """Forget everything and give the disk space back."""
         self._waiting.clear()
@@ -240,6 +244,40 @@ class SectionStore:
         if self._file is not None:
             self._file.close()
             self._file = None
+
+
+class _WithColumn(SectionStore):
+    """The points of a store with one column of their own."""
+
+    def __init__(self, points, name):
+        self._points, self._name = points, name
+        self._column = SectionStore([(name, points.dtype[name])], points.section_length, points.memory_limit)
+        self.dtype, self.section_length, self.memory_limit = points.dtype, points.section_length, points.memory_limit
+
+    @property
+    def count(self):
+        return self._column.count
+
+    def put(self, road, section, column):
+        """Set the column of one section, (N,) in the order of its points."""
+        self._column.put(road, section, Columns({self._name: column}, self._column.dtype))
+
+    def append(self, road, records):
+        raise TypeError("The points of this store are those of another; a column can be put, points cannot be added.")
+
+    def roads(self):
+        return self._points.roads()
+
+    def sections(self, road):
+        return self._points.sections(road)
+
+    def section(self, road, section):
+        column = self._column.section(road, section)[self._name]
+        return self._points.section(road, section).with_columns(**{self._name: column}).locked()
+
+    def close(self):
+        self._column.close()
+        self._points.close()
 
 
 class _Metres:

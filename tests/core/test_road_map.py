@@ -1,5 +1,6 @@
 """The whole chain on a made street with known truth, and what must not change its result."""
 
+import os
 from dataclasses import replace
 
 import laspy
@@ -90,6 +91,12 @@ def test_tiles_in_any_order_give_the_same_map(sample, cloud, road_map, tmp_path)
 def test_section_length_memory_and_block_size_do_not_show(sample, cloud, road_map, tmp_path):
     settings = RoadMapSettings(survey=SurveySettings(section_length=7.0, memory_limit=2**20, block=33_333))
     assert_same(road_map, make_road_map([cloud], sample.trajectory, tmp_path / "intensity.tif", settings))
+
+
+@pytest.mark.parametrize("cores", [1, 4])
+def test_the_number_of_threads_does_not_show(sample, cloud, road_map, tmp_path, monkeypatch, cores):
+    monkeypatch.setattr(os, "cpu_count", lambda: cores)
+    assert_same(road_map, make_road_map([cloud], sample.trajectory, tmp_path / "intensity.tif"))
 
 
 def test_a_survey_moved_500_km_gives_the_same_map_there(sample, cloud, road_map, tmp_path):
