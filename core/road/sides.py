@@ -7,7 +7,7 @@ from .shadows import TALL
 
 SIDES = {"left": 1, "right": -1}
 SECTION = 20.0  # m of road for which the length of blocks is decided
-WORK = 10.0     # m of road worked at a time
+WORK = 20.0     # m of road worked at a time
 PIECE = 100_000  # points looked at together
 REACH = 20.0    # m from the reference line beyond which no curb is sought
 NODE = 0.25     # m between the nodes of the expected height
@@ -31,7 +31,7 @@ class Track:
 
 
 def sections_of(survey, road, width):
-    """The profiles of a road parted for work: list of (first, last + 1) profile numbers, about 10 m each."""
+    """The profiles of a road parted for work: list of (first, last + 1) profile numbers, about 20 m each."""
     start, end = survey.store.span(road)
     first, last = int(np.floor(start / width)), int(np.ceil(end / width))
     count = max(int(np.ceil((end - start) / WORK)), 1)
@@ -57,7 +57,7 @@ def profiles_beside(survey, road, section, tracks, settings):
     stations = (np.arange(*section) + 0.5) * width
     origins = {side: np.floor(tracks[side](stations).min()) for side in SIDES}
     ground, tall = {}, {}
-    for part in _pieces(points, section, width):
+    for part in in_pieces(points, section[0] * width, width):
         s, d = part.s, part.d
         along = ahead_of_vehicle(survey, part, s)
         near = np.abs(along) < BESIDE + np.abs(d)
@@ -77,12 +77,17 @@ def profiles_beside(survey, road, section, tracks, settings):
         yield side, number, tuple(np.concatenate(column) for column in zip(*tall[side, number])), lines
 
 
-def _pieces(points, section, width):
-    """The points of a section in runs of whole profiles, small enough for the processor's cache."""
-    count = max(int(np.ceil(len(points) / PIECE)), 1)
-    edges = np.unique(np.rint(np.linspace(*section, count + 1))).astype(int)[1:-1] * width
-    cuts = [0, *np.searchsorted(points.s, edges).tolist(), len(points)]
-    return [points[a:b] for a, b in zip(cuts[:-1], cuts[1:]) if b > a]
+def in_pieces(points, start=0.0, width=None):
+    """Points in runs along the road, small enough for the processor's cache.
+
+    With `width` given, every piece holds whole profiles counted from station `start`.
+    """
+    cuts = np.arange(0, len(points), PIECE)
+    if width is not None and len(cuts) > 1:
+        s = points.s
+        edges = np.unique(np.floor((s[cuts[1:]] - start) / width)) * width + start
+        cuts = np.unique(np.r_[0, np.searchsorted(s, edges)])
+    return [points[a:b] for a, b in zip(cuts, np.r_[cuts[1:], len(points)]) if b > a]
 
 
 def _by_pass(numbers, chosen):

@@ -76,7 +76,7 @@ def ground_raster(x, y, h, layer_jump):
     if not len(kept):
         return None
     x, y, h = x[kept], y[kept], h[kept]
-    column, row = np.floor(x / CELL).astype(np.int64), np.floor(y / CELL).astype(np.int64)
+    column, row = np.floor(x / CELL).astype(np.int32), np.floor(y / CELL).astype(np.int32)
     first_column, first_row = int(column.min()), int(row.min())
     columns, rows = int(column.max()) - first_column + 1, int(row.max()) - first_row + 1
     place = (row - first_row) * columns + column - first_column

@@ -18,7 +18,7 @@ from ..survey.road_frame import CORRIDOR
 from .chains import ROUGH_ROAD
 from .plan_chains import CONNECT, groups_in_line, joined_chains, trace_chains
 from .plan_steps import PlanSteps, measure_plan_steps
-from .sides import BESIDE, SIDES, ahead_of_vehicle, expected_height, sections_of
+from .sides import BESIDE, SIDES, ahead_of_vehicle, expected_height, in_pieces, sections_of
 from .step_raster import CELL, averaged, driven_ground, falls_again, ground_raster, ground_slopes, step_places
 
 KINDS = {"main": "of the road's own", "corner": "of corners", "side_street": "of side streets", "island": "of islands"}
@@ -190,15 +190,10 @@ def _runs(main, line):
 def _steps_of_section(survey, road, section, limits, known, barrier, settings):
     """(PlanSteps of a section, where the ground behind each falls again, the scanner's noise); None where there are none."""
     first, last = section[0] - MARGIN, section[1] + MARGIN
-    points = survey.window(road, first, last)
-    s, d = points.s, points.d
-    inside = np.abs(d) <= CORRIDOR
-    for side, sign in SIDES.items():
-        inside &= sign * d <= limits[side](s)
-    along = ahead_of_vehicle(survey, points, s)
-    inside &= np.abs(along) < BESIDE + np.abs(d)
-    points, s, along = points[inside], s[inside], along[inside]
-    place = points.x, points.y, points.z - expected_height(survey, road, s)
+    seen = [_beside_vehicle(survey, road, part, limits) for part in in_pieces(survey.window(road, first, last))]
+    if not seen:
+        return None
+    *place, along = (np.concatenate(column) for column in zip(*seen))
     raster = ground_raster(*place, settings.layer_jump)
     if raster is None:
         return None
@@ -217,6 +212,18 @@ def _steps_of_section(survey, road, section, limits, known, barrier, settings):
     lean = [float(np.median(slope[driven])) for slope in slopes]
     falls = falls_again(raster, lean, steps.x, steps.y, steps.nx, steps.ny, steps.h, steps.height, ISLAND_WIDTH)
     return steps, falls, np.full(len(steps), views[0].noise)
+
+
+def _beside_vehicle(survey, road, points, limits):
+    """Local x, y, height above the expected road and metres ahead of the vehicle of points within limits and near the vehicle."""
+    s, d = points.s, points.d
+    inside = np.abs(d) <= CORRIDOR
+    for side, sign in SIDES.items():
+        inside &= sign * d <= limits[side](s)
+    along = ahead_of_vehicle(survey, points, s)
+    inside &= np.abs(along) < BESIDE + np.abs(d)
+    points, s, along = points[inside], s[inside], along[inside]
+    return points.x, points.y, points.z - expected_height(survey, road, s), along
 
 
 def _averaged_views(raster, place, along, layer_jump):
