@@ -42,6 +42,8 @@ def road_heights(road_points, road, s, tracks):
 
 
 def _medians(ps, pd, pz, s, d):
+    near = np.flatnonzero((pd >= np.nanmin(d) - REACH) & (pd <= np.nanmax(d) + REACH))
+    ps, pd, pz = ps[near], pd[near], pz[near]
     cell = np.rint((ps - s[0]) / STEP).astype(np.int64)
     inside = (cell >= 0) & (cell < len(s))
     inside[inside] &= np.abs(pd[inside] - d[cell[inside]]) <= REACH

@@ -19,6 +19,7 @@ from ..progress import Progress
 from ..schemas import MARKINGS
 from ..survey.points import ROAD_POINT, UNIT, joined
 from ..survey.road_points import RoadPoints
+from ..survey.sorting import order_by
 from . import polygons
 from .classes import LINES, NOT_PAINT, ClassSettings, classify
 from .compounds import split_compounds
@@ -181,15 +182,18 @@ def group(marking_points, road, distance, progress=Progress()):
 
 def _components(records, distance):
     """Occupied cells, the cell of each point, and the component of each cell."""
-    cells, member, size = np.unique(np.c_[records["s"] // CELL, records["d"] // CELL].astype(np.int64).reshape(-1, 2),
-                                    axis=0, return_inverse=True, return_counts=True)
-    if not len(cells):
-        return cells, member, np.empty(0, np.int64)
+    if not len(records):
+        return np.empty((0, 2), np.int64), np.empty(0, np.int64), np.empty(0, np.int64)
+    row, column = records["s"] // CELL, records["d"] // CELL
+    order = order_by(column, row)
+    row, column = row[order], column[order]
+    starts = np.flatnonzero(np.r_[True, (row[1:] != row[:-1]) | (column[1:] != column[:-1])])
+    size = np.diff(np.r_[starts, len(row)])
+    cells = np.c_[row[starts], column[starts]].astype(np.int64)
+    member = np.empty(len(row), np.int64)
+    member[order] = np.repeat(np.arange(len(cells)), size)
     # integer sums are the same in any order
-    s = np.zeros(len(cells), np.int64)
-    d = np.zeros(len(cells), np.int64)
-    np.add.at(s, member, records["s"])
-    np.add.at(d, member, records["d"])
+    s, d = (np.add.reduceat(records[name][order].astype(np.int64), starts) for name in ("s", "d"))
     places = np.c_[s / size / STRETCH, d / size * SQUEEZE] * UNIT
     pairs = cKDTree(places).query_pairs(distance, output_type="ndarray")
     graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(len(cells), len(cells)))
@@ -218,7 +222,7 @@ def _by_cluster(records, labels, fewest):
         return records, np.zeros(1, np.int64)
     size = np.bincount(labels)
     large = size[labels] >= fewest
-    order = np.lexsort((labels, ~large))
+    order = order_by(labels, ~large)
     records, labels, large = records[order], labels[order], large[order]
     used = int(large.sum())
     starts = np.flatnonzero(np.r_[True, np.diff(labels[:used]) != 0]) if used else np.empty(0, np.int64)

@@ -60,7 +60,7 @@ def measure(s, d):
     Width is the 95 % range across the local tangent, scaled to the full range of
     evenly strewn points: a principal axis would call every bend wide.
     """
-    cells = np.unique(np.c_[s // CELL, d // CELL], axis=0)
+    cells = _occupied(s // CELL, d // CELL)
     direction = _principal_direction(cells)
     s0, s1, d0, d1 = s.min(), s.max(), d.min(), d.max()
     if abs(direction) <= ALONG and s1 - s0 > 2 * BIN:
@@ -76,6 +76,12 @@ def measure(s, d):
         begin = finish = float(np.median(d)) * UNIT
     return Shape(s0 * UNIT, s1 * UNIT, d0 * UNIT, d1 * UNIT, float(np.median(d)) * UNIT, float(length),
                  spread(across) * UNIT, direction, len(cells) * (CELL * UNIT) ** 2, len(s), float(begin), float(finish))
+
+
+def _occupied(row, column):
+    """(M, 2) the different pairs of row and column, in order."""
+    low, width = int(column.min()), int(np.ptp(column)) + 1
+    return np.stack(np.divmod(np.unique(row.astype(np.int64) * width + (column - low)), width), axis=1) + [0, low]
 
 
 def spread(across):

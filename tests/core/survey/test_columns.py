@@ -1,0 +1,58 @@
+"""Points kept column by column, and sorted and thinned in linear time."""
+
+import numpy as np
+import pytest
+
+from lanewright.core.survey.columns import Columns
+from lanewright.core.survey.sorting import order_by, thinned
+
+
+def some(count=100):
+    records = np.zeros(count, [("s", "i4"), ("time", "f8")])
+    records["s"], records["time"] = np.arange(count), np.arange(count) / 7
+    return records
+
+
+def test_rows_are_chosen_as_from_a_structured_array():
+    records = some()
+    columns = Columns.of(records)
+    for which in (slice(5, 20), slice(None, None, 7), np.arange(100) % 3 == 0, np.array([7, 7, 2]), np.empty(0, int)):
+        np.testing.assert_array_equal(columns[which], records[which])
+    np.testing.assert_array_equal(columns[10:90][np.arange(80) % 3 == 0], records[10:90][np.arange(80) % 3 == 0])
+
+
+def test_rows_chosen_of_chosen_rows_are_the_right_ones():
+    columns = Columns.of(some())
+    np.testing.assert_array_equal(columns[np.array([9, 5, 3])][np.array([2, 0])]["s"], [3, 9])
+
+
+def test_a_mask_of_another_length_is_refused():
+    with pytest.raises(IndexError, match="does not fit"):
+        Columns.of(some())[np.ones(99, bool)]
+
+
+def test_what_was_chosen_may_be_changed_and_leaves_its_source_alone():
+    columns = Columns.of(some()).locked()
+    chosen = columns[np.array([1, 2])]
+    chosen["s"] = 0
+    assert chosen["s"].tolist() == [0, 0] and columns["s"].tolist() == list(range(100))
+
+
+def test_parts_are_joined_in_order_and_none_are_none():
+    records = some()
+    np.testing.assert_array_equal(Columns.joined([Columns.of(records[:30]), Columns.of(records[30:])], records.dtype), records)
+    assert len(Columns.joined([], records.dtype)) == len(Columns.joined([], records.dtype)["time"]) == 0
+
+
+@pytest.mark.parametrize("count", [0, 1, 5000])
+def test_integers_of_any_sign_and_size_are_sorted_by_the_last_key_first(count):
+    rng = np.random.default_rng(3)
+    minor, major = rng.integers(-2**31, 2**31, count).astype(np.int32), rng.integers(-4, 4, count).astype(np.int32)
+    np.testing.assert_array_equal(order_by(minor, major), np.lexsort((minor, major)))
+
+
+def test_crowded_cells_are_thinned_evenly_and_others_left_alone():
+    cell = np.repeat([0, 1, 5], [3, 1000, 10]).astype(np.int32)
+    kept = thinned(cell, 10)
+    assert np.bincount(cell[kept]).tolist() == [3, 10, 0, 0, 0, 10]
+    assert (np.diff(kept[3:13]) == 100).all()
