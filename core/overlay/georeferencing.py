@@ -166,8 +166,8 @@ def _well_spread(pixel, line, easting, northing, order):
         along, across = spread(places)
         if across <= LINE * along:
             raise RoadExtractionError(
-                f"The {len(pixel)} control points lie in a line: they spread {4 * along:.{digits}f} {unit} along it and "
-                f"{4 * across:.{digits}f} {unit} across. Measure points on both sides of it, spread over the image.")
+                f"The {len(pixel)} control points lie in a line: they spread {along:.{digits}f} {unit} along it and "
+                f"{across:.{digits}f} {unit} across. Measure points on both sides of it, spread over the image.")
     if order > 1 and weakness(pixel, line, order) < WEAK:
         raise RoadExtractionError(
             f"The {len(pixel)} control points lie so (in few rows, on one curve, or several in one place) that a polynomial of order "
@@ -245,9 +245,9 @@ def _map_metres(points):
     """A word where a metre on the map is none on the ground, as in web maps."""
     from ..survey.crs import horizontal, parse_crs
 
-    if not points.crs:
-        return
     crs = horizontal(parse_crs(points.crs))
+    if crs is None or not crs.is_projected:
+        return
     scale = _scale_of_map(crs, points)
     if np.isfinite(scale) and abs(scale - 1.0) > 0.01:
         yield (f"In {crs.name} a metre of the map is {1.0 / scale:.2f} m on the ground here, and all errors are in metres of the map. "

@@ -125,11 +125,10 @@ class Fit:
 
 
 def spread(places):
-    """(along, across): standard deviations of places, (N, 2), along their principal axes."""
-    if len(places) < 2:
-        return 0.0, 0.0
-    singular = np.linalg.svd(places - places.mean(axis=0), compute_uv=False) / np.sqrt(len(places))
-    return float(singular[0]), float(singular[-1])
+    """(along, across): how far places, (N, 2), reach along their principal axes."""
+    _, _, turned = np.linalg.svd(places - places.mean(axis=0), full_matrices=False)
+    along, across = np.ptp((places - places.mean(axis=0)) @ turned.T, axis=0)
+    return float(along), float(across)
 
 
 def weakness(pixel, line, order):

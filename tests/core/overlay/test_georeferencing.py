@@ -39,7 +39,7 @@ def test_no_point_shifts_nothing():
 def test_points_along_a_road_are_refused_as_a_line():
     places = [(20 + 50 * k, 200 + 0.5 * (-1) ** k) for k in range(11)]
     for order in (1, 2, 3):
-        assert "lie in a line" in refusal(order, places=places)
+        assert "lie in a line: they spread 500 pixels along it and 1 pixels across" in refusal(order, places=places)
 
 
 def test_points_in_two_rows_do_not_tell_a_second_order():
