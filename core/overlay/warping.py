@@ -80,50 +80,50 @@ def draw_image(found, path, progress=None):
     bounds, width, height = output_grid(found)
     unfinished, tiled = (Path(path).with_name(Path(path).name + end) for end in (".unfinished.tif", ".source.tif"))
     source = view = result = None
-    caught = []
+    cancelled, failure = [], ""
     cache = gdal.GetCacheMax()
     gdal.SetCacheMax(min(cache, MEMORY))
     try:
-        source = _with_lattice(gdal, found, _tiled(gdal, found.image, tiled, _callback(progress, 0.0, 0.1, caught)))
+        source = _with_lattice(gdal, found, _tiled(gdal, found.image, tiled, _callback(progress, 0.0, 0.1, cancelled)))
         off = _departure(gdal, source, found) + _APPROXIMATION
         # Drawn block by block as it is written: each tile is compressed once, and Cancel is heard in between
         view = gdal.Warp("", source, **_warp_options(found, bounds))
         result = gdal.GetDriverByName("GTiff").CreateCopy(str(unfinished), view, options=_file_options(found.image),
-                                                          callback=_callback(progress, 0.1, 0.8, caught))
-        if caught:
-            raise caught[0]
+                                                          callback=_callback(progress, 0.1, 0.8, cancelled))
         levels = [2**k for k in range(1, 16) if max(width, height) / 2**k >= _SMALLEST_OVERVIEW]
-        if levels:
-            result.BuildOverviews("AVERAGE", levels, callback=_callback(progress, 0.8, 1.0, caught))
-        if caught:
-            raise caught[0]
+        if levels and not cancelled:
+            result.BuildOverviews("AVERAGE", levels, callback=_callback(progress, 0.8, 1.0, cancelled))
         result = None  # closes the file
-        os.replace(unfinished, path)
-        Path(f"{path}.aux.xml").unlink(missing_ok=True)
-        progress.at(1.0)
-        return off
+        if not cancelled:
+            os.replace(unfinished, path)
+            Path(f"{path}.aux.xml").unlink(missing_ok=True)
     except RuntimeError as problem:
-        if caught:
-            raise caught[0] from None
-        raise RoadExtractionError(
-            f"The image could not be drawn to {path} ({problem}). Is {found.image.path} whole, and is there room on the disk?") from problem
+        failure = str(problem)
     finally:
         source = view = result = None
         gdal.SetCacheMax(cache)
         for leftover in (unfinished, Path(f"{unfinished}.aux.xml"), tiled):
             leftover.unlink(missing_ok=True)
+    # Raised out here, since GDAL's own error would keep its datasets alive until after GDAL itself is gone
+    if cancelled:
+        raise Cancelled
+    if failure:
+        raise RoadExtractionError(
+            f"The image could not be drawn to {path} ({failure}). Is {found.image.path} whole, and is there room on the disk?")
+    progress.at(1.0)
+    return off
 
 
-def _callback(progress, start, end, caught):
-    """GDAL's progress as ours; a user's Cancel is kept in `caught`, since GDAL knows only yes and no."""
+def _callback(progress, start, end, cancelled):
+    """GDAL's progress as ours; a user's Cancel is noted in `cancelled`, since GDAL knows only yes and no."""
     part = progress.part(start, end)
 
     def tell(fraction, *_):
         try:
             part.at(fraction)
             return 1
-        except Cancelled as cancelled:
-            caught.append(cancelled)
+        except Cancelled:
+            cancelled.append(True)
             return 0
 
     return tell
