@@ -25,7 +25,7 @@ class BoundarySettings:
     planes : where the scanlines lie
     """
 
-    method: str = "profiles"
+    method: str = "both"
     curbs: CurbSettings = CurbSettings()
     scanlines: ScanlineBoundarySettings = ScanlineBoundarySettings()
     planes: ScanlineSettings = ScanlineSettings()
@@ -46,18 +46,35 @@ class Boundaries:
 
 
 def find_curb_points(survey, settings=BoundarySettings(), progress=Progress()):
-    """Curb points of the methods asked for: {method: Features CURB_POINTS}, "profiles" and/or "scanlines"."""
+    """Curb points of the methods asked for.
+
+    Returns
+    -------
+    {method: Features CURB_POINTS}; with both, "profiles" and "scanlines" hold the road's own
+    curbs and "both" those of the two that measure better (`chosen_points`). Corners, side streets and
+    islands are found in plan, once, from the curbs that are drawn.
+    """
     both = settings.method == "both"
     found = {}
     if settings.method != "scanlines":
-        found["profiles"] = detect_curbs(survey, settings.curbs, progress.part(0.0, 0.3) if both else progress)
+        found["profiles"] = detect_curbs(survey, settings.curbs, progress.part(0.0, 0.25) if both else progress, turned=not both)
     if settings.method != "profiles":
-        source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, progress=progress.part(0.3, 0.35))
+        start = 0.25 if both else 0.0
+        source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, progress=progress.part(start, start + 0.1))
         found["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length,
-                                                  progress.part(0.3, 1.0) if both else progress.part(0.0, 0.85))
-        if not both:
-            add_turned_curbs(found["scanlines"], survey, settings.curbs, progress.part(0.85, 1.0))
+                                                  progress.part(start + 0.1, 0.85))
+        drawn = found["scanlines"]
+        if both:
+            drawn = found["both"] = _better_points(found, survey.frame)
+        add_turned_curbs(drawn, survey, settings.curbs, progress.part(0.85, 1.0))
     return found
+
+
+def _better_points(found, frame):
+    """Of scanlines and profiles, at every place the curb points that measure better."""
+    # scanlines first: three planes ask more of a curb than a profile does
+    methods = ("scanlines", "profiles")
+    return chosen_points(*(found[method] for method in methods), *(fit_road_edges(found[method], frame) for method in methods), frame)
 
 
 def draw_boundaries(found, frame, settings=EdgeSettings(), progress=Progress()):
@@ -76,17 +93,14 @@ def draw_boundaries(found, frame, settings=EdgeSettings(), progress=Progress()):
     -------
     Boundaries
     """
-    if len(found) == 1:
+    if "both" not in found:
         points, = found.values()
         return Boundaries(points, fit_road_edges(points, frame, settings, progress))
-    quiet = Progress()
-    # scanlines first: a tie goes to the lines that come from planes
-    alone = {method: fit_road_edges(found[method], frame, settings, quiet) for method in ("scanlines", "profiles")}
-    points = chosen_points(found["scanlines"], found["profiles"], alone["scanlines"], alone["profiles"], frame)
-    edges = fit_road_edges(points, frame, settings, progress)
+    alone = {method: fit_road_edges(found[method], frame, settings) for method in ("scanlines", "profiles")}
+    edges = fit_road_edges(found["both"], frame, settings, progress)
     differences = note_agreement(edges, alone["scanlines"], alone["profiles"], frame)
     lengths = {method: sum(row["length_m"] for row in lines.rows if row["status"] == "measured") for method, lines in alone.items()}
     doubtful = sum(row["length_m"] for row in differences.rows)
     progress.say(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "
                  f"they lie more than 5 cm apart along {doubtful:.0f} m.")
-    return Boundaries(points, edges, differences, lengths)
+    return Boundaries(found["both"], edges, differences, lengths)

@@ -25,7 +25,7 @@ class EdgeTrace:
     """The edges of one side of a road at places NODE apart.
 
     s : (N,) m; d, z : (N,) m, offset and local height, NaN where no edge runs; measured : (N,) bool;
-    scatter : (N,) m of the curb points about the piece; length : (N,) m of the measured piece
+    scatter : (N,) m of the curb points about the piece
     """
 
     s: np.ndarray
@@ -33,7 +33,6 @@ class EdgeTrace:
     z: np.ndarray
     measured: np.ndarray
     scatter: np.ndarray
-    length: np.ndarray
 
 
 def trace_edges(edges, frame, road, side):
@@ -41,8 +40,7 @@ def trace_edges(edges, frame, road, side):
     line = frame.road(road)
     first, last = int(np.floor(line.start / NODE)), int(np.ceil(line.end / NODE))
     s = np.arange(first, last + 1) * NODE
-    trace = EdgeTrace(s, *(np.full(len(s), np.nan) for _ in range(2)), np.zeros(len(s), bool), np.full(len(s), np.inf),
-                      np.zeros(len(s)))
+    trace = EdgeTrace(s, *(np.full(len(s), np.nan) for _ in range(2)), np.zeros(len(s), bool), np.full(len(s), np.inf))
     for geometry, row in edges:
         if row["road"] != road or row["side"] != side or row["status"] == "inferred" or row.get("part", "bottom") != "bottom" \
                 or not of_main_curb(row):
@@ -59,21 +57,20 @@ def trace_edges(edges, frame, road, side):
         inside = np.flatnonzero((s >= at[0] - NODE / 2) & (s <= at[-1] + NODE / 2))
         trace.d[inside], trace.z[inside] = np.interp(s[inside], at, d), np.interp(s[inside], at, z)
         trace.measured[inside] = row["status"] == "measured"
-        trace.scatter[inside], trace.length[inside] = row["rmse_m"], row["length_m"]
+        trace.scatter[inside] = row["rmse_m"]
     return trace
 
 
 def chosen_points(points, others, edges, other_edges, frame):
-    """Of two sets of curb points, at every place those whose edge measures better there.
+    """Of two sets of points of the road's own curbs, at every place those whose edge measures better there.
 
     Where one method alone measured, its points are taken. Where both measured one curb
     (SAME_CURB), along each such stretch those that scatter less about their line; where
-    they found different ones, those of the longer piece: what goes on along the road is
-    the curb. A tie goes to the first.
+    they found different ones, those of the first, which asks more of a curb.
 
     Parameters
     ----------
-    points, others : Features CURB_POINTS of two methods
+    points, others : Features CURB_POINTS of two methods, that which asks more of a curb first
     edges, other_edges : Features ROAD_EDGES fitted through each
     frame : RoadFrame
 
@@ -89,13 +86,9 @@ def chosen_points(points, others, edges, other_edges, frame):
             for number, features in enumerate((points, others)):
                 mine = take_second if number else ~take_second
                 for geometry, row in features:
-                    if of_main_curb(row) and row["road"] == road.number and row["side"] == side and mine[_node(first.s, row["station_m"])]:
+                    if row["road"] == road.number and row["side"] == side and mine[_node(first.s, row["station_m"])]:
                         chain = row.get("chain")
                         found.add(geometry, **dict(row, chain=None if chain is None else chain + number * CHAIN_OFFSET))
-    # what leads away from the road is found in plan, the same for both
-    for geometry, row in points if any(not of_main_curb(row) for row in points.rows) else others:
-        if not of_main_curb(row):
-            found.add(geometry, **row)
     return found
 
 
@@ -111,7 +104,6 @@ def _second_is_better(first, second):
     better = second.measured & ~first.measured
     # where neither measured, the one that bridges
     better |= ~first.measured & ~second.measured & np.isfinite(second.d) & np.isnan(first.d)
-    better |= both & ~one_curb & (second.length > first.length)
     for a, b in runs(one_curb):
         better[a:b] = second.scatter[a:b].mean() < first.scatter[a:b].mean()
     # a line that begins a little before the other is no reason to change over
@@ -147,7 +139,7 @@ def note_agreement(edges, first_edges, second_edges, frame):
             first, second, drawn = (trace_edges(e, frame, road.number, side) for e in (first_edges, second_edges, edges))
             apart = np.abs(first.d - second.d)
             for row in edges.rows:
-                if of_main_curb(row) and row["road"] == road.number and row["side"] == side:
+                if row["road"] == road.number and row["side"] == side:
                     beside = apart[(first.s >= row["station_m"]) & (first.s <= row["end_m"])]
                     beside = beside[np.isfinite(beside)]
                     if len(beside):

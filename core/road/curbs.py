@@ -68,12 +68,13 @@ class CurbSettings:
                                       "must be at least 0.01 m, the maximum above it and at most 1 m.")
 
 
-def detect_curbs(survey, settings=CurbSettings(), progress=Progress()):
+def detect_curbs(survey, settings=CurbSettings(), progress=Progress(), turned=True):
     """Bottom corners of the curb on each side of every road, one per block.
 
     Parameters
     ----------
     survey : Survey
+    turned : whether corners, side streets and islands are looked for too
 
     Returns
     -------
@@ -89,7 +90,8 @@ def detect_curbs(survey, settings=CurbSettings(), progress=Progress()):
         for side in SIDES:
             _report_side(found, survey, road, side, steps[side], sight[side], settings)
     measured = sum(row["status"] == "measured" for row in found.rows)
-    add_turned_curbs(found, survey, settings, progress.part(MAIN_SHARE, 1.0))
+    if turned:
+        add_turned_curbs(found, survey, settings, progress.part(MAIN_SHARE, 1.0))
     progress.say(f"{measured:,} curb points measured, {len(found) - measured:,} hidden by something in front.")
     return found
 

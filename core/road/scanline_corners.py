@@ -118,7 +118,7 @@ def _scatter(owner, values, mask, count):
 
 def _neighbourhood(side, candidates, settings):
     """(owner, s, u, h, steepness) of the vertices about every candidate, from its own place."""
-    reach = int(np.floor(settings.distance_along / side.interval + 1e-9))
+    reach = max(int(np.floor(settings.distance_along / side.interval + 1e-9)), 1)
     stride = max(int(np.ceil((2 * reach + 1) / MOST_ROWS)), 1)
     key = side.row * 1000.0 + side.u
     starts, ends, ahead = [], [], np.arange(-(reach // stride), reach // stride + 1) * stride

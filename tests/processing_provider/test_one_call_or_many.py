@@ -47,8 +47,7 @@ def stage_by_stage(survey, tmp_path_factory):
     def run(stage, **values):
         return processing.run(f"lanewright:{stage}", values)
 
-    run("detectcurbs", **clouds, **drive, CURB_POINTS=str(folder / "curbs.gpkg"))
-    run("fitroadedges", CURB_POINTS=str(folder / "curbs.gpkg"), **drive, ROAD_EDGES=to["ROAD_EDGES"])
+    run("detectboundaries", **clouds, **drive, ROAD_EDGES=to["ROAD_EDGES"])
     run("extractroadsurface", **clouds, **drive, ROAD_EDGES=to["ROAD_EDGES"], ROAD_POINTS=str(folder / "raw.laz"),
         ROAD_SURFACE=to["ROAD_SURFACE"])
     run("correctintensity", ROAD_POINTS=str(folder / "raw.laz"), **drive, OUTPUT=to["ROAD_POINTS"])
@@ -121,6 +120,22 @@ def test_images_are_the_same_image(one_call, other, request):
 def test_the_report_shows_the_map(one_call):
     text = (one_call / "report.html").read_text(encoding="utf-8")
     assert "<img" in text and "Driving lines" in text
+
+
+def test_curb_points_and_the_edges_through_them_are_the_edges_of_profiles(survey, tmp_path):
+    import processing
+
+    (tmp_path / "door").mkdir()
+    drive, clouds = {"TRAJECTORY": survey["TRAJECTORY"]}, {"POINT_CLOUDS": [survey["POINT_CLOUD"]]}
+    curbs, edges = str(tmp_path / "curbs.gpkg"), str(tmp_path / "road_edges.gpkg")
+    processing.run("lanewright:detectcurbs", {**clouds, **drive, "CURB_POINTS": curbs})
+    processing.run("lanewright:fitroadedges", {"CURB_POINTS": curbs, **drive, "ROAD_EDGES": edges})
+    processing.run("lanewright:detectboundaries", {**clouds, **drive, "BOUNDARY_METHOD": "profiles",
+                                                   "ROAD_EDGES": str(tmp_path / "door" / "road_edges.gpkg")})
+    first, second = rows(tmp_path, "ROAD_EDGES"), rows(tmp_path / "door", "ROAD_EDGES")
+    assert len(first) == len(second) > 0
+    for (places, _), (other_places, _) in zip(first, second):
+        np.testing.assert_allclose(places, other_places, rtol=0, atol=1e-3)
 
 
 def test_heights_are_in_every_line(one_call):

@@ -72,9 +72,9 @@ def test_of_two_lines_along_one_curb_the_one_with_less_scatter_is_drawn(frame):
         np.testing.assert_allclose(drawn.column("offset_m"), 3.50, atol=1e-6)
 
 
-def test_of_two_curbs_the_longer_one_is_drawn_and_gaps_of_one_are_filled_by_the_other(frame):
-    long, short = curb_points(frame, 3.5, np.arange(1.0, 40.0)), curb_points(frame, 5.0, np.arange(20.0, 55.0))
-    drawn = chosen_points(short, long, fit_road_edges(short, frame), fit_road_edges(long, frame), frame)
+def test_of_two_curbs_that_of_the_first_method_is_drawn_and_its_gaps_are_filled_by_the_other(frame):
+    sure, other = curb_points(frame, 3.5, np.arange(1.0, 40.0)), curb_points(frame, 5.0, np.arange(20.0, 55.0))
+    drawn = chosen_points(sure, other, fit_road_edges(sure, frame), fit_road_edges(other, frame), frame)
     s, d = np.array(drawn.column("station_m")), np.array(drawn.column("offset_m"))
     np.testing.assert_allclose(d[s < 39], 3.5)
     np.testing.assert_allclose(d[s > 41], 5.0)
