@@ -19,9 +19,27 @@ KINDS = {
     "enum": "choice", "boolean": "yes or no", "string": "text", "sink": "vector layer", "fileDestination": "file",
     "rasterDestination": "raster", "pointcloud": "point cloud", "vector": "vector layer", "matrix": "numbers",
 }
-SAMPLE_VALUES = {
-    "POINT_CLOUDS": "survey.laz", "TRAJECTORY": "trajectory.gpkg", "POINT_CLOUD": "survey.laz", "IMAGE": "photo.jpg",
-    "INPUT": "input.gpkg", "REFERENCE": "reference.gpkg",
+# The commands run as they are printed, in one folder, from the sample survey to its assessment: each reads what another wrote.
+FILES = {
+    "POINT_CLOUDS": "survey.laz", "POINT_CLOUD": "survey.laz", "TRAJECTORY": "trajectory.gpkg", "ROAD_EDGES": "road_edges.gpkg",
+    "ROAD_POINTS": "road_points.laz", "INTENSITY_IMAGE": "intensity_image.tif",
+    "importtrajectory.INPUT": "trajectory.csv", "importtrajectory.OUTPUT": "trajectory.gpkg",
+    "correctintensity.OUTPUT": "road_points_corrected.laz", "intensityimage.ROAD_POINTS": "road_points_corrected.laz",
+    "extractmarkings.ROAD_POINTS": "road_points_corrected.laz", "removeoutliers.INPUT": "marking_points.laz",
+    "removeoutliers.OUTPUT": "marking_points_clean.laz", "clustermarkings.MARKING_POINTS": "marking_points_clean.laz",
+    "georeferenceimage.IMAGE": "uav_image.tif", "georeferenceimage.GCPS": "uav_gcps.gpkg",
+    "georeferenceimage.OUTPUT": "orthoimage.tif",
+    "assessboundaries.INPUT": "road_edges.gpkg", "assessboundaries.REFERENCE": "truth_boundaries.gpkg",
+    "assessboundaries.OUTPUT": "boundaries_by_outcome.gpkg",
+    "assessmarkings.INPUT": "markings.gpkg", "assessmarkings.REFERENCE": "truth_markings.gpkg",
+    "assessmarkings.OUTPUT": "markings_by_outcome.gpkg",
+    "assessdrivinglines.INPUT": "driving_lines.gpkg", "assessdrivinglines.REFERENCE": "truth_driving_lines.gpkg",
+    "assessdrivinglines.OUTPUT": "driving_lines_by_outcome.gpkg",
+}
+# Optional inputs that one would not do without.
+NAMED = {
+    "importtrajectory": ("POINT_CLOUDS",), "inspectsurvey": ("TRAJECTORY",), "extractroadsurface": ("ROAD_EDGES",),
+    "drivinglines": ("MARKINGS", "ROAD_EDGES", "ROAD_POINTS"), "georeferenceimage": ("GCPS",),
 }
 
 
@@ -96,22 +114,29 @@ def result(d):
 
 
 def command(algorithm, definitions):
-    """The shortest call that makes every result."""
-    words = [f"tools/qgis_process run lanewright:{algorithm.name()}"]
+    """The call that makes every result from the files that the other pages' calls write."""
+    ID = algorithm.name()
+    words = [f"tools/qgis_process run lanewright:{ID}"]
     for d in definitions:
-        if d.isDestination():
-            words.append(f"--{d.name()}={d.name().lower()}{SUFFIXES.get(d.type()) or file_suffix(d)}")
-        elif not optional(d) and d.defaultValue() is None:
-            words.append(f"--{d.name()}={SAMPLE_VALUES.get(d.name()) or d.name().lower() + INPUTS.get(d.type(), '')}")
+        needed = not optional(d) and d.defaultValue() is None
+        if d.isDestination() or needed or d.name() in NAMED.get(ID, ()):
+            words.append(f"--{d.name()}={file_name(ID, d)}")
     return " \\\n    ".join(words)
 
 
-SUFFIXES = {"sink": ".gpkg", "rasterDestination": ".tif"}
-INPUTS = {"source": ".gpkg", "file": ".laz", "multilayer": ".laz", "raster": ".tif"}
+def file_name(ID, d):
+    if d.name() == "REPORT" and ID != "roadmap":
+        return f"{ID}.html"
+    return FILES.get(f"{ID}.{d.name()}") or FILES.get(d.name()) or d.name().lower() + suffix(d)
 
 
-def file_suffix(d):
-    return ".html" if "html" in d.fileFilter() else ".laz"
+def suffix(d):
+    if d.type() in SUFFIXES:
+        return SUFFIXES[d.type()]
+    return ".html" if d.isDestination() and "html" in d.fileFilter() else ".laz"
+
+
+SUFFIXES = {"sink": ".gpkg", "source": ".gpkg", "rasterDestination": ".tif", "raster": ".tif"}
 
 
 def advanced(d):

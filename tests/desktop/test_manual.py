@@ -50,3 +50,24 @@ def test_the_troubleshooting_quotes_what_is_really_said():
     for message in re.findall(r"^### (.+)$", (PAGES / "troubleshooting.md").read_text(encoding="utf-8"), re.M):
         for part in (part.strip(" .") for part in message.split("…")):
             assert part in said, f"{message}: {part}"
+
+
+def test_every_file_a_command_reads_is_written_by_the_command_of_another_page(made):
+    """In one folder, from the sample survey on; a trajectory as text is what people bring."""
+    read, written = set(), {"trajectory.csv"}
+    for algorithm in ALGORITHMS:
+        definitions = {d.name(): d for d in algorithm().create().parameterDefinitions()}
+        for name, file in re.findall(r"--([A-Z_]+)=(\S+)", made[f"{algorithm.ID}.md"]):
+            (written if definitions[name].isDestination() else read).add(file)
+    assert read and read <= written, sorted(read - written)
+
+
+def test_commands_name_the_control_points_and_every_input_that_must_be_given(made):
+    from make_manual import optional
+
+    assert "--GCPS=" in made["georeferenceimage.md"].split("## On the command line")[1]
+    for algorithm in ALGORITHMS:
+        command = made[f"{algorithm.ID}.md"].split("## On the command line")[1]
+        for d in algorithm().create().parameterDefinitions():
+            if d.isDestination() or not optional(d) and d.defaultValue() is None:
+                assert f"--{d.name()}=" in command, f"{algorithm.ID}: {d.name()}"
