@@ -163,7 +163,7 @@ def _write_elements(elements, lane, way, found, number, origin):
 def _say(lines, side, progress):
     length = {name: sum(m for m, s in zip(lines.column("length_m"), lines.column("status")) if s == name) for name in STATUS}
     if len(lines):
-        progress.say(f"{len({(r['road'], r['lane']) for r in lines.rows})} lanes, {side}-hand traffic: "
+        progress.say(f"Driving lines: {len({(r['road'], r['lane']) for r in lines.rows})} lanes, {side}-hand traffic: "
                      + ", ".join(f"{metres:.0f} m {name}" for name, metres in length.items() if metres))
     else:
         progress.warn("No two marking lines lie a lane's width apart, so there are no driving lines.")

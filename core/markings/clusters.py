@@ -92,7 +92,7 @@ def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress
             _add(markings, records[a:b], shapes[i], kinds[i], number, road, frame)
             part.at(0.4 + 0.6 * number / max(len(rows), 1))
         clustered.store.append(road, records)
-    progress.say(f"{number} markings found; {refused} clusters were left out as gutters, covers or specks.")
+    progress.say(f"Markings: {number} found; {refused} clusters were left out as gutters, covers or specks.")
     return markings, clustered
 
 

@@ -90,7 +90,7 @@ def extract_markings(road_points, image, frame, settings=MarkingSettings(), prog
             kept = _extract_from_points(road_points, settings, progress)
             if burn is not None:
                 burn_points(burn, kept, image, frame)
-    progress.say(f"{len(kept):,} of {len(road_points):,} road points lie on paint.")
+    progress.say(f"Paint: {len(kept):,} of {len(road_points):,} road points lie on it.")
     return kept
 
 

@@ -94,7 +94,7 @@ def fit_marking_lines(clustered_points, markings, frame, settings=LineSettings()
             replaced += not as_wanted
             _add(found, one, shape, number, road, frame.origin)
             part.at(0.5 + 0.5 * (j + 1) / len(chosen))
-    progress.say(f"{number} marking lines; {dropped} fragments were left out.")
+    progress.say(f"Marking lines: {number}; {dropped} fragments were left out.")
     if replaced:
         progress.warn(f"{replaced} of {number} lines cannot take the curve “{settings.curve}”; "
                       "the automatic curve was used for them.")

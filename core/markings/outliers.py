@@ -110,7 +110,7 @@ def remove_outliers(points, settings=OutlierSettings(), progress=Progress()):
         cleaned = in_order(lambda window: _clean_window(points, *window, settings), windows, progress)
         for (road, _), records in zip(windows, cleaned):
             kept.store.append(road, records)
-    progress.say(f"{len(points) - len(kept):,} of {len(points):,} points lay apart from the others and were left out.")
+    progress.say(f"Outliers: {len(points) - len(kept):,} of {len(points):,} points lay apart from the others and were left out.")
     return kept
 
 

@@ -92,7 +92,7 @@ def detect_curbs(survey, settings=CurbSettings(), progress=Progress(), turned=Tr
     measured = sum(row["status"] == "measured" for row in found.rows)
     if turned:
         add_turned_curbs(found, survey, settings, progress.part(MAIN_SHARE, 1.0))
-    progress.say(f"{measured:,} curb points measured, {len(found) - measured:,} hidden by something in front.")
+    progress.say(f"Curb points: {measured:,} measured, {len(found) - measured:,} hidden by something in front.")
     return found
 
 

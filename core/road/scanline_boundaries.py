@@ -103,7 +103,7 @@ def curbs_from_scanlines(source, settings=ScanlineBoundarySettings(), block_leng
             if corners[side] is not None and len(corners[side]):
                 _report_side(found, source, road, side, corners[side], sight[side], settings, block_length)
     bottoms = [row["status"] for row in found.rows if row["part"] == "bottom"]
-    progress.say(f"{bottoms.count('measured'):,} corners of curbs measured on scanlines, "
+    progress.say(f"Corners of curbs: {bottoms.count('measured'):,} measured on scanlines, "
                  f"{bottoms.count('occluded'):,} hidden by something in front.")
     return found
 

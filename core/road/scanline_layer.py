@@ -52,7 +52,7 @@ def write_scanlines(survey, settings=ScanlineSettings(), layer=None, points=None
                 add_to_layer(spool, lines, survey.frame, road, settings.interval, layer.simplify)
             if points is not None:
                 points.add(lines, survey.frame, road)
-    progress.say(f"{count:,} scanlines, {settings.interval:g} m apart.")
+    progress.say(f"Scanlines: {count:,}, {settings.interval:g} m apart.")
     return spool, count
 
 

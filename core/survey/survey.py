@@ -137,7 +137,7 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
     survey = Survey(files, frame, store, crs, reader.heights, scanner_field, scanners,
                     reader.brightest > reader.darkest, has_time,
                     dict(read=total, kept=store.count, outside=total - store.count))
-    progress.say(f"{total:,} points read from {len(files)} file(s), {store.count:,} near the road kept; "
+    progress.say(f"Points read: {total:,} from {len(files)} file(s), {store.count:,} near the road kept; "
                  f"{len(frame.roads)} road(s), {len(frame.passes)} pass(es), {len(scanners)} scanner(s); "
                  f"sensor {np.mean(list(reader.heights.values())):.2f} m above the road.")
     return survey

@@ -47,6 +47,19 @@ def test_all_algorithms_and_the_model_are_listed(tmp_path):
     assert "lanewright:roadmap\t" in listed and "lanewright:Road map stages" in listed
 
 
+def test_another_python_first_on_the_path_is_not_taken_for_that_of_qgis(tmp_path):
+    """As under pyenv or conda: a python3 with a library of its own, in which there is no QGIS."""
+    version = subprocess.run(["/usr/bin/python3", "-c", "import sys; print('python%d.%d' % sys.version_info[:2])"],
+                             capture_output=True, text=True, check=True).stdout.strip()
+    program, landmark = tmp_path / "bin" / "python3", tmp_path / "lib" / version / "os.py"
+    for file in (program, landmark):
+        file.parent.mkdir(parents=True)
+        file.write_text("")
+    program.chmod(0o755)
+    run = qgis_process("list", folder=tmp_path, env=dict(os.environ, PATH=f"{program.parent}:{os.environ['PATH']}"))
+    assert "lanewright:roadmap\t" in run.stdout, run.stderr
+
+
 def test_paths_are_those_of_the_folder_one_calls_from(survey):
     assert (survey / "s.laz").exists() and (survey / "drive.gpkg").exists()
 
@@ -159,7 +172,7 @@ def test_a_folder_that_is_not_there_is_told_before_the_work(survey, tmp_path):
         "--CURB_POINTS=nowhere/curbs.gpkg", folder=tmp_path,
     )
     assert "there is no folder" in one_sentence(run)
-    assert "points read" not in run.stdout
+    assert "Points read" not in run.stdout
 
 
 def test_yesterdays_layer_stands_when_todays_run_fails(survey, tmp_path):
@@ -188,7 +201,7 @@ def test_what_cannot_be_meant_is_told_before_the_work(survey, tmp_path, outputs,
     run = qgis_process(
         "run", "lanewright:roadmap", f"--POINT_CLOUDS={survey / 's.laz'}", f"--TRAJECTORY={survey / 'drive.csv'}", *outputs, folder=tmp_path,
     )
-    assert run.returncode == 1 and says in run.stderr and "points read" not in run.stdout
+    assert run.returncode == 1 and says in run.stderr and "Points read" not in run.stdout
     assert os.listdir(tmp_path) == []
 
 

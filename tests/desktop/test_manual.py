@@ -56,7 +56,8 @@ def test_every_file_a_command_reads_is_written_by_the_command_of_another_page(ma
     """In one folder, from the sample survey on; a trajectory as text is what people bring."""
     read, written = set(), {"trajectory.csv"}
     for algorithm in ALGORITHMS:
-        definitions = {d.name(): d for d in algorithm().create().parameterDefinitions()}
+        made_with = algorithm().create()
+        definitions = {d.name(): d for d in made_with.parameterDefinitions()}
         for name, file in re.findall(r"--([A-Z_]+)=(\S+)", made[f"{algorithm.ID}.md"]):
             (written if definitions[name].isDestination() else read).add(file)
     assert read and read <= written, sorted(read - written)
@@ -68,6 +69,7 @@ def test_commands_name_the_control_points_and_every_input_that_must_be_given(mad
     assert "--GCPS=" in made["georeferenceimage.md"].split("## On the command line")[1]
     for algorithm in ALGORITHMS:
         command = made[f"{algorithm.ID}.md"].split("## On the command line")[1]
-        for d in algorithm().create().parameterDefinitions():
+        made_with = algorithm().create()
+        for d in made_with.parameterDefinitions():
             if d.isDestination() or not optional(d) and d.defaultValue() is None:
                 assert f"--{d.name()}=" in command, f"{algorithm.ID}: {d.name()}"
