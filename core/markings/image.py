@@ -110,6 +110,7 @@ def write_intensity_image(road_points, path, settings=ImageSettings(), progress=
             height, width = values.shape
             if (values != np.float32(NODATA)).any():
                 band.WriteRaster(column * TILE, row * TILE, width, height, values.tobytes(), buf_type=gdal.GDT_Float32)
+    progress.say(f"Intensity image: {grid.width:,} x {grid.height:,} cells of {settings.cell_size:g} m.")
 
 
 def _window_numbers(road_points, road):
