@@ -20,15 +20,17 @@ from .mirror_clock import clock_from_phasors
 from .points import BITS, UNIT, chosen
 from .rotation import LEAST_PEAK, WINDOW, clearest_rotation, spectrum
 
-SAMPLES = 12          # places along a pass at which the frequency is sought
+SAMPLES = 6           # places along a pass at which the frequency is sought
 SAMPLE_LENGTH = 30.0  # m of road about them: lines slant, and of a short piece of road see little each
 FEWEST = 200          # points of a scanner in a window
 LEAST_TIMED = 0.7     # of the points: where more share their times, these do not tell their order on the line
 NEAR, ONE_WAY = 0.5, 0.75  # m across from point to point of a line, and the share of steps that go one way
+SPARSE = 15           # every how manieth point tells when a place was scanned
 TICK = 2.0**-22       # s: finer than any clock's steps
 BIN_TURNS = 10        # turns whose points tell one phase
 POINTS_PER_TURN = 40  # looked at for it; more tell no more
 LOWEST_AXIS = 1.5     # m above the road: from below, angles of road points tell nothing
+ENOUGH = 10_000       # points of a window that tell the mounting of a scanner
 DIRECTIONS = 360      # about the trajectory, for which the mounting of a scanner is told
 
 
@@ -135,7 +137,7 @@ def _samples(survey, road):
         for middle in first + (np.arange(count) + 0.5) * (last - first) / count:
             records = survey.window(road, middle - SAMPLE_LENGTH / 2, middle + SAMPLE_LENGTH / 2).records
             for key, own in scanner_runs(chosen(records, records["pass_number"] == p.number)):
-                about = np.median(own["time"])
+                about = np.median(own["time"][::SPARSE])
                 own = chosen(own, np.abs(own["time"] - about) <= WINDOW / 2)
                 if len(own) >= FEWEST:
                     own = chosen(own, time_order(own["time"]))
@@ -179,16 +181,16 @@ def _clocks(survey, road, rotations, samples, progress):
     if not rotations:
         return {}
     bins = {key: _Bins(survey.frame.passes[key[0]], BIN_TURNS / abs(frequency)) for key, (frequency, _, _) in rotations.items()}
-    strides = {key: _stride(samples[key], frequency) for key, (frequency, _, _) in rotations.items()}
+    stride = min(_stride(samples[key], frequency) for key, (frequency, _, _) in rotations.items())
     mounts = {key: _mounting(samples[key], frequency) for key, (frequency, _, origin) in rotations.items() if origin == "angle"}
 
     def work(section):
         gathered = []
-        for key, own in scanner_runs(survey.section(road, section).records):
+        for key, own in scanner_runs(survey.section(road, section).records[::stride]):
             if key not in rotations or not len(own):
                 continue
             frequency, _, origin = rotations[key]
-            time, phasor = phasors(survey, key[0], own[::strides[key]])
+            time, phasor = phasors(survey, key[0], own)
             # points crowd about the middle of a turn where its gap is in the sky
             phasor = np.full(len(time), -1.0 + 0j) if origin == "gap" else phasor * mounts[key][_direction(phasor)]
             since = time - bins[key].start
@@ -221,12 +223,14 @@ def _mounting(windows, frequency):
     total = np.zeros(DIRECTIONS, complex)
     length = BIN_TURNS / abs(frequency)
     for w in windows:
+        some = slice(None, None, max(len(w.time) // ENOUGH, 1))
+        time, seen = w.time[some], w.phasor[some]
         bins = _Bins(w, length)
-        first, count, since, phasor = bins.sums_of(w.time - bins.start, w.phasor * np.exp(-2j * np.pi * frequency * (w.time - bins.start)))
+        first, count, since, phasor = bins.sums_of(time - bins.start, seen * np.exp(-2j * np.pi * frequency * (time - bins.start)))
         clock = clock_from_phasors(frequency, since, phasor, count, length, bins.start)
         if clock is not None:
-            ahead = np.exp(2j * np.pi * np.sign(frequency) * clock.turns_at(w.time)) * np.conj(w.phasor)
-            of = _direction(w.phasor)
+            ahead = np.exp(2j * np.pi * np.sign(frequency) * clock.turns_at(time)) * np.conj(seen)
+            of = _direction(seen)
             total += np.bincount(of, ahead.real, DIRECTIONS) + 1j * np.bincount(of, ahead.imag, DIRECTIONS)
     # unseen directions take after their neighbours
     near = np.array([total, np.roll(total, 1), np.roll(total, -1), np.roll(total, 2), np.roll(total, -2)]).sum(axis=0)
