@@ -24,8 +24,8 @@ from .curbs import END_STEPS, MERGE_ACROSS, MERGE_UP, VEHICLE_HALF, block_edges,
 from .profiles import LEAST_NOISE
 from .scanline_candidates import NEIGHBOURS, find_candidates, rows_filled
 from .scanline_corners import CurbCorners, corners_of
-from .scanline_grid import side_scanlines
-from .shadows import Sight
+from .scanline_grid import resampled, side_scanlines
+from .shadows import TALL, Sight
 from .sides import REACH, SECTION, SIDES, Track, expected_height
 
 CORNER_BLOCK = 0.5   # m of road per corner where corners are asked for
@@ -126,9 +126,9 @@ def _corners_of_road(source, road, settings, progress):
         found = {side: [] for side in SIDES}
         nearest = {side: tracks[side](stations) + VEHICLE_HALF for side in SIDES}
         for chosen, own in _apart(lines, heights):
+            samples = resampled(chosen, own, rows, interval, settings.clipping_height)
             for side, sign in SIDES.items():
-                outward = side_scanlines(chosen, own, sign, rows, interval, np.floor(nearest[side].min()),
-                                         min(REACH, source.corridor), settings.clipping_height)
+                outward = side_scanlines(samples, sign, rows, interval, np.floor(nearest[side].min()), min(REACH, source.corridor))
                 _look(sight[side], chosen, own, sign, outward, section)
                 candidates = find_candidates(outward, nearest[side], settings)
                 candidates = candidates[(candidates.row >= margin) & (candidates.row < margin + end - begin)]
@@ -162,8 +162,9 @@ def _apart(lines, heights):
 def _look(sight, lines, heights, sign, outward, section):
     """Note what the lines of a section show beside the road."""
     margin = section[0] - outward.first
-    u, s = sign * lines.d, np.repeat(lines.station, np.diff(lines.first)) + 0.5 * outward.interval
-    sight.look(u, s, heights, section, outward.part(margin, margin + section[1] - section[0]))
+    tall = np.flatnonzero(heights > TALL)
+    u, s = sign * lines.d[tall], lines.station[lines.line_of_vertex()[tall]] + 0.5 * outward.interval
+    sight.look(u, s, heights[tall], section, outward.part(margin, margin + section[1] - section[0]))
 
 
 def merged_corners(found):

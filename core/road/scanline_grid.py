@@ -49,53 +49,84 @@ class SideScanlines:
         return self.origin + (np.asarray(cell) + 0.5) * SPACING
 
 
-def side_scanlines(lines, heights, sign, rows, interval, origin, reach, clipping_height):
-    """The scanlines of one side.
+@dataclass
+class Samples:
+    """(N,) vertices at equal steps along scanlines, in the order of the lines: their line and row (from 0), offset,
+    height above the expected road, and rise over run there."""
+
+    line: np.ndarray
+    row: np.ndarray
+    d: np.ndarray
+    h: np.ndarray
+    steep: np.ndarray
+
+    def __getitem__(self, which):
+        return Samples(self.line[which], self.row[which], self.d[which], self.h[which], self.steep[which])
+
+
+def resampled(lines, heights, rows, interval, clipping_height):
+    """Vertices SPACING apart along the scanlines, those at the height of the road.
 
     Parameters
     ----------
     lines : Scanlines of one pass and scanner
     heights : (V,) m of their vertices above the expected road
+    rows : (first, last + 1) numbers of the section planes
+    interval : metres
+    clipping_height : m above the expected road up to which ground is looked for
+
+    Returns
+    -------
+    Samples
+    """
+    row_of_line = np.rint(lines.station / interval).astype(np.int64) - rows[0]
+    line, d, h = _at_equal_steps(lines, lines.d, heights)
+    samples = Samples(line, row_of_line[line], d, h, _steepness(line, d, h))
+    return samples[np.flatnonzero((samples.row >= 0) & (samples.row < rows[1] - rows[0]) & (h > -DEPTH) & (h <= clipping_height))]
+
+
+def side_scanlines(samples, sign, rows, interval, origin, reach):
+    """The scanlines of one side, walked outward.
+
+    Parameters
+    ----------
+    samples : Samples
     sign : 1 for the left side, -1 for the right
     rows : (first, last + 1) numbers of the section planes
     interval, origin, reach : metres
-    clipping_height : m above the expected road up to which ground is looked for
 
     Returns
     -------
     SideScanlines
     """
-    first, last = rows
-    line, u, h = _resampled(lines, sign * lines.d, heights)
-    row_of_line = np.rint(lines.station / interval).astype(np.int64) - first
-    row = row_of_line[line]
-    steep = _steepness(line, u, h)
-    kept = (row >= 0) & (row < last - first) & (u >= origin) & (u < reach) & (h > -DEPTH) & (h <= clipping_height)
-    line, row, u, h = line[kept], row[kept], u[kept], h[kept]
+    u = sign * samples.d
+    kept = np.flatnonzero((u >= origin) & (u < reach))
+    samples, u = samples[kept[::sign]], u[kept[::sign]]
     cells = max(int(np.ceil((reach - origin) / SPACING)), 1)
-    low = _on_grid(line, row, (u - origin) / SPACING - 0.5, h, last - first, cells)
-    order = np.argsort(row * FAR + (u - origin), kind="stable")
-    return SideScanlines(first, interval, origin, low, row[order], u[order], h[order], steep[kept][order])
+    low = _on_grid(samples.line, samples.row, (u - origin) / SPACING - 0.5, samples.h, rows[1] - rows[0], cells)
+    order = np.argsort(samples.row * FAR + (u - origin), kind="stable")
+    return SideScanlines(rows[0], interval, origin, low, samples.row[order], u[order], samples.h[order], samples.steep[order])
 
 
-def _resampled(lines, u, h):
-    """(line, u, h) at equal steps along every line, a metre of height counted as UPRIGHT metres."""
+def _at_equal_steps(lines, d, h):
+    """(line, d, h) at equal steps along every line, a metre of height counted as UPRIGHT metres."""
     if not len(lines):
         return np.empty(0, np.int64), np.empty(0), np.empty(0)
     counts = np.diff(lines.first)
-    step = np.abs(np.diff(u)) + UPRIGHT * np.abs(np.diff(h))
-    step[lines.first[1:-1] - 1] = FAR
+    step = np.abs(np.diff(d)) + UPRIGHT * np.abs(np.diff(h))
+    step[lines.first[1:-1] - 1] = 0.0
     along = np.r_[0.0, np.cumsum(step)]
-    begin, end = along[lines.first[:-1]], along[lines.first[1:] - 1]
-    number = np.floor((end - begin) / SPACING).astype(np.int64) + 1
+    along -= np.repeat(along[lines.first[:-1]], counts)
+    number = np.floor(along[lines.first[1:] - 1] / SPACING).astype(np.int64) + 1
+    start = np.cumsum(number) - number
     line = np.repeat(np.arange(len(counts)), number)
-    within = np.arange(number.sum()) - np.repeat(np.cumsum(number) - number, number)
-    at = begin[line] + within * SPACING
-    before = np.clip(np.searchsorted(along, at, side="right") - 1, 0, len(along) - 2)
-    share = (at - along[before]) / np.maximum(along[before + 1] - along[before], 1e-9)
-    # the last sample of a line may touch the leap to the next one
-    share = np.where(before >= lines.first[line + 1] - 1, 0.0, share)
-    return line, u[before] + share * (u[before + 1] - u[before]), h[before] + share * (h[before + 1] - h[before])
+    at = (np.arange(number.sum()) - np.repeat(start, number)) * SPACING
+    # the vertex before every sample: counted up where each vertex comes to lie among the samples
+    ahead = np.repeat(start, counts) + np.ceil(along / SPACING - 1e-9).astype(np.int64)
+    before = np.cumsum(np.bincount(ahead, minlength=len(at) + 1))[:len(at)] - 1
+    after = np.minimum(before + 1, np.repeat(lines.first[1:] - 1, number))
+    share = np.clip((at - along[before]) / np.maximum(along[after] - along[before], 1e-9), 0.0, 1.0)
+    return line, d[before] + share * (d[after] - d[before]), h[before] + share * (h[after] - h[before])
 
 
 def _steepness(line, u, h):
