@@ -7,6 +7,8 @@ from ..errors import RoadExtractionError
 from .places import places_along, single_lines
 from .stationing import AlongTrajectory
 
+TURNED = ("corner", "side_street", "island")  # values of the field `kind` of curbs that do not run along the road
+
 
 def bottoms_only(layer, warn=lambda text: None):
     """(the layer without the tops of curbs where it has bottoms too, rows kept)."""
@@ -18,6 +20,16 @@ def bottoms_only(layer, warn=lambda text: None):
     mask = np.zeros(len(parts), bool)
     mask[kept] = True
     return layer.only(mask), kept
+
+
+def along_the_road_only(layer, warn=lambda text: None):
+    """(the layer without corners, side streets and islands, rows kept): intervals along a road do not tell of them."""
+    turned = np.array([str(kind).lower() in TURNED for kind in layer.column("kind")], bool)
+    if not turned.any() or turned.all():
+        return layer, list(range(len(layer.geometries)))
+    length = sum(layer.geometries[k].length for k in np.flatnonzero(turned))
+    warn(f"{layer.label} holds {length:.0f} m of corners, side streets and islands; they are not judged.")
+    return layer.only(~turned), list(np.flatnonzero(~turned))
 
 
 def check_reference(reference, result, frame=None, area=None, corridor=30.0, warn=lambda text: None):

@@ -77,7 +77,7 @@ class AssessBoundaries(LanewrightAlgorithm):
         from ...core.assess.boundaries import assess_boundaries
         from ...core.assess.common_ground import check_kind, check_overlap, common_crs, in_crs
         from ...core.assess.layers import boundary_layer
-        from ...core.assess.reference import bottoms_only, check_reference
+        from ...core.assess.reference import along_the_road_only, bottoms_only, check_reference
         from ...core.report.assessment_boundaries import boundary_report
 
         settings = call.settings(BOUNDARY_KNOBS, tolerances=tolerances(call))
@@ -95,9 +95,10 @@ class AssessBoundaries(LanewrightAlgorithm):
         check_overlap(result, reference)
         progress.at(0.2)
         frame, area = frame_of_drive(call, crs), area_of(call, crs, warn)
-        result, _ = bottoms_only(result, warn)
-        reference, kept = bottoms_only(reference, warn)
-        excluded, kinds = ([values[k] for k in kept] for values in (excluded, kinds))
+        for choose in (bottoms_only, along_the_road_only):
+            result, _ = choose(result, warn)
+            reference, kept = choose(reference, warn)
+            excluded, kinds = ([values[k] for k in kept] for values in (excluded, kinds))
         judged = reference.only([not x for x in excluded])
         check_reference(judged, result, frame, area, settings.corridor, warn)
         progress.at(0.4)

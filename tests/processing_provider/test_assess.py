@@ -105,6 +105,13 @@ def test_tops_of_curbs_are_put_aside(provider, tmp_path):
     assert results["CORRECT"] == 100 and results["F1"] == 100 and "bottoms are assessed" in report
 
 
+def test_curbs_that_leave_the_road_are_put_aside(provider, tmp_path):
+    lines = ["LineStringZ (0 3.5 10, 100 3.5 10)", "LineStringZ (0 -3.5 10, 100 -3.5 10)", "LineStringZ (20 1 10, 60 1 10)"]
+    result = layer("LineStringZ", lines, fields="&field=kind:string", rows=[["main"], ["main"], ["island"]])
+    results, report = run("assessboundaries", tmp_path, INPUT=result, REFERENCE=street())
+    assert results["FALSE"] == 0 and "40 m of corners, side streets and islands" in report
+
+
 def test_a_result_in_another_crs_is_brought_over(provider, tmp_path):
     there = processing.run("native:reprojectlayer", {"INPUT": street(), "TARGET_CRS": "EPSG:4326", "OUTPUT": "TEMPORARY_OUTPUT"})["OUTPUT"]
     for algorithm in ("assessboundaries", "assessdrivinglines"):
