@@ -10,12 +10,13 @@ from scipy.spatial import cKDTree
 THIN_ALONG, THIN_ACROSS = 0.12, 0.06  # m within which the better supported of two steps stands for both
 LINK_REACH = 1.2     # m along a curb that a link may span
 SLACK = 0.03         # m across that two steps of one line may differ
-DRIFT = 0.06         # the same per m along
+DRIFT, BENT = 0.06, 0.2  # the same per m along, and per m along and radian of turn
 SHARPEST = 0.4       # m, radius of the sharpest curb; it is that of an island's nose
 TURN_SLACK = np.radians(25.0)
 HEIGHT_SLACK, GRADE = 0.03, 0.08  # m, and m per m along, that bottoms of neighbours may differ
 CONNECT = 2.5        # m between chains of one line
 CONNECT_TURN = np.radians(45.0)
+NOSE, NOSE_RADIUS = 1.5, 0.6  # m between ends that the nose of an island may lie between, and its radius
 CONNECT_ACROSS = 0.25  # m, and as much per m, that two such chains may miss each other
 TIP = 0.6            # m at the end of a chain that gives its direction
 BACK = 0.3           # m that two such chains may overlap
@@ -77,7 +78,9 @@ def _links(steps):
     across, along = np.abs(dx * nx + dy * ny) / size, (dy * nx - dx * ny) / size
     turn = np.abs(np.arctan2(steps.nx[a] * steps.ny[b] - steps.ny[a] * steps.nx[b], steps.nx[a] * steps.nx[b] + steps.ny[a] * steps.ny[b]))
     up = np.abs(steps.h[b] - steps.h[a])
-    good = (along > 0.02) & (across <= SLACK + DRIFT * along) & (turn <= TURN_SLACK + along / SHARPEST) & (up <= HEIGHT_SLACK + GRADE * along)
+    # where a curb bends sharply its direction is not so well known
+    good = (along > 0.02) & (across <= SLACK + (DRIFT + BENT * turn) * along) & (turn <= TURN_SLACK + along / SHARPEST) \
+        & (up <= HEIGHT_SLACK + GRADE * along)
     a, b, along, across, turn, up = (v[good] for v in (a, b, along, across, turn, up))
     cost = along / 0.3 + (across / SLACK) ** 2 + (turn / TURN_SLACK) ** 2 + (up / HEIGHT_SLACK) ** 2
     ahead, behind = _cheapest(a, b, cost, count), _cheapest(b, a, cost, count)
@@ -127,7 +130,7 @@ def joined_chains(chains, steps):
     """Chains with those that lie in one line, a short gap apart, made one."""
     open_ones = [c for c in chains if not c.closed]
     tips = Tips.of([(steps.x[c.steps], steps.y[c.steps], steps.h[c.steps]) for c in open_ones])
-    runs = _paths(tips.successors())
+    runs = _paths(tips.successors(NOSE))
     return [PlanChain(np.concatenate([open_ones[k].steps for k in run]), ring) for run, ring in runs] + [c for c in chains if c.closed]
 
 
@@ -138,7 +141,8 @@ def groups_in_line(places):
     """
     following = Tips.of(places).successors()
     linked = np.flatnonzero(following >= 0)
-    return connected_components(coo_matrix((np.ones(len(linked)), (linked, following[linked])), shape=2 * (len(places),)), directed=False)[1]
+    graph = coo_matrix((np.ones(len(linked)), (linked, following[linked])), shape=2 * (len(places),))
+    return connected_components(graph, directed=False)[1]
 
 
 @dataclass
@@ -152,8 +156,11 @@ class Tips:
     def of(places):
         return Tips(*(np.array([_tip(*(v[::step] for v in place)) for place in places]).reshape(-1, 5) for step in (-1, 1)))
 
-    def successors(self):
-        """(K,) the line whose head goes on where the tail of each one ends, -1 where none does."""
+    def successors(self, nose=0.0):
+        """(K,) the line whose head goes on where the tail of each one ends, -1 where none does.
+
+        nose : m of gap within which a line may bend about its uphill side as sharply as the nose of an island
+        """
         count = len(self.heads)
         following = np.full(count, -1)
         if not count:
@@ -166,9 +173,12 @@ class Tips:
         tx, ty = tail[:, 3] - head[:, 3], tail[:, 4] - head[:, 4]
         size = np.maximum(np.hypot(tx, ty), 1e-9)
         turn = np.arccos(np.clip(-(tail[:, 3] * head[:, 3] + tail[:, 4] * head[:, 4]), -1, 1))
+        # uphill is on the right, so the line bends about it where the way out of the head lies to the left of the tail's
+        about = tail[:, 3] * head[:, 4] - tail[:, 4] * head[:, 3] > 0
+        most = CONNECT_TURN + np.where(about & (gap <= nose), gap / NOSE_RADIUS, 0.0)
         along, across = (dx * tx + dy * ty) / size, np.abs(dx * ty - dy * tx) / size
         up = np.abs(head[:, 2] - tail[:, 2])
-        good = (a != b) & (along > -BACK) & (across <= MISS + CONNECT_ACROSS * np.abs(along)) & (turn <= CONNECT_TURN) \
+        good = (a != b) & (along > -BACK) & (across <= MISS + CONNECT_ACROSS * np.abs(along)) & (turn <= most) \
             & (up <= HEIGHT_SLACK + GRADE * gap)
         a, b, cost = a[good], b[good], (gap + 2 * across + turn)[good]
         ahead, behind = _cheapest(a, b, cost, count), _cheapest(b, a, cost, count)

@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 from .corners import BEHIND, CLEARANCE, ROAD_SIDE, NearSteps, expand
 from .step_raster import CELL
 
-SHORT, LONG = 0.30, 0.60  # m either way along the curb of the points that tell one step: dense scans, sparse ones
+SHORT, LONG = 0.30, 0.90  # m either way along the curb of the points that tell one step: dense scans, sparse ones
 LINE_REACH = 1.0     # m about a step within which others tell the direction of their line
 LINE_STEPS = 3       # others that do
 LINE_WIDTH = 0.12    # m, scatter across it

@@ -28,7 +28,8 @@ OUTER, STRIP = 0.11, 0.31  # m from the middle of a step beyond which ground is 
 ROUGH = 0.25         # share of a step's height that the road before it may scatter
 FAINTEST = 0.6       # share of the least step that the cells of one must show
 BACK_DOWN = 0.4      # share of a step's height that the ground behind an island may lie above its bottom
-SPREAD_POINTS, SPREAD_CELLS = 5, 50  # points in a cell, and such cells, that tell the scanner's noise
+SPREAD_POINTS, SPREAD_CELLS = 4, 50  # points in a cell, and such cells, that tell the scanner's noise
+SMOOTHER = 0.3       # quantile of them that does
 USUAL_NOISE, LEAST_NOISE = 0.005, 0.002  # m
 
 
@@ -88,9 +89,11 @@ def ground_raster(x, y, h, layer_jump):
     with np.errstate(invalid="ignore", divide="ignore"):
         low = np.bincount(place, h, rows * columns) / n
         spread = np.sqrt(np.bincount(place, (h - low[place]) ** 2, rows * columns) / (n - 1))
+    # curbs and grass are rough with any scanner, so the smoother cells tell
     tell = spread[n >= SPREAD_POINTS]
-    noise = max(float(np.median(tell)), LEAST_NOISE) if len(tell) >= SPREAD_CELLS else USUAL_NOISE
-    return GroundRaster(first_column * CELL, first_row * CELL, x[order], y[order], h, np.r_[0, np.cumsum(n)], low.reshape(rows, columns), noise)
+    noise = max(float(np.quantile(tell, SMOOTHER)), LEAST_NOISE) if len(tell) >= SPREAD_CELLS else USUAL_NOISE
+    return GroundRaster(first_column * CELL, first_row * CELL, x[order], y[order], h, np.r_[0, np.cumsum(n)],
+                        low.reshape(rows, columns), noise)
 
 
 def averaged(raster, layer_jump):
@@ -140,13 +143,14 @@ def _median_about(values, size):
     return np.where(count > 0, middle, 0.0)
 
 
-def driven_ground(raster, slopes, track_x, track_y, barrier_x, barrier_y, least):
+def driven_ground(raster, slopes, track_x, track_y, inner_x, inner_y, barrier_x, barrier_y, least):
     """Level ground connected with the driven track, and where the ground is stepped.
 
     Parameters
     ----------
     slopes : of `ground_slopes`
     track_x, track_y : local places along the driven tracks, less than CELL apart
+    inner_x, inner_y : local places that lie between the road's own curbs
     barrier_x, barrier_y : the same along lines that are known to bound the road
     least : m, the least step that is sought
 
@@ -167,6 +171,7 @@ def driven_ground(raster, slopes, track_x, track_y, barrier_x, barrier_y, least)
     track = np.zeros(there.shape, bool)
     track[raster.inside(track_x, track_y)] = True
     track = ndimage.binary_dilation(track, iterations=int(round(TRACK_HALF / CELL)))
+    track[raster.inside(inner_x, inner_y)] = True
     wanted = np.zeros(label.max() + 1, bool)
     wanted[label[track & passable]] = True
     wanted[0] = False

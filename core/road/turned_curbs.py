@@ -25,8 +25,9 @@ KINDS = {"main": "of the road's own", "corner": "of corners", "side_street": "of
 OPENING = 6.0        # m without main curb that are an opening and no driveway
 AT_OPENING = 6.0     # m of main curb beside an opening behind which corners are sought
 BEHIND_CURB = 0.6    # m behind a main curb that are looked at elsewhere
+INNER, INNER_HEIGHT = 0.5, 0.3  # m from a main curb, and about the expected road, where ground inside is road for certain
 MARGIN = 2.0         # m of road either side of a section that its own steps need
-NOISY = 0.18         # share of the least curb: a scanner whose heights in a cell scatter more is averaged
+NOISY, DENSE = 0.12, 6  # share of the least curb that heights in a cell scatter, and points in one, above which they are averaged
 ON_MAIN = 0.25       # m from a main curb within which a step is that curb
 RUN_GAP = 2.5        # m between points of one run of main curb
 RUN_ACROSS = 0.5     # m across between such points
@@ -34,6 +35,8 @@ ISLAND_WIDTH = 8.0   # m within which the ground behind an island's curb comes d
 ISLAND_SHARE = 0.6   # share of an island's steps behind which it does
 SHORTEST = 1.0       # m of a line
 ISLAND_LENGTH = 2.0  # m of lines about one island
+STREET, BESIDE_STREET = (2.5, 16.0), 4.0  # m from it at which its other side lies; m along by which the two may miss each other
+OVERLAP = 0.5        # m along the road that a piece of main curb may lie beside another
 ALONE = 5.0          # m of a line that is a side street's although nothing joins it to the main curb
 ONE_ISLAND = 3.0     # m between them
 DENSEST = 0.6        # m between the steps of a line, on average, at most: scan lines lie apart
@@ -75,12 +78,12 @@ def add_turned_curbs(curb_points, survey, settings, progress=Progress()):
 
 
 def _main_curbs(curb_points, survey, road):
-    """Main curbs of a road, side -> (N, 3) station, offset and height, and the first chain number that is free."""
+    """Main curbs of a road, side -> (N, 4) station, offset, height and whether it was seen, and the first chain number that is free."""
     main, chain = {}, 0
     for side in SIDES:
-        rows = [(r["station_m"], r["offset_m"], g.z - survey.frame.origin[2]) for g, r in curb_points
+        rows = [(r["station_m"], r["offset_m"], g.z - survey.frame.origin[2], r["status"] == "measured") for g, r in curb_points
                 if r["road"] == road and r["side"] == side and r.get("part", "bottom") == "bottom"]
-        rows = np.array(rows).reshape(-1, 3)
+        rows = np.array(rows, float).reshape(-1, 4)
         rows = rows[np.argsort(rows[:, 0], kind="stable")]
         if len(rows):
             rows[:, 2] -= expected_height(survey, road, rows[:, 0])
@@ -110,8 +113,8 @@ def find_turned_curbs(survey, road, main, settings, progress=Progress()):
     Parameters
     ----------
     survey : Survey
-    main : dict side -> (N, 3) station, offset and height above the expected road of the main curb's
-        points, measured or hidden, ascending
+    main : dict side -> (N, 4) of the main curb's points, ascending: station, offset, height above the
+        expected road, 1 where it was measured and 0 where it is hidden
     settings : CurbSettings
 
     Returns
@@ -141,7 +144,7 @@ class _Limit:
 
     def __init__(self, points, sign):
         self.sign = sign
-        self.s, self.u = (points[:, 0], sign * points[:, 1]) if len(points) else (np.empty(0), np.empty(0))
+        self.s, self.u, self.seen = points[:, 0], sign * points[:, 1], points[points[:, 3] > 0, 0]
         cuts = np.flatnonzero(np.diff(self.s) > OPENING) + 1
         self.runs = [(part[0], part[-1]) for part in np.split(self.s, cuts) if len(part)]
 
@@ -155,8 +158,8 @@ class _Limit:
         return np.where(bounded, np.interp(s, self.s, self.u) + behind, CORRIDOR)
 
     def between(self, start, end):
-        """Is there a point of main curb between two stations?"""
-        return bool(((self.s > start) & (self.s < end)).any())
+        """Was a point of main curb measured between two stations?"""
+        return bool(((self.seen > start) & (self.seen < end)).any())
 
 
 def _places_along(line, main, gap):
@@ -193,13 +196,14 @@ def _steps_of_section(survey, road, section, limits, known, barrier, settings):
     seen = [_beside_vehicle(survey, road, part, limits) for part in in_pieces(survey.window(road, first, last))]
     if not seen:
         return None
-    *place, along = (np.concatenate(column) for column in zip(*seen))
+    *place, along, inner = (np.concatenate(column) for column in zip(*seen))
     raster = ground_raster(*place, settings.layer_jump)
     if raster is None:
         return None
     line = survey.frame.road(road)
     slopes = ground_slopes(raster.low)
-    driven, stepped = driven_ground(raster, slopes, *_track(survey, road, first, last), *barrier, settings.min_height)
+    driven, stepped = driven_ground(raster, slopes, *_track(survey, road, first, last), place[0][inner], place[1][inner], *barrier,
+                                    settings.min_height)
     x, y, nx, ny = step_places(raster, slopes, driven, stepped, settings.min_height, settings.max_height)
     own, _ = line.locate(x, y)
     fresh = (own >= section[0]) & (own < section[1])
@@ -207,7 +211,9 @@ def _steps_of_section(survey, road, section, limits, known, barrier, settings):
         fresh &= known.query(np.c_[x, y])[0] > ON_MAIN
     if not fresh.any():
         return None
-    views = [raster] if raster.noise <= NOISY * settings.min_height else _averaged_views(raster, place, along, settings.layer_jump)
+    dense = len(raster.x) >= DENSE * np.isfinite(raster.low).sum()
+    noisy = dense and raster.noise > NOISY * settings.min_height
+    views = _averaged_views(raster, place, along, settings.layer_jump) if noisy else [raster]
     steps = measure_plan_steps(views, x[fresh], y[fresh], nx[fresh], ny[fresh], 0.5 * settings.min_height, settings.max_height)
     lean = [float(np.median(slope[driven])) for slope in slopes]
     falls = falls_again(raster, lean, steps.x, steps.y, steps.nx, steps.ny, steps.h, steps.height, ISLAND_WIDTH)
@@ -215,15 +221,20 @@ def _steps_of_section(survey, road, section, limits, known, barrier, settings):
 
 
 def _beside_vehicle(survey, road, points, limits):
-    """Local x, y, height above the expected road and metres ahead of the vehicle of points within limits and near the vehicle."""
+    """Of points within limits and near the vehicle: local x, y, height above the expected road, metres ahead of the vehicle,
+    and whether each lies between the road's own curbs: the far side of a long island is road, too, but may not be
+    connected with the track by as short a stretch as a section."""
     s, d = points.s, points.d
-    inside = np.abs(d) <= CORRIDOR
+    inside, inner = np.abs(d) <= CORRIDOR, np.zeros(len(d), bool)
     for side, sign in SIDES.items():
-        inside &= sign * d <= limits[side](s)
+        limit = limits[side](s)
+        inside &= sign * d <= limit
+        inner |= (sign * d > 0) & (sign * d < limit - BEHIND_CURB - INNER) & (limit < CORRIDOR)
     along = ahead_of_vehicle(survey, points, s)
     inside &= np.abs(along) < BESIDE + np.abs(d)
-    points, s, along = points[inside], s[inside], along[inside]
-    return points.x, points.y, points.z - expected_height(survey, road, s), along
+    points, s, along, inner = points[inside], s[inside], along[inside], inner[inside]
+    h = points.z - expected_height(survey, road, s)
+    return points.x, points.y, h, along, inner & (np.abs(h) < INNER_HEIGHT)
 
 
 def _averaged_views(raster, place, along, layer_jump):
@@ -288,7 +299,8 @@ def _named(chains, steps, falls, runs, line, limits, passes):
             side = "left" if np.nanmedian(d - np.mean([p.at_station(s)[0] for p in passes], axis=0)) > 0 else "right"
             if np.mean(np.isfinite(falls[chain.steps]) & ~behind) >= ISLAND_SHARE:
                 islands.append(TurnedCurb(own, s, d, side, "island", chain.closed))
-            elif _length(own.x, own.y) >= ALONE and not behind.any() and np.median(_along(own, s, line)) < ALONG:
+            elif _length(own.x, own.y) >= ALONE and not behind.any() and np.median(_along(own, s, line)) < ALONG \
+                    and _faced(own, [steps[c.steps] for c in chains]):
                 # of a street whose corner something hides
                 found.append(TurnedCurb(own, s, d, side, "side_street"))
             continue
@@ -299,7 +311,7 @@ def _named(chains, steps, falls, runs, line, limits, passes):
 def _away_from(own, s, d, side, line, limit, runs):
     """A line that continues a main curb: a piece of that curb, or a corner with the straight curb of a side street behind it."""
     along = _along(own, s, line)
-    if np.median(along) > ALONG and not limit.between(np.nanmin(s), np.nanmax(s)):
+    if np.median(along) > ALONG and not limit.between(np.nanmin(s) + OVERLAP, np.nanmax(s) - OVERLAP):
         return [TurnedCurb(own, s, d, side, "main")]
     tips = np.array([(run[0][k], run[1][k]) for run in runs for k in (0, -1)])
     near = [np.hypot(*(tips - (own.x[k], own.y[k])).T).min() for k in (0, -1)]
@@ -308,6 +320,18 @@ def _away_from(own, s, d, side, line, limit, runs):
     cut = len(own) if max(near) <= CONNECT else _where_straight(own, order, along)
     parts = [(order[:cut + 1], "corner"), (order[cut:], "side_street")]
     return [TurnedCurb(own[np.sort(part)], s[np.sort(part)], d[np.sort(part)], side, kind) for part, kind in parts if len(part) > 1]
+
+
+def _faced(own, lines):
+    """Does another line run along the other side of the street that one bounds?"""
+    k = len(own) // 2
+    for other in lines:
+        dx, dy = other.x - own.x[k], other.y - own.y[k]
+        out, aside = -(dx * own.nx[k] + dy * own.ny[k]), np.abs(dx * own.ny[k] - dy * own.nx[k])
+        opposite = other.nx * own.nx[k] + other.ny * own.ny[k] < -0.7
+        if np.any((out > STREET[0]) & (out < STREET[1]) & (aside < BESIDE_STREET) & opposite):
+            return True
+    return False
 
 
 def _along(own, s, line):
