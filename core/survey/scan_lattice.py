@@ -90,7 +90,7 @@ def _tell(lattice, survey, progress):
                              "scanlines are made of the points near each section plane.")
         progress.warn(lattice.notes[-1])
     if lattice.without:
-        note = (f"{len(lattice.without)} of {len(lattice.clocks) + len(lattice.without)} run(s) of a scanner show no regular scan lines "
+        note = (f"There are no regular scan lines in {len(lattice.without)} of {len(lattice.clocks) + len(lattice.without)} run(s) of a scanner "
                 "(a head with many beams, a thinned cloud, or times too coarse); there scanlines are made of the points near each section plane.")
         lattice.notes.append(note)
         progress.warn(note)

@@ -4,7 +4,7 @@ import laspy
 import numpy as np
 import pytest
 from osgeo import ogr
-from qgis.core import QgsVectorLayer
+from qgis.core import QgsProcessingContext, QgsProcessingFeatureSource, QgsVectorLayer
 
 from lanewright.core.road.scanline_layer import scanlines_from_features
 from lanewright.core.schemas import SCANLINES
@@ -48,7 +48,8 @@ def test_the_layer_has_heights_measures_and_its_fields(made):
 
 def test_the_layer_is_read_back_as_scanlines(made):
     layer = QgsVectorLayer(made[0]["SCANLINES"], "lines", "ogr")
-    features = read_features(layer, SCANLINES, "LineStringZM", "Scanlines")
+    context = QgsProcessingContext()
+    features = read_features(QgsProcessingFeatureSource(layer, context), SCANLINES, "LineStringZM", "Scanlines")
     drive = QgsVectorLayer(made[1]["TRAJECTORY"], "drive", "ogr")
     lines, interval = scanlines_from_features(features, build_frame(read_trajectory_source(drive, "Trajectory")))
     assert interval == 0.5
