@@ -102,7 +102,7 @@ def _drive(page, drive):
     page.heading("Drive")
     height = "too few points lie under the vehicle to tell" if drive.sensor_height is None else f"{drive.sensor_height:.2f} m above the road"
     page.facts((("Driven", f"{drive.driven:.1f} m"), ("Trajectory", height),
-                ("Roads", ", ".join(f"{number}: {length:.1f} m" for number, length in enumerate(drive.roads)))))
+                ("Roads", ", ".join(f"road {number}: {length:.1f} m" for number, length in enumerate(drive.roads)))))
     page.table(
         ("Pass", "Road", "Way", "From station (m)", "To station (m)", "Seconds", "Mean speed (km/h)"),
         [(number, road, "along" if way > 0 else "against", round(first, 1) + 0.0, round(last, 1) + 0.0, round(end - start, 1),

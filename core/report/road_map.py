@@ -65,9 +65,13 @@ def _survey(page, road_map):
 
 def _lengths(features, *names):
     """Total length by the values of some fields, in the order of those values."""
+    return _totals(features, "length", *names)
+
+
+def _totals(features, measure, *names):
     total = defaultdict(float)
     for geometry, row in features:
-        total[tuple(str(row.get(name) or "–") for name in names)] += geometry.length
+        total[tuple(str(row.get(name) or "–") for name in names)] += getattr(geometry, measure)
     return [(*key, total[key]) for key in sorted(total)]
 
 
@@ -79,8 +83,7 @@ def _road(page, road_map):
         page.text("No curb was found along this road, so no edge line was drawn.")
     if road_map.boundary_differences is not None:
         _agreement(page, road_map)
-    page.table(("Status of the surface", "Area (m²)"),
-               [(row.get("status"), geometry.area) for geometry, row in road_map.surface])
+    page.table(("Status of the surface", "Area (m²)"), _totals(road_map.surface, "area", "status"))
 
 
 def _agreement(page, road_map):

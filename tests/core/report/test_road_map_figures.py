@@ -1,9 +1,10 @@
-"""The curvature diagram of a driving line cut into pieces by status."""
+"""The report of a road map: curvature of driving lines cut into pieces by status, and what pieces sum to."""
 
 import numpy as np
 import pytest
+from lanewright.core.report.road_map import _totals
 from lanewright.core.report.road_map_figures import _joined
-from shapely.geometry import LineString
+from shapely.geometry import LineString, box
 
 
 def pieces(direction):
@@ -21,3 +22,8 @@ def test_pieces_that_touch_are_one_curve_and_a_gap_stays(direction):
     assert sorted(round(line.length, 6) for line, _ in joined) == [10.0, 15.0]
     for line, station in joined:
         np.testing.assert_allclose(np.asarray(line.coords)[:, 0], station - 100)
+
+
+def test_a_road_whose_surface_changes_status_ten_times_has_one_row_a_status():
+    surface = [(box(x, 0.0, x + 10.0, 7.0), dict(status=status)) for x in range(0, 100, 20) for status in ("measured", "grown")]
+    assert _totals(surface, "area", "status") == [("grown", 350.0), ("measured", 350.0)]
