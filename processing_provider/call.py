@@ -15,7 +15,7 @@ from ..core.errors import RoadExtractionError
 from .destinations import ReplacedFiles, UnfinishedFiles, check_suffix, check_writable, destination_path
 from .embedded_style import embed_style
 from .knobs import settings_class
-from .layers import WKB_TYPES, crs_text, qgis_fields, read_features, write_features
+from .layers import WKB_TYPES, crs_text, keeps_aliases, qgis_fields, read_features, write_features
 from .styling import group_of, style_on_load
 from .texts import tr
 from .trajectory_source import read_trajectory_source, trajectory_path
@@ -223,7 +223,7 @@ class Call:
         return {**self._results, **numbers}
 
     def _write(self, name, features):
-        fields = qgis_fields(features.schema, with_aliases=destination_path(self._destination(name)) is not None)
+        fields = qgis_fields(features.schema, with_aliases=keeps_aliases(destination_path(self._destination(name))))
         crs = QgsCoordinateReferenceSystem.fromWkt(features.crs) if features.crs else QgsCoordinateReferenceSystem()
         sink, dest = self.algorithm.parameterAsSink(
             self.parameters, name, self.context, fields, WKB_TYPES[features.geometry_type], crs

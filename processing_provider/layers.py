@@ -2,7 +2,18 @@
 
 from itertools import islice
 
-from qgis.core import Qgis, QgsFeature, QgsFeatureRequest, QgsFeatureSink, QgsField, QgsFields, QgsGeometry, QgsWkbTypes
+from osgeo import gdal
+from qgis.core import (
+    Qgis,
+    QgsFeature,
+    QgsFeatureRequest,
+    QgsFeatureSink,
+    QgsField,
+    QgsFields,
+    QgsGeometry,
+    QgsVectorFileWriter,
+    QgsWkbTypes,
+)
 from qgis.PyQt.QtCore import QMetaType
 
 from ..core.errors import RoadExtractionError
@@ -23,7 +34,7 @@ COLUMN_TYPES = {int: QMetaType.Type.LongLong, float: QMetaType.Type.Double, str:
 
 
 def qgis_fields(schema, with_aliases=True):
-    """The columns as QGIS fields; a scratch layer takes no aliases and says so for every field."""
+    """The columns as QGIS fields, with aliases where they can be kept: see `keeps_aliases`."""
     fields = QgsFields()
     for column in schema:
         field = QgsField(column.name, COLUMN_TYPES[column.type])
@@ -31,6 +42,17 @@ def qgis_fields(schema, with_aliases=True):
             field.setAlias(column.alias)
         fields.append(field)
     return fields
+
+
+def keeps_aliases(path):
+    """True where the format of a file keeps aliases of fields.
+
+    Of every other (scratch layers with path None, CSV, Shapefile, a GeoPackage before GDAL 3.7) QGIS warns for
+    each field, and of comments too wherever there is an alias.
+    """
+    driver = gdal.GetDriverByName(QgsVectorFileWriter.driverForExtension(path.suffix)) if path else None
+    kept = (driver.GetMetadataItem("DMD_CREATION_FIELD_DEFN_FLAGS") or "").split() if driver else ()
+    return "AlternativeName" in kept and "Comment" in kept
 
 
 def qgis_features(features, fields):

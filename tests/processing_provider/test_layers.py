@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 import shapely
-from qgis.core import QgsCoordinateReferenceSystem, QgsFeatureSink, QgsProcessingContext, QgsProcessingUtils, QgsVectorLayer
+from qgis.core import QgsCoordinateReferenceSystem, QgsFeatureSink, QgsProcessingContext, QgsProcessingFeedback, QgsProcessingUtils, QgsVectorLayer
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.features import Features
 from lanewright.core.schemas import CURVE_ELEMENTS, ROAD_EDGES
-from lanewright.processing_provider.layers import WKB_TYPES, crs_text, qgis_fields, read_features, write_features
+from lanewright.processing_provider.layers import WKB_TYPES, crs_text, keeps_aliases, qgis_fields, read_features, write_features
 
 UTM = QgsCoordinateReferenceSystem("EPSG:32650")
 
@@ -116,3 +116,18 @@ def test_a_geopackage_s_undefined_crs_is_no_crs(tmp_path, qgis_app):
     source.CreateLayer("bare", None, ogr.wkbPoint25D)
     del source
     assert crs_text(QgsVectorLayer(str(tmp_path / "bare.gpkg"), "bare", "ogr").crs()) == ""
+
+
+@pytest.mark.parametrize("name", ["layer.gpkg", "layer.shp", "layer.csv", "layer.geojson"])
+def test_no_format_is_given_aliases_it_would_complain_of(tmp_path, qgis_app, name):
+    class Feedback(QgsProcessingFeedback):
+        def pushWarning(self, text):
+            warnings.append(text)
+
+    warnings, context, feedback = [], QgsProcessingContext(), Feedback()
+    context.setFeedback(feedback)  # as the dialogs do
+    path = tmp_path / name
+    fields = qgis_fields(ROAD_EDGES, with_aliases=keeps_aliases(path))
+    sink, _ = QgsProcessingUtils.createFeatureSink(str(path), context, fields, WKB_TYPES["LineStringZ"], UTM)
+    assert sink is not None and not [text for text in warnings if "liases" in text or "omments" in text]
+    assert not keeps_aliases(None)
