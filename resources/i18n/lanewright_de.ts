@@ -2175,8 +2175,8 @@
         </message>
         <message>
             <location filename="../../processing_provider/road/extract_road_surface.py" />
-            <source>Class 11, with the extra fields road, pass, station_m, offset_m and half_width for the stages that follow.</source>
-            <translation>Klasse 11, mit den zusätzlichen Feldern road, pass, station_m, offset_m und half_width für die folgenden Stufen.</translation>
+            <source>Class 11, with the extra fields road, pass, station_m, offset_m, half_width and covered for the stages that follow.</source>
+            <translation>Klasse 11, mit den zusätzlichen Feldern road, pass, station_m, offset_m, half_width und covered für die folgenden Stufen.</translation>
         </message>
         <message>
             <location filename="../../processing_provider/road/fit_road_edges.py" />
