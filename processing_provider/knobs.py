@@ -4,13 +4,12 @@ from dataclasses import dataclass, fields
 from importlib import import_module
 
 from qgis.core import (
+    Qgis,
     QgsProcessingParameterBoolean,
     QgsProcessingParameterEnum,
     QgsProcessingParameterNumber,
     QgsProcessingParameterString,
-    Qgis,
 )
-
 
 DECIMALS = 3  # millimetres; QGIS would show six
 

@@ -24,10 +24,9 @@ MEMORY = 6 * 1024**3   # bytes
 def seeds(folder):
     """Whole files of every kind, by the reader they are for."""
     import laspy
-    from pyproj import CRS
-
     from lanewright.core.survey.point_cloud import read_blocks, read_header
     from lanewright.core.survey.trajectory_file import read_trajectory
+    from pyproj import CRS
 
     def cloud(path):
         read_header(path)

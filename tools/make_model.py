@@ -15,14 +15,13 @@ STEP_X, STEP_Y = 300, 130
 
 def definitions():
     """Every input a model may have, by name."""
+    from lanewright.processing_provider.road.detect_boundaries import METHOD_KNOB
     from qgis.core import (
         QgsProcessing,
         QgsProcessingParameterCrs,
         QgsProcessingParameterFeatureSource,
         QgsProcessingParameterMultipleLayers,
     )
-
-    from lanewright.processing_provider.road.detect_boundaries import METHOD_KNOB
 
     source = QgsProcessing.SourceType
     made = (

@@ -129,7 +129,7 @@ def cloud_layer(path):
     """Some points of a cloud, grey by intensity: this QGIS cannot show LAZ itself."""
     import laspy
     import numpy as np
-    from qgis.core import QgsFeature, QgsGeometry, QgsGraduatedSymbolRenderer, QgsMarkerSymbol, QgsRendererRange, QgsVectorLayer, QgsPointXY
+    from qgis.core import QgsFeature, QgsGeometry, QgsGraduatedSymbolRenderer, QgsMarkerSymbol, QgsPointXY, QgsRendererRange, QgsVectorLayer
 
     points = laspy.read(path)
     step = max(1, len(points) // MOST_POINTS)

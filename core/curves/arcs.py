@@ -94,7 +94,7 @@ def _fit(x, y, bend, free_bend):
             columns.append((e**2 - along**2 - across**2) / (2 * root))
         return np.stack(columns, 1)
 
-    sagitta = np.average((dx * -np.sin(direction) + dy * np.cos(direction)))
+    sagitta = np.average(dx * -np.sin(direction) + dy * np.cos(direction))
     start = [sagitta - bend * size**2 / 2, 0.0] + ([bend] if free_bend else [])
     scale = [1.0, 1.0 / size, 1.0 / size**2][:len(start)]
     unknown = minimise(residuals, jacobian, np.array(start), scale)

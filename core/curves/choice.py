@@ -4,8 +4,8 @@ import numpy as np
 
 from ..errors import RoadExtractionError
 from .arcs import fit_circle, fit_line
-from .curve import Arc
 from .clothoid import Clothoid
+from .curve import Arc
 from .ellipse import Ellipse, fit_ellipse
 from .polynomial import Polynomial, fit_polynomial
 from .spline import Spline, fit_spline

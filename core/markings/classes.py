@@ -74,7 +74,8 @@ def classify(shapes, half_widths, settings=ClassSettings()):
     found = []
     doubles = _has_partner(column, line)
     for k, shape in enumerate(shapes):
-        if room[k] < -settings.margin or _speck(shape) or scrap[k] or _curb(shape, room[k]) or _round_cover(shape) or _gutter(shape, room[k], line[k], zebra[k]):
+        no_paint = _speck(shape) or scrap[k] or _curb(shape, room[k]) or _round_cover(shape)
+        if room[k] < -settings.margin or no_paint or _gutter(shape, room[k], line[k], zebra[k]):
             kind = NOT_PAINT
         elif zebra[k]:
             kind = "zebra"

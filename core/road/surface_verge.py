@@ -121,7 +121,8 @@ def _at(grid, cells, stations, offsets):
 class Profile:
     """Cells of ACROSS metres from the reference line outward.
 
-    u : middles, ascending; off : height off the followed road; rough; brightness and the scatter of single points about it: NaN where a cell shows nothing
+    u : middles, ascending; off : height off the followed road; rough; brightness and the scatter of single
+        points about it: NaN where a cell shows nothing
     """
 
     def __init__(self, u, off, rough, brightness, scatter):

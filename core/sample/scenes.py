@@ -5,7 +5,7 @@ import numpy as np
 from .axis import RoadAxis, winding_road
 from .cross_section import ditch, sidewalk
 from .obstacles import Car, Crown, Post, car_bodies
-from .paint import (Paint, PaintedFigure, PaintedLine, hatching, rectangle, straight_arrow, turn_arrow, zebra_bars)
+from .paint import Paint, PaintedFigure, PaintedLine, hatching, rectangle, straight_arrow, turn_arrow, zebra_bars
 from .scene import LABEL, Lane, Scene
 from .texture import Texture
 

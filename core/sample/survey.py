@@ -169,10 +169,10 @@ class SampleSurvey:
 
     def _measure(self, number, drive, scanner, lines, noise):
         settings, scene = self.settings, self.scene
-        random = np.random.default_rng([settings.seed, 3, number, scanner.number, int(lines[0])])
+        rng = np.random.default_rng([settings.seed, 3, number, scanner.number, int(lines[0])])
         origin, direction, times, angles = scanner.pulses(drive, lines)
         station = float(drive.station(times[len(times) // 2]))
-        hits = cast(scene, origin, direction, station, random, settings.reach)
+        hits = cast(scene, origin, direction, station, rng, settings.reach)
         found = np.flatnonzero(np.isfinite(hits.distance) & (hits.cosine > 0))
         label = label_hits(scene, hits, found)
         distance, cosine = hits.distance[found], hits.cosine[found]
@@ -185,8 +185,8 @@ class SampleSurvey:
         kept = (s >= 0) & (s <= settings.length) & (np.abs(d) <= settings.reach)
         true_range = distance
         if noise:
-            normal = random.standard_normal((3, len(found)), dtype=np.float32)
-            chance = random.random((3, len(found)), dtype=np.float32)
+            normal = rng.standard_normal((3, len(found)), dtype=np.float32)
+            chance = rng.random((3, len(found)), dtype=np.float32)
             distance = distance + _RANGE_NOISE * normal[0]
             stray = chance[0] < _STRAY
             distance[stray] = 1.5 + (distance[stray] - 1.5) * chance[2][stray]

@@ -12,8 +12,7 @@ from .inspected_drive import inspect_drive
 from .point_cloud import BLOCK, read_blocks, read_headers
 from .scanners import ScannerCensus
 from .sensor_height import NEAR_TRACK
-from .survey import SurveySettings
-from .survey import match_clocks
+from .survey import SurveySettings, match_clocks
 from .trajectory import clean_trajectory
 
 NEAR = 25.0        # m from the trajectory that counts as measured from it

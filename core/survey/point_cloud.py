@@ -59,7 +59,8 @@ def open_cloud(path, wanted=None):
     except BaseException as problem:  # laspy and its backends raise many kinds for a damaged file, no Exceptions among them
         if isinstance(problem, NOT_THE_FILE):
             raise
-        raise RoadExtractionError(f"{path} cannot be read as a LAS/LAZ file ({problem}). It may be damaged or cut off; copy or export it again.") from problem
+        raise RoadExtractionError(
+            f"{path} cannot be read as a LAS/LAZ file ({problem}). It may be damaged or cut off; copy or export it again.") from problem
 
 
 def read_header(path):

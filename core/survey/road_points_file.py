@@ -116,7 +116,7 @@ def read_road_points(path, progress=Progress()):
     for block in read_blocks(path, BLOCK):
         records = np.zeros(len(block), ROAD_POINT)
         # another program may have rewritten the file with its own scale
-        for axis, (name, scale) in enumerate(zip("xyz", scales)):
+        for _axis, (name, scale) in enumerate(zip("xyz", scales)):
             raw = np.asarray(block[name.upper()])
             records[name] = raw if abs(scale - SCALE) < 1e-12 else np.rint(raw * (scale / SCALE))
         records["time"] = block["gps_time"]

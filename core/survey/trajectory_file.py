@@ -11,7 +11,14 @@ from .crs import horizontal, parse_crs, reproject_trajectory
 from .number_table import SAMPLE, read_number_table
 from .trajectory import Trajectory
 from .trajectory_columns import (
-    AGREES, ROLES, angle_between, angle_unit_said, columns_by_role, columns_from_numbers, driven_course, find_header,
+    AGREES,
+    ROLES,
+    angle_between,
+    angle_unit_said,
+    columns_by_role,
+    columns_from_numbers,
+    driven_course,
+    find_header,
     geographic_unit,
 )
 

@@ -6,7 +6,6 @@ import laspy
 import numpy as np
 import pytest
 import shapely
-
 from lanewright.core.assess.lines import compare_lines
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.road_map import make_road_map

@@ -4,7 +4,6 @@ import threading
 import time
 
 import pytest
-
 from lanewright.core.errors import Cancelled
 from lanewright.core.parallel import in_order
 from lanewright.core.progress import Progress

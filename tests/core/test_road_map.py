@@ -7,7 +7,6 @@ import laspy
 import numpy as np
 import pytest
 import shapely
-
 from lanewright.core.assess.lines import compare_lines
 from lanewright.core.assess.polygons import compare_polygons
 from lanewright.core.road_map import RoadMapSettings, make_road_map

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 import shapely
-from qgis.core import QgsCoordinateReferenceSystem, QgsFeatureSink, QgsProcessingContext, QgsProcessingFeedback, QgsProcessingUtils, QgsVectorLayer
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.features import Features
 from lanewright.core.schemas import CURVE_ELEMENTS, ROAD_EDGES
 from lanewright.processing_provider.layers import WKB_TYPES, crs_text, keeps_aliases, qgis_fields, read_features, write_features
+from qgis.core import QgsCoordinateReferenceSystem, QgsFeatureSink, QgsProcessingContext, QgsProcessingFeedback, QgsProcessingUtils, QgsVectorLayer
 
 UTM = QgsCoordinateReferenceSystem("EPSG:32650")
 

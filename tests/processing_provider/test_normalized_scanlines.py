@@ -3,14 +3,13 @@
 import laspy
 import numpy as np
 import pytest
-from osgeo import ogr
-from qgis.core import QgsProcessingContext, QgsProcessingFeatureSource, QgsVectorLayer
-
 from lanewright.core.road.scanline_layer import scanlines_from_features
 from lanewright.core.schemas import SCANLINES
 from lanewright.core.survey.road_frame import build_frame
 from lanewright.processing_provider.layers import read_features
 from lanewright.processing_provider.trajectory_source import read_trajectory_source
+from osgeo import ogr
+from qgis.core import QgsProcessingContext, QgsProcessingFeatureSource, QgsVectorLayer
 
 ogr.UseExceptions()
 

@@ -3,11 +3,10 @@
 import re
 
 import pytest
-from qgis.core import Qgis, QgsProcessingParameterDefinition
-
 from lanewright.processing_provider.catalogue import ALGORITHMS
 from lanewright.processing_provider.driving.road_map import FOLDED, SHOWN, STAGES
 from lanewright.processing_provider.knobs import settings_class
+from qgis.core import Qgis, QgsProcessingParameterDefinition
 
 # Commands, models and scripts call these; a name that changes breaks them.
 INTERFACE = {

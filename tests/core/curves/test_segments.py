@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from lanewright.core.curves.segments import segment_line
 
 

@@ -1,13 +1,12 @@
 """Painted streets of known shape, and the drive through them."""
 
 import numpy as np
-from shapely.geometry import LineString
-
 from lanewright.core.driving.lines import DrivingSettings, driving_lines
 from lanewright.core.features import Features
 from lanewright.core.schemas import MARKING_LINES
 from lanewright.core.survey.road_frame import build_frame
 from lanewright.core.survey.trajectory import Trajectory
+from shapely.geometry import LineString
 
 EAST, NORTH, HEIGHT = 500_000.0, 5_400_000.0, 50.0
 

@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from lined_streets import EAST, NORTH, Street
-
 from lanewright.core.driving.elements import FOOT, curve_elements, curve_points, design_check
+from lined_streets import EAST, NORTH, Street
 
 
 @pytest.mark.parametrize("radius", [15.0, 140.8, 900.0])

@@ -2,16 +2,15 @@
 
 import numpy as np
 import pytest
-from lined_streets import HEIGHT, Street, middle
-from shapely import force_2d
-from shapely.geometry import LineString, Polygon
-
 from lanewright.core.driving.lines import DrivingSettings, driving_lines
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.features import Features
 from lanewright.core.schemas import MARKING_LINES, MARKINGS, ROAD_EDGES
 from lanewright.core.survey.points import ROAD_POINT, to_units
 from lanewright.core.survey.road_points import RoadPoints
+from lined_streets import HEIGHT, Street, middle
+from shapely import force_2d
+from shapely.geometry import LineString, Polygon
 
 
 def test_two_lines_three_and_a_half_metres_apart_give_one_driving_line_in_their_middle():

@@ -1,7 +1,6 @@
 """Streets with known paint, as road points in the road's own frame."""
 
 import numpy as np
-
 from lanewright.core.survey.points import ROAD_POINT, to_units
 from lanewright.core.survey.road_frame import build_frame
 from lanewright.core.survey.road_points import RoadPoints

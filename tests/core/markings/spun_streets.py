@@ -1,7 +1,6 @@
 """Streets under a scanner that spins many unequal lasers, as road points in the road's own frame."""
 
 import numpy as np
-
 from lanewright.core.survey.points import ROAD_POINT, to_units
 from lanewright.core.survey.road_frame import build_frame
 from lanewright.core.survey.road_points import RoadPoints
@@ -49,7 +48,8 @@ def spun(paint=None, by_turn=False, unequal=True, seed=5, section_length=20.0, h
         + (glare(x, y, np.rint(turn / TURN)) if glare else 0)
     kept = (np.abs(y) < HALF) & (x > 0) & (x < LENGTH)
     records = np.zeros(kept.sum(), ROAD_POINT)
-    for name, values in (("x", x), ("y", y), ("s", x), ("d", y), ("z", 100 - frame.origin[2] + (height(x, y) if height else np.zeros(len(x))) + rng.normal(0, NOISE, len(x)))):
+    z = 100 - frame.origin[2] + (height(x, y) if height else np.zeros(len(x))) + rng.normal(0, NOISE, len(x))
+    for name, values in (("x", x), ("y", y), ("s", x), ("d", y), ("z", z)):
         records[name] = to_units(values[kept])
     records["time"] = 1000 + time[kept]
     records["source"] = 1 + np.rint(turn[kept] / TURN)

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-from spun_streets import BEAMS, spun
-
 from lanewright.core.markings.beams import Beams
 from lanewright.core.markings.clusters import cluster_markings
 from lanewright.core.markings.extraction import extract_markings
 from lanewright.core.markings.image import IntensityImage, write_intensity_image
 from lanewright.core.markings.intensity import correct_intensity
+from spun_streets import BEAMS, spun
+
 
 def hatching(x, y):
     """An island beside the lane: bars of 0.3 m across a strip, within a frame of lines of 0.15 m."""

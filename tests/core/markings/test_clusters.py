@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 import shapely
-from painted_streets import assert_same_points, disc, drive, paint, road_points, shuffled, strip
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.markings.clusters import ClusterSettings, cluster_markings
+from painted_streets import assert_same_points, disc, drive, paint, road_points, shuffled, strip
 
 FRAME = drive()
 

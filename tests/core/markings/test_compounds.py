@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from lanewright.core.markings.compounds import split_compounds
 from lanewright.core.survey.points import ROAD_POINT, to_units
 

@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
-from painted_streets import ASPHALT, assert_same_points, drive, records_at, road_points, shuffled, street, strewn, strip
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.markings.extraction import MarkingSettings, extract_markings
 from lanewright.core.markings.image import IntensityImage, write_intensity_image
+from painted_streets import ASPHALT, assert_same_points, drive, records_at, road_points, shuffled, street, strewn, strip
 
 gdal = pytest.importorskip("osgeo.gdal")
 

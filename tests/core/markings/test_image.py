@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.markings.image import ImageSettings, IntensityImage, write_display_image, write_intensity_image
 from lanewright.core.markings.image_cover import check_image_shows

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.markings.intensity import IntensitySettings, correct_intensity
 from lanewright.core.survey.points import ROAD_POINT, to_units

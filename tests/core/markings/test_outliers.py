@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
-from painted_streets import assert_same_points, drive, paint, road_points, shuffled, strip
-from scipy.spatial.distance import cdist
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.markings.outliers import OutlierSettings, remove_outliers
+from painted_streets import assert_same_points, drive, paint, road_points, shuffled, strip
+from scipy.spatial.distance import cdist
 
 FRAME = drive()
 LINE = strip(5, 60, 1.0, 1.15)

@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
-from spun_streets import spun
-
-from lanewright.core.markings.extraction import extract_markings
 from lanewright.core.markings.dash_rows import in_rows
+from lanewright.core.markings.extraction import extract_markings
 from lanewright.core.markings.intensity import correct_intensity
 from lanewright.core.markings.shapes import measure
+from spun_streets import spun
 
 
 class NoImage:

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from lanewright.core.markings.thresholds import asphalt, asphalt_bins, background, bin_edges, otsu, split_bins
 
 RNG = np.random.default_rng(4)

@@ -1,12 +1,11 @@
 """Reports: what a page says and how numbers read."""
 
 import numpy as np
-from shapely.geometry import LineString
-
 from lanewright.core.features import Features
 from lanewright.core.report.map_picture import draw_map, png
 from lanewright.core.report.page import Page, number
 from lanewright.core.schemas import ROAD_EDGES
+from shapely.geometry import LineString
 
 
 def test_text_from_files_cannot_become_markup():

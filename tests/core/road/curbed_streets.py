@@ -2,7 +2,6 @@
 
 import numpy as np
 import shapely
-
 from lanewright.core.survey.points import SURVEY_POINT, to_units
 from lanewright.core.survey.road_frame import build_frame
 from lanewright.core.survey.section_store import SectionStore

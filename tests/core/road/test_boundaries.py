@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 import shapely
 from curbed_streets import NORTH, parked_car, street, survey_of
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.features import Features
 from lanewright.core.road.boundaries import BoundarySettings, draw_boundaries, find_curb_points

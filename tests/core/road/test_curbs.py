@@ -4,7 +4,6 @@ import curbed_streets as streets
 import numpy as np
 import pytest
 from curbed_streets import driven, measured, parked_car, ringed_street, street, survey_of
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.road.curbs import CurbSettings, block_edges, detect_curbs
 

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 import shapely
 from curbed_streets import EAST, NORTH, length_of, parked_car, street, survey_of
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.features import Features
 from lanewright.core.road.curbs import detect_curbs
@@ -51,7 +50,7 @@ def test_both_edges_of_a_scanned_bend_are_arcs_about_its_centre():
     surveyed = survey_of(street(radius=radius), drive=streets.driven(radius=radius))
     edges = fit_road_edges(detect_curbs(surveyed), surveyed.frame)
     assert [r["side"] for r in edges.rows] == ["left", "right"]
-    for (line, row), offset in zip(edges, (3.5, -3.5)):
+    for (line, _row), offset in zip(edges, (3.5, -3.5)):
         x, y = (shapely.get_coordinates(line) - [EAST, NORTH]).T
         np.testing.assert_allclose(np.hypot(x, y - radius), radius - offset, atol=0.012)
 
@@ -113,7 +112,7 @@ def test_without_curbs_nothing_is_drawn_unless_a_width_is_asked_for():
     assert len(fit_road_edges(nothing, straight_frame())) == 0
     edges = fit_road_edges(nothing, straight_frame(), EdgeSettings(fallback_width=7.0))
     assert {(r["side"], r["status"]) for r in edges.rows} == {("left", "inferred"), ("right", "inferred")}
-    for line, row in edges:
+    for line, _row in edges:
         np.testing.assert_allclose(np.abs(shapely.get_coordinates(line)[:, 1] - NORTH), 3.5, atol=1e-3)
 
 

@@ -4,7 +4,6 @@ import curbed_streets as streets
 import numpy as np
 import pytest
 from curbed_streets import GROUND, NORTH, driven, parked_car, street, survey_of
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.road.edges import fit_road_edges
 from lanewright.core.road.scanline_boundaries import ScanlineBoundarySettings, curbs_from_scanlines

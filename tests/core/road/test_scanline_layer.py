@@ -3,8 +3,6 @@
 import laspy
 import numpy as np
 import pytest
-from scanned_streets import CURB, scanned, survey_of
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.features import Features
 from lanewright.core.line_spool import LineSpool, coordinates_of
@@ -12,6 +10,7 @@ from lanewright.core.road.scanline_layer import ScanlineLayerSettings, lengths, 
 from lanewright.core.road.scanline_resampling import ResampledPoints, ResamplingSettings, resampled
 from lanewright.core.road.scanlines import Scanlines
 from lanewright.core.road.section_planes import ScanlineSettings, all_scanlines
+from scanned_streets import CURB, scanned, survey_of
 
 
 @pytest.fixture(scope="module")

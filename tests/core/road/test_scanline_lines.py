@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 import shapely
 from curbed_streets import NORTH, SENSOR, parked_car, street, survey_of
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.features import Features
 from lanewright.core.road.scanline_boundaries import ScanlineBoundarySettings, curbs_from_scanlines
@@ -88,7 +87,7 @@ def test_a_gap_that_something_hides_is_called_occluded(frame):
 def test_behind_a_parked_car_nothing_is_measured():
     surveyed = survey_of(parked_car(street(), start=25.0))
     lines = boundary_lines(curbs_from_scanlines(layer_of(surveyed), block_length=0.5), surveyed.frame, 8.0)
-    for line, row in lines:
+    for _line, row in lines:
         if row["side"] == "left" and row["status"] == "measured":
             assert row["end_m"] < 26.5 or row["station_m"] > 28.0
     assert "occluded" in {row["status"] for row in lines.rows if row["side"] == "left"}

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from lanewright.core.road.scanlines import Scanlines
 from lanewright.core.road.section_planes import ScanlineSettings, all_scanlines
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey

@@ -4,13 +4,12 @@ import os
 
 import numpy as np
 import pytest
-from scanned_streets import CURB, driven, scanned, survey_of
-
 from lanewright.core.road.edges import fit_road_edges
 from lanewright.core.road.scanline_boundaries import curbs_from_scanlines
 from lanewright.core.road.scanline_source import SurveyScanlines
 from lanewright.core.road.section_planes import ScanlineSettings
 from lanewright.core.survey.scan_lattice import find_lattice
+from scanned_streets import CURB, driven, scanned, survey_of
 
 NOISE = 0.004
 
@@ -106,5 +105,5 @@ def test_the_edges_through_the_corners_keep_to_the_curb():
     survey = survey_of(scanned(noise=NOISE))
     edges = fit_road_edges(curbs_from_scanlines(SurveyScanlines(survey)), survey.frame)
     assert {row["side"] for row in edges.rows} == {"left", "right"}
-    for line, row in edges:
+    for line, _row in edges:
         np.testing.assert_allclose(np.abs(np.array(line.coords)[:, 1] - 2000.0), 3.5, atol=NOISE)

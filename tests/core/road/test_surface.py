@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 import shapely
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.features import Features
 from lanewright.core.road.surface import SurfaceSettings, extract_road_surface

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import shapely
 import shapely.affinity
-
 from lanewright.core.road.curbs import detect_curbs
 from lanewright.core.road.edges import fit_road_edges
 from lanewright.core.road.surface_limits import edge_offsets

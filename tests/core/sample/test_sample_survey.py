@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.sample.scene import CARRIAGEWAY, LABEL
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey
@@ -90,7 +89,7 @@ def test_curb_faces_are_hit_from_bottom_to_top_where_they_are(street, true_point
 
 
 def test_the_truth_of_a_curb_is_its_height_in_the_points(street, true_points):
-    for geometry, row in street.truth_boundaries:
+    for _geometry, row in street.truth_boundaries:
         if row["part"] == "top" or row["end_m"] - row["station_m"] < 8.0:
             continue
         sign, edge = (1, street.scene.left.edge) if row["side"] == "left" else (-1, street.scene.right.edge)

@@ -2,7 +2,6 @@
 
 import laspy
 import numpy as np
-
 from lanewright.core.survey.trajectory import Trajectory
 
 EAST, NORTH = 500_000.0, 5_400_000.0

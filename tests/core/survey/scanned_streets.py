@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-
 from lanewright.core.survey.points import SURVEY_POINT, to_units
 from lanewright.core.survey.road_frame import build_frame
 from lanewright.core.survey.section_store import SectionStore

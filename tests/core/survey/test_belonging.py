@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 import shapely
 from drives import EAST, NORTH, ahead, bend, chain, drive
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.features import Features
 from lanewright.core.schemas import CURB_POINTS, ROAD_EDGES

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from lanewright.core.survey.columns import Columns
 from lanewright.core.survey.sorting import order_by, thinned
 

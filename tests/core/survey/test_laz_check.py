@@ -5,7 +5,6 @@ import struct
 import laspy
 import numpy as np
 import pytest
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.survey.laz_check import damage
 from lanewright.core.survey.point_cloud import read_blocks

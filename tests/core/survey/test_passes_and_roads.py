@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 from drives import EAST, NORTH, ahead, bend, chain, drive, joined, standing
-from scipy.ndimage import gaussian_filter1d
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.survey.road_frame import build_frame
 from lanewright.core.survey.trajectory import Trajectory, clean_trajectory
+from scipy.ndimage import gaussian_filter1d
 
 STREET = chain(ahead(300))
 

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from drives import EAST, NORTH, write_cloud
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.survey.crs import check_projected
 from lanewright.core.survey.point_cloud import read_blocks, read_header, read_headers

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from drives import ahead, bend, chain, drive
-
 from lanewright.core.survey.road_frame import build_frame
 
 

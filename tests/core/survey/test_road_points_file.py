@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from drives import write_cloud
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.survey.points import ROAD_POINT, to_units
 from lanewright.core.survey.road_points import RoadPoints

@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-from scanned_streets import START, TUNNEL, Cloud, driven, scanned, survey_of
-
 from lanewright.core.progress import Progress
 from lanewright.core.survey.scan_lattice import find_lattice
+from scanned_streets import START, TUNNEL, Cloud, driven, scanned, survey_of
 
 
 def lines_found(cloud, lattice, key=(0, 0)):

@@ -4,7 +4,6 @@ import threading
 
 import numpy as np
 import pytest
-
 from lanewright.core.survey.points import SURVEY_POINT, canonical_order, joined, to_units
 from lanewright.core.survey.section_store import SectionStore
 

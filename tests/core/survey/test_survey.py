@@ -5,7 +5,6 @@ import re
 import numpy as np
 import pytest
 from drives import EAST, NORTH, ahead, bend, chain, drive, joined, surveyed_points, write_cloud
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.progress import Progress
 from lanewright.core.survey.survey import SurveySettings, open_survey
@@ -185,9 +184,10 @@ def test_a_scan_past_the_end_of_the_gps_week_is_one_drive(street, tmp_path):
 def test_points_far_above_and_below_the_road_are_left_out(street, tmp_path):
     trajectory, (x, y, z, time), _ = street
     high = np.r_[z, z[::50] + 9.0, z[::50] - 9.0]
-    cloud = write_cloud(tmp_path / "ghosts.laz", np.r_[x, x[::50], x[::50]], np.r_[y, y[::50], y[::50]], high, np.r_[time, time[::50], time[::50]], crs=CRS)
+    x, y, time = (np.r_[column, column[::50], column[::50]] for column in (x, y, time))
+    cloud = write_cloud(tmp_path / "ghosts.laz", x, y, high, time, crs=CRS)
     survey = open_survey([cloud], trajectory)
-    assert survey.counts["kept"] == len(x) and survey.counts["outside"] == 2 * len(x[::50])
+    assert survey.counts["kept"] == len(z) and survey.counts["outside"] == 2 * len(z[::50])
 
 
 def test_a_corridor_that_makes_no_sense_is_refused():

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from drives import STREET_TIME, drive, joined, straight
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.survey.time_systems import DAY, WEEK, align_time, unwrap_time
 from lanewright.core.survey.trajectory import clean_trajectory

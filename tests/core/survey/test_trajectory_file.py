@@ -5,7 +5,6 @@ import time
 import numpy as np
 import pytest
 from drives import EAST, NORTH, ahead, bend, chain, drive
-
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.survey.crs import reproject_trajectory
 from lanewright.core.survey.trajectory import Trajectory
@@ -196,7 +195,8 @@ def test_an_sbet_file_cut_within_a_record_loses_that_record_and_says_so(tmp_path
 def test_reprojection_turns_the_heading_with_the_grid():
     trajectory = street()
     crs = "EPSG:32632"
-    there = reproject_trajectory(Trajectory(trajectory.time, trajectory.x, trajectory.y, trajectory.z, heading=trajectory.heading, crs=crs), "EPSG:25833")
+    here = Trajectory(trajectory.time, trajectory.x, trajectory.y, trajectory.z, heading=trajectory.heading, crs=crs)
+    there = reproject_trajectory(here, "EPSG:25833")
     course = np.degrees(np.arctan2(np.gradient(there.x), np.gradient(there.y)))
     inner = slice(3, -3)
     np.testing.assert_allclose((there.heading - course + 180)[inner] % 360 - 180, 0.0, atol=0.6)
