@@ -24,7 +24,7 @@ CELL = 200        # units of 0.1 mm: a profile has one value every 2 cm
 SMOOTH = 5        # cells of the running median
 UNSEEN = 5        # cells without points that are bridged; beyond them the profile is taken for asphalt
 FLATTEST = 0.005  # of the profile's level: intensities in whole numbers can have a deviation of 0
-TOLD = 0.6         # of the profiles along a chain that must show the peak
+TOLD = 0.6        # of the profiles along a chain that must show the peak
 
 
 @dataclass(frozen=True)
