@@ -101,6 +101,7 @@ def draw_boundaries(found, frame, settings=EdgeSettings(), progress=Progress()):
     differences = note_agreement(edges, alone["scanlines"], alone["profiles"], frame)
     lengths = {method: sum(row["length_m"] for row in lines.rows if row["status"] == "measured") for method, lines in alone.items()}
     doubtful = sum(row["length_m"] for row in differences.rows)
-    progress.say(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "
-                 f"they lie more than 5 cm apart along {doubtful:.0f} m.")
+    if any(lengths.values()):
+        progress.say(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "
+                     f"they lie more than 5 cm apart along {doubtful:.0f} m.")
     return Boundaries(found["both"], edges, differences, lengths)

@@ -72,7 +72,11 @@ def fit_road_edges(curb_points, frame, settings=EdgeSettings(), progress=Progres
                 lines = _draw_fallback(edges, frame, road, side, drawn, settings.fallback_width, lines)
         lines = draw_turned(edges, road.number, turned.get(road.number, []), lines)
     length = {status: sum(r["length_m"] for r in edges.rows if r["status"] == status) for status in ("measured", "bridged")}
-    progress.say(f"Road edges: {length['measured']:.0f} m measured, {length['bridged']:.0f} m bridged.")
+    if len(edges):
+        progress.say(f"Road edges: {length['measured']:.0f} m measured, {length['bridged']:.0f} m bridged.")
+    else:
+        progress.warn("No curb was found along this road, so there are no road edges. A verge is none; a lower minimum curb "
+                      "height finds low curbs, an assumed road width draws edges all the same.")
     progress.at(1.0)
     return edges
 

@@ -7,6 +7,7 @@ import shapely
 from curbed_streets import EAST, NORTH, length_of, parked_car, street, survey_of
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.features import Features
+from lanewright.core.progress import Progress
 from lanewright.core.road.curbs import detect_curbs
 from lanewright.core.road.edges import EdgeSettings, fit_road_edges
 from lanewright.core.schemas import CURB_POINTS
@@ -114,6 +115,19 @@ def test_without_curbs_nothing_is_drawn_unless_a_width_is_asked_for():
     assert {(r["side"], r["status"]) for r in edges.rows} == {("left", "inferred"), ("right", "inferred")}
     for line, _row in edges:
         np.testing.assert_allclose(np.abs(shapely.get_coordinates(line)[:, 1] - NORTH), 3.5, atol=1e-3)
+
+
+def test_a_layer_without_edges_comes_with_a_word():
+    class Heard(Progress):
+        warnings = []
+
+        def warn(self, text):
+            self.warnings.append(text)
+
+    fit_road_edges(curb_points(np.arange(0, 30, 1.0)), straight_frame(), progress=Heard())
+    assert not Heard.warnings
+    fit_road_edges(Features("PointZ", list(CURB_POINTS)), straight_frame(), progress=Heard())
+    assert len(Heard.warnings) == 1 and "no road edges" in Heard.warnings[0]
 
 
 def test_the_fallback_fills_only_what_has_no_curb():
