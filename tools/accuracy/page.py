@@ -222,7 +222,7 @@ def _ablation(figures, samples):
         rows.append([ablation.text + (f" (refused on {refused})" if refused else ""), *cells])
     note = ("\n\nMost of these steps were made for surveys harder than these: worn paint, noisy or unlike scanners, islands and verges. "
             "A · says that nothing here needs the step, not that it is not needed." if samples else "")
-    note += "".join(f"\n\nA figure is better here with this step off: {text[0].lower() + text[1:]}." for text in better_off)
+    note += "".join(f"\n\nOne figure is better here than that of the whole chain: “{text}”." for text in better_off)
     note += "".join(f"\n\nNot told by these surveys: {text[0].lower() + text[1:]}." for text in unused)
     return ("## What each improvement brings\n\nEach is switched off alone, everything else at its default; the first row is the mean over "
             "the surveys, the others the change in points (· is less than 0.05). A minus is what the improvement is worth; for miscoding, a plus."
