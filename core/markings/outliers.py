@@ -22,6 +22,7 @@ SCOPES = ("all", "windows")
 WINDOW = 20.0   # m of station that one limit is taken from
 BAND = 3.0      # m of offset likewise
 HALO = 2.0      # m of station beyond a window where neighbours are still looked for
+AT_ONCE = 50_000  # points asked for their neighbours at a time
 FEWEST = 30     # points of a window that still have a spread worth the name
 LONELIER = 3.0  # times the distance that is usual among a point's own neighbours
 
@@ -67,9 +68,7 @@ def neighbour_distances(places, neighbours):
     k = min(neighbours, len(places) - 1)
     if k < 1:
         return np.full(len(places), np.inf), np.empty((len(places), 0), np.int64)
-    # splits in the middle of a cell are made quicker than splits at the median, and found as quickly
-    tree = cKDTree(places, balanced_tree=False, compact_nodes=False)
-    distances, nearest = tree.query(places, k + 1)
+    distances, nearest = _tree(places).query(places, k + 1)
     return distances[:, 1:].mean(axis=1), nearest[:, 1:]
 
 
@@ -139,11 +138,27 @@ def _clean_all(points, kept, settings, progress):
     records, roads = points.all_points().records, points.point_roads()
     order = canonical_order(records)
     records, roads = records[order], roads[order]
-    progress.at(0.1)
-    keep = within_spread(neighbour_distances(_places(records), settings.neighbours)[0], settings.std_ratio)
+    keep = within_spread(_all_distances(_places(records), settings.neighbours, progress), settings.std_ratio)
     for road in np.unique(roads[keep]):
         kept.store.append(int(road), records[keep & (roads == road)])
     progress.at(1.0)
+
+
+def _all_distances(places, neighbours, progress):
+    """The distances of `neighbour_distances`, some points at a time, so that a cancel is heard."""
+    k = min(neighbours, len(places) - 1)
+    if k < 1:
+        return np.full(len(places), np.inf)
+    tree = _tree(places)
+    progress.at(0.1)
+    parts = [places[first:first + AT_ONCE] for first in range(0, len(places), AT_ONCE)]
+    found = in_order(lambda part: tree.query(part, k + 1)[0][:, 1:].mean(axis=1), parts, progress.part(0.1, 1.0))
+    return np.concatenate(list(found))
+
+
+def _tree(places):
+    # splits in the middle of a cell are made quicker than splits at the median, and found as quickly
+    return cKDTree(places, balanced_tree=False, compact_nodes=False)
 
 
 def _places(records):

@@ -12,7 +12,7 @@ from .columns import Columns
 from .points import UNIT, Points, canonical_order
 
 SECTION_LENGTH = 5.0   # m of station; results must not depend on it
-MEMORY_LIMIT = 256 * 2**20  # bytes of records kept before they are spilled
+MEMORY_LIMIT = 128 * 2**20  # bytes of records kept before they are spilled
 KEPT = 64 * 2**20      # bytes of spilled sections kept as last read: neighbours ask for them again
 TURNS = 16             # locks that sections share while they are put in order
 
