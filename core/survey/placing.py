@@ -9,8 +9,8 @@ beside the road) are followed step by step with `Road.locate`.
 
 import numpy as np
 
+from .driven_pass import MOST_TICKS, TICK
 from .reference_line import NODE
-from .road_frame import MOST_TICKS, TICK
 
 AT_ONCE = 1 << 15     # points worked at a time: what fits the processor's cache
 CLOCK_SLACK = 1.0     # s that a cloud may begin before or end after the trajectory
