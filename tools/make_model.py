@@ -61,6 +61,7 @@ def add_stages(model, stages):
     from qgis.PyQt.QtCore import QPointF
 
     registry = QgsApplication.processingRegistry()
+    read = {text for inputs, _ in stages.values() for text in inputs.values()}
     for number, (stage, (inputs, results)) in enumerate(stages.items()):
         child = QgsProcessingModelChildAlgorithm(f"lanewright:{stage}")
         child.setChildId(stage)
@@ -76,6 +77,8 @@ def add_stages(model, stages):
             output.setChildId(stage)
             output.setChildOutputName(name)
             output.setDescription(title)
+            # Left out, it would be missing to the stage that reads it
+            output.setMandatory(f"{stage}.{name}" in read)
             output.setPosition(QPointF(child.position().x() + 60, child.position().y() + STEP_Y))
             outputs[title] = output
         child.setModelOutputs(outputs)

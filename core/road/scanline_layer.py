@@ -52,7 +52,9 @@ def write_scanlines(survey, settings=ScanlineSettings(), layer=None, points=None
                 add_to_layer(spool, lines, survey.frame, road, settings.interval, layer.simplify)
             if points is not None:
                 points.add(lines, survey.frame, road)
-    progress.say(f"Scanlines: {count:,}, {settings.interval:g} m apart.")
+    short = count - len(spool) if layer is not None else 0
+    progress.say(f"Scanlines: {count:,}, {settings.interval:g} m apart"
+                 + (f"; {short:,} pieces shorter than {SHORTEST:g} m are not in the layer." if short else "."))
     return spool, count
 
 

@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from qgis.core import QgsApplication
+from qgis.core import Qgis, QgsApplication
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
 from models import RECIPES  # noqa: E402
@@ -37,3 +37,11 @@ def test_every_stage_exists_and_its_wiring_holds(model):
         assert child.algorithm() is not None, child.algorithmId()
         valid, errors = model.validateChildAlgorithm(child_id)
         assert valid, errors
+
+
+def test_no_result_that_a_later_stage_reads_can_be_left_out(model, recipe):
+    optional = {p.description() for p in model.destinationParameterDefinitions() if p.flags() & Qgis.ProcessingParameterFlag.Optional}
+    read = {text for inputs, _ in recipe.stages.values() for text in inputs.values()}
+    for stage in recipe.stages:
+        for output in model.childAlgorithm(stage).modelOutputs().values():
+            assert f"{stage}.{output.childOutputName()}" not in read or output.description() not in optional
