@@ -28,6 +28,7 @@ from .scanline_grid import resampled, side_scanlines
 from .shadows import TALL, Sight
 from .sides import REACH, SECTION, SIDES, Track, expected_height
 
+MOST_NOISE = 0.005   # m: where planes scatter more, it is the ground that is rough, as verges are
 CORNER_BLOCK = 0.5   # m of road per corner where corners are asked for
 
 
@@ -187,7 +188,7 @@ def merged_corners(found):
 def _with_usual_noise(corners):
     """The corners, each with the scatter that is usual about the planes of this road."""
     if len(corners):
-        corners.usual = np.full(len(corners), max(float(np.median(corners.noise)), LEAST_NOISE))
+        corners.usual = np.full(len(corners), np.clip(np.median(corners.noise), LEAST_NOISE, MOST_NOISE))
     return corners
 
 
