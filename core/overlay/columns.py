@@ -56,8 +56,6 @@ def guess_columns(rows, image, what):
     RoadExtractionError
         If both orders, or none, would do.
     """
-    from .control_points import as_number
-
     width = min(len(row) for row in rows)
     values = np.array([[as_number(field) for field in row[:width]] for row in rows])
     fits = []
@@ -81,3 +79,11 @@ def guess_columns(rows, image, what):
 def _enable(values, column):
     """The georeferencer's fifth column where there is one, of zeros and ones."""
     return {"enable": column} if column < values.shape[1] and np.isin(values[:, column], (0, 1)).all() else {}
+
+
+def as_number(value):
+    """The number that a field holds, NaN where it is none."""
+    try:
+        return float(str(value).strip().replace(",", "."))
+    except ValueError:
+        return np.nan

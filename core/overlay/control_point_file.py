@@ -4,8 +4,8 @@ import csv
 from pathlib import Path
 
 from ..errors import RoadExtractionError
-from .columns import NAMES
-from .control_points import as_number, control_points
+from .columns import NAMES, as_number
+from .control_points import control_points
 
 LARGEST = 20_000_000  # bytes; a table of control points is a few thousand
 

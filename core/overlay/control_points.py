@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import RoadExtractionError
-from .columns import find_columns, guess_columns
+from .columns import as_number, find_columns, guess_columns
 
 CONTROL, CHECK, DISABLED = "control", "check", "disabled"
 _OFF = ("0", "false", "no", "off", "n", "f")
@@ -86,14 +86,6 @@ def control_points(names, rows, image, what, crs=""):
 
 def _numbers(rows, column):
     return np.array([np.nan if column is None else as_number(row[column] if column < len(row) else None) for row in rows])
-
-
-def as_number(value):
-    """The number that a field holds, NaN where it is none."""
-    try:
-        return float(str(value).strip().replace(",", "."))
-    except ValueError:
-        return np.nan
 
 
 def _in_the_image(pixel, line, used, image, what):
