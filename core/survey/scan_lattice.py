@@ -28,6 +28,7 @@ NEAR, ONE_WAY = 0.5, 0.75  # m across from point to point of a line, and the sha
 SPARSE = 15           # every how manieth point tells when a place was scanned
 TICK = 2.0**-22       # s: finer than any clock's steps
 BIN_TURNS = 10        # turns whose points tell one phase
+STRETCH = 20.0        # m of road looked at in one go
 POINTS_PER_TURN = 40  # looked at for it; more tell no more
 LOWEST_AXIS = 1.5     # m above the road: from below, angles of road points tell nothing
 ENOUGH = 10_000       # points of a window that tell the mounting of a scanner
@@ -177,16 +178,20 @@ def _in_order(windows):
 
 
 def _clocks(survey, road, rotations, samples, progress):
-    """The clocks of the scanners whose frequency is known, from all sections of a road."""
+    """The clocks of the scanners whose frequency is known, from the points of a whole road."""
     if not rotations:
         return {}
     bins = {key: _Bins(survey.frame.passes[key[0]], BIN_TURNS / abs(frequency)) for key, (frequency, _, _) in rotations.items()}
     stride = min(_stride(samples[key], frequency) for key, (frequency, _, _) in rotations.items())
     mounts = {key: _mounting(samples[key], frequency) for key, (frequency, _, origin) in rotations.items() if origin == "angle"}
 
-    def work(section):
+    first, last = survey.store.span(road)
+    # of its own, so that which points are looked at does not depend on where sections are cut
+    stretches = range(int(first // STRETCH), int(last // STRETCH) + 1)
+
+    def work(number):
         gathered = []
-        for key, own in scanner_runs(survey.section(road, section).records[::stride]):
+        for key, own in scanner_runs(survey.window(road, number * STRETCH, (number + 1) * STRETCH).records[::stride]):
             if key not in rotations or not len(own):
                 continue
             frequency, _, origin = rotations[key]
@@ -197,7 +202,7 @@ def _clocks(survey, road, rotations, samples, progress):
             gathered.append((key, bins[key].sums_of(since, phasor * np.exp(-2j * np.pi * frequency * since))))
         return gathered
 
-    for gathered in in_order(work, survey.store.sections(road), progress):
+    for gathered in in_order(work, stretches, progress):
         for key, sums in gathered:
             bins[key].add(*sums)
     clocks = {}
