@@ -1,7 +1,5 @@
 """The geo-referenced intensity image: inverse distance, and bright points count more."""
 
-import threading
-from collections import OrderedDict
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,14 +8,16 @@ from ..errors import RoadExtractionError
 from ..parallel import in_order
 from ..progress import Progress
 from ..survey.points import UNIT
+from ..survey.sorting import quantiles
 from .intensity_raster import NODATA, TILE, IntensityImage, new_geotiff, write_display_image
-from .interpolation import InCells, interpolation_sums, reach_of
+from .interpolation import Sums, interpolation_sums, lattice_cell, reach_of
 
 __all__ = ["ImageSettings", "IntensityImage", "write_intensity_image", "write_display_image"]
 
 WINDOW = 20.0          # m of station over which intensities are ranked for the second rule
 LARGEST = 2_000_000    # px, side of an image: beyond it a coordinate is wrong
-KEPT = 2_000_000       # points of prepared windows kept: neighbouring tiles ask for them again
+PIECES = 4             # pieces of a window, each interpolated at a time
+AHEAD = 16             # tiles for which a piece is kept
 
 
 @dataclass(frozen=True)
@@ -84,32 +84,33 @@ def write_intensity_image(road_points, path, settings=ImageSettings(), progress=
     # The grid is fixed in the map: pixel column = column of the map's lattice minus the first one
     windows = [(road, k) for road in road_points.roads() for k in _window_numbers(road_points, road)]
     found = list(in_order(lambda window: _survey_window(road_points, window, settings), windows, progress.part(0.0, 0.3)))
-    extents = [extent for _, extent, _ in found if extent is not None]
-    c0, c1 = min(e[0] for e in extents), max(e[1] for e in extents) + 1
-    r0, r1 = min(e[2] for e in extents), max(e[3] for e in extents) + 1
+    pieces = {piece: extent for _, extents in found for piece, extent in extents.items()}
+    c0, c1 = min(e[0] for e in pieces.values()), max(e[1] for e in pieces.values()) + 1
+    r0, r1 = min(e[2] for e in pieces.values()), max(e[3] for e in pieces.values()) + 1
     if max(c1 - c0, r1 - r0) > LARGEST:
         raise RoadExtractionError(
             f"The road points span {(c1 - c0) * settings.cell_size / 1000:.1f} by {(r1 - r0) * settings.cell_size / 1000:.1f} km, "
             f"too far for an image with {settings.cell_size} m cells. Use a larger cell size, or split the survey.")
-    grid = _Grid(settings, road_points.origin, c0, r1 - 1, c1 - c0, r1 - r0)
-    ranks = {window: limits for window, (limits, _, _) in zip(windows, found)}
+    grid = _Grid(settings, c0, r1 - 1, c1 - c0, r1 - r0)
+    limits = {window: limits for window, (limits, _) in zip(windows, found)}
     tiles = {}
-    for window, (_, _, touched) in zip(windows, found):
-        for tile in np.unique(np.c_[(touched[:, 0] - grid.column) // TILE, (grid.row - touched[:, 1]) // TILE], axis=0).tolist() \
-                if len(touched) else []:
-            tiles.setdefault(tuple(tile), []).append(window)
-    reader = _Windows(road_points, ranks)
-    # in the order of the road, so that a tile finds its windows still prepared
+    for piece, extent in sorted(pieces.items()):
+        for tile in grid.tiles_of(extent):
+            tiles.setdefault(tile, []).append(piece)
+    # in the order of the road, so that a tile finds most of its pieces still there
     work = sorted(tiles.items(), key=lambda item: (item[1][0], item[0]))
-    transform = (grid.column * settings.cell_size, settings.cell_size, 0.0,
-                 (grid.row + 1) * settings.cell_size, 0.0, -settings.cell_size)
-    with new_geotiff(path, grid.width, grid.height, transform, road_points.crs) as dataset:
+
+    def sums(piece):
+        return _piece_sums(road_points, piece, limits[piece[0], piece[1] // PIECES], settings)
+
+    with new_geotiff(path, grid.width, grid.height, grid.transform, road_points.crs) as dataset:
         band = dataset.GetRasterBand(1)
-        done = in_order(lambda item: (item[0], grid.tile(item[0], reader, item[1])), work, progress.part(0.3, 1.0))
-        for (column, row), values in done:
-            height, width = values.shape
-            if (values != np.float32(NODATA)).any():
-                band.WriteRaster(column * TILE, row * TILE, width, height, values.tobytes(), buf_type=gdal.GDT_Float32)
+        for (column, row), parts in _with_pieces(work, sums, progress.part(0.3, 1.0)):
+            values = grid.tile(column, row, parts)
+            if values is not None:
+                band.WriteRaster(column * TILE, row * TILE, values.shape[1], values.shape[0], values.tobytes(), buf_type=gdal.GDT_Float32)
+                # compressed by another thread while the next tiles are made
+                band.FlushCache()
     progress.say(f"Intensity image: {grid.width:,} x {grid.height:,} cells of {settings.cell_size:g} m.")
 
 
@@ -118,98 +119,83 @@ def _window_numbers(road_points, road):
     return range(int(np.floor(start / WINDOW)), int(np.ceil(end / WINDOW)))
 
 
-def _window_points(road_points, window):
-    road, number = window
-    return road_points.window(road, number * WINDOW, (number + 1) * WINDOW)
-
-
 def _survey_window(road_points, window, settings):
-    """(P1, P99), the extent in map cells and one map cell per (64 px)² touched, of a window's points."""
-    points = _window_points(road_points, window)
+    """(P1, P99) of a window's points, and the extent (first and last column, first and last row) of each of its pieces."""
+    road, number = window
+    points = road_points.window(road, number * WINDOW, (number + 1) * WINDOW)
     if not len(points):
-        return (0.0, 1.0), None, np.empty((0, 2), np.int64)
-    reach = reach_of(settings)
-    column, row = _map_cells(points, road_points.origin, settings.cell_size)
-    corners = 64 * _each_once(column >> 6, row >> 6)
-    # a block of 64 px, widened by the reach, can touch the tiles its corners lie in
-    touched = np.concatenate([corners + np.array([dx, dy]) for dx in (-reach, 63 + reach) for dy in (-reach, 63 + reach)])
-    extent = (int(column.min()) - reach, int(column.max()) + reach, int(row.min()) - reach, int(row.max()) + reach)
-    touched = np.clip(touched, [extent[0], extent[2]], [extent[1], extent[3]])
-    return tuple(np.percentile(points.value, [1.0, 99.0])), extent, np.unique(touched, axis=0)
+        return (0.0, 1.0), {}
+    reach, extents = reach_of(settings), {}
+    bounds = np.searchsorted(points.records["s"] * UNIT, (number * PIECES + np.arange(PIECES + 1)) * (WINDOW / PIECES))
+    for k, (first, last) in enumerate(zip(bounds[:-1], bounds[1:])):
+        if last > first:
+            (c0, c1), (r0, r1) = ([int(lattice_cell(int(end), o, settings.cell_size)) for end in (c.min(), c.max())]
+                                  for c, o in ((points.records[name][first:last], o) for name, o in zip("xy", road_points.origin)))
+            extents[road, number * PIECES + k] = c0 - reach, c1 + reach, r0 - reach, r1 + reach
+    return tuple(quantiles(points.value, [0.01, 0.99])), extents
 
 
-def _each_once(column, row):
-    """(M, 2) the different pairs of column and row, in order."""
-    low = np.array([column.min(), row.min()])
-    shape = column.max() - low[0] + 1, row.max() - low[1] + 1
-    seen = np.zeros(shape, bool)
-    seen[column - low[0], row - low[1]] = True
-    return np.argwhere(seen) + low
+def _piece_sums(road_points, piece, limits, settings):
+    """Sums of one piece, 5 m of road."""
+    road, number = piece
+    low, high = limits
 
-
-def _map_cells(points, origin, cell):
-    """Column (eastward) and row (northward) of the map's lattice of cells."""
-    return (np.floor((points.x + origin[0]) / cell).astype(np.int64),
-            np.floor((points.y + origin[1]) / cell).astype(np.int64))
-
-
-class _Windows:
-    """Windows made ready for weighting: x, y (0.1 mm), value and brightness weight; the last used are kept."""
-
-    def __init__(self, road_points, ranks):
-        self.road_points, self.ranks = road_points, ranks
-        self._kept, self._count, self._lock = OrderedDict(), 0, threading.Lock()
-        self._turns = [threading.Lock() for _ in range(16)]  # a window is made ready by one thread while others wait
-
-    def get(self, window, beta):
-        with self._turns[hash(window) % len(self._turns)]:
-            with self._lock:
-                if window in self._kept:
-                    self._kept.move_to_end(window)
-                    return self._kept[window]
-            return self._made_ready(window, beta)
-
-    def _made_ready(self, window, beta):
-        points = _window_points(self.road_points, window)
+    def weigh(points):
         value = points.value
-        low, high = self.ranks[window]
         brightness = np.clip((value - np.float32(low)) / np.float32(max(high - low, 1e-9)), 0.0, 1.0)
-        ready = points.records["x"], points.records["y"], value, np.float32(1.0 - beta) + np.float32(beta) * brightness
-        with self._lock:
-            self._kept[window] = ready
-            self._count += len(value)
-            while self._count > KEPT and len(self._kept) > 1:
-                self._count -= len(self._kept.popitem(last=False)[1][2])
-        return ready
+        return value, np.float32(1.0 - settings.beta) + np.float32(settings.beta) * brightness
+
+    points = road_points.window(road, number * (WINDOW / PIECES), (number + 1) * (WINDOW / PIECES))
+    return interpolation_sums(points, weigh, road_points.origin, settings)
+
+
+def _with_pieces(work, sums, progress):
+    """Yield (tile, list of the Sums of its pieces) in order; pieces are computed by several threads.
+
+    A piece is kept for the tiles that follow soon, and computed again for those that
+    follow late, such as the ones that another road crosses.
+    """
+    uses = {}
+    for k, (_, pieces) in enumerate(work):
+        for piece in pieces:
+            uses.setdefault(piece, []).append(k)
+    made, done = [[] for _ in work], [[] for _ in work]
+    for piece, tiles in uses.items():
+        cuts = np.flatnonzero(np.diff(tiles) > AHEAD)
+        for first, last in zip(np.r_[0, cuts + 1], np.r_[cuts, len(tiles) - 1]):
+            made[tiles[first]].append(piece)
+            done[tiles[last]].append(piece)
+    results = in_order(sums, [piece for pieces in made for piece in pieces], progress)
+    kept = {}
+    for k, (tile, pieces) in enumerate(work):
+        kept.update((piece, next(results)) for piece in made[k])
+        yield tile, [kept[piece] for piece in pieces]
+        for piece in done[k]:
+            del kept[piece]
 
 
 class _Grid:
     """The image's place in the map's lattice; `row` is the northernmost row of it."""
 
-    def __init__(self, settings, origin, column, row, width, height):
-        self.settings, self.origin = settings, origin
+    def __init__(self, settings, column, row, width, height):
+        self.cell = settings.cell_size
         self.column, self.row, self.width, self.height = column, row, width, height
 
-    def tile(self, tile, reader, windows):
-        """(height, width) float32 of one tile, interpolated from the windows that touch it."""
-        cell, reach = self.settings.cell_size, reach_of(self.settings)
-        first_column, first_row = tile[0] * TILE, tile[1] * TILE
-        width, height = min(TILE, self.width - first_column), min(TILE, self.height - first_row)
-        left = (self.column + first_column) * cell - self.origin[0]
-        top = (self.row + 1 - first_row) * cell - self.origin[1]
-        parts = []
-        for window in windows:
-            x, y, value, weight = reader.get(window, self.settings.beta)
-            low = np.floor((np.array([left, top]) - np.array([reach, height + reach]) * cell) / UNIT) - 1
-            high = np.ceil((np.array([left, top]) + np.array([width + reach, reach]) * cell) / UNIT) + 1
-            near = np.flatnonzero((x >= low[0]) & (x <= high[0]) & (y >= low[1]) & (y <= high[1]))
-            u, v = (x[near] * UNIT - left) / cell, (top - y[near] * UNIT) / cell
-            inside = (u >= -reach) & (v >= -reach) & (u < width + reach) & (v < height + reach)
-            if not inside.all():
-                near, u, v = near[inside], u[inside], v[inside]
-            parts.append((InCells.of(u, v, width, self.settings), value[near], weight[near]))
-        points, value, weight = zip(*parts)
-        total, weights = interpolation_sums(InCells.joined(points), np.concatenate(value), np.concatenate(weight),
-                                            width, height, self.settings)
-        with np.errstate(invalid="ignore"):
-            return np.where(weights > 0, total / weights, NODATA).astype(np.float32)
+    @property
+    def transform(self):
+        return self.column * self.cell, self.cell, 0.0, (self.row + 1) * self.cell, 0.0, -self.cell
+
+    def tiles_of(self, extent):
+        """(column, row) of every tile that an extent touches."""
+        c0, c1, r0, r1 = extent
+        return [(column, row) for column in range((c0 - self.column) // TILE, (c1 - self.column) // TILE + 1)
+                for row in range((self.row - r1) // TILE, (self.row - r0) // TILE + 1)]
+
+    def tile(self, column, row, parts):
+        """(height, width) float32 of one tile, from the Sums that touch it; None where nothing is."""
+        shape = min(TILE, self.height - row * TILE), min(TILE, self.width - column * TILE)
+        whole = Sums(self.column + column * TILE, self.row - row * TILE, np.zeros(shape, np.float32), np.zeros(shape, np.float32))
+        for part in parts:
+            part.add_to(whole)
+        seen = whole.weights > 0
+        return np.divide(whole.total, whole.weights, out=np.full(shape, np.float32(NODATA)), where=seen) if seen.any() else None

@@ -12,6 +12,7 @@ from ..progress import Progress
 
 TILE = 512          # px, side of a tile of the file and of the work
 NODATA = -9999.0
+COMPRESSING = 2     # threads
 DISPLAY_LONGEST = 2000  # px of the reduced image from which the stretch is taken
 
 
@@ -174,7 +175,7 @@ def new_geotiff(path, width, height, geotransform, crs, byte=False, nodata=NODAT
     path = Path(path)
     unfinished = path.with_name(path.name + ".unfinished.tif")
     options = [f"BLOCKXSIZE={TILE}", f"BLOCKYSIZE={TILE}", "TILED=YES", "COMPRESS=DEFLATE", "SPARSE_OK=TRUE",
-               "BIGTIFF=IF_SAFER", f"PREDICTOR={2 if byte else 3}"]
+               "BIGTIFF=IF_SAFER", f"PREDICTOR={2 if byte else 3}", f"NUM_THREADS={COMPRESSING}"]
     try:
         dataset = gdal.GetDriverByName("GTiff").Create(
             str(unfinished), width, height, 1, gdal.GDT_Byte if byte else gdal.GDT_Float32, options)

@@ -1,41 +1,42 @@
-"""Inverse distance sums on a grid of cells: every point weighs on all cells within its reach."""
+"""Inverse distance sums on the map's lattice of cells: every point weighs on all cells within its reach."""
 
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
+from scipy import sparse
 
+from ..survey.points import UNIT
 from ..survey.sorting import order_by
 
 NEAREST = 1e-3      # m added to a distance, so that a point on a cell's centre has a finite weight
-AT_ONCE = 1 << 15   # points worked at a time: what fits the processor's cache
+AT_ONCE = 1 << 18   # distances worked at a time: what fits the processor's cache
+ROUNDING = 2e-6     # of the weight at the radius: a point right on it counts, whatever rounding makes of it
 
 
 @dataclass
-class InCells:
-    """Points in the cells of a grid with a margin of twice the reach about it.
+class Sums:
+    """What points weigh on a rectangle of cells.
 
-    cell : (N,) int32; east, south : (N,) float32, cells from the middle of the point's own
+    column, row : of the lattice (eastward, northward) of the north-western cell
+    total, weights : (rows, columns) float32, weighted values and weights; both 0 where no point is within the radius
     """
 
-    cell: np.ndarray
-    east: np.ndarray
-    south: np.ndarray
+    column: int
+    row: int
+    total: np.ndarray
+    weights: np.ndarray
 
-    @classmethod
-    def of(cls, u, v, width, settings):
-        """Points at columns u and rows v, (N,) float64 in cells, at most the reach outside the grid; cell 0 from 0 to 1."""
-        margin = 2 * reach_of(settings)
-        column, row = np.floor(u), np.floor(v)
-        cell = ((row + margin) * (width + 2 * margin) + (column + margin)).astype(np.int32)
-        # taken off before the precision is
-        return cls(cell, (u - column - 0.5).astype(np.float32), (v - row - 0.5).astype(np.float32))
-
-    @classmethod
-    def joined(cls, parts):
-        return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in ("cell", "east", "south")))
-
-    def __getitem__(self, which):
-        return InCells(self.cell[which], self.east[which], self.south[which])
+    def add_to(self, other):
+        """Add what lies in another rectangle to the sums there."""
+        height, width = self.total.shape
+        down, right = other.row - self.row, self.column - other.column
+        r0, r1 = max(-down, 0), min(other.total.shape[0] - down, height)
+        c0, c1 = max(-right, 0), min(other.total.shape[1] - right, width)
+        if r0 < r1 and c0 < c1:
+            place = slice(r0 + down, r1 + down), slice(c0 + right, c1 + right)
+            other.total[place] += self.total[r0:r1, c0:c1]
+            other.weights[place] += self.weights[r0:r1, c0:c1]
 
 
 def reach_of(settings):
@@ -43,66 +44,105 @@ def reach_of(settings):
     return int(np.ceil(settings.radius_cells))
 
 
-def interpolation_sums(points, value, weight, width, height, settings):
+def lattice_cell(units, origin, cell_size):
+    """Column or row of the lattice in which coordinates lie, as whole float64; `units` are 0.1 mm from `origin`, m."""
+    return np.floor((units * UNIT + origin) / cell_size)
+
+
+def interpolation_sums(points, weigh, origin, settings):
     """Weighted sums of values and of weights per cell.
 
     Parameters
     ----------
-    points : InCells
-    value, weight : (N,) float32, intensity and brightness weight
+    points : Points, at least one
+    weigh : function of Points, (N,) float32 values and what brightness makes them weigh
+    origin : map coordinates that x and y of the points leave out
     settings : ImageSettings
 
     Returns
     -------
-    two (height, width) float64 arrays; both 0 where no point is within the radius
+    Sums of a rectangle that holds all cells within reach
 
     Notes
     -----
-    Points are sorted by cell, so that what they add to a neighbour of their cell
-    is the sum of a run; weights are taken in single precision, far finer than intensities are.
+    Points are taken by the thousand and sorted by cell, so that what those of one cell add to
+    all its neighbours is one row of a product of matrices. Weights and sums are in single
+    precision, far finer than intensities are.
     """
-    margin = 2 * reach_of(settings)
-    columns, rows = width + 2 * margin, height + 2 * margin
-    order = order_by(points.cell)
-    points, value, weight = points[order], value[order], weight[order]
-    total, weights = np.zeros(rows * columns), np.zeros(rows * columns)
-    starts = np.flatnonzero(np.r_[True, points.cell[1:] != points.cell[:-1]][:len(value)])
-    first = 0
-    while first < len(starts):
-        end = max(int(np.searchsorted(starts, starts[first] + AT_ONCE)), first + 1)
-        run = slice(starts[first], starts[end] if end < len(starts) else len(value))
-        _add(total, weights, points.cell[starts[first:end]], starts[first:end] - starts[first], columns,
-             points[run], value[run], weight[run], settings)
-        first = end
-    kept = slice(margin, margin + height), slice(margin, margin + width)
-    return total.reshape(rows, columns)[kept], weights.reshape(rows, columns)[kept]
+    x, y = points.records["x"], points.records["y"]
+    reach, cell = reach_of(settings), settings.cell_size
+    (left, right), (bottom, top) = ([int(lattice_cell(int(end), o, cell)) for end in (c.min(), c.max())]
+                                    for c, o in ((x, origin[0]), (y, origin[1])))
+    left, top = left - reach, top + reach
+    width, height = right + reach + 1 - left, top - (bottom - reach) + 1
+    sums = np.zeros(width * height, np.complex64)   # weights and weighted values, which go the same ways
+    kernel = _Kernel(settings)
+    for first in range(0, len(x), kernel.at_once):
+        run = slice(first, first + kernel.at_once)
+        (column, east), (row, north) = _in_cell(x[run], origin[0], cell), _in_cell(y[run], origin[1], cell)
+        number = ((top - row) * width + (column - left)).astype(np.int32)
+        order = order_by(number)
+        number = number[order]
+        value, weight = (values.take(order) for values in weigh(points[run]))
+        starts = np.flatnonzero(np.r_[True, number[1:] != number[:-1]])
+        runs = sparse.csr_matrix((weight, np.arange(len(number), dtype=np.int32), np.append(starts, len(number)).astype(np.int32)),
+                                 shape=(len(starts), len(number)))
+        shares = kernel.shares(east.take(order), north.take(order))
+        added = np.empty((len(kernel.offsets), len(starts)), np.complex64)
+        added.real = (runs @ shares).T
+        runs.data = weight * value
+        added.imag = (runs @ shares).T
+        target = number[starts].astype(np.intp)
+        for (right, up), both in zip(kernel.offsets, added):
+            sums[target + (right - up * width)] += both
+    sums = sums.reshape(height, width)
+    return Sums(left, top, sums.imag, sums.real)
 
 
-def _add(total, weights, targets, starts, columns, points, value, weight, settings):
-    """Add what runs of points weigh on the cells about their own."""
-    radius, reach = settings.radius_cells, reach_of(settings)
-    squares = [[(offset - k) ** 2 for k in range(-reach, reach + 1)] for offset in (points.east, points.south)]
-    share, inside = np.empty(len(value), np.float32), np.empty(len(value), bool)
-    for dv in range(-reach, reach + 1):
-        for du in range(-reach, reach + 1):
-            if np.hypot(max(abs(du) - 0.5, 0), max(abs(dv) - 0.5, 0)) >= radius:
-                continue
-            np.add(squares[0][du + reach], squares[1][dv + reach], out=share)
-            cut = np.hypot(abs(du) + 0.5, abs(dv) + 0.5) > radius
-            if cut:
-                # a point right on the radius counts, whatever rounding makes of it
-                np.less_equal(share, np.float32(radius * radius * (1.0 + 2e-6)), out=inside)
-            np.sqrt(share, out=share)
-            share *= np.float32(settings.cell_size)
-            share += np.float32(NEAREST)
-            if settings.power == 2.0:
-                share *= share
-            else:
-                np.power(share, np.float32(settings.power), out=share)
-            np.divide(weight, share, out=share)
-            if cut:
-                share *= inside
-            cells = targets + (dv * columns + du)
-            weights[cells] += np.add.reduceat(share, starts)
-            share *= value
-            total[cells] += np.add.reduceat(share, starts)
+def _in_cell(units, origin, cell_size):
+    """The cell that coordinates lie in, (N,) whole float64, and how far from its middle, (N,) float32 in cells."""
+    place = (units * UNIT + origin) / cell_size
+    cell = np.floor(place)
+    # taken off before the precision is
+    place -= cell
+    place -= 0.5
+    return cell, place.astype(np.float32)
+
+
+class _Kernel:
+    """What points weigh on the cells about their own.
+
+    offsets : (K) (right, up) of the cells that a point may reach
+    at_once : points that are worked at a time
+    """
+
+    def __init__(self, settings):
+        self.settings = settings
+        radius, reach = settings.radius_cells, reach_of(settings)
+        self.offsets = [(right, up) for up in range(-reach, reach + 1) for right in range(-reach, reach + 1)
+                        if np.hypot(max(abs(right) - 0.5, 0), max(abs(up) - 0.5, 0)) < radius]
+        self.at_once = max(AT_ONCE // len(self.offsets), 1)
+        right, up = np.array(self.offsets, np.float32).T
+        # squared distances as a product: (e - r)^2 + (n - u)^2 = (e^2 + n^2) 1 - 2 e r - 2 n u + 1 (r^2 + u^2)
+        self._squares = np.stack([np.ones_like(right), -2 * right, -2 * up, right**2 + up**2])
+
+    def shares(self, east, north):
+        """(N, K) float32: weights of points on cells by distance alone, from the points' places in their own cells."""
+        own = np.empty((len(east), 4), np.float32)
+        own[:, 0] = east * east + north * north
+        own[:, 1], own[:, 2], own[:, 3] = east, north, 1.0
+        found = cv2.gemm(own, self._squares, 1.0, None, 0.0)
+        cv2.sqrt(found, found)
+        found *= np.float32(self.settings.cell_size)
+        found += np.float32(NEAREST)
+        found = self._weight(found)
+        farthest = self._weight(np.full(1, self.settings.radius_cells * self.settings.cell_size + NEAREST, np.float32))
+        return cv2.threshold(found, float(farthest[0]) * (1 - ROUNDING), 0.0, cv2.THRESH_TOZERO, found)[1]
+
+    def _weight(self, distance):
+        """1 / distance^power, in place."""
+        if self.settings.power == 2.0:
+            distance *= distance
+        else:
+            np.power(distance, np.float32(self.settings.power), out=distance)
+        return np.divide(np.float32(1.0), distance, out=distance)

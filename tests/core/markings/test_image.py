@@ -112,6 +112,18 @@ def test_the_image_does_not_depend_on_the_length_of_sections(tmp_path, section_l
     np.testing.assert_array_equal(usual, other)
 
 
+def test_what_is_interpolated_again_for_a_later_tile_is_the_same(tmp_path, monkeypatch):
+    """A diagonal street, whose pieces touch several tiles, and none is kept for the next one."""
+    from lanewright.core.markings import image
+
+    records = painted_street()
+    x, y = records["x"].copy(), records["y"].copy()
+    records["x"], records["y"] = np.rint((x - y) * np.sqrt(0.5)), np.rint((x + y) * np.sqrt(0.5))
+    usual = all_pixels(image_of(records, tmp_path / "a.tif"))
+    monkeypatch.setattr(image, "AHEAD", 0)
+    np.testing.assert_array_equal(usual, all_pixels(image_of(records, tmp_path / "b.tif")))
+
+
 def test_cells_are_multiples_of_the_cell_size_wherever_the_origin_is(tmp_path):
     records = painted_street(length=6.0)
     usual = image_of(records, tmp_path / "a.tif")
