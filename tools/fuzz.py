@@ -12,6 +12,7 @@ import sys
 import tempfile
 import time
 import traceback
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -47,6 +48,8 @@ def seeds(folder):
             path = folder / f"seed_{version}_{point_format}.{suffix}"
             las.write(str(path))
             made.append((path.read_bytes(), f".{suffix}", cloud))
+        if point_format == 6:
+            made.append((copc_file(folder, path), ".copc.laz", cloud))
     time_, angle = np.linspace(100.0, 200.0, 60), np.linspace(0, 1.5, 60)
     x, y = 500000 + 300 * np.sin(angle), 5000000 + 300 * np.cos(angle)
     rows = np.c_[time_, x, y, 100 + 0 * x, 0.1 + 0 * x, 0.2 + 0 * x, 90 + np.degrees(angle)]
@@ -59,23 +62,36 @@ def seeds(folder):
     return made
 
 
+def copc_file(folder, las):
+    """The tests can write COPC, with many chunks of different sizes."""
+    sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "core" / "survey"))
+    from copc_files import write_copc
+
+    return Path(write_copc(las, folder / "seed.copc.laz", in_a_node=20)).read_bytes()
+
+
 def points_files():
-    """Control points, where this version reads them."""
-    try:
-        from lanewright.core.overlay.gcp_file import read_gcp_file
-    except ImportError:
-        return []
-    points = ('#CRS: PROJCRS["x"]\nmapX,mapY,sourceX,sourceY,enable,dX,dY,residual\n'
-              + "\n".join(f"{500000 + 10 * k},{5000000 + k * k},{100 * k},{-50 * k},1,0,0,0" for k in range(8)))
-    table = "pixel,line,easting,northing\n" + "\n".join(f"{100 * k},{50 * k},{500000 + 10 * k},{5000000 + k * k}" for k in range(8))
-    return [(points.encode(), ".points", read_gcp_file), (table.encode(), ".csv", read_gcp_file)]
+    """Control points as the georeferencer saves them, with and without a header, and as tables."""
+    from lanewright.core.overlay.control_point_file import read_control_points
+    from lanewright.core.overlay.source_image import SourceImage
+
+    def points(path):
+        read_control_points(path, SourceImage(str(path), 1000, 600))
+
+    new = ('#CRS: EPSG:32632\nmapX,mapY,sourceX,sourceY,enable,dX,dY,residual\n'
+           + "\n".join(f"{500000 + 10 * k},{5000000 + k * k},{100 * k},{-50 * k},1,0,0,0" for k in range(8)))
+    old = "mapX\tmapY\tpixelX\tpixelY\tenable\n" + "\n".join(f"{500000 + 10 * k}\t{5000000 + k * k}\t{100 * k}\t{-50 * k}\t1" for k in range(8))
+    named = "name;pixel;line;easting;northing;height;role\n" + "\n".join(
+        f"P{k};{100 * k},5;{50 * k},5;{500000 + 10 * k};{5000000 + k * k};10,0;check" for k in range(8))
+    bare = "\n".join(f"{100 * k} {50 * k} {500000 + 10 * k} {5000000 + k * k}" for k in range(8))
+    return [(text.encode(), suffix, points) for text, suffix in ((new, ".points"), (old, ".points"), (named, ".csv"), (bare, ".txt"))]
 
 
 def broken(content, rng):
     """One of the ways a file is damaged, or several."""
     data = bytearray(content)
     for _ in range(rng.integers(1, 4)):
-        way = rng.integers(0, 7)
+        way = rng.integers(0, 9)
         if not data:
             break
         at = int(rng.integers(0, len(data)))
@@ -84,6 +100,13 @@ def broken(content, rng):
                 data[place] = int(rng.integers(0, 256))
         elif way == 1:  # in the header, where numbers say how long things are
             data[int(rng.integers(0, min(len(data), 400)))] = int(rng.choice([0, 1, 127, 128, 255]))
+        elif way == 7:  # in the table of chunks and the records that come after the points
+            data[len(data) - 1 - int(rng.integers(0, min(len(data), 300)))] = int(rng.choice([0, 1, 127, 128, 255]))
+        elif way == 8:  # a length of four or eight bytes, beyond all measure or just beyond
+            size = int(rng.choice([4, 8]))
+            value = (0, 1, len(data), len(data) + 1, 2**31 - 1, 2**31, 2**32 - 1, 2**63 - 1, 2**64 - 1)[rng.integers(0, 9)]
+            at = int(rng.integers(0, min(len(data), 700)))
+            data[at:at + size] = (value % 2**(8 * size)).to_bytes(size, "little")
         elif way == 2:
             del data[at:]
         elif way == 3:
@@ -121,7 +144,9 @@ def main():
             began = time.monotonic()
             problem = ""
             try:
-                reader(path)
+                with warnings.catch_warnings():
+                    warnings.simplefilter("error")  # what numpy says of NaN is no sentence for a user
+                    reader(path)
             except RoadExtractionError as error:
                 refused += 1
                 problem = "" if 20 < len(str(error)) < 1500 else f"message of {len(str(error))} characters: {str(error)[:200]}"

@@ -13,6 +13,8 @@ VLR_HEADER = 54        # bytes
 COMPRESSED = 0x80      # bit of the point format
 VARIABLE_CHUNKS = 0xFFFFFFFF
 LARGEST_CHUNK = 50_000_000  # points; LASzip writes 50,000
+LAYERED = 3            # the compressor of point formats 6 and above: a chunk holds its values layer by layer
+_LAYERS = {10: 9, 11: 1, 12: 2, 13: 1}  # of POINT14, RGB14, RGBNIR14, WAVEPACKET14; BYTE14 has one for each byte
 
 
 def damage(path):
@@ -34,18 +36,20 @@ def damage(path):
                 return f"it is said to have {evlrs:,} further records from byte {first_evlr:,}, of {size:,}"
         if not point_format & COMPRESSED:
             return ""
-        chunk_size, items = _laszip(file, header_size, vlrs, points_at)
-        if chunk_size is None:
+        record = _laszip(file, header_size, vlrs, points_at)
+        if record is None:
             return "it is compressed, but the record that says how is missing"
+        chunk_size, items = _chunk_size(record), _items(record)
         if sum(items) != record_size:
             return f"its points are said to have {record_size} bytes, and {sum(items)} when compressed"
         if chunk_size != VARIABLE_CHUNKS and not 0 < chunk_size <= LARGEST_CHUNK:
             return f"its points are said to be compressed {chunk_size:,} at a time"
-        return _chunk_table(file, points_at, size)
+        count = struct.unpack_from("<Q", head, 247)[0] if head[25] >= 4 and len(head) >= 255 else struct.unpack_from("<I", head, 107)[0]
+        return _chunk_table(file, points_at, size, record, count)
 
 
 def _laszip(file, header_size, vlrs, points_at):
-    """Points per chunk and the bytes of each item of a point, of the LASzip record; (None, ()) where there is none."""
+    """The LASzip record; None where there is none, or it is too short."""
     at = header_size
     for _ in range(vlrs):
         file.seek(at)
@@ -55,17 +59,30 @@ def _laszip(file, header_size, vlrs, points_at):
         user, record, length = struct.unpack_from("<2x16sHH", head)
         if user.rstrip(b"\0") == LASZIP_USER and record == LASZIP_RECORD:
             data = file.read(length)
-            if len(data) < 34:
-                break
-            chunk_size, count = struct.unpack_from("<I", data, 12)[0], struct.unpack_from("<H", data, 32)[0]
-            if len(data) < 34 + 6 * count:
-                break
-            return chunk_size, [struct.unpack_from("<H", data, 36 + 6 * item)[0] for item in range(count)]
+            whole = len(data) >= 34 and len(data) >= 34 + 6 * struct.unpack_from("<H", data, 32)[0]
+            return data if whole else None
         at += VLR_HEADER + length
-    return None, ()
+    return None
 
 
-def _chunk_table(file, points_at, size):
+def _chunk_size(record):
+    """Points in a chunk."""
+    return struct.unpack_from("<I", record, 12)[0]
+
+
+def _items(record):
+    """Bytes of each item of a point."""
+    count = struct.unpack_from("<H", record, 32)[0]
+    return [struct.unpack_from("<H", record, 36 + 6 * item)[0] for item in range(count)]
+
+
+def _kinds(record):
+    """The kind of each item of a point."""
+    count = struct.unpack_from("<H", record, 32)[0]
+    return [struct.unpack_from("<H", record, 34 + 6 * item)[0] for item in range(count)]
+
+
+def _chunk_table(file, points_at, size, record, count):
     """What is wrong with the table of chunks."""
     file.seek(points_at)
     place = file.read(8)
@@ -80,4 +97,41 @@ def _chunk_table(file, points_at, size):
     file.seek(at)
     _, chunks = struct.unpack("<II", file.read(8))
     # A chunk has a byte at least
-    return f"it is said to have {chunks:,} chunks in {at - points_at:,} bytes" if chunks > at - points_at else ""
+    if chunks > at - points_at:
+        return f"it is said to have {chunks:,} chunks in {at - points_at:,} bytes"
+    file.seek(at)
+    return _chunks(file, points_at + 8, at, record, count)
+
+
+def _chunks(file, first, end, record, count):
+    """What is wrong with the chunks: together they fill the room before their table and hold the points of the header."""
+    import lazrs
+
+    try:
+        table = lazrs.read_chunk_table_only(file, lazrs.LazVlr(record))
+    except BaseException as problem:  # a panic of the decoder is no Exception
+        if isinstance(problem, (KeyboardInterrupt, SystemExit, GeneratorExit)):
+            raise
+        return f"its table of chunks cannot be read ({problem})"
+    taken = sum(length for _, length in table)
+    if taken > end - first:
+        return f"its chunks are said to take {taken:,} bytes, and there are {end - first:,}"
+    if _chunk_size(record) == VARIABLE_CHUNKS and sum(points for points, _ in table) != count:
+        return f"its header promises {count:,} points, its chunks {sum(points for points, _ in table):,}"
+    return _layers(file, first, record, table) if struct.unpack_from("<H", record)[0] == LAYERED else ""
+
+
+def _layers(file, first, record, table):
+    """What is wrong with the lengths of the layers that each chunk begins with, after its first point as it is."""
+    raw = sum(_items(record))
+    layers = sum(_LAYERS.get(kind, size) for kind, size in zip(_kinds(record), _items(record)))
+    head = raw + 4 + 4 * layers  # the number of points, and the lengths
+    at = first
+    for _, length in table:
+        file.seek(at)
+        data = file.read(min(head, length))
+        taken = sum(struct.unpack_from(f"<{layers}I", data, raw + 4)) if len(data) == head else 0
+        if length and head + taken > length:
+            return f"a chunk of {length:,} bytes is said to hold layers of {taken:,}"
+        at += length
+    return ""

@@ -15,6 +15,7 @@ from ..errors import RoadExtractionError
 
 SAMPLE = 200_000   # bytes looked at to learn how the table is written
 FEWEST = 3         # columns of numbers that make a table
+LARGEST = 1e20     # beyond time in nanoseconds; larger numbers count as none, like infinity
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?$|[+-]?(nan|inf)$", re.IGNORECASE)
 COMMA_NUMBER = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?$|[+-]?\d+$")
 DELIMITERS = (";", "\t", "|", ",", " ")
@@ -159,7 +160,12 @@ def _parse(body, delimiter, columns, decimal_comma):
             values = np.empty(0)
     if len(values) != rows * columns:
         values = _parse_mixed(body, columns)
-    return values.reshape(-1, columns), dropped
+    return only_numbers(values).reshape(-1, columns), dropped
+
+
+def only_numbers(values):
+    """The values with NaN for what is infinite or absurdly large, which no sum survives."""
+    return np.where(np.abs(values) < LARGEST, values, np.nan)
 
 
 def _fill_empty(body, mark):

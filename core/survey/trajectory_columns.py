@@ -203,18 +203,19 @@ def _time_column(sample):
     return chosen
 
 
-def _pace(sample, time, k):
-    """Change of a column per second, or per row where there is no time: (N-1,) absolute values."""
+def _pace(sample, time, k, percent):
+    """Change of a column per second, or per row where there is no time: a percentile, NaN where there is no step."""
     step = np.abs(np.diff(sample[:, k]))
-    if time is None:
-        return step
-    seconds = np.diff(sample[:, time])
-    return step / np.where(seconds > 0, seconds, np.nan)
+    if time is not None:
+        seconds = np.diff(sample[:, time])
+        step = step / np.where(seconds > 0, seconds, np.nan)
+    step = step[np.isfinite(step)]
+    return np.percentile(step, percent) if len(step) else np.nan
 
 
 def _plane(sample, time, others):
     """((x column, y column, unit) or None, heading column or None)."""
-    fast = {k: np.nanpercentile(_pace(sample, time, k), 98) for k in others}
+    fast = {k: _pace(sample, time, k, 98) for k in others}
     size = {k: np.nanmedian(np.abs(sample[:, k])) for k in others}
     map_like = [k for k in others if size[k] > 9000 and fast[k] < FASTEST]
     if len(map_like) > 2:
@@ -327,7 +328,7 @@ def _longitude_first(pairs, sample):
 def _height_column(sample, time, others, plane, heading):
     """The slow column that follows x and y, else the only one left."""
     left = [k for k in others if k not in plane and k != heading and np.nanmax(np.abs(sample[:, k])) < 9000]
-    slow = [k for k in left if np.nanpercentile(_pace(sample, time, k), 90) < 20.0]
+    slow = [k for k in left if _pace(sample, time, k, 90) < 20.0]
     following = [k for k in slow if k == max(plane) + 1]
     if following:
         return following[0]

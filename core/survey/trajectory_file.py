@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import RoadExtractionError
 from .crs import horizontal, parse_crs, reproject_trajectory
-from .number_table import SAMPLE, read_number_table
+from .number_table import SAMPLE, only_numbers, read_number_table
 from .trajectory import Trajectory
 from .trajectory_columns import (
     AGREES,
@@ -73,7 +73,7 @@ def trajectory_from_columns(columns, crs="", angle_unit="", label="The trajector
     RoadExtractionError
         If x, y or z is missing, or coordinates and CRS contradict each other.
     """
-    columns = {role: np.asarray(values, float) for role, values in columns.items()}
+    columns = {role: only_numbers(np.asarray(values, float)) for role, values in columns.items()}
     notes = list(notes)
     time = columns.get("time")
     has_time = time is not None and np.isfinite(time).any()

@@ -5,6 +5,7 @@ import struct
 import laspy
 import numpy as np
 import pytest
+from copc_files import write_copc
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.survey.laz_check import damage
 from lanewright.core.survey.point_cloud import read_blocks
@@ -61,3 +62,42 @@ def test_a_table_of_chunks_outside_the_file_is_told(cloud):
     points_at = struct.unpack_from("<I", cloud.read_bytes(), 96)[0]
     with pytest.raises(RoadExtractionError, match="table of chunks"):
         read(changed(cloud, points_at, "<q", 10**15))
+
+
+@pytest.fixture
+def copc(tmp_path):
+    las = laspy.LasData(laspy.LasHeader(version="1.4", point_format=6))
+    las.x, las.y, las.z = np.arange(300.0), np.arange(300.0), np.zeros(300)
+    las.write(str(tmp_path / "cloud.laz"))
+    return tmp_path / write_copc(tmp_path / "cloud.laz", tmp_path / "cloud.copc.laz", in_a_node=50)
+
+
+def first_layer_length(path):
+    """Where the first chunk says how long its first layer is: after the chunk's first point and the number of points."""
+    return struct.unpack_from("<I", path.read_bytes(), 96)[0] + 8 + 30 + 4
+
+
+def test_layers_longer_than_their_chunk_are_not_believed(cloud):
+    """The decoder would ask for as much memory as they say, gigabytes for each, and end QGIS where there is none."""
+    if cloud.suffix == ".laz" and laspy.open(cloud).header.point_format.id == 6:
+        with pytest.raises(RoadExtractionError, match="chunk of .* bytes is said to hold layers of"):
+            read(changed(cloud, first_layer_length(cloud), "<I", 0xFFFFFFF0))
+
+
+def test_chunks_of_all_sizes_are_no_damage(copc):
+    assert damage(copc) == "" and read(copc) == 300
+
+
+def test_chunks_that_hold_other_points_than_the_header_promises_are_told(copc):
+    with pytest.raises(RoadExtractionError, match="its header promises 301 points, its chunks 300"):
+        read(changed(copc, 247, "<Q", 301))
+
+
+def test_a_table_of_chunks_overwritten_is_told(copc):
+    """Read as it stands it asks for thousands of gigabytes."""
+    data = copc.read_bytes()
+    table = struct.unpack_from("<q", data, struct.unpack_from("<I", data, 96)[0])[0]
+    for filling in (b"\xff", b"\x00", b"\x55"):
+        copc.write_bytes(data[:table + 8] + filling * 12 + data[table + 20:])
+        with pytest.raises(RoadExtractionError, match="is damaged or cut off"):
+            read(copc)

@@ -299,3 +299,28 @@ def test_a_vertical_tab_in_a_field_costs_that_field_only(tmp_path):
     path.write_text("time,x,y,z\n" + "\n".join(rows))
     found = read_trajectory(path)
     assert len(found) == 50 and np.isnan(found.z[20]) and found.x[21] == 500042
+
+
+@pytest.mark.parametrize("words", [("inf", "inf"), ("1e999", "-inf"), ("9" * 200, "-1e300")])
+@pytest.mark.parametrize("header", [None, ""], ids=["with header", "without"])
+@pytest.mark.filterwarnings("error")
+def test_numbers_beyond_reason_count_as_none(tmp_path, words, header):
+    """No sum survives them, and what numpy says then is no sentence for anybody."""
+    path = write(tmp_path / "t.csv", street(), header=header)
+    lines = path.read_text().splitlines()
+    first = 0 if header == "" else 1
+    for at, word in zip((1, 5, 6), words * 2):  # x, pitch, heading
+        fields = lines[first + 40 + at].split(",")
+        lines[first + 40 + at] = ",".join(fields[:at] + [word] + fields[at + 1:])
+    path.write_text("\n".join(lines))
+    found = read_trajectory(path)
+    assert len(found) == len(street()) and np.isnan(found.x).sum() == 1
+    assert np.isnan(found.heading).sum() == 1 == np.isnan(found.pitch).sum()
+
+
+@pytest.mark.filterwarnings("error")
+def test_one_row_without_names_is_refused_in_one_sentence(tmp_path):
+    path = tmp_path / "one.csv"
+    path.write_text("318204000.0,500000.0,5400000.0,102.0,0.1,0.2,90.0\n")
+    with pytest.raises(RoadExtractionError, match="one.csv"):
+        read_trajectory(path)

@@ -1,0 +1,41 @@
+"""A COPC file through Processing, and in the eyes of QGIS itself."""
+
+import pytest
+from qgis.core import QgsPointCloudLayer, QgsProviderRegistry, QgsVectorLayer
+
+
+@pytest.fixture(scope="module")
+def survey(provider, tmp_path_factory):
+    """A sample street as LAZ and as COPC: (LAZ, COPC, trajectory)."""
+    import processing
+    from copc_files import write_copc
+
+    folder = tmp_path_factory.mktemp("copc")
+    made = processing.run("lanewright:samplesurvey", {
+        "LENGTH": 30, "PULSE_RATE": 60000, "ROTATION_RATE": 100, "POINT_CLOUD": str(folder / "street.laz"),
+        "TRAJECTORY": str(folder / "drive.gpkg")})
+    return made["POINT_CLOUD"], write_copc(made["POINT_CLOUD"], folder / "street.copc.laz", in_a_node=20_000), made["TRAJECTORY"]
+
+
+@pytest.mark.skipif("copc" not in QgsProviderRegistry.instance().providerList(), reason="this QGIS shows no COPC")
+def test_qgis_itself_shows_it(survey):
+    import laspy
+
+    layer = QgsPointCloudLayer(survey[1], "street", "copc")
+    assert layer.isValid() and layer.crs().isValid()
+    assert layer.pointCount() == laspy.open(survey[0]).header.point_count
+
+
+def test_curb_points_and_road_points_are_those_of_the_laz(survey, tmp_path):
+    import laspy
+    import processing
+
+    curbs, points = [], []
+    for number, cloud in enumerate(survey[:2]):
+        drive = {"POINT_CLOUDS": [cloud], "TRAJECTORY": survey[2]}
+        made = processing.run("lanewright:detectcurbs", {**drive, "CURB_POINTS": str(tmp_path / f"{number}.gpkg")})["CURB_POINTS"]
+        curbs.append([(bytes(f.geometry().asWkb()), f.attributes()[1:]) for f in QgsVectorLayer(made).getFeatures()])
+        road = processing.run("lanewright:extractroadsurface", {**drive, "ROAD_POINTS": str(tmp_path / f"{number}.laz")})["ROAD_POINTS"]
+        points.append(laspy.read(road).points.array)
+    assert len(curbs[0]) > 20 and curbs[0] == curbs[1]
+    assert len(points[0]) > 10_000 and points[0].tobytes() == points[1].tobytes()
