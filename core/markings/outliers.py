@@ -10,19 +10,18 @@ neighbours are.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from ..errors import RoadExtractionError
 from ..parallel import in_order
 from ..progress import Progress
-from ..survey.points import UNIT, canonical_order, chosen
+from ..survey.points import UNIT, chosen
 from ..survey.road_points import RoadPoints
+from .neighbours import Neighbours, mean_distances
 
 SCOPES = ("all", "windows")
 WINDOW = 20.0   # m of station that one limit is taken from
 BAND = 3.0      # m of offset likewise
 HALO = 2.0      # m of station beyond a window where neighbours are still looked for
-AT_ONCE = 50_000  # points asked for their neighbours at a time
 FEWEST = 30     # points of a window that still have a spread worth the name
 LONELIER = 3.0  # times the distance that is usual among a point's own neighbours
 
@@ -49,27 +48,6 @@ class OutlierSettings:
             raise RoadExtractionError(f"The standard deviation ratio is {self.std_ratio}; it must be 0 or more.")
         if self.scope not in SCOPES:
             raise RoadExtractionError(f"The scope {self.scope!r} is not known; use one of {', '.join(SCOPES)}.")
-
-
-def neighbour_distances(places, neighbours):
-    """Mean distance of each place to its nearest others, and who these are.
-
-    Parameters
-    ----------
-    places : (N, 3) metres
-    neighbours : k; fewer are used where there are no more
-
-    Returns
-    -------
-    distances : (N,) metres; inf where a place has no neighbour at all. The place
-        itself is left out, a second point at the very same place is not (as in PCL).
-    nearest : (N, k) int
-    """
-    k = min(neighbours, len(places) - 1)
-    if k < 1:
-        return np.full(len(places), np.inf), np.empty((len(places), 0), np.int64)
-    distances, nearest = _tree(places).query(places, k + 1)
-    return distances[:, 1:].mean(axis=1), nearest[:, 1:]
 
 
 def within_spread(distances, std_ratio):
@@ -120,46 +98,40 @@ def _windows(start, end):
 def _clean_window(points, road, number, settings):
     records = points.window(road, number * WINDOW - HALO, (number + 1) * WINDOW + HALO).records
     s = records["s"] * UNIT
-    own = (s >= number * WINDOW) & (s < (number + 1) * WINDOW)
-    if not own.any():
-        return records[own]
-    distances, nearest = neighbour_distances(_places(records), settings.neighbours)
-    usual = np.median(distances[nearest], axis=1) if nearest.shape[1] else np.zeros(len(records))
-    band = np.floor(records["d"] * UNIT / BAND)
-    keep = own.copy()
-    for value in np.unique(band[own]):
-        rows = np.flatnonzero(own & (band == value))
+    own = np.flatnonzero((s >= number * WINDOW) & (s < (number + 1) * WINDOW))
+    neighbours = Neighbours(_units(records), settings.neighbours)
+    distances, _, nearest = neighbours.of(own)
+    band = np.floor(records["d"].take(own) * UNIT / BAND)
+    lonely = np.zeros(len(own), bool)
+    for value in np.unique(band):
+        rows = np.flatnonzero(band == value)
         if len(rows) >= FEWEST:
-            keep[rows] = within_spread(distances[rows], settings.std_ratio) | (distances[rows] <= LONELIER * usual[rows])
-    return chosen(records, keep)
+            lonely[rows] = ~within_spread(distances[rows], settings.std_ratio)
+    lonely = np.flatnonzero(lonely)
+    lonely = lonely[distances[lonely] > LONELIER * _usual(neighbours, own, distances, nearest[lonely])]
+    return chosen(records, np.delete(own, lonely))
+
+
+def _usual(neighbours, own, distances, nearest):
+    """(M,) median of the distances of the neighbours of M points, (M, k) rows; `distances` are known of the rows `own`."""
+    known = np.full(len(neighbours), np.nan)
+    known[own] = distances
+    others = np.unique(nearest)
+    others = others[np.isnan(known[others])]
+    known[others] = neighbours.of(others)[0]
+    return np.median(known[nearest], axis=1)
 
 
 def _clean_all(points, kept, settings, progress):
-    records, roads = points.all_points().records, points.point_roads()
-    order = canonical_order(records)
-    records, roads = records[order], roads[order]
-    keep = within_spread(_all_distances(_places(records), settings.neighbours, progress), settings.std_ratio)
-    for road in np.unique(roads[keep]):
-        kept.store.append(int(road), records[keep & (roads == road)])
+    parts = [(road, points.section(road, number).records) for road, number in points.all_sections()]
+    units = np.concatenate([np.empty((0, 3), np.int32), *(_units(records) for _, records in parts)])
+    keep = within_spread(mean_distances(units, settings.neighbours, progress), settings.std_ratio)
+    first = 0
+    for road, records in parts:
+        kept.store.append(road, chosen(records, keep[first:first + len(records)]))
+        first += len(records)
     progress.at(1.0)
 
 
-def _all_distances(places, neighbours, progress):
-    """The distances of `neighbour_distances`, some points at a time, so that a cancel is heard."""
-    k = min(neighbours, len(places) - 1)
-    if k < 1:
-        return np.full(len(places), np.inf)
-    tree = _tree(places)
-    progress.at(0.1)
-    parts = [places[first:first + AT_ONCE] for first in range(0, len(places), AT_ONCE)]
-    found = in_order(lambda part: tree.query(part, k + 1)[0][:, 1:].mean(axis=1), parts, progress.part(0.1, 1.0))
-    return np.concatenate(list(found))
-
-
-def _tree(places):
-    # splits in the middle of a cell are made quicker than splits at the median, and found as quickly
-    return cKDTree(places, balanced_tree=False, compact_nodes=False)
-
-
-def _places(records):
-    return np.c_[records["x"], records["y"], records["z"]] * UNIT
+def _units(records):
+    return np.stack([records["x"], records["y"], records["z"]], axis=1)

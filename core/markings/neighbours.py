@@ -1,0 +1,122 @@
+"""The nearest neighbours of points, exactly, and the mean distance to them."""
+
+import cv2
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ..parallel import in_order
+from ..progress import Progress
+from ..survey.points import UNIT
+from ..survey.sorting import order_by
+
+PATCH = 11            # bits: points of one 0.2 m patch are asked for one after the other, in the processor's cache
+LEAF = 10             # points in a leaf of the tree
+EXACT = 1 << 24       # units (1.6 km): up to here float32 holds every integer
+TILE = 18             # bits: 26 m of map worked at together
+MARGIN = 10_000       # units: 1 m about a tile where neighbours are looked for
+
+
+class Neighbours:
+    """Asks some points for the k nearest others.
+
+    Parameters
+    ----------
+    units : (N, 3) int32 of 0.1 mm
+    k : neighbours; fewer where there are no more
+
+    Notes
+    -----
+    The tree is OpenCV's exact one, which works in float32. Points are integers
+    of 0.1 mm counted from their least, so up to 1.6 km nothing is rounded, and
+    beyond it a slower tree in float64 is taken.
+    """
+
+    def __init__(self, units, k):
+        self.k = max(min(k, len(units) - 1), 0)
+        least = units.min(axis=0) if len(units) else 0
+        self._units = units - least
+        if self.k and self._units.max() < EXACT:
+            self._places = self._units.astype(np.float32)
+            self._tree = cv2.flann_Index(self._places, dict(algorithm=4, leaf_max_size=LEAF))  # 4: one exact kd-tree
+
+    def __len__(self):
+        return len(self._units)
+
+    def of(self, rows):
+        """Mean distance of some points to their nearest others, and who these are.
+
+        Returns
+        -------
+        distances : (M,) metres; inf where a point has no neighbour at all. The point
+            itself is left out, a second point at the very same place is not (as in PCL).
+        farthest : (M,) metres, the distance to the last of them
+        nearest : (M, k) int32
+        """
+        if not self.k:
+            return np.full(len(rows), np.inf), np.full(len(rows), np.inf), np.empty((len(rows), 0), np.int32)
+        if not len(rows):
+            return np.empty(0), np.empty(0), np.empty((0, self.k), np.int32)
+        x, y = (self._units[:, axis].take(rows) >> PATCH for axis in (0, 1))
+        order = order_by(y, x)
+        nearest, distances = self._ask(rows.take(order))
+        back = np.empty_like(order)
+        back[order] = np.arange(len(order))
+        # each point is the first or, beside another at its place, one of the first of its own neighbours
+        means = distances.sum(axis=1, dtype=np.float64) * (UNIT / self.k)
+        return means.take(back), distances[:, -1].take(back) * UNIT, nearest[:, 1:].take(back, axis=0)
+
+    def _ask(self, rows):
+        if self._units.max() < EXACT:
+            nearest, squares = self._tree.knnSearch(self._places.take(rows, axis=0), self.k + 1, params={})
+            return nearest, np.sqrt(squares, out=squares)
+        distances, nearest = cKDTree(self._units).query(self._units.take(rows, axis=0), self.k + 1)
+        return nearest.astype(np.int32), distances
+
+
+def mean_distances(units, k, progress=Progress()):
+    """Mean distance of every point to its k nearest others, over any extent.
+
+    Parameters
+    ----------
+    units : (N, 3) int32 of 0.1 mm
+
+    Returns
+    -------
+    (N,) metres; inf where there is no other point
+    """
+    k = min(k, len(units) - 1)
+    if k < 1:
+        return np.full(len(units), np.inf)
+    means, unsettled = np.empty(len(units)), []
+    tiles = list(_tiles(units))
+    asked = in_order(lambda tile: Neighbours(units.take(tile[1], axis=0), k).of(np.arange(tile[0])), tiles, progress)
+    for (own, rows), (distances, farthest, _) in zip(tiles, asked):
+        means[rows[:own]] = distances
+        # beyond the margin there may be nearer ones
+        unsettled.append(rows[:own][~(farthest <= MARGIN * UNIT) | (len(rows) <= k)])
+    unsettled = np.concatenate(unsettled)
+    if len(unsettled):
+        means[unsettled] = cKDTree(units).query(units[unsettled], k + 1)[0][:, 1:].mean(axis=1) * UNIT
+    return means
+
+
+def _tiles(units):
+    """Of each tile of the map, how many points it has, and the rows of these and of those within the margin about it."""
+    x, y = (units[:, axis] - units[:, axis].min() for axis in (0, 1))
+    column, row = x >> TILE, y >> TILE
+    order = order_by(row, column)
+    column, row = column[order], row[order]
+    starts = np.flatnonzero(np.r_[True, (column[1:] != column[:-1]) | (row[1:] != row[:-1])])
+    members = {(c, r): order[a:b] for c, r, a, b in zip(column[starts].tolist(), row[starts].tolist(), starts, [*starts[1:], len(order)])}
+    for (c, r), own in members.items():
+        parts = [own]
+        for beside in ((c + i, r + j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j):
+            rows = members.get(beside)
+            if rows is not None:
+                near = _within(x.take(rows), c) & _within(y.take(rows), r)
+                parts.append(rows[near])
+        yield len(own), np.concatenate(parts)
+
+
+def _within(values, tile):
+    return (values >= (tile << TILE) - MARGIN) & (values < (tile + 1 << TILE) + MARGIN)
