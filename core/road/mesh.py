@@ -94,8 +94,8 @@ def scan_lines(records, p, clock, corridor):
     time = np.ascontiguousarray(records["time"])
     order = time_order(time)
     records, time = chosen(records, order), time[order]
-    first = int(np.floor(clock.turns_at(time[0])))
-    turns = np.arange(first, int(np.floor(clock.turns_at(time[-1]))) + 2)
+    first, last = np.floor(clock.turns_at(time[[0, -1]])).astype(int)
+    turns = np.arange(first, last + 2)
     begins = clock.times_at(turns)
     begins[0], begins[-1] = min(begins[0], time[0]), max(begins[-1], np.nextafter(time[-1], np.inf))
     driven = p.progress_at(begins)
