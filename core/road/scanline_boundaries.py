@@ -23,8 +23,9 @@ from .chains import choose_along, curb_chains, link_chains, long_enough
 from .curbs import END_STEPS, MERGE_ACROSS, MERGE_UP, VEHICLE_HALF, block_edges, block_numbers, hidden_points
 from .profiles import LEAST_NOISE
 from .scanline_candidates import NEIGHBOURS, find_candidates, rows_filled
-from .scanline_corners import CurbCorners, corners_of
-from .scanline_grid import resampled, side_scanlines
+from .scanline_corners import CurbCorners, corners_of, rows_along
+from .scanline_grid import height_grid
+from .scanline_samples import samples_near
 from .shadows import TALL, Sight
 from .sides import REACH, SECTION, SIDES, Track, expected_height
 
@@ -87,7 +88,7 @@ def curbs_from_scanlines(source, settings=ScanlineBoundarySettings(), block_leng
     Parameters
     ----------
     source : gives `frame`, `crs`, `interval`, `corridor`, `roads()`, `span(road)`, `road_height(road, s)` and
-        `scanlines(road, start, end)`; see scanline_source
+        `runs(road, start, end)`; see scanline_source
     block_length : m of road per corner; 0 = 0.5 to 2.0, shorter in sharp bends
 
     Returns
@@ -114,27 +115,30 @@ def _corners_of_road(source, road, settings, progress):
     interval = source.interval
     sections = _sections(*source.span(road), interval)
     first, last = sections[0][0], sections[-1][1]
-    margin = max(int(np.ceil(settings.distance_along / interval)), NEIGHBOURS + rows_filled(interval)) + 1
+    margin = max(rows_along(interval, settings), NEIGHBOURS + rows_filled(interval)) + 1
     sight = {side: Sight(interval, first, last - first, REACH) for side in SIDES}
     tracks = {side: Track(source.frame, road, sign) for side, sign in SIDES.items()}
 
     def work(section):
         begin, end = section
         rows = begin - margin, end + margin
-        lines = source.scanlines(road, (rows[0] - 0.5) * interval, (rows[1] - 0.5) * interval)
-        heights = lines.z - np.repeat(expected_height(source, road, lines.station), np.diff(lines.first))
         stations = np.arange(*rows) * interval
-        found = {side: [] for side in SIDES}
         nearest = {side: tracks[side](stations) + VEHICLE_HALF for side in SIDES}
-        for chosen, own in _apart(lines, heights):
-            samples = resampled(chosen, own, rows, interval, settings.clipping_height)
+        found = {side: [] for side in SIDES}
+        for lines in source.runs(road, (rows[0] - 0.5) * interval, (rows[1] - 0.5) * interval):
+            heights = lines.z - np.repeat(expected_height(source, road, lines.station), np.diff(lines.first))
+            grid = height_grid(lines, heights, rows, interval, min(REACH, source.corridor), settings.clipping_height)
+            closed = grid.closed(rows_filled(interval))
+            tall = _tall(lines, heights, interval)
+            candidates = {}
             for side, sign in SIDES.items():
-                outward = side_scanlines(samples, sign, rows, interval, np.floor(nearest[side].min()), min(REACH, source.corridor))
-                _look(sight[side], chosen, own, sign, outward, section)
-                candidates = find_candidates(outward, nearest[side], settings)
-                candidates = candidates[(candidates.row >= margin) & (candidates.row < margin + end - begin)]
-                if len(candidates):
-                    found[side].append(corners_of(outward, candidates, settings))
+                origin = np.floor(nearest[side].min())
+                outward = grid.outward(sign, origin)
+                sight[side].look(sign * tall[0], *tall[1:], section, outward.part(margin, margin + end - begin))
+                of_side = find_candidates(closed.outward(sign, origin), outward.low, nearest[side], settings)
+                candidates[side] = of_side[(of_side.row >= margin) & (of_side.row < margin + end - begin)]
+            for side, corners in _corners(lines, heights, rows, interval, candidates, settings):
+                found[side].append(corners)
         return {side: merged_corners(parts) for side, parts in found.items() if parts}
 
     parts = {side: [] for side in SIDES}
@@ -152,20 +156,23 @@ def _sections(start, end, interval):
     return [(int(a), int(b)) for a, b in zip(bounds[:-1], bounds[1:])]
 
 
-def _apart(lines, heights):
-    """The lines of every pass and scanner by themselves, with the heights of their vertices."""
-    keys = np.c_[lines.pass_number, lines.scanner]
-    for key in np.unique(keys, axis=0):
-        own = (keys == key).all(1)
-        yield lines[own], heights[np.repeat(own, np.diff(lines.first))]
+def _tall(lines, heights, interval):
+    """(d, s, h) of the vertices of things that hide what lies behind."""
+    vertex = np.flatnonzero(heights > TALL)
+    line = np.searchsorted(lines.first, vertex, side="right") - 1
+    return lines.d[vertex], lines.station[line] + 0.5 * interval, heights[vertex]
 
 
-def _look(sight, lines, heights, sign, outward, section):
-    """Note what the lines of a section show beside the road."""
-    margin = section[0] - outward.first
-    tall = np.flatnonzero(heights > TALL)
-    u, s = sign * lines.d[tall], lines.station[lines.line_of_vertex()[tall]] + 0.5 * outward.interval
-    sight.look(u, s, heights[tall], section, outward.part(margin, margin + section[1] - section[0]))
+def _corners(lines, heights, rows, interval, candidates, settings):
+    """Yield (side, corners at its candidates) of one pass and scanner."""
+    if not any(map(len, candidates.values())):
+        return
+    places = (np.concatenate([c.row for c in candidates.values()]), np.concatenate([SIDES[side] * c.u for side, c in candidates.items()]))
+    samples = samples_near(lines, heights, rows, interval, places, settings.distance_across, rows_along(interval, settings),
+                           settings.clipping_height)
+    for side, of_side in candidates.items():
+        if len(of_side):
+            yield side, corners_of(samples.outward(SIDES[side]), of_side, settings)
 
 
 def merged_corners(found):

@@ -11,10 +11,11 @@ The scanline paper (ISPRS Archives, 2020), section 3 and table 1, steps b and g.
 
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 
-from .scanline_grid import SPACING
-from .steps import last_before, max_ahead, road_before
+from .corners import CLEARANCE, ROAD_SIDE, STEEPEST_ROAD
+from .scanline_grid import FAR, SPACING
 
 LOWEST = 0.7         # share of MIN_HEIGHT that a rise must show before its planes measure it
 ROUGH_SHARE = 0.4    # of a rise at most that the road before it scatters
@@ -25,6 +26,7 @@ FEWEST_BEHIND = 4    # cells of it that must be seen
 FILLED = 0.30        # m along the road to either side from which a scanline's gaps are closed
 SAME_ACROSS, SAME_UP = 0.08, 0.04  # m that candidates of neighbouring scanlines differ at most
 NEIGHBOURS, PERSISTENT = 2, 3      # scanlines either side; of those, itself included, that must show a candidate
+PIECE = 8192         # places looked at together, small enough for the processor's cache
 
 
 @dataclass
@@ -52,12 +54,13 @@ class Candidates:
         return Candidates(*(getattr(self, name)[which] for name in self.__dataclass_fields__))
 
 
-def find_candidates(side, nearest, settings):
+def find_candidates(side, seen, nearest, settings):
     """Rises of at least MIN_HEIGHT within SEARCH_WIDTH, and no higher than CLIPPING_HEIGHT.
 
     Parameters
     ----------
-    side : SideScanlines
+    side : HeightGrid walked outward, its gaps closed
+    seen : (R, C) heights of the scanlines themselves
     nearest : (R,) m, offset on each row from which outward is searched
     settings : ScanlineBoundarySettings
 
@@ -65,36 +68,84 @@ def find_candidates(side, nearest, settings):
     -------
     Candidates
     """
-    low = _filled(side.low, rows_filled(side.interval))
-    base, slope, rough, count = road_before(low, SPACING)
+    low = side.low
     span = max(int(round(settings.search_width / SPACING)), 2)
-    with np.errstate(invalid="ignore"):
-        step = max_ahead(low, span) - base
-        middle = base + 0.5 * step
-        found = ((count >= LEAST_ROAD) & (step >= LOWEST * settings.min_height) & (step <= settings.clipping_height)
-                 & (rough <= ROUGH_SHARE * step) & (low >= middle) & (last_before(low, span) < middle))
-        found &= side.offset(np.arange(low.shape[1])) > np.asarray(nearest)[:, None]
-    score = np.where(found, step - 2 * rough, -np.inf)
-    beyond = max_ahead(score, span, inclusive=False)
-    nearer = max_ahead(score[:, ::-1], span, inclusive=False)[:, ::-1]
-    row, cell = np.nonzero(found & (score >= np.maximum(beyond, nearer)))
-    chosen = Candidates(row, cell, side.offset(cell), *(values[row, cell] for values in (base, slope, step, rough)))
-    chosen = chosen[_stays_up(low, chosen) & _own(side.low, chosen, span)]
+    row, cell, before, top = _rising(low, span, LOWEST * settings.min_height)
+    outside = side.offset(cell) > np.asarray(nearest)[row]
+    row, cell, before, top = (values[outside] for values in (row, cell, before, top))
+    base, slope, rough, count = _road_before(low, row, cell)
+    step = top - base
+    middle = base + 0.5 * step
+    found = np.flatnonzero((count >= LEAST_ROAD) & (step >= LOWEST * settings.min_height) & (step <= settings.clipping_height)
+                           & (rough <= ROUGH_SHARE * step) & (low[row, cell] >= middle) & (before < middle))
+    best = found[_best_within((row * low.shape[1] + cell)[found], row[found], (step - 2 * rough)[found], span)]
+    row, cell = row[best], cell[best]
+    chosen = Candidates(row, cell, side.offset(cell), *(values[best].astype(float) for values in (base, slope, step, rough)))
+    chosen = chosen[_stays_up(low, chosen) & _own(seen, chosen, span)]
     return chosen[_persistent(chosen)]
+
+
+def _rising(low, span, least):
+    """(row, cell, height before, height reached ahead) of cells at which half of a rise of `least` may be crossed."""
+    there = np.isfinite(low)
+    filled = np.where(there, low, np.float32(-FAR))
+    top = cv2.dilate(filled, np.ones((1, span + 1), np.uint8), anchor=(0, 0))
+    # the nearest occupied cell before each, as far as the span goes
+    before = np.empty_like(low)
+    before[:, :1], before[:, 1:] = np.nan, low[:, :-1]
+    empty = np.flatnonzero(np.isnan(before))
+    flat, column = low.reshape(-1), empty % low.shape[1]
+    for k in range(2, span + 1):
+        enough = column >= k
+        empty, column = empty[enough], column[enough]
+        height = flat[empty - k]
+        before.reshape(-1)[empty] = height
+        missed = np.isnan(height)
+        empty, column = empty[missed], column[missed]
+    with np.errstate(invalid="ignore"):
+        rising = (top - before > 0.5 * least) & (low > before)
+    place = np.flatnonzero(rising)
+    row = place // low.shape[1]
+    return row, place - row * low.shape[1], before.reshape(-1)[place], top.reshape(-1)[place]
+
+
+def _road_before(low, row, cell):
+    """Line through the ground before some cells: its height there, slope, scatter, and count of cells."""
+    reach, skip = int(round(ROAD_SIDE / SPACING)), int(round(CLEARANCE / SPACING))
+    back = np.arange(-reach - skip + 1, -skip + 1)
+    padded = cv2.copyMakeBorder(low, 0, 0, reach + skip, 0, cv2.BORDER_CONSTANT, value=np.nan)
+    place = row * padded.shape[1] + cell + reach + skip
+    powers = np.stack([np.ones(reach), back * SPACING, (back * SPACING) ** 2], axis=1).astype(np.float32)
+    found = []
+    for first in range(0, len(place), PIECE):
+        heights = padded.reshape(-1).take(place[first:first + PIECE, None] + back)
+        there = np.isfinite(heights)
+        np.copyto(heights, 0.0, where=~there)
+        n, su, suu = (there.astype(np.float32) @ powers).T
+        sz, suz, _ = (heights @ powers).T
+        szz = np.einsum("ij,ij->i", heights, heights)
+        with np.errstate(all="ignore"):
+            mu, mz = su / n, sz / n
+            vuu, vuz, vzz = suu / n - mu * mu, suz / n - mu * mz, szz / n - mz * mz
+            slope = np.clip(np.where(vuu > 1e-4, vuz / vuu, 0.0), -STEEPEST_ROAD, STEEPEST_ROAD)
+            rough = np.sqrt(np.maximum(vzz - 2 * slope * vuz + slope * slope * vuu, 0.0))
+            found.append((mz - slope * mu, slope, rough, n))
+    return (np.concatenate(values) for values in zip(*found)) if found else (np.empty(0, np.float32),) * 4
+
+
+def _best_within(place, row, score, span):
+    """(N,) whether the score of each place, ascending, is the greatest of those within `span` cells in its row."""
+    best = np.ones(len(place), bool)
+    for lag in range(1, min(span, len(place) - 1) + 1):
+        near = (place[lag:] - place[:-lag] <= span) & (row[lag:] == row[:-lag])
+        best[:-lag] &= ~near | (score[:-lag] >= score[lag:])
+        best[lag:] &= ~near | (score[lag:] >= score[:-lag])
+    return best
 
 
 def rows_filled(interval):
     """Scanlines either side that close a scanline's gaps."""
     return max(int(round(FILLED / interval)), 1)
-
-
-def _filled(low, reach):
-    """Heights with the gaps of a scanline closed by its neighbours': lost pulses and shadows leave different ones."""
-    filled = low.copy()
-    for ahead in range(1, min(reach, len(low) - 1) + 1):
-        for shifted, own in ((low[ahead:], filled[:-ahead]), (low[:-ahead], filled[ahead:])):
-            np.copyto(own, shifted, where=np.isnan(own))
-    return filled
 
 
 def _own(low, candidates, span):

@@ -52,7 +52,7 @@ def corners_of(side, candidates, settings):
 
     Parameters
     ----------
-    side : SideScanlines
+    side : Samples walked outward
     candidates : Candidates
     settings : ScanlineBoundarySettings
 
@@ -71,34 +71,34 @@ def corners_of(side, candidates, settings):
     face = upright & (np.abs(u) < FACE_REACH) & (share > FACE[0]) & (share < FACE[1])
     raised = (u > CLEAR) & (share > UPPER) & (over < candidates.step[owner] + OVER)
     count = len(candidates)
-
-    def plane(part, v, p, q, most, scatter):
-        index, n = _evenly(owner, part, count, most)
-        return fit_planes(v[index], p[index], q[index], n, settings.ransac_distance, SIGMAS * scatter), index
-
-    ground, ground_points = plane(road, h, u, s, MOST_ROAD, candidates.rough)
-    front, front_points = plane(face, u, h, s, MOST_FACE, candidates.rough)
+    parts = [_Part(np.flatnonzero(part), owner, count) for part in (road, face, raised)]
     # grass behind a curb scatters more than the road before it
-    top, top_points = plane(raised, h, u, s, MOST_ROAD, np.maximum(candidates.rough, _scatter(owner, over, raised, count)))
+    scatter = np.maximum(candidates.rough, _scatter(owner, over, parts[2].vertices, count))
+    alive = np.flatnonzero(np.all([part.number >= FEWEST for part in parts], axis=0))
+    lean = np.tan(np.radians(settings.horizontal_angle))
+    # the fewer points first, and of what they leave the next
+    front, front_points, good = _planes(parts[1], alive, MOST_FACE, (u, h, s), candidates.rough, settings)
+    with np.errstate(invalid="ignore"):
+        # the angle of the face's normal from the vertical: its slope against height makes it lean
+        over_run = np.abs(front.coefficients[:, 1] / np.hypot(1.0, front.coefficients[:, 2]))
+        good &= (np.degrees(np.arctan2(1.0, over_run)) >= settings.vertical_angle) & (np.abs(front.coefficients[:, 2]) <= MOST_SKEW)
+    alive, front, front_points = alive[good], front[good], front_points[good]
+    ground, ground_points, good = _planes(parts[0], alive, MOST_ROAD, (h, u, s), candidates.rough, settings)
+    good &= ground.steepness() <= lean
+    alive, front, front_points, ground, ground_points = (x[good] for x in (alive, front, front_points, ground, ground_points))
+    top, top_points, good = _planes(parts[2], alive, MOST_ROAD, (h, u, s), scatter, settings)
+    good &= top.steepness() <= lean
     bottom_u, bottom_h, bottom_meets = _meeting(ground, front)
     top_u, top_h, top_meets = _meeting(top, front)
-    tan = np.tan(np.radians(settings.horizontal_angle))
-    # the angle of the face's normal from the vertical: its slope against height makes it lean
-    lean = front.coefficients[:, 1] / np.hypot(1.0, front.coefficients[:, 2])
     with np.errstate(invalid="ignore"):
-        good = (bottom_meets & top_meets & (ground.steepness() <= tan) & (top.steepness() <= tan)
-                & (np.degrees(np.arctan2(1.0, np.abs(lean))) >= settings.vertical_angle)
-                & (np.abs(front.coefficients[:, 2]) <= MOST_SKEW)
-                & (ground.inliers >= FEWEST) & (front.inliers >= FEWEST) & (top.inliers >= FEWEST)
-                & (ground.inliers >= LEAST_SHARE * ground.points) & (top.inliers >= LEAST_SHARE * top.points)
-                & (front.inliers >= LEAST_SHARE * front.points)
-                & (top_h - bottom_h >= settings.min_height) & (top_h - bottom_h <= settings.clipping_height))
-        for points, n, at_u, at_h in ((ground_points, ground.points, bottom_u, bottom_h), (front_points, front.points, bottom_u, bottom_h),
-                                      (front_points, front.points, top_u, top_h), (top_points, top.points, top_u, top_h)):
-            good &= _distance(u, h, points, n, at_u, at_h) <= FARTHEST
+        good &= (bottom_meets & top_meets & (top_h - bottom_h >= settings.min_height) & (top_h - bottom_h <= settings.clipping_height))
+    for points, plane, at_u, at_h in ((ground_points, ground, bottom_u, bottom_h), (front_points, front, bottom_u, bottom_h),
+                                      (front_points, front, top_u, top_h), (top_points, top, top_u, top_h)):
+        good &= _distance(u, h, points, plane.points, at_u, at_h) <= FARTHEST
     total = ground.inliers + front.inliers + top.inliers
     residual = np.sqrt((ground.sigma**2 * ground.inliers + front.sigma**2 * front.inliers + top.sigma**2 * top.inliers)
                        / np.maximum(total, 1))
+    candidates = candidates[alive]
     row, noise = side.first + candidates.row, ground.sigma.astype(float)
     found = CurbCorners(profile=row, s=row * side.interval, u=candidates.u + bottom_u, h=candidates.base + bottom_h,
                         skew=front.coefficients[:, 2].astype(float), height=top_h - bottom_h, run=np.maximum(top_u - bottom_u, 0.0),
@@ -107,24 +107,52 @@ def corners_of(side, candidates, settings):
     return found[good]
 
 
-def _scatter(owner, values, mask, count):
-    """(count,) spread of the masked values of each owner, from their mean distance to their mean."""
-    chosen = np.flatnonzero(mask)
+class _Part:
+    """The vertices of one part, road, face or raised ground, about every candidate."""
+
+    def __init__(self, vertices, owner, count):
+        self.vertices = vertices
+        self.number = np.bincount(owner[vertices], minlength=count)
+        self.first = np.cumsum(self.number) - self.number
+
+    def evenly(self, which, most):
+        """(len(which), most) vertices of some candidates, evenly chosen where there are more; how many."""
+        number, first = self.number[which], self.first[which]
+        size = np.minimum(number, most)
+        column = np.arange(most)
+        place = np.where(column < size[:, None], (column * number[:, None]) // np.maximum(size, 1)[:, None], 0)
+        return self.vertices[first[:, None] + place] if len(which) else np.zeros((0, most), np.int64), size
+
+
+def _planes(part, which, most, coordinates, scatter, settings):
+    """Planes of a part of some candidates, the vertices they were made of, and whether enough lie in them."""
+    index, number = part.evenly(which, most)
+    planes = fit_planes(*(values[index] for values in coordinates), number, settings.ransac_distance, SIGMAS * scatter[which])
+    return planes, index, (planes.inliers >= FEWEST) & (planes.inliers >= LEAST_SHARE * planes.points)
+
+
+def _scatter(owner, values, chosen, count):
+    """(count,) spread of the chosen values of each owner, from their mean distance to their mean."""
     owner, values = owner[chosen], values[chosen]
     n = np.maximum(np.bincount(owner, minlength=count), 1)
     middle = np.bincount(owner, values, count) / n
     return MEAN_SIGMA * np.bincount(owner, np.abs(values - middle[owner]), count) / n
 
 
+def rows_along(interval, settings):
+    """Scanlines either side of a candidate from which its planes are made."""
+    return max(int(np.floor(settings.distance_along / interval + 1e-9)), 1)
+
+
 def _neighbourhood(side, candidates, settings):
     """(owner, s, u, h, steepness) of the vertices about every candidate, from its own place."""
-    reach = max(int(np.floor(settings.distance_along / side.interval + 1e-9)), 1)
+    reach = rows_along(side.interval, settings)
     stride = max(int(np.ceil((2 * reach + 1) / MOST_ROWS)), 1)
     key = side.row * 1000.0 + side.u
     starts, ends, ahead = [], [], np.arange(-(reach // stride), reach // stride + 1) * stride
     for k in ahead:
         row = candidates.row + k
-        inside = (row >= 0) & (row < side.shape[0])
+        inside = (row >= 0) & (row < side.rows)
         at = row * 1000.0 + candidates.u
         starts.append(np.searchsorted(key, at - settings.distance_across))
         ends.append(np.where(inside, np.searchsorted(key, at + settings.distance_across), starts[-1]))
@@ -135,19 +163,6 @@ def _neighbourhood(side, candidates, settings):
     owner, along = which // len(ahead), ahead[which % len(ahead)] * side.interval
     return (owner, along.astype(np.float32), (side.u[index] - candidates.u[owner]).astype(np.float32),
             (side.h[index] - candidates.base[owner]).astype(np.float32), side.steep[index])
-
-
-def _evenly(owner, mask, count, most):
-    """(count, most) indices of the masked vertices of each owner, evenly chosen where there are more; how many."""
-    chosen = np.flatnonzero(mask)
-    number = np.bincount(owner[chosen], minlength=count)
-    first = np.cumsum(number) - number
-    size = np.minimum(number, most)
-    column = np.arange(most)
-    place = np.where(column < size[:, None], (column * number[:, None]) // np.maximum(size, 1)[:, None], 0)
-    if not len(chosen):
-        return np.zeros((count, most), np.int64), size
-    return chosen[np.minimum(first[:, None] + place, len(chosen) - 1)], size
 
 
 def _meeting(level, face):

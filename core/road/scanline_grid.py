@@ -1,71 +1,63 @@
-"""Normalized scanlines of one side of the road, walked outward: resampled, and on a grid for the search of steps."""
+"""Normalized scanlines of one pass and scanner on a grid of section planes and cells across, for the search of steps."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-SPACING = 0.02      # m along a scanline between resampled vertices, and across between cells
-UPRIGHT = 2.0       # m that a metre of height counts as, so that low faces keep vertices enough
+SPACING = 0.02      # m across between cells, and along a scanline between resampled vertices
 DEPTH = 1.0         # m below the road to which ground is sought
 FAR = 1e3           # m: parts lines that follow on each other in one array
 
 
 @dataclass
-class SideScanlines:
-    """Resampled scanlines of one side, pass and scanner.
+class HeightGrid:
+    """Heights of scanlines where they pass the middles of cells.
 
-    Rows are section planes, row r at station (first + r) * interval; offsets count
-    outward from the reference line, heights from the expected road.
+    Rows are section planes, row r at station (first + r) * interval; cells count from `origin`,
+    heights from the expected road.
 
     Attributes
     ----------
     first, interval, origin : number of the first row, m between rows, least offset
-    low : (R, C) float64, height where each row passes the middle of a cell, the lowest of
-        several lines; NaN where there is none
-    row, u, h : (N,) vertices SPACING apart along the lines, sorted by row and offset
-    steep : (N,) m of height per m across between the neighbours of each
+    low : (R, C) float32, the lowest of several lines; NaN where there is none
     """
 
     first: int
     interval: float
     origin: float
     low: np.ndarray
-    row: np.ndarray
-    u: np.ndarray
-    h: np.ndarray
-    steep: np.ndarray
 
     @property
     def shape(self):
         return self.low.shape
 
     def part(self, first, last):
-        """The grid of the rows from index `first` to before `last`; the vertices are left out."""
-        none = np.empty(0)
-        return SideScanlines(self.first + first, self.interval, self.origin, self.low[first:last], none, none, none, none)
+        """The rows from index `first` to before `last`."""
+        return HeightGrid(self.first + first, self.interval, self.origin, self.low[first:last])
 
     def offset(self, cell):
-        """Outward offset of the middle of cells, metres."""
+        """Offset of the middle of cells, metres."""
         return self.origin + (np.asarray(cell) + 0.5) * SPACING
 
+    def outward(self, sign, origin):
+        """The grid of one side, 1 left or -1 right: from `origin` (whole cells from the reference line) outward."""
+        low = self.low[:, ::sign]
+        skipped = int(round((origin - self.origin) / SPACING))
+        if skipped < 0:
+            low = np.concatenate([np.full((len(low), -skipped), np.nan, np.float32), low], axis=1)
+        return HeightGrid(self.first, self.interval, origin, np.ascontiguousarray(low[:, max(skipped, 0):]))
 
-@dataclass
-class Samples:
-    """(N,) vertices at equal steps along scanlines, in the order of the lines: their line and row (from 0), offset,
-    height above the expected road, and rise over run there."""
-
-    line: np.ndarray
-    row: np.ndarray
-    d: np.ndarray
-    h: np.ndarray
-    steep: np.ndarray
-
-    def __getitem__(self, which):
-        return Samples(self.line[which], self.row[which], self.d[which], self.h[which], self.steep[which])
+    def closed(self, reach):
+        """The gaps of every scanline closed by its neighbours, up to `reach` rows away: lost pulses and shadows leave different ones."""
+        closed = self.low.copy()
+        for ahead in range(1, min(reach, len(closed) - 1) + 1):
+            for shifted, own in ((self.low[ahead:], closed[:-ahead]), (self.low[:-ahead], closed[ahead:])):
+                np.copyto(own, shifted, where=np.isnan(own))
+        return HeightGrid(self.first, self.interval, self.origin, closed)
 
 
-def resampled(lines, heights, rows, interval, clipping_height):
-    """Vertices SPACING apart along the scanlines, those at the height of the road.
+def height_grid(lines, heights, rows, interval, reach, clipping_height):
+    """Heights of scanlines across the whole road.
 
     Parameters
     ----------
@@ -73,90 +65,53 @@ def resampled(lines, heights, rows, interval, clipping_height):
     heights : (V,) m of their vertices above the expected road
     rows : (first, last + 1) numbers of the section planes
     interval : metres
+    reach : m to either side of the reference line
     clipping_height : m above the expected road up to which ground is looked for
 
     Returns
     -------
-    Samples
+    HeightGrid, its origin -reach or up to a cell less
     """
-    row_of_line = np.rint(lines.station / interval).astype(np.int64) - rows[0]
-    line, d, h = _at_equal_steps(lines, lines.d, heights)
-    samples = Samples(line, row_of_line[line], d, h, _steepness(line, d, h))
-    return samples[np.flatnonzero((samples.row >= 0) & (samples.row < rows[1] - rows[0]) & (h > -DEPTH) & (h <= clipping_height))]
-
-
-def side_scanlines(samples, sign, rows, interval, origin, reach):
-    """The scanlines of one side, walked outward.
-
-    Parameters
-    ----------
-    samples : Samples
-    sign : 1 for the left side, -1 for the right
-    rows : (first, last + 1) numbers of the section planes
-    interval, origin, reach : metres
-
-    Returns
-    -------
-    SideScanlines
-    """
-    u = sign * samples.d
-    kept = np.flatnonzero((u >= origin) & (u < reach))
-    samples, u = samples[kept[::sign]], u[kept[::sign]]
-    cells = max(int(np.ceil((reach - origin) / SPACING)), 1)
-    low = _on_grid(samples.line, samples.row, (u - origin) / SPACING - 0.5, samples.h, rows[1] - rows[0], cells)
-    order = np.argsort(samples.row * FAR + (u - origin), kind="stable")
-    return SideScanlines(rows[0], interval, origin, low, samples.row[order], u[order], samples.h[order], samples.steep[order])
-
-
-def _at_equal_steps(lines, d, h):
-    """(line, d, h) at equal steps along every line, a metre of height counted as UPRIGHT metres."""
-    if not len(lines):
-        return np.empty(0, np.int64), np.empty(0), np.empty(0)
-    counts = np.diff(lines.first)
-    step = np.abs(np.diff(d)) + UPRIGHT * np.abs(np.diff(h))
-    step[lines.first[1:-1] - 1] = 0.0
-    along = np.r_[0.0, np.cumsum(step)]
-    along -= np.repeat(along[lines.first[:-1]], counts)
-    number = np.floor(along[lines.first[1:] - 1] / SPACING).astype(np.int64) + 1
+    half = int(np.ceil(reach / SPACING))
+    low = np.full((rows[1] - rows[0], 2 * half), np.nan, np.float32)
+    found = HeightGrid(rows[0], interval, -half * SPACING, low)
+    row = row_of_lines(lines, rows, interval)
+    if len(heights) < 2:
+        return found
+    column = lines.d * (1.0 / SPACING)
+    column += half - 0.5
+    cell = np.clip(np.floor(column), -1, 2 * half - 1).astype(np.int32)
+    number = np.diff(cell)
+    number[lines.first[1:-1] - 1] = 0
+    number[np.minimum(heights[1:], heights[:-1]) > clipping_height] = 0
+    number *= np.repeat((row >= 0) & (row < len(low)), np.diff(lines.first))[:-1]
+    segment = np.flatnonzero(number)
+    number = number[segment]
+    slope = (heights[segment + 1] - heights[segment]) / (column[segment + 1] - column[segment])
     start = np.cumsum(number) - number
-    line = np.repeat(np.arange(len(counts)), number)
-    at = (np.arange(number.sum()) - np.repeat(start, number)) * SPACING
-    # the vertex before every sample: counted up where each vertex comes to lie among the samples
-    ahead = np.repeat(start, counts) + np.ceil(along / SPACING - 1e-9).astype(np.int64)
-    before = np.cumsum(np.bincount(ahead, minlength=len(at) + 1))[:len(at)] - 1
-    after = np.minimum(before + 1, np.repeat(lines.first[1:] - 1, number))
-    share = np.clip((at - along[before]) / np.maximum(along[after] - along[before], 1e-9), 0.0, 1.0)
-    return line, d[before] + share * (d[after] - d[before]), h[before] + share * (h[after] - h[before])
-
-
-def _steepness(line, u, h):
-    """(N,) rise over run, without sign, from the vertex before to the one after on the same line."""
-    if len(line) < 2:
-        return np.zeros(len(line))
-    before, after = np.arange(-1, len(line) - 1), np.arange(1, len(line) + 1)
-    before[0], after[-1] = 0, len(line) - 1
-    before += line[before] != line
-    after -= line[after] != line
-    return np.abs(h[after] - h[before]) / np.maximum(np.abs(u[after] - u[before]), 1e-6)
-
-
-def _on_grid(line, row, column, h, rows, cells):
-    """(rows, cells) heights where lines pass the middles of cells, the lowest of several."""
-    low = np.full((rows, cells), np.nan)
-    if len(line) < 2:
-        return low
-    a, b = column[:-1], column[1:]
-    cell = np.floor(np.maximum(a, b)).astype(np.int64)
-    # vertices are nearer than a cell, so that no two middles lie between them
-    passes = (line[:-1] == line[1:]) & (cell >= np.minimum(a, b)) & (np.abs(b - a) < 2.0) & (cell >= 0) & (cell < cells)
-    k = np.flatnonzero(passes)
-    share = (cell[k] - a[k]) / np.where(b[k] == a[k], 1.0, b[k] - a[k])
-    height = h[k] + share * (h[k + 1] - h[k])
-    place = row[k] * cells + cell[k]
+    line = np.searchsorted(lines.first, segment, side="right") - 1
+    # the cell that the first height of a segment comes to lie in, in the order of the grid, less its own number among the heights
+    ahead = row[line] * (2 * half) + cell[segment] + 1 - start
+    which = np.repeat(np.arange(len(segment), dtype=np.int32), number)
+    place = ahead.take(which)
+    place += np.arange(len(which))
+    base = heights[segment] - slope * (column[segment] + row[line] * (2 * half))
+    height = slope.take(which)
+    height *= place
+    height += base.take(which)
+    height = height.astype(np.float32)
     flat = low.reshape(-1)
     flat[place] = height
     # of several heights for one place the lowest shall stay
-    while len(lower := np.flatnonzero(height < flat[place])):
-        place, height = place[lower], height[lower]
-        flat[place] = height
-    return low
+    if (np.diff(place) <= 0).any():
+        while len(lower := np.flatnonzero(height < flat[place])):
+            place, height = place[lower], height[lower]
+            flat[place] = height
+    with np.errstate(invalid="ignore"):
+        flat[(flat > clipping_height) | (flat <= -DEPTH)] = np.nan
+    return found
+
+
+def row_of_lines(lines, rows, interval):
+    """(L,) row of every scanline on a grid of section planes (first, last + 1)."""
+    return np.rint(lines.station / interval).astype(np.int64) - rows[0]

@@ -7,7 +7,7 @@ from ..progress import Progress
 from ..survey.scan_lattice import find_lattice
 from ..survey.sensor_height import DEFAULT_HEIGHT, height_above
 from .scanline_grid import FAR
-from .section_planes import ScanlineSettings, scanlines_of
+from .section_planes import ScanlineSettings, runs_of
 
 
 class SurveyScanlines:
@@ -36,9 +36,9 @@ class SurveyScanlines:
             return self.frame.track_height(road, s) - self.sensor_height
         return self.survey.road_height(road, s)
 
-    def scanlines(self, road, start, end):
-        """Scanlines with start <= station < end."""
-        return scanlines_of(self.survey, road, start, end, self.settings, self.lattice)
+    def runs(self, road, start, end):
+        """List of Scanlines with start <= station < end, each of one pass and scanner; intensity is left out."""
+        return runs_of(self.survey, road, start, end, self.settings, self.lattice, intensity=False)
 
 
 class LayerScanlines:
@@ -93,10 +93,10 @@ class LayerScanlines:
         """(N,) local z at which the road is expected."""
         return self.frame.track_height(road, s, self.heights)
 
-    def scanlines(self, road, start, end):
-        """Scanlines with start <= station < end."""
+    def runs(self, road, start, end):
+        """List of Scanlines with start <= station < end, each of one pass and scanner."""
         first, last = np.searchsorted(self.lines[road].station, (start, end))
-        return self.lines[road][first:last]
+        return self.lines[road][first:last].runs()
 
 
 def _drops(lines, track_d, track_z):

@@ -49,6 +49,12 @@ class Scanlines:
         counts = np.concatenate([np.diff(part.first) for part in parts])
         return cls(first=np.r_[0, np.cumsum(counts)], **values)
 
+    def runs(self):
+        """List of Scanlines, each of one pass and scanner."""
+        keys = np.c_[self.pass_number, self.scanner]
+        values = np.unique(keys, axis=0)
+        return [self] if len(values) == 1 else [self[(keys == key).all(1)] for key in values]
+
     def line_of_vertex(self):
         """(V,) number of the line each vertex belongs to."""
         return np.repeat(np.arange(len(self)), np.diff(self.first))

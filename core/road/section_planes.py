@@ -64,10 +64,19 @@ def scanlines_of(survey, road, start, end, settings=ScanlineSettings(), lattice=
     -------
     Scanlines: where a scanner has no lattice, those of the points near the planes
     """
+    lines = Scanlines.join(runs_of(survey, road, start, end, settings, lattice))
+    if not len(lines):
+        return lines
+    order = np.lexsort((lines.d[lines.first[:-1]], lines.scanner, lines.pass_number, np.rint(lines.station / settings.interval)))
+    return lines if (np.diff(order) == 1).all() else lines[order]
+
+
+def runs_of(survey, road, start, end, settings=ScanlineSettings(), lattice=None, intensity=True):
+    """The scanlines of `scanlines_of` as a list, each of one pass and scanner; `intensity` says whether theirs is wanted, else it is 0."""
     interval = settings.interval
     first, last = int(np.ceil(start / interval - 1e-9)), int(np.ceil(end / interval - 1e-9))
     if last <= first:
-        return Scanlines.none()
+        return []
     if lattice is None:
         lattice = find_lattice(survey, settings.rotation_frequency)
     parts, apart = [], not lattice.clocks
@@ -78,16 +87,12 @@ def scanlines_of(survey, road, start, end, settings=ScanlineSettings(), lattice=
             clock = lattice.clocks.get(key)
             apart |= clock is None
             if clock is not None:
-                parts.append(_cut(own, survey.frame.passes[key[0]], key, clock, (first, last), settings))
+                parts.append(_cut(own, survey.frame.passes[key[0]], key, clock, (first, last), settings, intensity))
     if apart:
         lines = point_scanlines(survey, road, start, end, interval, settings.corridor)
         meshed = [key in lattice.clocks for key in zip(lines.pass_number.tolist(), lines.scanner.tolist())]
-        parts.append(lines[~np.array(meshed, bool)])
-    lines = Scanlines.join(parts)
-    if not len(lines):
-        return lines
-    order = np.lexsort((lines.d[lines.first[:-1]], lines.scanner, lines.pass_number, np.rint(lines.station / interval)))
-    return lines if (np.diff(order) == 1).all() else lines[order]
+        parts += lines[~np.array(meshed, bool)].runs()
+    return [part for part in parts if len(part)]
 
 
 def all_scanlines(survey, road, settings=ScanlineSettings(), lattice=None, progress=Progress()):
@@ -114,7 +119,7 @@ def _margin(survey, road, lattice):
     return margin + LONGEST_EDGE
 
 
-def _cut(records, p, key, clock, planes, settings):
+def _cut(records, p, key, clock, planes, settings, intensity=True):
     """Scanlines of one pass and scanner."""
     lines = scan_lines(records, p, clock, settings.corridor)
     if lines is None:
@@ -128,13 +133,14 @@ def _cut(records, p, key, clock, planes, settings):
     phase = crossed.of(lines.phase)
     order = plane_order(plane - planes[0], phase if clock.leftward else 1.0 - phase)
     plane, phase, crossed = plane[order], phase[order], crossed[order]
-    d, z, intensity = (crossed.of(values) for values in (lines.d, lines.z, lines.intensity))
+    d, z = crossed.of(lines.d), crossed.of(lines.z)
+    bright = crossed.of(lines.intensity).astype(np.float32) if intensity else np.zeros(len(d), np.float32)
     order, first = PlaneVertices.seen_from(p, settings.interval, clock, plane, phase, d, z).lines()
     if order is not None:
-        plane, d, z, intensity = plane[order], d[order], z[order], intensity[order]
+        plane, d, z, bright = plane[order], d[order], z[order], bright[order] if intensity else bright
     count = len(first) - 1
     found = Scanlines(plane[first[:-1]] * settings.interval, np.full(count, key[0]), np.full(count, key[1]), first,
-                      increasing(d, first), z, intensity.astype(np.float32))
+                      increasing(d, first), z, bright)
     return found[np.diff(first) >= FEWEST]
 
 

@@ -10,13 +10,13 @@ from lanewright.core.road.scanline_boundaries import ScanlineBoundarySettings, c
 from lanewright.core.road.scanline_lines import boundary_lines
 from lanewright.core.road.scanline_source import LayerScanlines, SurveyScanlines
 from lanewright.core.road.scanlines import Scanlines
+from lanewright.core.road.section_planes import ScanlineSettings, scanlines_of
 from lanewright.core.schemas import CURB_POINTS
 
 
 def layer_of(surveyed, **options):
     """The scanlines of a survey as a layer holds them."""
-    source = SurveyScanlines(surveyed)
-    return LayerScanlines({0: source.scanlines(0, *source.span(0))}, surveyed.frame, source.interval, "", **options)
+    return LayerScanlines({0: scanlines_of(surveyed, 0, *surveyed.store.span(0))}, surveyed.frame, ScanlineSettings.interval, "", **options)
 
 
 @pytest.fixture(scope="module")
