@@ -21,6 +21,7 @@ from ..survey.points import ROAD_POINT, UNIT, joined
 from ..survey.road_points import RoadPoints
 from ..survey.sorting import order_by
 from . import polygons
+from .cells import components, occupied
 from .classes import LINES, NOT_PAINT, ClassSettings, classify
 from .compounds import split_compounds
 from .shapes import CELL, measure
@@ -75,29 +76,34 @@ def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress
     for k, road in enumerate(roads):
         part = progress.part(k / len(roads), (k + 1) / len(roads))
         records, labels = group(marking_points, road, settings.distance, part.part(0, 0.4))
-        records, starts = _by_cluster(records, split_compounds(records, labels), FRAGMENT)
-        number_of = join_fragments(_measured(records, starts), settings.classes.max_width)
-        records, starts = _by_cluster(records, _relabelled(records, starts, number_of), settings.min_points)
+        records, starts, _ = _by_cluster(records, split_compounds(records, labels), FRAGMENT)
+        pieces = [measure(records["s"][a:b], records["d"][a:b]) for a, b in zip(starts[:-1], starts[1:])]
+        joins = join_fragments(pieces, settings.classes.max_width)
+        records, starts, labels = _by_cluster(records, _relabelled(records, starts, joins), settings.min_points)
         rows = list(zip(starts[:-1], starts[1:]))
-        shapes = _measured(records, starts)
+        alone = _alone(pieces, joins)
+        shapes = [alone.get(label) or measure(records["s"][a:b], records["d"][a:b]) for label, (a, b) in zip(labels.tolist(), rows)]
         half_widths = [float(np.median(records["half_width"][a:b])) * 1e-3 for a, b in rows]
         kinds = classify(shapes, half_widths, settings.classes)
+        cluster = np.zeros(len(records), np.int32)
         for i in sorted(range(len(rows)), key=lambda i: (shapes[i].s0, shapes[i].d0, shapes[i].s1)):
             if kinds[i][0] == NOT_PAINT:
                 refused += 1
                 continue
             number += 1
             a, b = rows[i]
-            records["cluster"][a:b] = number
+            cluster[a:b] = number
             _add(markings, records[a:b], shapes[i], kinds[i], number, road, frame)
             part.at(0.4 + 0.6 * number / max(len(rows), 1))
-        clustered.store.append(road, records)
+        clustered.store.append(road, records.with_columns(cluster=cluster))
     progress.say(f"Markings: {number} found; {refused} clusters were left out as gutters, covers or specks.")
     return markings, clustered
 
 
-def _measured(records, starts):
-    return [measure(records["s"][a:b], records["d"][a:b]) for a, b in zip(starts[:-1], starts[1:])]
+def _alone(pieces, joins):
+    """The pieces that were joined to no other, by the number of their marking."""
+    count = np.bincount(joins, minlength=1)
+    return {number: piece for number, piece in zip(joins.tolist(), pieces) if count[number] == 1}
 
 
 def join_fragments(shapes, max_width):
@@ -141,13 +147,13 @@ def group(marking_points, road, distance, progress=Progress()):
 
     Returns
     -------
-    records : (N,) ROAD_POINT of the road
+    records : Columns of the N points of the road
     labels : (N,) int component of each; its numbering follows station
 
     Notes
     -----
-    Points of one 4 cm cell are one member, at their mean place: the pair graph of
-    dense paint would otherwise have hundreds of edges a point. Cells are fixed
+    Points of one 4 cm cell are one member, at their mean place: points of dense
+    paint would otherwise have hundreds of neighbours each. Cells are fixed
     in station, and windows are joined through the cells they share, so neither
     window nor section length shows in the result.
     """
@@ -172,32 +178,22 @@ def group(marking_points, road, distance, progress=Progress()):
         labels.append(component[member[own]])
         progress.at((step + 1) / len(windows))
     if not records:
-        return np.empty(0, ROAD_POINT), np.empty(0, np.int64)
+        return joined([], ROAD_POINT), np.empty(0, np.int64)
     pairs = np.concatenate(links)
     graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
     _, merged = connected_components(graph, directed=False)
     labels = np.concatenate(labels)
-    return np.asarray(joined(records, ROAD_POINT)), merged[labels] if len(labels) else labels
+    return joined(records, ROAD_POINT), merged[labels] if len(labels) else labels
 
 
 def _components(records, distance):
     """Occupied cells, the cell of each point, and the component of each cell."""
-    if not len(records):
-        return np.empty((0, 2), np.int64), np.empty(0, np.int64), np.empty(0, np.int64)
-    row, column = records["s"] // CELL, records["d"] // CELL
-    order = order_by(column, row)
-    row, column = row[order], column[order]
-    starts = np.flatnonzero(np.r_[True, (row[1:] != row[:-1]) | (column[1:] != column[:-1])])
-    size = np.diff(np.r_[starts, len(row)])
-    cells = np.c_[row[starts], column[starts]].astype(np.int64)
-    member = np.empty(len(row), np.int64)
-    member[order] = np.repeat(np.arange(len(cells)), size)
-    # integer sums are the same in any order
-    s, d = (np.add.reduceat(records[name][order].astype(np.int64), starts) for name in ("s", "d"))
-    places = np.c_[s / size / STRETCH, d / size * SQUEEZE] * UNIT
-    pairs = cKDTree(places).query_pairs(distance, output_type="ndarray")
-    graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(len(cells), len(cells)))
-    return cells, member, connected_components(graph, directed=False)[1]
+    cells, member = occupied(records["s"] // CELL, records["d"] // CELL)
+    size = np.bincount(member, minlength=len(cells))
+    # sums of integers are the same in any order
+    s, d = (np.bincount(member, records[name], len(cells)) for name in ("s", "d"))
+    places = np.stack([s / size / STRETCH, d / size * SQUEEZE], axis=1) * UNIT
+    return cells, member, components(cells, places, (CELL * UNIT / STRETCH, CELL * UNIT * SQUEEZE), distance)
 
 
 def _shared(cells, labels, others, other_labels):
@@ -214,19 +210,16 @@ def _shared(cells, labels, others, other_labels):
 def _by_cluster(records, labels, fewest):
     """Records of clusters large enough, one cluster after the other; those of the rest at the end.
 
-    Returns records and the bounds of the clusters (one more than there are clusters).
+    Returns records, the bounds of the clusters (one more than there are clusters), and the label of each.
     """
-    records = records.copy()
-    records["cluster"] = 0
     if not len(records):
-        return records, np.zeros(1, np.int64)
-    size = np.bincount(labels)
-    large = size[labels] >= fewest
+        return records, np.zeros(1, np.int64), np.empty(0, np.int32)
+    labels = labels.astype(np.int32, copy=False)
+    large = (np.bincount(labels) >= fewest)[labels]
     order = order_by(labels, ~large)
-    records, labels, large = records[order], labels[order], large[order]
-    used = int(large.sum())
-    starts = np.flatnonzero(np.r_[True, np.diff(labels[:used]) != 0]) if used else np.empty(0, np.int64)
-    return records, np.r_[starts, used]
+    labels = labels[order[:np.count_nonzero(large)]]
+    starts = np.flatnonzero(np.r_[True, labels[1:] != labels[:-1]]) if len(labels) else np.empty(0, np.int64)
+    return records.take(order), np.r_[starts, len(labels)], labels[starts]
 
 
 def _add(markings, records, shape, kind, number, road, frame):

@@ -5,13 +5,15 @@ road and something else beside it, the strip is cut free, so that the line keeps
 width and the rest its shape.
 """
 
+import cv2
 import numpy as np
-from scipy.ndimage import binary_closing, binary_dilation, binary_opening
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ..survey.points import UNIT
+from ..survey.sorting import order_by
+from .cells import occupied
 from .shapes import CELL
 
 LEAST_ALONG, LEAST_ACROSS = 5.0, 0.9  # m: arrows, letters and single dashes are smaller and stay whole
@@ -26,7 +28,7 @@ def split_compounds(records, labels):
 
     Parameters
     ----------
-    records : (N,) ROAD_POINT of one road
+    records : N points of one road
     labels : (N,) int, the cluster of each
 
     Returns
@@ -36,15 +38,15 @@ def split_compounds(records, labels):
     if not len(labels):
         return labels
     labels = labels.copy()
-    order = np.argsort(labels, kind="stable")
+    order = order_by(labels)
     starts = np.flatnonzero(np.r_[True, np.diff(labels[order]) != 0])
     following = int(labels.max()) + 1
-    for a, b in zip(starts, np.r_[starts[1:], len(order)]):
+    along, across = records["s"].take(order), records["d"].take(order)
+    ranges = [np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts) for values in (along, across)]
+    large = (ranges[0] * UNIT >= LEAST_ALONG) & (ranges[1] * UNIT >= LEAST_ACROSS)
+    for a, b in zip(starts[large], np.r_[starts[1:], len(order)][large]):
         rows = order[a:b]
-        s, d = records["s"][rows], records["d"][rows]
-        if (s.max() - s.min()) * UNIT < LEAST_ALONG or (d.max() - d.min()) * UNIT < LEAST_ACROSS:
-            continue
-        cells, member = np.unique(np.c_[s // CELL, d // CELL].astype(np.int64), axis=0, return_inverse=True)
+        cells, member = occupied(along[a:b] // CELL, across[a:b] // CELL)
         parts, count = _parts(cells)
         if count > 1:
             labels[rows] = following + parts[member]
@@ -91,13 +93,13 @@ def _in_long_runs(cells):
         first, last = number * chunk - halo, (number + 1) * chunk + halo
         rows = np.flatnonzero((cells[:, 0] >= first) & (cells[:, 0] < last))
         column, row = cells[rows, 0] - first, cells[rows, 1] - cells[rows, 1].min() + 1
-        mask = np.zeros((row.max() + 2, last - first), bool)
-        mask[row, column] = True
+        mask = np.zeros((row.max() + 2, last - first), np.uint8)
+        mask[row, column] = 1
         # a line may leave its row of cells by one: the road's frame is not the paint's
-        joined = binary_dilation(binary_closing(mask, np.ones((1, gap + 1), bool)), np.ones((3, 1), bool))
-        runs = binary_opening(joined, np.ones((1, run), bool))
+        joined = cv2.dilate(cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((1, gap + 1), np.uint8)), np.ones((3, 1), np.uint8))
+        runs = cv2.morphologyEx(joined, cv2.MORPH_OPEN, np.ones((1, run), np.uint8))
         own = numbers[rows] == number
-        result[rows[own]] = runs[row[own], column[own]]
+        result[rows[own]] = runs[row[own], column[own]] > 0
     return result
 
 

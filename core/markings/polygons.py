@@ -127,7 +127,7 @@ def to_map(shape, road, origin, places):
     vertices = shapely.get_coordinates(shape)
     x, y = road.to_map(vertices[:, 0], vertices[:, 1])
     k = min(HEIGHT_NEIGHBOURS, len(places))
-    _, nearest = cKDTree(places[:, :2]).query(np.c_[x, y], k)
+    _, nearest = cKDTree(places[:, :2], balanced_tree=False, compact_nodes=False).query(np.c_[x, y], k)
     z = np.median(places[:, 2][nearest.reshape(len(x), k)], axis=1)
     lifted = shapely.force_3d(shape)
     return shapely.set_coordinates(lifted, np.c_[x + origin[0], y + origin[1], z + origin[2]])

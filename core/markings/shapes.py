@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..survey.points import UNIT
+from ..survey.sorting import order_by
+from .cells import occupied
 
 CELL = 400          # units of 0.1 mm: 4 cm, the cells that areas and directions are taken from
 BIN = 5000          # units: 0.5 m of station that the run of a line is followed in
@@ -60,7 +62,7 @@ def measure(s, d):
     Width is the 95 % range across the local tangent, scaled to the full range of
     evenly strewn points: a principal axis would call every bend wide.
     """
-    cells = _occupied(s // CELL, d // CELL)
+    cells, _ = occupied(s // CELL, d // CELL)
     direction = _principal_direction(cells)
     s0, s1, d0, d1 = s.min(), s.max(), d.min(), d.max()
     if abs(direction) <= ALONG and s1 - s0 > 2 * BIN:
@@ -76,12 +78,6 @@ def measure(s, d):
         begin = finish = float(np.median(d)) * UNIT
     return Shape(s0 * UNIT, s1 * UNIT, d0 * UNIT, d1 * UNIT, float(np.median(d)) * UNIT, float(length),
                  spread(across) * UNIT, direction, len(cells) * (CELL * UNIT) ** 2, len(s), float(begin), float(finish))
-
-
-def _occupied(row, column):
-    """(M, 2) the different pairs of row and column, in order."""
-    low, width = int(column.min()), int(np.ptp(column)) + 1
-    return np.stack(np.divmod(np.unique(row.astype(np.int64) * width + (column - low)), width), axis=1) + [0, low]
 
 
 def spread(across):
@@ -111,7 +107,7 @@ def middle(s, d):
     stations, offsets : (K,) float, nodes every 0.5 m, smoothed over 2.5 m
     """
     bins = (s - s.min()) // BIN
-    order = np.lexsort((d, bins))
+    order = order_by(d, bins)
     starts = np.flatnonzero(np.r_[True, np.diff(bins[order]) > 0])
     ends = np.r_[starts[1:], len(s)]
     count = ends - starts
