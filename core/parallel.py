@@ -1,34 +1,58 @@
 """Work on sections side by side, results in order."""
 
 import os
+import threading
 from collections import deque
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 
+from .errors import Cancelled
 from .progress import Progress
+
+PATIENCE = 0.2   # s between two questions whether to go on, while a result is waited for
+
+_worker = threading.local()
 
 
 def in_order(function, items, progress=Progress(), threads=None):
     """Yield function(item) for every item, in order, computed by a few threads.
 
     No more results wait than there are threads, so memory stays bounded. An
-    error or a cancel stops the rest and is raised here. numpy and scipy release
-    the interpreter lock in their heavy loops, which is where the time goes.
+    error or a cancel stops the rest and is raised here; a cancel is heard while a
+    result is waited for too, and ends the workers at their next `go_on`. numpy and scipy
+    release the interpreter lock in their heavy loops, which is where the time goes.
     """
     items = list(items)
     threads = threads or min(4, os.cpu_count() or 1)
+    stop = threading.Event()
+
+    def work(item):
+        _worker.stop = stop
+        return function(item)
+
     with ThreadPoolExecutor(threads) as pool:
-        waiting, done = deque(), 0
+        waiting = deque()
         try:
-            for item in items:
-                waiting.append(pool.submit(function, item))
-                if len(waiting) > threads:
-                    yield waiting.popleft().result()
-                    done += 1
+            for done in range(len(items)):
+                while len(waiting) <= threads and done + len(waiting) < len(items):
+                    waiting.append(pool.submit(work, items[done + len(waiting)]))
+                while not wait(list(waiting)[:1], PATIENCE).done:
                     progress.at(done / len(items))
-            while waiting:
                 yield waiting.popleft().result()
-                done += 1
-                progress.at(done / len(items))
+                progress.at((done + 1) / len(items))
         finally:
+            stop.set()
             for future in waiting:
                 future.cancel()
+
+
+def go_on():
+    """Called now and then in long work: ends it where nobody waits for its result any more.
+
+    Raises
+    ------
+    Cancelled
+        In a thread of `in_order` whose results are no longer taken.
+    """
+    stop = getattr(_worker, "stop", None)
+    if stop is not None and stop.is_set():
+        raise Cancelled

@@ -230,7 +230,7 @@ class Call:
         )
         if sink is None:
             raise QgsProcessingException(self.algorithm.invalidSinkError(self.parameters, name))
-        write_features(sink, features, fields)
+        write_features(sink, features, fields, self.feedback)
         # The file is complete only once the sink is gone
         del sink
         return dest

@@ -16,7 +16,7 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import QMetaType
 
-from ..core.errors import RoadExtractionError
+from ..core.errors import Cancelled, RoadExtractionError
 from ..core.features import Features, Field
 from .texts import tr
 
@@ -172,10 +172,12 @@ def crs_text(crs):
     return crs.toWkt(Qgis.CrsWktVariant.Preferred) if known else ""
 
 
-def write_features(sink, features, fields):
-    """All rows, some thousands at a time; raises RoadExtractionError when the sink refuses."""
+def write_features(sink, features, fields, feedback=None):
+    """All rows, some thousands at a time; raises RoadExtractionError when the sink refuses, Cancelled when the user wishes."""
     rows = qgis_features(features, fields)
     while some := list(islice(rows, AT_ONCE)):
+        if feedback is not None and feedback.isCanceled():
+            raise Cancelled
         if not sink.addFeatures(some, QgsFeatureSink.Flag.FastInsert):
             raise RoadExtractionError(
                 tr("The result could not be written: {reason}. Is the disk full or the file open elsewhere?").format(

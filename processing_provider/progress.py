@@ -2,21 +2,36 @@
 
 from ..core.errors import Cancelled
 from ..core.progress import Progress
+from ..core.remaining_time import RemainingTime
+from .texts import tr
 
 
 class FeedbackProgress(Progress):
-    """Moves the bar, prints, and raises Cancelled once the user pressed Cancel."""
+    """Moves the bar, prints, tells how long it will still take, and raises Cancelled once the user pressed Cancel."""
 
-    def __init__(self, feedback):
+    def __init__(self, feedback, remaining=None):
         self.feedback = feedback
+        self._remaining = remaining or RemainingTime()
 
     def at(self, fraction):
         if self.feedback.isCanceled():
             raise Cancelled
         self.feedback.setProgress(100.0 * fraction)
+        left = self._remaining.after(fraction)
+        if left is not None:
+            self.feedback.setProgressText(time_left(left))
 
     def say(self, text):
         self.feedback.pushInfo(text)
 
     def warn(self, text):
         self.feedback.pushWarning(text)
+
+
+def time_left(seconds):
+    """What the user reads, in the unit that gives a small number."""
+    if seconds < 60:
+        return tr("About {number} s left").format(number=round(seconds))
+    if seconds < 3600:
+        return tr("About {number} min left").format(number=round(seconds / 60))
+    return tr("About {number} h left").format(number=round(seconds / 3600))

@@ -8,6 +8,7 @@ from collections import OrderedDict, defaultdict
 
 import numpy as np
 
+from ..parallel import go_on
 from .columns import Columns
 from .points import UNIT, Points, canonical_order
 
@@ -116,6 +117,7 @@ class SectionStore:
 
     def section(self, road, section):
         """The Columns of one section in canonical order (empty where there are none); not to be written to."""
+        go_on()
         key = (road, section)
         with self._turns[hash(key) % TURNS]:
             with self._lock:

@@ -1829,6 +1829,21 @@
             <translation>{count} Prüfpunkte: RMSE {rmse:.3f} m.</translation>
         </message>
         <message>
+            <location filename="../../processing_provider/progress.py" />
+            <source>About {number} h left</source>
+            <translation>Noch etwa {number} h</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/progress.py" />
+            <source>About {number} s left</source>
+            <translation>Noch etwa {number} s</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/progress.py" />
+            <source>About {number} min left</source>
+            <translation>Noch etwa {number} min</translation>
+        </message>
+        <message>
             <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
             <source>Boundaries from scanlines</source>
             <translation>Ränder aus Scanlinien</translation>

@@ -5,7 +5,7 @@ import time
 
 import pytest
 from lanewright.core.errors import Cancelled
-from lanewright.core.parallel import in_order
+from lanewright.core.parallel import go_on, in_order
 from lanewright.core.progress import Progress
 
 
@@ -42,6 +42,45 @@ def test_cancel_stops_before_all_sections_are_worked():
     with pytest.raises(Cancelled):
         list(in_order(work, range(1000), CancelsAtOnce(), threads=2))
     assert len(worked) < 20
+
+
+class CancelsWhenAsked(Progress):
+    """Cancels at the third question."""
+
+    asked = 0
+
+    def at(self, fraction):
+        self.asked += 1
+        if self.asked == 3:
+            raise Cancelled
+
+
+def test_cancel_is_heard_while_a_section_is_worked_and_ends_it():
+    ended = threading.Event()
+
+    def endless(number):
+        try:
+            while True:
+                go_on()
+                time.sleep(0.001)
+        except Cancelled:
+            ended.set()
+            raise
+
+    progress = CancelsWhenAsked()
+    with pytest.raises(Cancelled):
+        list(in_order(endless, range(3), progress, threads=1))
+    assert progress.asked == 3 and ended.is_set()
+
+
+def test_go_on_lets_everyone_pass_who_is_still_waited_for():
+    def work(number):
+        go_on()
+        return number
+
+    go_on()
+    list(in_order(work, range(5), threads=2))
+    assert list(in_order(work, range(5), threads=2)) == list(range(5))
 
 
 def test_no_more_results_wait_than_there_are_threads():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.errors import RoadExtractionError
+from lanewright.core.errors import Cancelled, RoadExtractionError
 from lanewright.core.features import Features
 from lanewright.core.schemas import CURVE_ELEMENTS, ROAD_EDGES
 from lanewright.processing_provider.layers import WKB_TYPES, crs_text, keeps_aliases, qgis_fields, read_features, write_features
@@ -53,6 +53,23 @@ def test_a_layer_without_rows_is_still_a_layer(tmp_path, qgis_app):
     layer = through_a_geopackage(Features("LineStringZ", ROAD_EDGES, crs=crs_text(UTM)), tmp_path)
     assert layer.featureCount() == 0 and layer.fields().lookupField("station_m") >= 0
     assert len(read_features(layer, ROAD_EDGES, "LineStringZ", "Road edges")) == 0
+
+
+def test_cancel_is_heard_while_a_large_layer_is_written(qgis_app):
+    class Sink(QgsFeatureSink):
+        written = 0
+
+        def addFeatures(self, features, flags):
+            self.written += len(features)
+            feedback.cancel()
+            return True
+
+    feedback, sink, many = QgsProcessingFeedback(), Sink(), edges()
+    for _ in range(12_000):
+        many.add(many.geometries[0], **many.rows[0])
+    with pytest.raises(Cancelled):
+        write_features(sink, many, qgis_fields(many.schema), feedback)
+    assert 0 < sink.written < len(many) / 2
 
 
 def test_a_table_has_rows_and_no_geometry(tmp_path, qgis_app):
