@@ -12,11 +12,12 @@ from ..schemas import ROAD_SURFACE
 from ..survey.points import UNIT
 from ..survey.road_frame import CORRIDOR
 from ..survey.road_points import RoadPoints
-from .cover import HIGH, LOW, SQUARE, covered
-from .surface_cells import COLUMN, ROW, Cells, ground_cells
+from .cover import SQUARE, covered
+from .surface_cells import ROW, Cells, ground_cells
 from .surface_growth import follow_road, smooth_road
 from .surface_limits import edge_offsets
 from .surface_outline import add_outlines
+from .surface_points import points_on_road
 from .surface_verge import Profiles, grown_offsets
 
 WINDOW_ROWS = 10      # rows of cells made at a time: 5 m
@@ -165,13 +166,15 @@ def _take_points(survey, road, carriageway, road_points, progress):
         start, end = (np.array([number, number + 1]) * survey.store.section_length).tolist()
         # what stands beside a point may stand in the next section
         points = survey.window(road, np.floor(start / SQUARE - 1.01) * SQUARE, np.ceil(end / SQUARE + 1.01) * SQUARE)
-        on_road, half_width, above = select_points(points, carriageway)
-        beneath = covered(points[on_road], points[above])
-        own = np.floor(points.s[on_road] / survey.store.section_length) == number
-        count = np.count_nonzero(own)
-        records = points[on_road[own]].records.with_columns(
-            corrected=np.full(count, np.nan, np.float32), cluster=np.zeros(count, np.int32), covered=beneath[own].astype(np.uint8),
-            half_width=np.clip(np.rint(half_width[own] * 1e3), 0, 65535).astype(np.uint16))
+        found = points_on_road(points, carriageway)
+        on_road = points[found.surface]
+        beneath = covered(on_road, points[found.above])
+        own = np.flatnonzero(np.floor(on_road.s / survey.store.section_length) == number)
+        own = slice(own[0], own[-1] + 1) if len(own) else slice(0, 0)   # points come in order of station
+        count = own.stop - own.start
+        records = points[found.surface[own]].records.with_columns(
+            corrected=np.full(count, np.nan, np.float32), cluster=np.zeros(count, np.int32),
+            covered=beneath[own].astype(np.uint8), half_width=found.half_width[own])
         return number, records.whole()
 
     for number, records in in_order(take, sections, progress):
@@ -179,43 +182,3 @@ def _take_points(survey, road, carriageway, road_points, progress):
         row = np.floor(records["s"] * UNIT / ROW).astype(np.int64) - carriageway.cells.first_row
         per_row += np.bincount(np.clip(row, 0, len(per_row) - 1), minlength=len(per_row))
     return per_row
-
-
-def select_points(points, carriageway):
-    """Points on the road surface, and what stands on it.
-
-    Returns
-    -------
-    (M,) indices of points on the road; (M,) metres from the reference line to the limit of each one's side
-    (K,) indices of points above it
-    """
-    cells = carriageway.cells
-    s, d = points.s, points.d
-    row = np.clip(s / ROW - cells.first_row - 0.5, 0, len(cells.height) - 1)
-    left, right = _at_rows(carriageway.left, row), _at_rows(carriageway.right, row)
-    with np.errstate(invalid="ignore"):
-        inside = np.flatnonzero((d < left) & (d > right))
-    row, column = row[inside], d[inside] / COLUMN - cells.first_column - 0.5
-    column = np.clip(column, 0, cells.height.shape[1] - 1)
-    height = _bilinear(carriageway.height, row, column)
-    rise = points.records["z"][inside] * UNIT - height
-    kept = inside[np.abs(rise) < carriageway.tolerance]
-    half_width = np.where(d[kept] >= 0, left[kept], -right[kept])
-    return kept, np.maximum(half_width, np.abs(d[kept])), inside[(rise > LOW) & (rise < HIGH)]
-
-
-def _at_rows(values, row):
-    """Values of rows at fractional rows; NaN beside a row without one."""
-    k = np.minimum(row.astype(np.int64), len(values) - 2) if len(values) > 1 else np.zeros(len(row), np.int64)
-    after = np.minimum(k + 1, len(values) - 1)
-    f = row - k
-    found = (1 - f) * values[k] + f * values[after]
-    # at the first and last row of a road the nearer one counts
-    return np.where(np.isfinite(found), found, np.where(f < 0.5, values[k], values[after]))
-
-
-def _bilinear(grid, row, column):
-    i = np.minimum(row.astype(np.int64), grid.shape[0] - 2)
-    j = np.minimum(column.astype(np.int64), grid.shape[1] - 2)
-    u, v = row - i, column - j
-    return ((1 - u) * ((1 - v) * grid[i, j] + v * grid[i, j + 1]) + u * ((1 - v) * grid[i + 1, j] + v * grid[i + 1, j + 1]))

@@ -5,13 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..survey.points import UNIT
-from ..survey.sorting import order_by, thinned
+from ..survey.sorting import order_by
 
 ROW, COLUMN = 0.5, 0.25   # m along and across the road
 LAYER_JUMP = 0.06         # m between two layers: ground below, a car's sill above
 LAYER_DEPTH = 0.12        # m of the lowest layer that count as ground: a wall has no upper end
 SHARE = 0.08              # of a cell's points that the lowest layer holds at least: less is multipath below the road
-MOST = 200                # points of a cell that are looked at: more tell nothing new of it
+MOST = 100                # points of a cell that are looked at: more tell nothing new of it
+AT_ONCE = 1 << 15         # points worked at a time: what fits the processor's cache
 FEWEST_LAYER = 3          # points of a layer
 FEWEST_TILT = 6           # points from which a cell's plane and roughness are taken
 NEAR, PER_METRE = 0.7, 0.12  # m about the vehicle's road height, and per metre beside the track, where ground may lie
@@ -82,36 +83,50 @@ def ground_cells(points, first_row, rows, reach, road_height, row_size=ROW, colu
     columns = 2 * half
     prior = road_height((first_row + np.arange(rows) + 0.5) * row_size)
     kept, cell = _near_ground(points.records, first_row, rows, half, prior, row_size, column_size)
-    some = thinned(cell, MOST)
-    kept, cell = kept[some], cell[some]
     z = points.records["z"].take(kept)
     order = order_by(z, cell)
-    kept, cell, z = kept[order], cell[order].astype(np.int64), z[order] * UNIT
-    total = np.bincount(cell, minlength=rows * columns)
-    low = np.flatnonzero(_in_lowest_layer(cell, z, total))
+    kept, cell, z = kept[order], cell[order], z[order] * UNIT
+    low = np.flatnonzero(_in_lowest_layer(cell, z, np.bincount(cell, minlength=rows * columns)))
     kept, at, z = kept[low], cell[low], z[low]
-    u = points.records["d"].take(kept) * UNIT - (at % columns - half + 0.5) * column_size
-    v = points.records["s"].take(kept) * UNIT - (at // columns + first_row + 0.5) * row_size
-    height, rough = _planes(at, u, v, z, rows * columns)
-    brightness, scatter = _medians(at, points.intensity[kept], rows * columns)
-    shape = rows, columns
     count = np.bincount(at, minlength=rows * columns)
+    row, column = np.divmod(np.arange(rows * columns), columns)
+    u, v = (points.records[name].take(kept) * UNIT - np.repeat(middle, count) for name, middle in
+            (("d", (column - half + 0.5) * column_size), ("s", (row + first_row + 0.5) * row_size)))
+    height, rough = _planes(count, u, v, z)
+    brightness, scatter = _medians(at, count, points.intensity[kept])
+    shape = rows, columns
     return Cells(first_row, -half, row_size, column_size,
                  *(values.reshape(shape).astype(np.float32) for values in (height, rough, brightness, scatter, count)))
 
 
 def _near_ground(records, first_row, rows, half, prior, row_size, column_size):
-    """Indices of the records in the window and near the road's height, and the cell of each."""
-    s, d = records["s"], records["d"]
-    row = s // int(round(row_size / UNIT))
-    row -= first_row
-    column = d // int(round(column_size / UNIT))
-    column += half
-    inside = (row >= 0) & (row < rows) & (column >= 0) & (column < 2 * half)
-    above = records["z"] - np.rint(prior / UNIT).astype(np.int32).take(row, mode="clip")
-    inside &= np.abs(above) < np.abs(d * np.float32(PER_METRE)) + np.float32(NEAR / UNIT)
-    kept = np.flatnonzero(inside)
-    return kept, row.take(kept) * (2 * half) + column.take(kept)
+    """Indices of records in the window and near the road's height, no more of a cell than tell anything, and the cell of each."""
+    prior = np.rint(prior / UNIT).astype(np.int32)
+    along, across = int(round(row_size / UNIT)), int(round(column_size / UNIT))
+    kept, cells = [np.empty(0, np.intp)], [np.empty(0, np.int32)]
+    for first in range(0, len(records), AT_ONCE):
+        s, d, z = (records[name][first:first + AT_ONCE] for name in ("s", "d", "z"))
+        row = s // along
+        row -= first_row
+        column = d // across
+        column += half
+        inside = (row >= 0) & (row < rows) & (column >= 0) & (column < 2 * half)
+        above = z - prior.take(row, mode="clip")
+        inside &= np.abs(above) < np.abs(d * np.float32(PER_METRE)) + np.float32(NEAR / UNIT)
+        row *= 2 * half
+        row += column
+        rest = np.flatnonzero(inside)
+        cells.append(row.take(rest))
+        rest += first
+        kept.append(rest)
+    kept, cell = np.concatenate(kept), np.concatenate(cells)
+    share = MOST / np.maximum(np.bincount(cell), MOST)
+    if not (share < 1.0).any():
+        return kept, cell
+    # multiples of the golden section lie evenly whatever run of them is looked at
+    turn = np.arange(len(cell), dtype=np.uint32) * np.uint32(0x9E3779B9)
+    some = np.flatnonzero(turn <= np.floor(share * 0xFFFFFFFF).astype(np.uint32).take(cell))
+    return kept[some], cell[some]
 
 
 def _in_lowest_layer(cell, z, total):
@@ -130,36 +145,38 @@ def _in_lowest_layer(cell, z, total):
     return (chosen[cell] == layer) & (z - lowest[layer] < LAYER_DEPTH)
 
 
-def _planes(at, u, v, z, cells):
-    """Height at the middle and roughness of the plane through each cell's points."""
-    n = np.bincount(at, minlength=cells).astype(float)
+def _planes(count, u, v, z):
+    """Height at the middle and roughness of the plane through each cell's points, which lie cell by cell."""
+    n = np.maximum(count, 1).astype(float)
+    filled = np.flatnonzero(count)
+    starts = (np.cumsum(count) - count)[filled]
 
     def mean(values):
-        return np.bincount(at, values, cells) / np.maximum(n, 1)
+        sums = np.zeros(len(count))
+        if len(starts):
+            sums[filled] = np.add.reduceat(values, starts)
+        return sums / n
 
     mu, mv, mz = mean(u), mean(v), mean(z)
-    du, dv, dz = u - mu[at], v - mv[at], z - mz[at]
+    du, dv, dz = (values - np.repeat(middle, count) for values, middle in ((u, mu), (v, mv), (z, mz)))
     uu, uv, vv, uz, vz, zz = mean(du * du), mean(du * dv), mean(dv * dv), mean(du * dz), mean(dv * dz), mean(dz * dz)
     # a little ridge keeps cells whose points lie on one line from tilting at will
     uu, vv = uu + 1e-4, vv + 1e-4
     determinant = uu * vv - uv * uv
     across, along = (uz * vv - vz * uv) / determinant, (vz * uu - uz * uv) / determinant
     rest = np.maximum(zz - across * uz - along * vz, 0.0)
-    enough, any_ground = n >= FEWEST_TILT, n >= FEWEST_LAYER
-    with np.errstate(invalid="ignore", divide="ignore"):
-        rough = np.sqrt(rest * n / np.maximum(n - 3, 1))
+    enough, any_ground = count >= FEWEST_TILT, count >= FEWEST_LAYER
+    rough = np.sqrt(rest * n / np.maximum(n - 3, 1))
     height = np.where(enough, mz - across * mu - along * mv, mz)
     return np.where(any_ground, height, np.nan), np.where(enough, rough, np.nan)
 
 
-def _medians(at, intensity, cells):
+def _medians(at, count, intensity):
     """Median of each cell's intensities (16 bits) and the lower spread about it."""
-    # one number for cell and value sorts several times as fast as the two of them
-    values = (np.sort((at << 16) | intensity) & 0xFFFF).astype(float)
-    count = np.bincount(at, minlength=cells)
-    start = np.r_[0, np.cumsum(count)[:-1]]
+    values = intensity[order_by(intensity, at)].astype(float)
+    start = np.cumsum(count) - count
     filled = count >= FEWEST_LAYER
-    median, spread = np.full(cells, np.nan), np.full(cells, np.nan)
+    median, spread = np.full(len(count), np.nan), np.full(len(count), np.nan)
     median[filled] = values[(start + count // 2)[filled]]
     spread[filled] = (median[filled] - values[(start + count // 4)[filled]]) / 0.6745
     return median, spread
