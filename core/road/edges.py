@@ -11,6 +11,7 @@ from ..errors import RoadExtractionError
 from ..features import Features
 from ..progress import Progress
 from ..schemas import ROAD_EDGES, of_main_curb
+from .nearest_pass import name_passes
 from .turned_edges import draw_turned, turned_lines
 
 CONNECT = 2.5          # m between curb points that are joined as measured
@@ -71,6 +72,7 @@ def fit_road_edges(curb_points, frame, settings=EdgeSettings(), progress=Progres
             if settings.fallback_width:
                 lines = _draw_fallback(edges, frame, road, side, drawn, settings.fallback_width, lines)
         lines = draw_turned(edges, road.number, turned.get(road.number, []), lines)
+    name_passes(edges, frame)
     length = {status: sum(r["length_m"] for r in edges.rows if r["status"] == status) for status in ("measured", "bridged")}
     if len(edges):
         progress.say(f"Road edges: {length['measured']:.0f} m measured, {length['bridged']:.0f} m bridged.")

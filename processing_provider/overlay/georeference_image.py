@@ -1,6 +1,8 @@
 """A UAV image placed on the map by ground control points."""
 
-from qgis.core import QgsProcessingParameterCrs, QgsProcessingParameterFile
+from pathlib import Path
+
+from qgis.core import QgsProcessingParameterCrs, QgsProcessingParameterFile, QgsRasterLayer
 
 from ...core.errors import RoadExtractionError
 from ...core.schemas import RESIDUALS
@@ -11,6 +13,10 @@ from .control_point_layer import read_control_point_layer
 
 GEOREFERENCE = "overlay.georeferencing:GeoreferenceSettings"
 POINTS_FILTER = "Control points (*.points *.csv *.txt *.POINTS *.CSV *.TXT);;All files (*.*)"
+
+# A raster that needs no file
+PLACED_PIXEL = ('<VRTDataset rasterXSize="1" rasterYSize="1"><GeoTransform>0,1,0,0,0,-1</GeoTransform>'
+                '<VRTRasterBand dataType="Byte" band="1"/></VRTDataset>')
 
 GEOREFERENCE_KNOBS = (
     Knob(
@@ -94,6 +100,15 @@ class GeoreferenceImage(LanewrightAlgorithm):
         for name, label in NUMBERS:
             self.add_number(name, label)
 
+    def checkParameterValues(self, parameters, context):
+        # To check a path QGIS opens the image as a map layer, and GDAL then complains of one that has no position yet
+        given = parameters.get("IMAGE")
+        if isinstance(given, str) and Path(given).is_file():
+            stand_in = QgsRasterLayer(PLACED_PIXEL, "image")
+            context.temporaryLayerStore().addMapLayer(stand_in)
+            parameters = {**parameters, "IMAGE": stand_in.id()}
+        return super().checkParameterValues(parameters, context)
+
     def work(self, call, progress):
         from ...core.overlay.georeferencing import georeference
         from ...core.overlay.residuals import residual_vectors
@@ -106,10 +121,10 @@ class GeoreferenceImage(LanewrightAlgorithm):
         for note in found.notes:
             progress.warn(note)
         values = _numbers(found)
-        progress.say(tr("{count} control points, order {order}: RMSE {rmse:.3f} m, each left out in turn {left:.3f} m.").format(
+        progress.say(tr("Control points: {count}, order {order}, RMSE {rmse:.3f} m, each left out in turn {left:.3f} m.").format(
             count=values["POINTS"], order=found.settings.order, rmse=values["RMSE"], left=found.left_out_rmse))
         if values["CHECK_POINTS"]:
-            progress.say(tr("{count} check points: RMSE {rmse:.3f} m.").format(count=values["CHECK_POINTS"], rmse=values["CHECK_RMSE"]))
+            progress.say(tr("Check points: {count}, RMSE {rmse:.3f} m.").format(count=values["CHECK_POINTS"], rmse=values["CHECK_RMSE"]))
         drawn = call.new_file("OUTPUT")
         departure = draw_image(found, drawn, progress.part(0.02, 0.97))
         call.layer("RESIDUALS", residual_vectors(found))
