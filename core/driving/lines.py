@@ -130,7 +130,8 @@ def _write_lane(lines, lane, track, way, elements, road_lines, z, frame, number)
         element = element_of(elements, start, end)
         curve = element.arc if element is not None else course.curve
         length = float(np.hypot(*np.diff(places[:, :2], axis=0).T).sum())
-        lines.add(shapely.linestrings(places), road=number, lane=lane, kind="lane", pattern=_patterns(track, rows, way, road_lines.patterns), direction=way,
+        lines.add(shapely.linestrings(places), road=number, lane=lane, kind="lane",
+                  pattern=_patterns(track, rows, way, road_lines.patterns), direction=way,
                   source="offset" if track.offset[rows].mean() > 0.5 else "pair", status=STATUS[code], curve=curve.kind,
                   radius_m=float(curve.radius) if np.isfinite(curve.radius) else None, rmse_m=float(course.rmse),
                   station_m=start, end_m=end, offset_m=float(np.median(track.d[rows])), length_m=length,

@@ -1,8 +1,6 @@
 """A UAV image placed on the map by ground control points."""
 
-from pathlib import Path
-
-from qgis.core import QgsProcessingParameterCrs, QgsProcessingParameterFile, QgsRasterLayer
+from qgis.core import QgsProcessingParameterCrs, QgsProcessingParameterFile
 
 from ...core.errors import RoadExtractionError
 from ...core.schemas import RESIDUALS
@@ -13,10 +11,6 @@ from .control_point_layer import read_control_point_layer
 
 GEOREFERENCE = "overlay.georeferencing:GeoreferenceSettings"
 POINTS_FILTER = "Control points (*.points *.csv *.txt *.POINTS *.CSV *.TXT);;All files (*.*)"
-
-# A raster that needs no file
-PLACED_PIXEL = ('<VRTDataset rasterXSize="1" rasterYSize="1"><GeoTransform>0,1,0,0,0,-1</GeoTransform>'
-                '<VRTRasterBand dataType="Byte" band="1"/></VRTDataset>')
 
 GEOREFERENCE_KNOBS = (
     Knob(
@@ -100,15 +94,6 @@ class GeoreferenceImage(LanewrightAlgorithm):
         for name, label in NUMBERS:
             self.add_number(name, label)
 
-    def checkParameterValues(self, parameters, context):
-        # To check a path QGIS opens the image as a map layer, and GDAL then complains of one that has no position yet
-        given = parameters.get("IMAGE")
-        if isinstance(given, str) and Path(given).is_file():
-            stand_in = QgsRasterLayer(PLACED_PIXEL, "image")
-            context.temporaryLayerStore().addMapLayer(stand_in)
-            parameters = {**parameters, "IMAGE": stand_in.id()}
-        return super().checkParameterValues(parameters, context)
-
     def work(self, call, progress):
         from ...core.overlay.georeferencing import georeference
         from ...core.overlay.residuals import residual_vectors
@@ -117,6 +102,10 @@ class GeoreferenceImage(LanewrightAlgorithm):
         from ...core.report.georeferencing import georeferencing_report
 
         image = open_image(call.raster("IMAGE"))
+        if image.geotransform is None:
+            # QGIS looks at a raster as a map layer before it starts an algorithm, and passes on what GDAL thinks of it
+            progress.say(tr("The image has no position yet; the control points give it one. A line above, GDAL ERROR 1: Unable to compute "
+                            "a transformation, is QGIS saying the same and harmless."))
         found = georeference(image, _control_points(call, image, progress), call.settings(GEOREFERENCE_KNOBS))
         for note in found.notes:
             progress.warn(note)

@@ -59,7 +59,8 @@ class InspectSurvey(LanewrightAlgorithm):
             count=f"{found.count:,}", files=len(found.files), density=found.per_area["mean"], scanners=len(found.scanners),
             darkest=found.intensity.nonzero()[0].min(), brightest=found.intensity.nonzero()[0].max()))
         if found.near_share is not None:
-            progress.say(tr("Trajectory: {near:.0f} % of the points lie within {metres:.0f} m of it.").format(near=100 * found.near_share, metres=NEAR))
+            progress.say(tr("Trajectory: {near:.0f} % of the points lie within {metres:.0f} m of it.").format(
+                near=100 * found.near_share, metres=NEAR))
         call.text("REPORT", inspection_report(found))
         if call.wants("DENSITY"):
             write_density(found, call.new_file("DENSITY"))

@@ -1805,6 +1805,11 @@
         </message>
         <message>
             <location filename="../../processing_provider/overlay/georeference_image.py" />
+            <source>The image has no position yet; the control points give it one. A line above, GDAL ERROR 1: Unable to compute a transformation, is QGIS saying the same and harmless.</source>
+            <translation>Das Bild hat noch keine Lage; die Passpunkte geben ihm eine. Eine Zeile darüber, GDAL ERROR 1: Unable to compute a transformation, sagt dasselbe und ist harmlos.</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/overlay/georeference_image.py" />
             <source>Control points were given twice, as a layer and as a file. Leave one of them empty.</source>
             <translation>Passpunkte wurden zweimal angegeben, als Layer und als Datei. Eines davon leer lassen.</translation>
         </message>
