@@ -7,12 +7,14 @@ from .arcs import fit_circle, fit_line
 from .clothoid import Clothoid
 from .curve import Arc
 from .ellipse import Ellipse, fit_ellipse
+from .fit import least_bic
 from .polynomial import Polynomial, fit_polynomial
 from .spline import Spline, fit_spline
 from .transitions import fit_clothoid
 
 CURVES = ("automatic", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline")
 WORST_RESIDUAL = 0.05  # m: 95 % of the points must be nearer than this to a simpler curve
+FEWEST_NUMBERS = 3     # that any curve but a straight line has
 BIC_MARGIN = 6.0       # a simpler curve is taken while its BIC is within this of the best
 
 
@@ -56,20 +58,22 @@ def fit_curve(x, y, curve="automatic", degree=2, along=None):
 
 
 def candidates(x, y, along=None):
-    """Fits of line, circle, clothoid, ellipse and B-spline, simplest first, without those the points cannot carry."""
-    found = [fit_line(x, y)]
+    """Yields fits of line, circle, clothoid, ellipse and B-spline, simplest first, without those the points cannot carry."""
+    yield fit_line(x, y)
+    turn = 0.0
     if len(x) >= 4:
-        found.append(fit_circle(x, y))
+        circle = fit_circle(x, y)
+        turn = abs(circle.curve.bend) * circle.curve.length
+        yield circle
     if len(x) >= 8:
-        found.append(fit_clothoid(x, y))
-    if len(x) >= 12 and abs(found[1].curve.bend) * found[1].curve.length > np.radians(60.0):
+        yield fit_clothoid(x, y)
+    if len(x) >= 12 and turn > np.radians(60.0):
         try:
-            found.append(fit_ellipse(x, y))
+            yield fit_ellipse(x, y)
         except RoadExtractionError:
             pass
     if len(x) >= 6:
-        found.append(fit_spline(x, y, along))
-    return found
+        yield fit_spline(x, y, along)
 
 
 def choose(fits):
@@ -77,11 +81,26 @@ def choose(fits):
 
     Where none is that close, the one of the least 95 % residual.
     """
-    best = min(fit.bic for fit in fits)
+    seen = []
+    return simplest((seen.append(fit) or fit for fit in fits), WORST_RESIDUAL) or min(seen, key=lambda fit: fit.worst)
+
+
+def simplest(fits, worst=np.inf):
+    """The first fit whose BIC is within 6 of the best and whose 95 % residual is below `worst`; None where there is none.
+
+    fits : an iterable of Fit, simplest first; no more are made than are needed to know
+    """
+    found = []
     for fit in fits:
-        if fit.bic <= best + BIC_MARGIN and fit.worst < WORST_RESIDUAL:
-            return fit
-    return min(fits, key=lambda fit: fit.worst)
+        found.append(fit)
+        least = least_bic(len(fit.residuals), FEWEST_NUMBERS)
+        for one in found:
+            if one.worst < worst and one.bic <= least + BIC_MARGIN:
+                return one  # whatever may follow
+            if one.worst < worst and one.bic <= min(other.bic for other in found) + BIC_MARGIN:
+                break       # what follows decides
+    best = min(fit.bic for fit in found)
+    return next((fit for fit in found if fit.worst < worst and fit.bic <= best + BIC_MARGIN), None)
 
 
 _NUMBERS = {

@@ -6,9 +6,16 @@ import numpy as np
 
 from .curve import Curve
 
-# 24 Gauss points integrate a road's clothoid (a few radians of turn) to 1e-12
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
-_NODES, _WEIGHTS = (_NODES + 1) / 2, _WEIGHTS / 2
+
+def _gauss(count):
+    """Nodes and weights on [0, 1]."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    return (nodes + 1) / 2, weights / 2
+
+
+# Gauss points that integrate a clothoid to 1e-12 of its length, by how far it turns (radians)
+_FEW, _SOME, _MANY, _STEP = _gauss(8), _gauss(14), _gauss(24), _gauss(3)
+LITTLE_TURN, MORE_TURN = 0.8, 3.0
 
 
 @dataclass(frozen=True)
@@ -26,8 +33,23 @@ class Clothoid(Curve):
 
     def at(self, u):
         u = np.asarray(u, float)
-        turn = self.heading(u[:, None] * _NODES)
-        return np.c_[self.x + u * (np.cos(turn) @ _WEIGHTS), self.y + u * (np.sin(turn) @ _WEIGHTS)]
+        nodes, weights = self._rule(u)
+        turn = self.heading(u[:, None] * nodes)
+        places = np.stack([np.cos(turn) @ weights, np.sin(turn) @ weights], axis=1)
+        places *= u[:, None]
+        return np.add(places, (self.x, self.y), out=places)
+
+    def _rule(self, u):
+        far = float(np.abs(u).max()) if len(u) else 0.0
+        turn = abs(self.bend) * far + abs(self.change) * far**2 / 2
+        return _FEW if turn < LITTLE_TURN else _SOME if turn < MORE_TURN else _MANY
+
+    def moved_on(self, places, u, step):
+        """(N, 2) places at u + step, given those at u; for steps of decimetres."""
+        nodes, weights = _STEP
+        turn = self.heading(u[:, None] + step[:, None] * nodes)
+        shift = np.stack([np.cos(turn) @ weights, np.sin(turn) @ weights], axis=1)
+        return places + step[:, None] * shift
 
     def heading(self, u):
         u = np.asarray(u, float)
@@ -39,13 +61,14 @@ class Clothoid(Curve):
     def derivatives(self, u):
         """(N, 2, 5): how the place at u moves with (x, y, direction, bend, change)."""
         u = np.asarray(u, float)
-        t = u[:, None] * _NODES
-        turn = self.heading(t)
-        normal = np.stack([-np.sin(turn), np.cos(turn)], 1)  # (N, 2, 24)
+        nodes, weights = self._rule(u)
+        turn = self.heading(u[:, None] * nodes)
+        powers = weights[:, None] * nodes[:, None] ** np.arange(3) * [1.0, 1.0, 0.5]
+        lengths = u[:, None] ** np.arange(1, 4)
         out = np.zeros((len(u), 2, 5))
         out[:, 0, 0] = out[:, 1, 1] = 1.0
-        for column, weight in ((2, np.ones_like(t)), (3, t), (4, 0.5 * t * t)):
-            out[:, :, column] = u[:, None] * np.einsum("nak,nk,k->na", normal, weight, _WEIGHTS)
+        out[:, 0, 2:] = -(np.sin(turn) @ powers) * lengths
+        out[:, 1, 2:] = (np.cos(turn) @ powers) * lengths
         return out
 
     def moved(self, dx, dy):

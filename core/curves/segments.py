@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .arcs import fit_circle, fit_line
-from .choice import BIC_MARGIN
+from .choice import simplest
 from .fit import checked
 from .spline import fit_spline
 from .transitions import fit_clothoid
@@ -55,6 +55,17 @@ def segment_line(x, y):
     -------
     list of Segment, in order, covering the line without gaps.
     """
+    cuts, u, x, y = _cuts(x, y)
+    return [_segment(first, last, kind, u, x, y) for first, last, kind in cuts]
+
+
+def cuts_of(x, y):
+    """The [(first, last)] arc lengths of the Segments of `segment_line`, where their fits are not asked for."""
+    return [(first, last) for first, last, _ in _cuts(x, y)[0]]
+
+
+def _cuts(x, y):
+    """[(first, last, kind)] of the elements, and the arc lengths and places they were found from, in order."""
     x, y = checked(x, y, 4)
     base = fit_spline(x, y)
     u, e = base.curve.foot(x, y)
@@ -62,8 +73,7 @@ def segment_line(x, y):
     u, e, x, y = np.clip(u[order], 0, base.curve.length), e[order], x[order], y[order]
     length = base.curve.length
     sigma = max(1.4826 * float(np.median(np.abs(e))), NOISE)
-    cuts = _divide(base.curve, u, e, sigma, length)
-    return [_segment(first, last, kind, u, x, y) for first, last, kind in cuts]
+    return _divide(base.curve, u, e, sigma, length), u, x, y
 
 
 def _segment(first, last, kind, u, x, y):
@@ -72,10 +82,9 @@ def _segment(first, last, kind, u, x, y):
         inside = np.sort(np.argsort(np.abs(u - (first + last) / 2), kind="stable")[:5])
     px, py = x[inside], y[inside]
     makers = {"line": fit_line, "circle": fit_circle, "clothoid": fit_clothoid}
-    fits = [makers[name](px, py) for name in ORDER if ORDER[name] <= ORDER[kind] and len(px) > ORDER[name] + 1]
     # the division works to first order; in true geometry a simpler element may do as well
-    best = min(fit.bic for fit in fits)
-    return Segment(first, last, next(fit for fit in fits if fit.bic <= best + BIC_MARGIN))
+    fits = (makers[name](px, py) for name in ORDER if ORDER[name] <= ORDER[kind] and len(px) > ORDER[name] + 1)
+    return Segment(first, last, simplest(fits))
 
 
 def _divide(curve, u, e, sigma, length):

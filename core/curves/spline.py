@@ -108,33 +108,55 @@ def _smoothed(values, reach=4):
     return np.convolve(padded, np.full(2 * reach + 1, 1 / (2 * reach + 1)), "valid")
 
 
-def _basis(t, length, bandwidth):
-    """Knots, design matrix and banded penalty for places t in [0, length]."""
-    pieces = max(1, int(np.ceil(length / max(bandwidth, 1.0))))
-    step = length / pieces
-    knots = step * np.arange(-DEGREE, pieces + DEGREE + 1)
-    inside = np.clip(t, knots[DEGREE], knots[-DEGREE - 1])
-    design = BSpline.design_matrix(inside, knots, DEGREE, extrapolate=False)
-    if len(t) < 400:
-        design = design.toarray()
-    density = len(t) / max(length, 1e-6)
-    return knots, design, _roughness(pieces + DEGREE) * density * bandwidth**6 / step**5
+class _Basis:
+    """The cubic B-splines on even knots that places t in [0, length] lie in, four a place, with their penalty."""
+
+    def __init__(self, t, length, bandwidth):
+        pieces = max(1, int(np.ceil(length / max(bandwidth, 1.0))))
+        step = length / pieces
+        self.knots = step * np.arange(-DEGREE, pieces + DEGREE + 1)
+        self.count = pieces + DEGREE
+        inside = np.clip(t / step, 0.0, pieces)
+        piece = np.minimum(inside.astype(np.int64), pieces - 1)
+        f = inside - piece
+        self.values = np.stack([(1 - f) ** 3, (3 * f - 6) * f * f + 4, ((3 - 3 * f) * f + 3) * f + 1, f**3], axis=1) / 6
+        self.slopes = np.stack([-(1 - f) ** 2, (3 * f - 4) * f, (2 - 3 * f) * f + 1, f * f], axis=1) / (2 * step)
+        self.at = piece[:, None] + np.arange(4)
+        # what each place adds to the upper banded form of the normal matrix, wherever two of its four meet
+        first, second = np.triu_indices(4)
+        self._products = self.values[:, first] * self.values[:, second]
+        self._band = ((DEGREE - (second - first)) * self.count + self.at[:, second]).ravel()
+        self._penalty = _roughness(self.count) * (len(t) / max(length, 1e-6)) * bandwidth**6 / step**5
+
+    def solve(self, weight, values):
+        """(K, C) control points that follow (N, C) values with (N,) weights, smoothly."""
+        bands = np.bincount(self._band, (self._products * weight[:, None]).ravel(), 4 * self.count).reshape(4, -1)
+        bands += self._penalty
+        # a breath of ridge keeps control points in a gap from being undetermined
+        bands[DEGREE] += 1e-9 * bands[DEGREE].max()
+        weighted, at = self.values * weight[:, None], self.at.ravel()
+        right = np.stack([np.bincount(at, (weighted * column[:, None]).ravel(), self.count) for column in values.T], axis=1)
+        return solveh_banded(bands, right, overwrite_ab=True, overwrite_b=True, check_finite=False)
+
+    def of(self, control, slope=False):
+        """(N, C) what control points (K, C) give at the places, or the slope there."""
+        return np.einsum("na,nac->nc", self.slopes if slope else self.values, control[self.at])
 
 
 def _penalised(x, y, t, length, bandwidth):
-    knots, design, penalty = _basis(t, length, bandwidth)
-    inside = np.clip(t, knots[DEGREE], knots[-DEGREE - 1])
+    basis = _Basis(t, length, bandwidth)
     weight = np.ones(len(t))
     middle = np.array([x.mean(), y.mean()])
-    places = np.c_[x, y] - middle
+    places = np.stack([x, y], axis=1) - middle
     for _ in range(8):
-        control = _solve(design, weight, places, penalty)
-        gap = places - design @ control
-        slope = BSpline(knots, control, DEGREE).derivative()(inside)
-        slope /= np.maximum(np.hypot(slope[:, 0], slope[:, 1]), 1e-12)[:, None]
-        across = gap[:, 1] * slope[:, 0] - gap[:, 0] * slope[:, 1]
+        control = basis.solve(weight, places)
+        gap = places - basis.of(control)
+        slope = basis.of(control, slope=True)
+        size = np.maximum(np.hypot(slope[:, 0], slope[:, 1]), 1e-12)
+        across = (gap[:, 1] * slope[:, 0] - gap[:, 0] * slope[:, 1]) / size
         weight = robust_weights(across)
     control = control + middle
+    knots = basis.knots
     curve = Spline(tuple(knots.tolist()), tuple(control[:, 0].tolist()), tuple(control[:, 1].tolist()))
     return Fit(curve, across, min(3 + length / (3 * bandwidth), len(knots) - 4))
 
@@ -159,34 +181,11 @@ def smooth_profile(t, values, bandwidth):
     if len(t) < 4 or length < 1.0:
         level = float(np.median(values))
         return lambda at: np.full(np.shape(at), level)
-    knots, design, penalty = _basis(t - t[0], length, bandwidth)
+    basis = _Basis(t - t[0], length, bandwidth)
     level = float(np.median(values))
     weight = np.ones(len(t))
     for _ in range(6):
-        control = _solve(design, weight, values[:, None] - level, penalty)[:, 0]
-        weight = robust_weights(values - level - design @ control)
-    spline = BSpline(knots, control, DEGREE)
-    return lambda at: level + spline(np.clip(np.asarray(at, float) - t[0], 0.0, knots[-DEGREE - 1]))
-
-
-def _bands(matrix):
-    """Upper banded form (4, K) of a symmetric matrix with half-width 3."""
-    bands = np.zeros((DEGREE + 1, len(matrix)))
-    for k in range(min(DEGREE, len(matrix) - 1) + 1):
-        bands[DEGREE - k, k:] = np.diagonal(matrix, k)
-    return bands
-
-
-def _solve(design, weight, values, penalty):
-    weighted = design.multiply(weight[:, None]).tocsr() if hasattr(design, "multiply") else design * weight[:, None]
-    normal = weighted.T @ design
-    if hasattr(normal, "toarray"):
-        bands = np.zeros_like(penalty)
-        for k in range(DEGREE + 1):
-            bands[DEGREE - k, k:] = normal.diagonal(k)
-    else:
-        bands = _bands(normal)
-    # a breath of ridge keeps control points in a gap from being undetermined
-    bands = bands + penalty
-    bands[DEGREE] += 1e-9 * bands[DEGREE].max()
-    return solveh_banded(bands, weighted.T @ values)
+        control = basis.solve(weight, values[:, None] - level)
+        weight = robust_weights(values - level - basis.of(control)[:, 0])
+    spline = BSpline(basis.knots, control[:, 0], DEGREE)
+    return lambda at: level + spline(np.clip(np.asarray(at, float) - t[0], 0.0, basis.knots[-DEGREE - 1]))

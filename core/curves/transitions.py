@@ -5,6 +5,9 @@ import numpy as np
 from .clothoid import Clothoid
 from .fit import Fit, checked, chord, minimise
 
+FOOT_STEPS = 10   # of Newton's
+SETTLED = 1e-5    # m: a step this short leaves 1e-10
+
 
 def fit_clothoid(x, y):
     """A clothoid by robust orthogonal least squares.
@@ -25,21 +28,12 @@ def fit_clothoid(x, y):
     middle, _ = chord(x, y)
     start, size = _start(x - middle[0], y - middle[1])
     dx, dy = x - middle[0], y - middle[1]
-    state = {"u": None}
-
-    def curve_at(unknown):
-        return Clothoid(*unknown, 0.0)
+    known = {"u": size["u"], "at": None}   # the feet of the last unknowns that were good, and the last that were asked for
 
     def foot(unknown):
-        curve = curve_at(unknown)
-        u = state["u"] if state["u"] is not None else size["u"]
-        for _ in range(10):
-            along, e = curve._gap(dx, dy, u)
-            step = along / np.clip(1 - curve.curvature(u) * e, 0.3, 3.0)
-            u = u + step
-            if np.abs(step).max() < 1e-10:
-                break
-        return curve, u, curve._gap(dx, dy, u)[1]
+        if known["at"] is None or known["at"][0] is not unknown:
+            known["at"] = unknown, *_feet(Clothoid(*unknown, 0.0), dx, dy, known["u"])
+        return known["at"][1:]
 
     def residuals(unknown):
         return foot(unknown)[2]
@@ -47,15 +41,37 @@ def fit_clothoid(x, y):
     def jacobian(unknown):
         # the foot is where the gap is shortest, so that to first order only the curve's own shift counts
         curve, u, _ = foot(unknown)
+        known["u"] = u
         turn = curve.heading(u)
-        normal = np.stack([-np.sin(turn), np.cos(turn)], 1)
-        return -np.einsum("na,nap->np", normal, curve.derivatives(u))
+        by = curve.derivatives(u)
+        return np.sin(turn)[:, None] * by[:, 0] - np.cos(turn)[:, None] * by[:, 1]
 
     half = size["half"]
     unknown = minimise(residuals, jacobian, start, [1.0, 1.0, 1.0 / half, 2.0 / half**2, 6.0 / half**3])
     curve, u, e = foot(unknown)
     found = curve.cut(float(u[0]), float(u[-1])).moved(*middle)
     return Fit(found, e, 5)
+
+
+def _feet(curve, x, y, u):
+    """The curve, arc lengths of the feet of places near arc lengths u, and their distances."""
+    places = curve.at(u)
+    for _ in range(FOOT_STEPS):
+        along, across = _gap(curve, x, y, u, places)
+        step = along / np.minimum(np.maximum(1 - curve.curvature(u) * across, 0.3), 3.0)
+        near = np.abs(step).max() < SETTLED
+        places = curve.moved_on(places, u, step)
+        u = u + step
+        if near:
+            break
+    return curve, u, _gap(curve, x, y, u, places)[1]
+
+
+def _gap(curve, x, y, u, places):
+    turn = curve.heading(u)
+    dx, dy = x - places[:, 0], y - places[:, 1]
+    c, s = np.cos(turn), np.sin(turn)
+    return dx * c + dy * s, dy * c - dx * s
 
 
 def _start(x, y):

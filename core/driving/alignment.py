@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..curves.arcs import fit_circle, fit_line
-from ..curves.choice import BIC_MARGIN
+from ..curves.choice import simplest
 from ..curves.curve import Arc
-from ..curves.segments import segment_line
+from ..curves.segments import cuts_of
 from ..curves.transitions import fit_clothoid
 from .boundaries import STEP
 from .track import BRIDGED
@@ -109,7 +109,7 @@ def _divided(axis, first, s, road):
     x, y = road.to_map(at, axis)
     u = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
     thin = np.unique(np.r_[np.arange(0, len(x), int(SPACING / STEP)), len(x) - 1])
-    bounds = [(segment.first, segment.last) for segment in segment_line(x[thin], y[thin])]
+    bounds = cuts_of(x[thin], y[thin])
 
     def fit(first, last, make=_simplest):
         inside = (u >= first) & (u <= last)
@@ -126,6 +126,7 @@ def _without_steps(found, fit):
     2 cm of the places: on the road an arc this short, with no straight around it, is
     half a transition.
     """
+    joints = {}
     while True:
         merged = []
         for k in range(len(found) - 1):
@@ -134,7 +135,8 @@ def _without_steps(found, fit):
                     if q.curve.kind == "circle" and length < SHORT_ARC]
             if not arcs or {a.curve.kind, b.curve.kind} == {"circle", "line"} and last - first > 2 * SHORT_ARC:
                 continue
-            joint = fit(first, last, fit_clothoid)
+            joint = joints.get((first, last)) or fit(first, last, fit_clothoid)
+            joints[first, last] = joint
             if joint.worst < STAIRCASE:
                 merged.append((joint.worst, k, joint))
         if not merged:
@@ -145,9 +147,7 @@ def _without_steps(found, fit):
 
 def _simplest(x, y):
     """The simplest of straight, arc and clothoid by BIC."""
-    fits = [make(x, y) for make, least in ((fit_line, 2), (fit_circle, 4), (fit_clothoid, 8)) if len(x) >= least]
-    best = min(fit.bic for fit in fits)
-    return next(fit for fit in fits if fit.bic <= best + BIC_MARGIN)
+    return simplest(make(x, y) for make, least in ((fit_line, 2), (fit_circle, 4), (fit_clothoid, 8)) if len(x) >= least)
 
 
 def _of_lane(track, offset, divided, s, road):
