@@ -20,6 +20,7 @@ FACE_WINDOW = 0.15  # m either side of the rising cell within which the face lie
 STEEPEST_ROAD = 0.15  # rise over run of the road side; ditches are steeper
 WIDEST_FACE = 0.10   # m across
 NOISE_RUN = 4.0      # sigmas by which noise widens a face
+ALMOST = 0.8         # share of the least height below which no turning makes a step of a rise
 SIGMAS = 4.0        # a step must stand this far above the noise of its road side
 FACE_LOW, FACE_HIGH = 0.15, 0.70  # part of the height that counts as face: grass hangs over the top
 LEAST_SHARE = 0.5    # noise brings points from above and below into a thinner part
@@ -84,15 +85,32 @@ def measure_corners(lines, rows, cells, least, highest):
     owner, index = expand(start, end)
     ground = lines.ground[index]
     owner, index = owner[ground], index[ground]
-    # each step is measured from all points, and from those seen from before and from behind
-    # alone: positions that drifted in between blur a face that each of the two shows sharp
-    candidates = len(rows)
-    owner = np.concatenate([owner, owner + candidates * (1 + (lines.along[index] > 0))])
-    index = np.concatenate([index, index])
-    rows, cells = np.tile(rows, 3), np.tile(cells, 3)
+    seen = _seen(lines, rows, cells, owner, index, least, highest)
+    # positions that drifted between one view and the next blur a face that each of them shows sharp: what is
+    # no step in all points together may be one in those seen from before, or from behind alone
+    left = np.flatnonzero(seen["likely"] & ~seen["good"])
+    if len(left):
+        number = np.full(len(rows), -1)
+        number[left] = np.arange(len(left))
+        own = np.flatnonzero(number.take(owner) >= 0)
+        owner, index = number.take(owner.take(own)), index.take(own)
+        ahead = lines.along.take(index) > 0
+        views = [_seen(lines, rows[left], cells[left], owner[view], index[view], least, highest) for view in (~ahead, ahead)]
+        support = [np.where(view["good"], view["support"], 0) for view in views]
+        for view, better in zip(views, (support[0] >= support[1], support[0] < support[1])):
+            better &= view["good"]
+            for name, values in view.items():
+                seen[name][left[better]] = values[better]
+    good = seen["good"]
+    return Steps(profile=lines.first + rows[good], usual=lines.noise[rows[good]],
+                 **{name: values[good] for name, values in seen.items() if name not in ("good", "likely")})
+
+
+def _seen(lines, rows, cells, owner, index, least, highest):
+    """What NearSteps.corners gives of rising cells, in stations and offsets; the points `index` belong to the cells `owner`."""
     edge, middle = lines.offset(cells), (lines.first + rows + 0.5) * lines.width
-    near = NearSteps(owner, lines.u[index] - edge[owner], lines.s[index] - middle[owner], lines.h[index],
-                 lines.noise[rows], least, highest)
+    near = NearSteps(owner, lines.u.take(index) - edge.take(owner), lines.s.take(index) - middle.take(owner), lines.h.take(index),
+                     lines.noise[rows], least, highest)
     found = near.corners()
     skewed = np.flatnonzero(np.abs(found["skew"]) > TURNED)
     if len(skewed):
@@ -100,10 +118,9 @@ def measure_corners(lines, rows, cells, least, highest):
         again["skew"] = again["skew"] + found["skew"][skewed]
         for name, values in again.items():
             found[name][skewed] = values
-    good = found.pop("good")
     found["u"] = found["u"] + edge
     found["s"] = found["s"] + middle
-    return _best_view(Steps(profile=lines.first + rows, usual=lines.noise[rows], **found), good, candidates)
+    return found
 
 
 class NearSteps:
@@ -130,14 +147,32 @@ class NearSteps:
         return np.bincount(self.owner[mask], None if values is None else values[mask], minlength=self.count)
 
     def corners(self):
-        """Everything a Steps holds, as a dict of (count,) arrays, and `good`: is it a step?"""
-        owner, u, s, h, count, total = self.owner, self.u, self.s, self.h, self.count, self.total
+        """Everything a Steps holds, as a dict of (count,) arrays, `good`: is it a step, and `likely`: may it be one, seen otherwise?"""
+        owner, u, s, h, count = self.owner, self.u, self.s, self.h, self.count
         road = (u < -CLEARANCE) & (u > -ROAD_SIDE - CLEARANCE)
         level, slope, noise, n_road = _line_per_owner(owner, u, h, road, count)
         keep = road & (np.abs(h - level[owner] - slope[owner] * u) < np.maximum(2.5 * noise, 0.01)[owner])
         level, slope, noise, n_road = _line_per_owner(owner, u, h, keep, count)
         rise = h - level[owner] - slope[owner] * u
         height, n_behind, stays = self._raised(rise)
+        found = dict(level=level, slope=slope, noise=noise, n_road=n_road, height=height, n_behind=n_behind, stays=stays)
+        # most candidates are no step from whatever direction they are seen: their faces need no measuring
+        likely = (n_road >= 4) & (height >= ALMOST * self.least) & (np.abs(slope) <= STEEPEST_ROAD / ALMOST)
+        which = np.flatnonzero(likely)
+        number = np.full(count, -1)
+        number[which] = np.arange(len(which))
+        own = np.flatnonzero((np.abs(u) < FACE_WINDOW) & (number.take(owner) >= 0))
+        near = NearSteps(number.take(owner.take(own)), *(v.take(own) for v in (u, s, h)), self.usual[which], self.least, self.highest)
+        near.turn = self.turn if np.isscalar(self.turn) else self.turn[which]
+        seen = dict(likely=likely)
+        for name, values in near._measured(rise.take(own), **{name: values[which] for name, values in found.items()}).items():
+            seen[name] = np.zeros(count, values.dtype)
+            seen[name][which] = values
+        return seen
+
+    def _measured(self, rise, level, slope, noise, n_road, height, n_behind, stays):
+        """What `corners` gives, of candidates whose road side and height are known and points whose rise is."""
+        owner, u, s, count, total = self.owner, self.u, self.s, self.count, self.total
         scatter = np.maximum(noise, self.usual)
         # the part of the height that is surely neither road nor raised ground
         lower = np.minimum(np.maximum(FACE_LOW * height, 2 * scatter), 0.45 * height)
@@ -173,22 +208,13 @@ class NearSteps:
         _, climb, _, _ = _line_per_owner(owner, u, rise, raised, self.count)
         level = (n_behind < 4) | (np.abs(climb) <= STEEPEST_ROAD + NOISE_CLIMB * self.usual)
         peak = np.zeros(self.count)
-        near = (u > -0.03) & (u < FACE_WINDOW)
+        near = np.flatnonzero((u > -0.03) & (u < FACE_WINDOW) & (n_behind < 2).take(owner))
         np.maximum.at(peak, owner[near], rise[near])
         height = np.where(n_behind >= 2, _mean(total(raised, rise), n_behind),
                           np.maximum(peak - HIGH_SIGMA * self.usual, 0.0))
         beyond = (u > 0.10) & (u < BEHIND)
         low = total(beyond & (rise < 0.5 * height[owner]))
         return height, n_behind, level & (low <= np.maximum(LOW_SHARE * total(beyond), 1))
-
-
-def _best_view(steps, good, count):
-    """Of three measurements of each step the first that is good: from all points, or the view with more of them."""
-    single = good[count:].reshape(2, count)
-    support = np.where(single, steps.support[count:].reshape(2, count), 0)
-    view = np.where(good[:count], 0, 1 + np.argmax(support, axis=0))
-    chosen = np.flatnonzero(good[:count] | single.any(0))
-    return steps[chosen + count * view[chosen]]
 
 
 def expand(start, end):

@@ -109,9 +109,13 @@ def _steps_of_road(survey, road, settings, progress):
 
     def work(section):
         found = {side: [] for side in SIDES}
-        first, last = section
-        for side, _, beside, lines in profiles_beside(survey, road, (first - around, last + around), tracks, settings):
-            sight[side].look(*beside, section, lines.part(first, last))
+        wide = section[0] - around, section[1] + around
+        seen = list(profiles_beside(survey, road, wide, tracks, settings))
+        # where averages are wanted every point counts
+        if any((lines.part(*section).spread > NOISY * settings.min_height).any() for *_, lines in seen):
+            seen = profiles_beside(survey, road, wide, tracks, settings, most=None)
+        for side, _, beside, lines in seen:
+            sight[side].look(*beside, section, lines.part(*section))
             steps = _steps_by_noise(lines, section, settings)
             found[side].append(steps[steps.u > tracks[side](steps.s) + VEHICLE_HALF])
         return {side: _merge_passes(steps) for side, steps in found.items() if steps}

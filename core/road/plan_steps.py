@@ -13,6 +13,8 @@ LINE_REACH = 1.0     # m about a step within which others tell the direction of 
 LINE_STEPS = 3       # others that do
 LINE_WIDTH = 0.12    # m, scatter across it
 FACE_REACH = 0.10    # m that a step may lie from the place where it is looked for
+ACROSS = max(ROAD_SIDE + CLEARANCE, BEHIND) + FACE_REACH  # m either way across of the points that tell one step
+REACH = 2.0          # m from where steps are looked for within which they are measured, however they turn
 ROUNDS = 3           # measurements of a step, each turned by what the one before saw
 TURNED = 0.1         # m outward per m along beyond which it is measured again
 ASIDE = 0.04         # m from where it was looked for beyond which it is
@@ -67,21 +69,22 @@ def measure_plan_steps(rasters, x, y, nx, ny, least, highest):
     # the slope of the ground tells the direction where it is densely seen, else the line that the steps make
     found, left = [], np.arange(len(x))
     for raster in rasters:
-        steps, good = _measured(raster, x[left], y[left], nx[left], ny[left], SHORT, least, highest)
+        points = raster.by_cell(x[left], y[left], REACH)
+        steps, good = _measured(raster, points, x[left], y[left], nx[left], ny[left], SHORT, least, highest)
         found.append(steps)
         left = left[~good & in_line[left]]
         for half in (SHORT, LONG):
-            steps, good = _measured(raster, x[left], y[left], line_x[left], line_y[left], half, least, highest)
+            steps, good = _measured(raster, points, x[left], y[left], line_x[left], line_y[left], half, least, highest)
             found.append(steps)
             left = left[~good]
     return PlanSteps.join(found)
 
 
-def _measured(raster, x, y, nx, ny, half, least, highest):
-    """The steps, and (M,) bool: which places proved to be ones."""
+def _measured(raster, points, x, y, nx, ny, half, least, highest):
+    """The steps, and (M,) bool: which places proved to be ones; `points` are the raster's by cell."""
     proved, place, found = np.zeros(len(x), bool), np.arange(len(x)), []
     for turn in range(ROUNDS):
-        owner, u, v, h = _points_about(raster, x, y, nx, ny, half)
+        owner, u, v, h = _points_about(raster, points, x, y, nx, ny, half)
         seen = NearSteps(owner, u, v, h, np.full(len(x), raster.noise), least, highest).corners()
         # a step that runs askew or lies aside is measured again, across its own direction and from its own place
         settled = seen["good"] & ((np.abs(seen["skew"]) <= TURNED) & (np.abs(seen["u"]) <= ASIDE) | (turn == ROUNDS - 1))
@@ -120,21 +123,23 @@ def _turned(nx, ny, skew):
     return (nx + skew * ny) / size, (ny - skew * nx) / size
 
 
-def _points_about(raster, x, y, nx, ny, half):
+def _points_about(raster, points, x, y, nx, ny, half):
     """Ground points near each place: owner, m uphill, m along, height."""
+    px, py, ph, starts = points
     rows, columns = raster.low.shape
-    reach = int(np.ceil(np.hypot(max(ROAD_SIDE + CLEARANCE, BEHIND) + FACE_REACH, half) / CELL))
+    reach = int(np.ceil(np.hypot(ACROSS, half) / CELL))
     row = np.floor(y / CELL - np.rint(raster.y0 / CELL)).astype(np.int64)
     column = np.floor(x / CELL - np.rint(raster.x0 / CELL)).astype(np.int64)
     line = row[:, None] + np.arange(-reach, reach + 1)
     first, last = np.clip(column - reach, 0, columns), np.clip(column + reach + 1, 0, columns)
     on = (line >= 0) & (line < rows)
     line = np.clip(line, 0, rows - 1) * columns
-    start = raster.starts[line + first[:, None]]
-    end = np.where(on, raster.starts[line + np.maximum(first, last)[:, None]], start)
+    start = starts[line + first[:, None]]
+    end = np.where(on, starts[line + np.maximum(first, last)[:, None]], start)
     owner, index = expand(start.ravel(), end.ravel())
     owner //= 2 * reach + 1
-    dx, dy = raster.x[index] - x[owner], raster.y[index] - y[owner]
-    u, v = nx[owner] * dx + ny[owner] * dy, nx[owner] * dy - ny[owner] * dx
-    near = (np.abs(v) <= half) & (np.abs(u) <= max(ROAD_SIDE + CLEARANCE, BEHIND) + FACE_REACH)
-    return owner[near], u[near], v[near], raster.h[index[near]]
+    dx, dy = px.take(index) - x.take(owner), py.take(index) - y.take(owner)
+    ex, ey = nx.take(owner), ny.take(owner)
+    u, v = ex * dx + ey * dy, ex * dy - ey * dx
+    near = np.flatnonzero((np.abs(v) <= half) & (np.abs(u) <= ACROSS))
+    return owner.take(near), u.take(near), v.take(near), ph.take(index.take(near))

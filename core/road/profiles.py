@@ -103,13 +103,46 @@ def pseudo_scan_lines(u, s, h, along, profiles, width, spacing, layer_jump, orig
     -------
     PseudoScanLines
     """
-    first, last = profiles
-    rows, cells = last - first, max(int(np.ceil((reach - origin) / spacing)), 1)
-    kept, place = _places(u, s, h, first, rows, cells, width, spacing, origin)
-    order = order_by(np.rint((h[kept] + DEPTH) * 1e4).astype(np.int32), place)
-    kept, place = kept[order], place[order].astype(np.int64)
-    u, s, h = u[kept], s[kept], h[kept]
-    starts = np.searchsorted(place, np.arange(rows * cells + 1))
+    cells = max(int(np.ceil((reach - origin) / spacing)), 1)
+    kept, place = places(u, s, h, np.arange(len(u)), profiles, cells, width, spacing, origin)
+    run = run_of_profiles((u, s, h, along), kept, place, profiles, cells, layer_jump)
+    return joined_runs([run], profiles, width, spacing, origin)
+
+
+@dataclass
+class RunOfProfiles:
+    """Some profiles, by themselves: fields as of PseudoScanLines, but for those below.
+
+    count : (P, C) points of every cell
+    smooth : (P,) m, spread of heights next to the ground in the smoother cells, NaN where too few tell
+    """
+
+    profiles: tuple
+    u: np.ndarray
+    s: np.ndarray
+    h: np.ndarray
+    along: np.ndarray
+    ground: np.ndarray
+    count: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    noise: np.ndarray
+    smooth: np.ndarray
+
+
+def run_of_profiles(points, kept, place, profiles, cells, layer_jump):
+    """The ground of profiles, cell by cell.
+
+    Parameters
+    ----------
+    points : (u, s, h, along) of many points
+    kept, place : (N,) indices of those in the profiles and cells, and the place of each (`_places`)
+    profiles : (first, last + 1)
+    """
+    rows = profiles[1] - profiles[0]
+    order = order_by(np.rint((points[2][kept] + DEPTH) * 1e4).astype(np.int32), place)
+    place = place[order]
+    u, s, h, along = (v.take(kept[order]) for v in points)
     ground, first_of, count = lowest_layers(place, h, layer_jump)
     low, high, noise = (np.full((rows, cells), np.nan) for _ in range(3))
     owner = place[first_of]
@@ -118,30 +151,41 @@ def pseudo_scan_lines(u, s, h, along, profiles, width, spacing, layer_jump, orig
     low.flat[owner], high.flat[owner] = middle, top
     many = count >= 4
     noise.flat[owner[many]] = (top - middle)[many] / HIGH_SIGMA
-    return PseudoScanLines(first, width, spacing, origin, u, s, h, along[kept], ground, starts, low, high, _profile_noise(noise),
-                           _spread(h, place, low))
+    held = np.bincount(place, minlength=rows * cells).reshape(rows, cells)
+    return RunOfProfiles(profiles, u, s, h, along, ground, held, low, high, _profile_noise(noise), _smooth(h, held, low))
 
 
-def crowds_thinned(u, s, h, profiles, width, spacing, origin, reach):
-    """Indices of the points of profiles, of every cell no more than about MOST, evenly spread along the road.
+def joined_runs(runs, profiles, width, spacing, origin):
+    """PseudoScanLines of profiles (first, last + 1) from runs of them that follow one another; those that none holds are empty."""
+    rows, cells = profiles[1] - profiles[0], runs[0].low.shape[1]
+    low, high = np.full((rows, cells), np.nan), np.full((rows, cells), np.nan)
+    held = np.zeros((rows, cells), np.int64)
+    noise, smooth = np.full(rows, USUAL_NOISE), np.full(rows, np.nan)
+    for run in runs:
+        own = slice(run.profiles[0] - profiles[0], run.profiles[1] - profiles[0])
+        low[own], high[own], held[own], noise[own], smooth[own] = run.low, run.high, run.count, run.noise, run.smooth
+    u, s, h, along, ground = (np.concatenate([getattr(run, name) for run in runs]) for name in ("u", "s", "h", "along", "ground"))
+    return PseudoScanLines(profiles[0], width, spacing, origin, u, s, h, along, ground, np.r_[0, np.cumsum(held)], low, high, noise,
+                           _spread(smooth))
 
-    Parameters as of `pseudo_scan_lines`; the points in order of station.
-    """
-    first, last = profiles
-    rows, cells = last - first, max(int(np.ceil((reach - origin) / spacing)), 1)
-    kept, place = _places(u, s, h, first, rows, cells, width, spacing, origin)
-    if len(kept) <= MOST:
-        return kept
-    place -= place.min()
-    return kept if np.bincount(place).max() <= MOST else kept[thinned(place, MOST)]
+
+def crowds_thinned(place):
+    """Indices of (N,) places, of every cell no more than about MOST, evenly spread over their order."""
+    if len(place) <= MOST:
+        return slice(None)
+    place = place - place.min()
+    return slice(None) if np.bincount(place).max() <= MOST else thinned(place, MOST)
 
 
-def _places(u, s, h, first, rows, cells, width, spacing, origin):
-    """Indices of the points within profiles and cells, and the place of each: profile * cells + cell."""
-    profile = np.floor(s / width).astype(np.int32) - first
+def places(u, s, h, seen, profiles, cells, width, spacing, origin):
+    """Of the points `seen` those within profiles and cells, and the place of each: profile * cells + cell, from the first profile."""
+    u, s, h = u.take(seen), s.take(seen), h.take(seen)
+    profile = np.floor(s / width).astype(np.int32)
+    profile -= profiles[0]
     cell = np.floor((u - origin) / spacing).astype(np.int32)
-    kept = np.flatnonzero((profile >= 0) & (profile < rows) & (cell >= 0) & (cell < cells) & (h > -DEPTH) & (h < REACH))
-    return kept, profile[kept] * np.int32(cells) + cell[kept]
+    kept = (profile >= 0) & (profile < profiles[1] - profiles[0]) & (cell >= 0) & (cell < cells) & (h > -DEPTH) & (h < REACH)
+    place = profile * np.int32(cells) + cell
+    return (seen, place) if kept.all() else (seen[kept], place[kept])
 
 
 def lowest_layers(place, h, layer_jump):
@@ -149,11 +193,13 @@ def lowest_layers(place, h, layer_jump):
     if not len(place):
         empty = np.empty(0, np.int64)
         return np.empty(0, bool), empty, empty
-    new_cell = np.r_[True, np.diff(place) > 0]
-    new_layer = new_cell | np.r_[True, np.diff(h) > layer_jump]
+    new_cell, new_layer = np.ones(len(place), bool), np.ones(len(place), bool)
+    np.not_equal(place[1:], place[:-1], out=new_cell[1:])
+    np.greater(h[1:] - h[:-1], layer_jump, out=new_layer[1:])
+    new_layer |= new_cell
     layer_start = np.flatnonzero(new_layer)
-    layer_count = np.diff(np.r_[layer_start, len(place)])
-    layer_cell = np.cumsum(new_cell)[layer_start] - 1
+    layer_count = np.diff(layer_start, append=len(place))
+    layer_cell = np.cumsum(new_cell[layer_start]) - 1
     cell_count = np.bincount(layer_cell, layer_count)
     real = layer_count >= GHOST_SHARE * cell_count[layer_cell]
     chosen = np.flatnonzero(real)
@@ -169,31 +215,47 @@ def _profile_noise(noise):
     return np.where(dense, np.fmax(_row_median(noise), LEAST_NOISE), USUAL_NOISE)
 
 
-def _spread(h, place, low):
-    """(P,) spread of heights about the ground of their cells, in the smoother cells of a profile and its neighbours."""
-    rows, cells = low.shape
-    off = np.abs(h - low.flat[place])
-    near = off < SAME_GROUND
-    count = np.bincount(place[near], minlength=rows * cells).reshape(rows, cells)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        own = np.bincount(place[near], off[near], rows * cells).reshape(rows, cells) / count
-    # 1.2533 mean distances of a normal distribution are its sigma
-    own = np.where(count >= SPREAD_POINTS, 1.2533 * own, np.nan)
+def _smooth(h, held, low):
+    """(P,) spread of heights about the ground of their cells, in the smoother cells of every profile; NaN where too few tell."""
+    rows, there = len(low), np.flatnonzero(held)
+    own = np.full(low.shape, np.nan)
+    if len(there):
+        size = held.flat[there]
+        first = np.cumsum(size) - size
+        off = np.abs(h - np.repeat(low.flat[there], size))
+        near = off < SAME_GROUND
+        count = np.add.reduceat(near, first, dtype=np.int64)
+        # 1.2533 mean distances of a normal distribution are its sigma
+        mean = 1.2533 * np.add.reduceat(np.where(near, off, 0.0), first) / np.maximum(count, 1)
+        own.flat[there] = np.where(count >= SPREAD_POINTS, mean, np.nan)
     # grass is rough with any scanner, so the smoother cells tell
-    ordered, n = np.sort(own, axis=1), np.isfinite(own).sum(1)
-    tell = np.where(n >= SPREAD_CELLS, ordered[np.arange(rows), np.maximum(n - 1, 0) * 3 // 10], np.nan)
+    ordered, n = _sorted_rows(own)
+    return np.where(n >= SPREAD_CELLS, ordered[np.arange(rows), np.maximum(n - 1, 0) * 3 // 10], np.nan)
+
+
+def _spread(smooth):
+    """(P,) spread of heights about the ground, in the smoother cells of profiles and their neighbours."""
     # one profile beside a bush says nothing about the scanner
-    padded = np.pad(tell, SPREAD_ROWS, constant_values=np.nan)
+    padded = np.pad(smooth, SPREAD_ROWS, constant_values=np.nan)
     around = np.sort(np.lib.stride_tricks.sliding_window_view(padded, 2 * SPREAD_ROWS + 1), axis=1)
     known = np.isfinite(around).sum(1)
-    middle = around[np.arange(rows), np.maximum(known - 1, 0) // 2]
+    middle = around[np.arange(len(smooth)), np.maximum(known - 1, 0) // 2]
     return np.where(known > 0, middle, LEAST_NOISE)
+
+
+def _sorted_rows(values):
+    """Every row without its NaN in order, filled up with NaN to the longest; and how many values each has."""
+    there = np.isfinite(values)
+    count = there.sum(1)
+    found = np.full((len(values), max(int(count.max(initial=0)), 1)), np.nan)
+    found[np.arange(found.shape[1]) < count[:, None]] = values[there]
+    found.sort(axis=1)
+    return found, count
 
 
 def _row_median(values):
     """Median of every row without its NaN (NaN where a row has none)."""
-    ordered = np.sort(values, axis=1)
-    count = np.isfinite(values).sum(1)
+    ordered, count = _sorted_rows(values)
     k = np.maximum(count - 1, 0)
     rows = np.arange(len(values))
     return 0.5 * (ordered[rows, k // 2] + ordered[rows, (k + 1) // 2])

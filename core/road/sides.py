@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from .profiles import crowds_thinned, pseudo_scan_lines
+from .crowds import FEW, few_of_every_cell
+from .profiles import crowds_thinned, joined_runs, places, run_of_profiles
 from .shadows import TALL
 
 SIDES = {"left": 1, "right": -1}
 SECTION = 20.0  # m of road for which the length of blocks is decided
 WORK = 20.0     # m of road worked at a time
-PIECE = 100_000  # points looked at together
 REACH = 20.0    # m from the reference line beyond which no curb is sought
 NODE = 0.25     # m between the nodes of the expected height
 BESIDE = 4.0    # m along the road, and as much again as across, from which a point is used
@@ -39,7 +39,7 @@ def sections_of(survey, road, width):
     return [(int(a), int(b)) for a, b in zip(bounds[:-1], bounds[1:])]
 
 
-def profiles_beside(survey, road, section, tracks, settings):
+def profiles_beside(survey, road, section, tracks, settings, most=FEW):
     """Profiles of one section, for each side and pass apart.
 
     Parameters
@@ -47,47 +47,38 @@ def profiles_beside(survey, road, section, tracks, settings):
     section : (first, last + 1) profile numbers
     tracks : dict of side to Track
     settings : CurbSettings
+    most : points of a cell that are looked at (see `few_of_every_cell`); None for all, as far as they tell its layers better
 
     Yields
     ------
     side, pass number, (u, s, h) of the tall points, PseudoScanLines
     """
     width, spacing = settings.profile_width, settings.point_spacing
-    points = survey.window(road, section[0] * width, section[1] * width)
     stations = (np.arange(*section) + 0.5) * width
     origins = {side: np.floor(tracks[side](stations).min()) for side in SIDES}
-    ground, tall = {}, {}
-    for part in in_pieces(points, section[0] * width, width):
+    runs, tall = {}, {}
+    for part in few_of_every_cell(survey, road, section, width, spacing, most):
         s, d = part.s, part.d
         along = ahead_of_vehicle(survey, part, s)
         near = np.abs(along) < BESIDE + np.abs(d)
         h = part.z - expected_height(survey, road, s)
+        first = int(np.floor(s[0] / width))
+        own = max(first, section[0]), min(int(np.floor(s[-1] / width)) + 1, section[1])
         for side, sign in SIDES.items():
             u = sign * d
-            outward = near & (u > origins[side]) & (u < REACH)
-            for number, own in _by_pass(part.pass_number, outward):
-                beside = u[own], s[own], h[own]
-                kept = crowds_thinned(*beside, section, width, spacing, origins[side], REACH)
-                ground.setdefault((side, number), []).append([v[kept] for v in (*beside, along[own])])
-                kept = np.flatnonzero(beside[2] > TALL)
-                tall.setdefault((side, number), []).append([v[kept] for v in beside])
-    for side, number in sorted(ground, key=lambda key: (list(SIDES).index(key[0]), key[1])):
-        seen = (np.concatenate(column) for column in zip(*ground[side, number]))
-        lines = pseudo_scan_lines(*seen, section, width, spacing, settings.layer_jump, origins[side], REACH)
+            cells = max(int(np.ceil((REACH - origins[side]) / spacing)), 1)
+            for number, seen in _by_pass(part.pass_number, near & (u > origins[side]) & (u < REACH)):
+                key = side, number
+                kept, place = places(u, s, h, seen, own, cells, width, spacing, origins[side])
+                if most is None:
+                    few = crowds_thinned(place)
+                    kept, place = kept[few], place[few]
+                runs.setdefault(key, []).append(run_of_profiles((u, s, h, along), kept, place, own, cells, settings.layer_jump))
+                high = seen[h.take(seen) > TALL]
+                tall.setdefault(key, []).append([v.take(high) for v in (u, s, h)])
+    for side, number in sorted(runs, key=lambda key: (list(SIDES).index(key[0]), key[1])):
+        lines = joined_runs(runs[side, number], section, width, spacing, origins[side])
         yield side, number, tuple(np.concatenate(column) for column in zip(*tall[side, number])), lines
-
-
-def in_pieces(points, start=0.0, width=None):
-    """Points in runs along the road, small enough for the processor's cache.
-
-    With `width` given, every piece holds whole profiles counted from station `start`.
-    """
-    cuts = np.arange(0, len(points), PIECE)
-    if width is not None and len(cuts) > 1:
-        s = points.s
-        edges = np.unique(np.floor((s[cuts[1:]] - start) / width)) * width + start
-        cuts = np.unique(np.r_[0, np.searchsorted(s, edges)])
-    return [points[a:b] for a, b in zip(cuts, np.r_[cuts[1:], len(points)]) if b > a]
 
 
 def _by_pass(numbers, chosen):

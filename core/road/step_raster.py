@@ -38,8 +38,8 @@ class GroundRaster:
     """Ground of a stretch of road on a grid of local map coordinates.
 
     x0, y0 : m, the grid's corner, a whole number of cells from 0
-    x, y, h : (N,) the points of the lowest layer, sorted by cell and height; h above the expected road
-    starts : (rows * columns + 1,) index of the first point of every cell
+    x, y, h : (N,) the points of the lowest layer; h above the expected road
+    place : (N,) the cell of each, row * columns + column
     low : (rows, columns) m, mean height of the lowest layer, NaN where no point lies
     noise : m, spread of heights within a cell of level ground
     """
@@ -49,7 +49,7 @@ class GroundRaster:
     x: np.ndarray
     y: np.ndarray
     h: np.ndarray
-    starts: np.ndarray
+    place: np.ndarray
     low: np.ndarray
     noise: float
 
@@ -64,6 +64,23 @@ class GroundRaster:
         """Local x, y of the middle of cells."""
         return self.x0 + (column + 0.5) * CELL, self.y0 + (row + 0.5) * CELL
 
+    def by_cell(self, x, y, reach):
+        """The points within `reach` metres of local places, sorted by cell.
+
+        Returns
+        -------
+        x, y, h : (M,) of the points
+        starts : (rows * columns + 1,) index of the first point of every cell
+        """
+        near = np.zeros(self.low.shape, np.uint8)
+        near[self.inside(x, y)] = 1
+        cells = 2 * int(np.ceil(reach / CELL)) + 1
+        near = ndimage.maximum_filter(near, cells).ravel().view(bool)
+        own = np.flatnonzero(near.take(self.place))
+        order = own.take(order_by(self.place.take(own)))
+        count = np.bincount(self.place.take(order), minlength=self.low.size)
+        return self.x.take(order), self.y.take(order), self.h.take(order), np.r_[0, np.cumsum(count)]
+
 
 def ground_raster(x, y, h, layer_jump):
     """The ground of points, cell by cell; None where there are none.
@@ -76,24 +93,48 @@ def ground_raster(x, y, h, layer_jump):
     kept = np.flatnonzero((h > -BELOW) & (h < ABOVE))
     if not len(kept):
         return None
-    x, y, h = x[kept], y[kept], h[kept]
+    x, y, h = (v if len(kept) == len(h) else v.take(kept) for v in (x, y, h))
     column, row = np.floor(x / CELL).astype(np.int32), np.floor(y / CELL).astype(np.int32)
     first_column, first_row = int(column.min()), int(row.min())
     columns, rows = int(column.max()) - first_column + 1, int(row.max()) - first_row + 1
-    place = (row - first_row) * columns + column - first_column
-    order = order_by(np.rint((h + BELOW) * 1e4).astype(np.int32), place)
-    place, h = place[order], h[order]
-    ground, _, _ = lowest_layers(place, h, layer_jump)
-    order, place, h = order[ground], place[ground], h[ground]
-    n = np.bincount(place, minlength=rows * columns)
+    row -= first_row
+    row *= columns
+    column -= first_column
+    place = row
+    place += column
+    above = _above_ground(place, h, rows * columns, layer_jump)
+    if above.any():
+        ground = np.flatnonzero(~above)
+        x, y, h, place = (v.take(ground) for v in (x, y, h, place))
+    n, total, squares = _sums(place, h, rows * columns)
     with np.errstate(invalid="ignore", divide="ignore"):
-        low = np.bincount(place, h, rows * columns) / n
-        spread = np.sqrt(np.bincount(place, (h - low[place]) ** 2, rows * columns) / (n - 1))
+        low = total / n
+        spread = np.sqrt(np.maximum(squares - total * low, 0.0) / (n - 1))
     # curbs and grass are rough with any scanner, so the smoother cells tell
     tell = spread[n >= SPREAD_POINTS]
     noise = max(float(np.quantile(tell, SMOOTHER)), LEAST_NOISE) if len(tell) >= SPREAD_CELLS else USUAL_NOISE
-    return GroundRaster(first_column * CELL, first_row * CELL, x[order], y[order], h, np.r_[0, np.cumsum(n)],
-                        low.reshape(rows, columns), noise)
+    return GroundRaster(first_column * CELL, first_row * CELL, x, y, h, place, low.reshape(rows, columns), noise)
+
+
+def _above_ground(place, h, cells, layer_jump):
+    """(N,) bool: does a point lie in another layer than the lowest of its cell?"""
+    n, total, squares = _sums(place, h, cells)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        # heights on either side of a gap have at least this sum of squares about their mean
+        parted = squares - total * total / n > 0.99 * layer_jump**2 * (n - 1) / n
+    above = np.zeros(len(h), bool)
+    own = np.flatnonzero(parted.take(place))
+    if len(own):
+        order = own.take(order_by(np.rint((h.take(own) + BELOW) * 1e4).astype(np.int32), place.take(own)))
+        ground, _, _ = lowest_layers(place.take(order), h.take(order), layer_jump)
+        above[order] = ~ground
+    return above
+
+
+def _sums(place, h, cells):
+    """Of every cell the number of points, the sum of their heights, and of the squares of these."""
+    place = place.astype(np.intp)
+    return np.bincount(place, minlength=cells), np.bincount(place, h, cells), np.bincount(place, h * h, cells)
 
 
 def averaged(raster, layer_jump):
@@ -143,14 +184,14 @@ def _median_about(values, size):
     return np.where(count > 0, middle, 0.0)
 
 
-def driven_ground(raster, slopes, track_x, track_y, inner_x, inner_y, barrier_x, barrier_y, least):
+def driven_ground(raster, slopes, track_x, track_y, inner, barrier_x, barrier_y, least):
     """Level ground connected with the driven track, and where the ground is stepped.
 
     Parameters
     ----------
     slopes : of `ground_slopes`
     track_x, track_y : local places along the driven tracks, less than CELL apart
-    inner_x, inner_y : local places that lie between the road's own curbs
+    inner : (x, y) of local places that lie between the road's own curbs
     barrier_x, barrier_y : the same along lines that are known to bound the road
     least : m, the least step that is sought
 
@@ -171,7 +212,7 @@ def driven_ground(raster, slopes, track_x, track_y, inner_x, inner_y, barrier_x,
     track = np.zeros(there.shape, bool)
     track[raster.inside(track_x, track_y)] = True
     track = ndimage.binary_dilation(track, iterations=int(round(TRACK_HALF / CELL)))
-    track[raster.inside(inner_x, inner_y)] = True
+    track[raster.inside(*inner)] = True
     wanted = np.zeros(label.max() + 1, bool)
     wanted[label[track & passable]] = True
     wanted[0] = False

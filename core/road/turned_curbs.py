@@ -13,9 +13,10 @@ from scipy.spatial import cKDTree
 from ..parallel import in_order
 from ..progress import Progress
 from ..survey.road_frame import CORRIDOR
+from .crowds import FEW, few_of_every_cell
 from .plan_chains import joined_chains, trace_chains
 from .plan_steps import PlanSteps, measure_plan_steps
-from .sides import BESIDE, SIDES, ahead_of_vehicle, expected_height, in_pieces, sections_of
+from .sides import BESIDE, SIDES, ahead_of_vehicle, expected_height, sections_of
 from .step_raster import CELL, averaged, driven_ground, falls_again, ground_raster, ground_slopes, step_places
 from .turned_kinds import like_a_curb, named_curbs
 
@@ -24,6 +25,7 @@ OPENING = 6.0        # m without main curb that are an opening and no driveway
 AT_OPENING = 6.0     # m of main curb beside an opening behind which corners are sought
 BEHIND_CURB = 0.6    # m behind a main curb that are looked at elsewhere
 INNER, INNER_HEIGHT = 0.5, 0.3  # m from a main curb, and about the expected road, where ground inside is road for certain
+NODE = 0.05          # m along the road between the stations at which that is decided
 MARGIN = 2.0         # m of road either side of a section that its own steps need
 NOISY, DENSE = 0.12, 6  # share of the least curb that heights in a cell scatter, and points in one, above which they are averaged
 ON_MAIN = 0.25       # m from a main curb within which a step is that curb
@@ -103,9 +105,7 @@ def find_turned_curbs(survey, road, main, settings, progress=Progress()):
     def work(section):
         return _steps_of_section(survey, road, section, limits, known, barrier, settings)
 
-    width = settings.profile_width
-    sections = [(a * width, b * width) for a, b in sections_of(survey, road, width)]
-    found = [part for part in in_order(work, sections, progress) if part is not None]
+    found = [part for part in in_order(work, sections_of(survey, road, settings.profile_width), progress) if part is not None]
     if not found:
         return []
     steps, falls = PlanSteps.join([part for part, _, _ in found]), np.concatenate([part for _, part, _ in found])
@@ -165,29 +165,37 @@ def _runs(main, line):
     return found
 
 
-def _steps_of_section(survey, road, section, limits, known, barrier, settings):
+def _steps_of_section(survey, road, section, limits, known, barrier, settings, most=FEW):
     """(PlanSteps of a section, where the ground behind each falls again, the scanner's noise); None where there are none."""
-    first, last = section[0] - MARGIN, section[1] + MARGIN
-    seen = [_beside_vehicle(survey, road, part, limits) for part in in_pieces(survey.window(road, first, last))]
+    width = settings.profile_width
+    margin = int(np.ceil(MARGIN / width))
+    profiles = section[0] - margin, section[1] + margin
+    start, end, first, last = (k * width for k in (*section, *profiles))
+    reach = _Reach(limits, first, last)
+    seen = [_beside_vehicle(survey, road, part, reach)
+            for part in few_of_every_cell(survey, road, profiles, width, settings.point_spacing, most)]
     if not seen:
         return None
     *place, along, inner = (np.concatenate(column) for column in zip(*seen))
     raster = ground_raster(*place, settings.layer_jump)
     if raster is None:
         return None
+    dense = len(raster.x) >= DENSE * np.isfinite(raster.low).sum()
+    noisy = dense and raster.noise > NOISY * settings.min_height
+    if noisy and most is not None:
+        # where averages are wanted every point counts
+        return _steps_of_section(survey, road, section, limits, known, barrier, settings, most=None)
     line = survey.frame.road(road)
     slopes = ground_slopes(raster.low)
-    driven, stepped = driven_ground(raster, slopes, *_track(survey, road, first, last), place[0][inner], place[1][inner], *barrier,
+    driven, stepped = driven_ground(raster, slopes, *_track(survey, road, first, last), [v[inner] for v in place[:2]], *barrier,
                                     settings.min_height)
     x, y, nx, ny = step_places(raster, slopes, driven, stepped, settings.min_height, settings.max_height)
     own, _ = line.locate(x, y)
-    fresh = (own >= section[0]) & (own < section[1])
+    fresh = (own >= start) & (own < end)
     if known.n and len(x):
         fresh &= known.query(np.c_[x, y])[0] > ON_MAIN
     if not fresh.any():
         return None
-    dense = len(raster.x) >= DENSE * np.isfinite(raster.low).sum()
-    noisy = dense and raster.noise > NOISY * settings.min_height
     views = _averaged_views(raster, place, along, settings.layer_jump) if noisy else [raster]
     steps = measure_plan_steps(views, x[fresh], y[fresh], nx[fresh], ny[fresh], 0.5 * settings.min_height, settings.max_height)
     lean = [float(np.median(slope[driven])) for slope in slopes]
@@ -195,21 +203,37 @@ def _steps_of_section(survey, road, section, limits, known, barrier, settings):
     return steps, falls, np.full(len(steps), views[0].noise)
 
 
-def _beside_vehicle(survey, road, points, limits):
-    """Of points within limits and near the vehicle: local x, y, height above the expected road, metres ahead of the vehicle,
+def _beside_vehicle(survey, road, points, reach):
+    """Of points within reach and near the vehicle: local x, y, height above the expected road, metres ahead of the vehicle,
     and whether each lies between the road's own curbs: the far side of a long island is road, too, but may not be
     connected with the track by as short a stretch as a section."""
-    s, d = points.s, points.d
-    inside, inner = np.abs(d) <= CORRIDOR, np.zeros(len(d), bool)
-    for side, sign in SIDES.items():
-        limit = limits[side](s)
-        inside &= sign * d <= limit
-        inner |= (sign * d > 0) & (sign * d < limit - BEHIND_CURB - INNER) & (limit < CORRIDOR)
+    inside, inner = reach(points.s, points.d)
+    points, inner = points[inside], inner[inside]
+    s = points.s
     along = ahead_of_vehicle(survey, points, s)
-    inside &= np.abs(along) < BESIDE + np.abs(d)
-    points, s, along, inner = points[inside], s[inside], along[inside], inner[inside]
+    near = np.abs(along) < BESIDE + np.abs(points.d)
+    if not near.all():
+        points, s, along, inner = points[near], s[near], along[near], inner[near]
     h = points.z - expected_height(survey, road, s)
     return points.x, points.y, h, along, inner & (np.abs(h) < INNER_HEIGHT)
+
+
+class _Reach:
+    """How far out both sides are looked at between two stations, at nodes, so that many points cost little."""
+
+    def __init__(self, limits, first, last):
+        self.first = int(np.floor(first / NODE))
+        nodes = np.arange(self.first, int(np.ceil(last / NODE)) + 2) * NODE
+        left, right = (np.minimum(limits[side](nodes), CORRIDOR) for side in SIDES)
+        self.inside = -right, left
+        self.inner = [sign * np.where(limit < CORRIDOR, np.maximum(limit - BEHIND_CURB - INNER, 0.0), 0.0)
+                      for sign, limit in ((-1, right), (1, left))]
+
+    def __call__(self, s, d):
+        """(N,) bool: within the limits, and between the road's own curbs for certain."""
+        k = np.rint(s * (1.0 / NODE)).astype(np.intp)
+        k -= self.first
+        return tuple((d >= low.take(k)) & (d <= high.take(k)) for low, high in (self.inside, self.inner))
 
 
 def _averaged_views(raster, place, along, layer_jump):

@@ -1,0 +1,95 @@
+"""Crowded points thinned before anything else is done with them.
+
+Of level ground a few points of a cell say what all of them would; a curb's face, a
+hedge, and whatever a noisy scanner saw, keep theirs.
+"""
+
+import numpy as np
+
+from ..survey.points import UNIT
+
+FEW = 12          # points of a cell that tell level ground
+LEVEL = 0.008     # m, standard deviation of heights in a cell that is level, on a road that climbs as on one that does not
+UNEVEN = 60       # points of any other cell: more hardly tell its layers better
+TOGETHER = 5.0    # m of road that are read at once
+PIECE = 128_000   # points that are looked through at once: they fit the processor's cache
+LOTS = tuple(np.uint32(odd) for odd in (2654435761, 2246822519, 3266489917))  # large odd factors strew neighbours far apart
+FARTHEST = (1 << 18) - 1  # 0.1 mm from the reference line; what lies beyond is as if it lay there
+
+
+def few_of_every_cell(survey, road, profiles, width, spacing, most=FEW):
+    """The points of profiles in runs along the road, thinned to about `most` where a cell of level ground holds more.
+
+    Parameters
+    ----------
+    profiles : (first, last + 1) numbers of profiles
+    width, spacing : m; a cell is a profile long and about `spacing` wide
+    most : points of one pass in such a cell; None takes all of every cell
+
+    Yields
+    ------
+    Points of whole profiles in canonical order. Which of a cell are taken depends on the points of its profile alone.
+    """
+    together = max(int(round(TOGETHER / width)), 1)
+    for first in range(profiles[0] // together * together, profiles[1], together):
+        own = max(first, profiles[0]), min(first + together, profiles[1])
+        for points in in_pieces(survey.window(road, own[0] * width, own[1] * width), own[0] * width, width):
+            yield points if most is None else points[_few_of(points, width, spacing, most)]
+
+
+def in_pieces(points, start, width):
+    """Points in runs along the road of whole profiles counted from station `start`, small enough for the processor's cache."""
+    cuts = np.arange(0, len(points), PIECE)
+    if len(cuts) > 1:
+        edges = np.unique(np.floor((points.records["s"][cuts[1:]] * UNIT - start) / width)) * width + start
+        cuts = np.unique(np.r_[0, np.searchsorted(points.records["s"], np.ceil(edges / UNIT - 0.01).astype(np.int32))])
+    return [points[a:b] for a, b in zip(cuts, np.r_[cuts[1:], len(points)]) if b > a]
+
+
+def _few_of(points, width, spacing, most):
+    """Indices of the points that are taken, ascending."""
+    columns = [points.records[name] for name in ("s", "d", "z")]
+    numbers = points.records["pass_number"]
+    if numbers.min() == numbers.max():
+        return _thinned(*columns, width, spacing, most)
+    kept = []
+    for number in np.flatnonzero(np.bincount(numbers)):
+        own = np.flatnonzero(numbers == number)
+        kept.append(own[_thinned(*(column.take(own) for column in columns), width, spacing, most)])
+    return np.sort(np.concatenate(kept))
+
+
+def _thinned(s, d, z, width, spacing, most):
+    """Indices of the points taken of every cell; stations s (ascending), offsets d and heights z in 0.1 mm."""
+    rows = np.arange(np.floor(s[0] * UNIT / width), np.floor(s[-1] * UNIT / width) + 1)
+    count = np.diff(np.searchsorted(s, np.ceil(rows[1:] * width / UNIT - 0.01).astype(np.int32)), prepend=0, append=len(s))
+    if count.max() <= most:
+        return np.arange(len(s))
+    bits = int(np.rint(np.log2(spacing / UNIT)))
+    half = (FARTHEST >> bits) + 1
+    # the two sides of a road are parted alike
+    out = np.abs(d)
+    cell = np.minimum(out, FARTHEST)
+    cell >>= bits
+    cell += (d < 0) * np.int32(half)
+    cell += np.repeat((np.arange(len(count)) * 2 * half).astype(np.int32), count)
+    cell = cell.astype(np.intp)
+    held = np.bincount(cell)
+    if held.max() <= most:
+        return np.arange(len(s))
+    z = z.astype(float)
+    total, squares = np.bincount(cell, z), np.bincount(cell, z * z)
+    held = np.maximum(held, 1)
+    level = squares - total * total / held <= held * (LEVEL / UNIT) ** 2
+    share = np.minimum(np.where(level, most, UNEVEN) * (65536.0 / held), 65535.0).astype(np.uint16)
+    return np.flatnonzero(_by_lot(s, out) <= share.take(cell))
+
+
+def _by_lot(s, out):
+    """(N,) uint16 that depend on nothing but the place of a point, and on it without a pattern."""
+    lot = s.view(np.uint32) * LOTS[0]
+    lot += out.view(np.uint32) * LOTS[1]
+    lot ^= lot >> np.uint32(15)
+    lot *= LOTS[2]
+    lot >>= np.uint32(16)
+    return lot.astype(np.uint16)
