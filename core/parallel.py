@@ -4,13 +4,14 @@ import os
 import threading
 from collections import deque
 from concurrent.futures import ThreadPoolExecutor, wait
+from contextlib import contextmanager
 
 from .errors import Cancelled
 from .progress import Progress
 
 PATIENCE = 0.2   # s between two questions whether to go on, while a result is waited for
 
-_worker = threading.local()
+_thread = threading.local()
 
 
 def in_order(function, items, progress=Progress(), threads=None):
@@ -25,8 +26,12 @@ def in_order(function, items, progress=Progress(), threads=None):
     threads = threads or min(4, os.cpu_count() or 1)
     stop = threading.Event()
 
+    def ask():
+        if stop.is_set():
+            raise Cancelled
+
     def work(item):
-        _worker.stop = stop
+        _thread.ask = ask
         return function(item)
 
     with ThreadPoolExecutor(threads) as pool:
@@ -45,14 +50,26 @@ def in_order(function, items, progress=Progress(), threads=None):
                 future.cancel()
 
 
+@contextmanager
+def heard(progress):
+    """While this lasts, `go_on` in this thread asks `progress` whether to go on."""
+    before = getattr(_thread, "ask", None)
+    _thread.ask = progress.ask
+    try:
+        yield
+    finally:
+        _thread.ask = before
+
+
 def go_on():
-    """Called now and then in long work: ends it where nobody waits for its result any more.
+    """Called now and then in long work that has no `progress` at hand.
 
     Raises
     ------
     Cancelled
-        In a thread of `in_order` whose results are no longer taken.
+        Where the user pressed Cancel (`heard`), or in a thread of `in_order` whose results
+        are no longer taken.
     """
-    stop = getattr(_worker, "stop", None)
-    if stop is not None and stop.is_set():
-        raise Cancelled
+    ask = getattr(_thread, "ask", None)
+    if ask is not None:
+        ask()

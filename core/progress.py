@@ -11,6 +11,9 @@ class Progress:
     def at(self, fraction):
         """Report the fraction done, 0 to 1, of this computation."""
 
+    def ask(self):
+        """Raise Cancelled where the work shall stop; the bar stays where it is."""
+
     def say(self, text):
         """Report a finding or a step in one line."""
 
@@ -25,7 +28,7 @@ class Progress:
 class _Part(Progress):
     def __init__(self, whole, start, end):
         self.whole, self.start, self.span = whole, start, end - start
-        self.say, self.warn = whole.say, whole.warn
+        self.say, self.warn, self.ask = whole.say, whole.warn, whole.ask
 
     def at(self, fraction):
         self.whole.at(self.start + self.span * min(max(fraction, 0.0), 1.0))

@@ -83,18 +83,26 @@ class RoadMap:
     marking_curvature: object = None    # MarkingCurvature, None without lines
 
 
+# How long each stage takes by boundary method, in proportions, as `make bench` measures it
+SHARES = {
+    "profiles": dict(survey=22, curbs=22, edges=0.5, surface=12, intensity=7, image=7, markings=15, outliers=3, clusters=2, lines=4, driving=5),
+    "scanlines": dict(survey=18, curbs=36, edges=0.5, surface=9, intensity=6, image=6, markings=13, outliers=3, clusters=2, lines=3, driving=4),
+    "both": dict(survey=15, curbs=45, edges=0.5, surface=8, intensity=5, image=5, markings=11, outliers=2, clusters=2, lines=3, driving=3.5),
+}
+
+
 class _Stages:
     """Runs the stages one after the other, each with its share of the bar, and takes their times."""
 
-    # shares of the whole as measured on sample surveys
-    SHARES = dict(survey=0.22, curbs=0.28, edges=0.01, surface=0.09, intensity=0.07, image=0.08, markings=0.08,
-                  outliers=0.06, clusters=0.06, lines=0.02, driving=0.03)
-
-    def __init__(self, progress):
+    def __init__(self, progress, settings):
         self.progress, self.done, self.seconds = progress, 0.0, {}
+        shares = dict(SHARES[settings.boundary_method])
+        if not settings.correct:
+            del shares["intensity"]
+        self.shares = {name: share / sum(shares.values()) for name, share in shares.items()}
 
     def run(self, name, title, function, *arguments, **options):
-        share = self.SHARES[name]
+        share = self.shares[name]
         self.progress.say(title)
         began = time.perf_counter()
         result = function(*arguments, progress=self.progress.part(self.done, self.done + share), **options)
@@ -123,7 +131,7 @@ def make_road_map(paths, trajectory, image_path, settings=RoadMapSettings(), pro
         If a stage cannot work with what it is given. A cloud without intensity still
         yields edges and surface; `without_paint` then says why markings are missing.
     """
-    stages = _Stages(progress)
+    stages = _Stages(progress, settings)
     survey = stages.run("survey", "Reading the survey …", open_survey, paths, trajectory, settings.survey)
     try:
         found = stages.run("curbs", "Detecting curbs …", find_curb_points, survey, settings.boundaries)
@@ -134,7 +142,7 @@ def make_road_map(paths, trajectory, image_path, settings=RoadMapSettings(), pro
         facts = dict(files=len(survey.files), scanners=len(survey.scanners), passes=len(survey.frame.passes),
                      roads=len(survey.frame.roads), sensor_height=survey.sensor_height, **survey.counts)
         has_intensity = survey.has_intensity
-        density = _density(survey, survey.store), _density(road_points, road_points)
+        density = tuple(_density(points, store, progress, stages.done) for points, store in ((survey, survey.store), (road_points, road_points)))
     finally:
         survey.store.close()
     result = RoadMap(survey.frame, survey.crs, curb_points, edges, surface, road_points,
@@ -150,8 +158,15 @@ def make_road_map(paths, trajectory, image_path, settings=RoadMapSettings(), pro
     return result
 
 
-def _density(points, store):
-    return cube_density(points.section(road, number) for road in store.roads() for number in store.sections(road))
+def _density(points, store, progress, done):
+    """CubeDensity of points; `done` is where the bar stands meanwhile."""
+    def sections():
+        for road in store.roads():
+            for number in store.sections(road):
+                progress.at(done)
+                yield points.section(road, number)
+
+    return cube_density(sections())
 
 
 def _paint(result, image_path, settings, stages):

@@ -21,6 +21,7 @@ from qgis.core import (
 )
 
 from ..core.errors import Cancelled, RoadExtractionError
+from ..core.parallel import heard
 from .call import Call
 from .dependencies import missing_packages
 from .progress import FeedbackProgress
@@ -113,7 +114,9 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         call = Call(self, parameters, context, feedback)
         try:
             call.check_destinations()
-            results = self.work(call, FeedbackProgress(feedback))
+            progress = FeedbackProgress(feedback)
+            with heard(progress):
+                results = self.work(call, progress)
             return call.finish(results or {})
         except RoadExtractionError as error:
             raise QgsProcessingException(call.in_users_names(str(error))) from None

@@ -13,9 +13,12 @@ class FeedbackProgress(Progress):
         self.feedback = feedback
         self._remaining = remaining or RemainingTime()
 
-    def at(self, fraction):
+    def ask(self):
         if self.feedback.isCanceled():
             raise Cancelled
+
+    def at(self, fraction):
+        self.ask()
         self.feedback.setProgress(100.0 * fraction)
         left = self._remaining.after(fraction)
         if left is not None:

@@ -6,15 +6,17 @@ import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
+from ..parallel import go_on
 from .places import Segments, single_lines
 
 KERNEL = 0.2         # m, radius of the neighbourhood, as the driving-line thesis has it
-SAMPLE = 1500        # marking points whose curvature is taken, spread evenly
+TRIED = 4500         # marking points, spread evenly, that are looked at for being beside a line,
+SAMPLE = 1500        # and how many of these have their curvature taken
 LEAST = 12           # neighbours that a quadric of six coefficients needs to mean something
 FLAT = 0.03          # least share of the second principal direction: below, the neighbours lie in a line
 STEADY = 1e3         # largest condition of the equations for the quadric
 BESIDE = 0.25        # m from a fitted line within which a point is its paint
-BLOCK = 250          # neighbourhoods solved at a time
+BLOCK = 100          # neighbourhoods solved at a time
 DIAGRAM_STEP = 1.0   # m between the values of a curvature diagram
 DIAGRAM_BASE = 5.0   # m to either side over which a heading changes
 
@@ -52,17 +54,48 @@ def marking_curvature(points, lines, origin):
     shift = np.asarray(origin, float)
     local = shapely.transform(np.asarray(lines, object), lambda xyz: xyz - shift, include_z=True)
     xyz = np.c_[points.x, points.y, points.z]
-    feet = Segments(local).nearest(xyz[:, :2])
-    near = (feet.distance <= BESIDE) & np.isfinite(feet.z)
-    if near.sum() < LEAST:
+    segments = Segments(local)
+    which = _spread(len(xyz), TRIED)
+    feet = segments.nearest(xyz[which, :2])
+    beside = np.flatnonzero((feet.distance <= BESIDE) & np.isfinite(feet.z))
+    if len(beside) < LEAST:
         return None
-    fitted = np.c_[xyz[near, :2], feet.z[near]]
-    which = np.unique(np.linspace(0, near.sum() - 1, min(int(near.sum()), SAMPLE)).astype(int))
-    before, after = mean_curvature(xyz[near], which), mean_curvature(fitted, which)
+    beside = beside[_spread(len(beside), SAMPLE)]
+    before, after = _before_and_after(xyz, which[beside], feet.only(beside), segments)
     known = np.isfinite(before) & np.isfinite(after)
     if not known.any():
         return None
     return MarkingCurvature(float(np.abs(before[known]).mean()), float(np.abs(after[known]).mean()), int(known.sum()))
+
+
+def _spread(count, most):
+    """At most so many of `count` rows, evenly spread."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).astype(int))
+
+
+def _before_and_after(xyz, which, feet, segments):
+    """Mean curvature at the rows `which`, (K,) each: of the points, and of these at the height of the line beside them.
+
+    Points in the kernel are brought to the line that is nearest to the middle of the kernel, which on
+    0.2 m is as good as the line nearest to each.
+    """
+    tree, found = _tree(xyz), np.full((2, len(which)), np.nan)
+    heading = segments.heading_at(feet.line, feet.station)
+    ahead = np.stack([np.cos(heading), np.sin(heading)], axis=1)
+    for first in range(0, len(which), BLOCK):
+        go_on()
+        rows = np.arange(first, min(first + BLOCK, len(which)))
+        owner, member = _around(tree, xyz, which[rows], KERNEL)
+        own = rows[owner]
+        step = xyz[member, :2] - feet.xy[own]
+        beside = np.abs(step[:, 1] * ahead[own, 0] - step[:, 0] * ahead[own, 1]) <= BESIDE
+        owner, member, own, step = owner[beside], member[beside], own[beside], step[beside]
+        count = np.bincount(owner, minlength=len(rows))
+        off = xyz[member] - xyz[which[own]]
+        found[0, rows] = _quadrics(off, count, KERNEL)
+        _, height = segments.at(feet.line[own], feet.station[own] + (step * ahead[own]).sum(axis=1))
+        found[1, rows] = _quadrics(np.c_[off[:, :2], height - feet.z[own]], count, KERNEL)
+    return found
 
 
 def mean_curvature(xyz, which, radius=KERNEL):
@@ -74,18 +107,27 @@ def mean_curvature(xyz, which, radius=KERNEL):
 
     of f(x, y) = a + b x + c y + d x² + e xy + g y², fitted in the frame of the neighbours' principal directions.
     """
-    tree, found = cKDTree(xyz), np.full(len(which), np.nan)
+    tree, found = _tree(xyz), np.full(len(which), np.nan)
     for first in range(0, len(which), BLOCK):
-        rows = slice(first, first + BLOCK)
-        found[rows] = _quadrics(xyz, which[rows], tree, radius)
+        some = which[first:first + BLOCK]
+        owner, member = _around(tree, xyz, some, radius)
+        found[first:first + BLOCK] = _quadrics(xyz[member] - xyz[some][owner], np.bincount(owner, minlength=len(some)), radius)
     return found
 
 
-def _quadrics(xyz, which, tree, radius):
+def _tree(xyz):
+    return cKDTree(xyz, balanced_tree=False, compact_nodes=False)
+
+
+def _around(tree, xyz, which, radius):
+    """(owner, member): which of the rows `which` has which point in its kernel, owner by owner."""
     around = tree.query_ball_point(xyz[which], radius)
-    count = np.fromiter((len(rows) for rows in around), int, len(around))
-    owner, member = np.repeat(np.arange(len(which)), count), np.concatenate(around).astype(int)
-    off = xyz[member] - xyz[which][owner]
+    return np.repeat(np.arange(len(which)), [len(rows) for rows in around]), np.concatenate(around).astype(int)
+
+
+def _quadrics(off, count, radius):
+    """Mean curvature of neighbourhoods: (N, 3) places about each one's point, `count` (K,) of them after each other, none empty."""
+    owner = np.repeat(np.arange(len(count)), count)
     starts = np.cumsum(count) - count
     mean = np.add.reduceat(off, starts) / count[:, None]
     centred = off - mean[owner]

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from ..parallel import go_on
 from ..progress import Progress
 
 STEP = 0.1       # m between compared places along a line
@@ -170,6 +171,7 @@ class Segments:
         parts = []
         for k in range(0, len(xy), BATCH):
             progress.at(k / len(xy))
+            go_on()
             some = slice(k, k + BATCH)
             if max_angle is not None and self._heading is None:
                 self._heading = self.heading_at(self.line, self.start + self.length / 2)

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..parallel import go_on
+
 F_SCALE = 0.03        # m: residuals beyond this count less and less (soft L1)
 NOISE_FLOOR = 0.004   # m: below it a smaller residual is no reason for a more complex curve
 
@@ -115,6 +117,7 @@ def _levenberg(residuals, jacobian, found, scale, f_scale):
 
 def checked(x, y, least):
     """x, y as float arrays of one length, at least `least` points; ValueError otherwise (a caller's mistake)."""
+    go_on()  # every fit begins here, and a long drive has hundreds
     x, y = np.asarray(x, float), np.asarray(y, float)
     if x.shape != y.shape or x.ndim != 1 or len(x) < least:
         raise ValueError(f"a curve needs x and y of one length, at least {least} points; got {x.shape} and {y.shape}")

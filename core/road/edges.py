@@ -9,6 +9,7 @@ from scipy.ndimage import median_filter
 
 from ..errors import RoadExtractionError
 from ..features import Features
+from ..parallel import go_on
 from ..progress import Progress
 from ..schemas import ROAD_EDGES, of_main_curb
 from .nearest_pass import name_passes
@@ -171,6 +172,7 @@ def _draw(edges, frame, road, side, piece, number):
     changes = np.flatnonzero(np.diff(bridged.astype(int))) + 1
     bounds = np.r_[0, changes, len(points) - 1]
     for i, j in zip(bounds[:-1], bounds[1:]):
+        go_on()
         a, b = curve.t[i], curve.t[j]
         vertices = curve.at(np.linspace(a, b, max(int(np.ceil((b - a) / VERTEX)), 1) + 1))
         rows = points[i:j + 1]

@@ -5,7 +5,7 @@ import time
 
 import pytest
 from lanewright.core.errors import Cancelled
-from lanewright.core.parallel import go_on, in_order
+from lanewright.core.parallel import go_on, heard, in_order
 from lanewright.core.progress import Progress
 
 
@@ -71,6 +71,19 @@ def test_cancel_is_heard_while_a_section_is_worked_and_ends_it():
     with pytest.raises(Cancelled):
         list(in_order(endless, range(3), progress, threads=1))
     assert progress.asked == 3 and ended.is_set()
+
+
+def test_long_work_without_a_bar_is_heard_where_someone_listens():
+    class Stop(Progress):
+        def ask(self):
+            raise Cancelled
+
+    with heard(Progress().part(0.2, 0.4)):
+        go_on()
+        with pytest.raises(Cancelled), heard(Stop().part(0.2, 0.4)):
+            go_on()
+        go_on()
+    go_on()
 
 
 def test_go_on_lets_everyone_pass_who_is_still_waited_for():
