@@ -3,7 +3,8 @@
 import numpy as np
 
 from ..survey.points import UNIT
-from .shapes import CELL, fill_gaps
+from .polygons import fill_gaps
+from .shapes import CELL
 
 
 def morphology(mask, settings):

@@ -11,7 +11,7 @@ from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from ..survey.points import UNIT
-from .shapes import fill_gaps, middle
+from .shapes import middle
 
 CELL = 0.04          # m, in station and in offset
 CLOSE_ALONG = 0.40   # m of station over which a gap is closed
@@ -22,6 +22,18 @@ SMALLEST_PART = 0.005  # m2: three cells
 OUTLINE = 0.025      # m by which a simplified outline may leave the cells
 VERTEX_SPACING = 1.0  # m of station between vertices: 2 mm of sagitta at R = 60 m
 HEIGHT_NEIGHBOURS = 8
+
+
+def fill_gaps(mask, limit, axis=0):
+    """Close runs of at most `limit` cells that are off between two that are on, along one axis."""
+    if limit < 1:
+        return mask.copy()
+    on = np.moveaxis(mask, axis, 0)
+    count = len(on)
+    index = np.arange(count).reshape((-1,) + (1,) * (on.ndim - 1))
+    before = np.maximum.accumulate(np.where(on, index, -count * 2), axis=0)
+    after = np.minimum.accumulate(np.where(on, index, count * 4)[::-1], axis=0)[::-1]
+    return np.moveaxis(on | (after - before - 1 <= limit), 0, axis)
 
 
 def band(s, d, shape):

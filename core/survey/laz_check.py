@@ -48,6 +48,31 @@ def damage(path):
         return _chunk_table(file, points_at, size, record, count)
 
 
+def points_per_chunk(path):
+    """Points that are compressed together in an undamaged file: 1 in a LAS file, 0 where the number changes."""
+    with open(path, "rb") as file:
+        compressed, record, _ = _compression(file)
+        size = _chunk_size(record) if compressed else 1
+        return 0 if size == VARIABLE_CHUNKS else size
+
+
+def chunks_of(path):
+    """The LASzip record of an undamaged LAZ file, the byte at which its chunks begin, and their [(points, bytes)]."""
+    import lazrs
+
+    with open(path, "rb") as file:
+        _, record, points_at = _compression(file)
+        file.seek(points_at)
+        return record, points_at + 8, lazrs.read_chunk_table(file, lazrs.LazVlr(record))
+
+
+def _compression(file):
+    """Whether a file's points are compressed, its LASzip record, and the byte at which its points begin."""
+    head = file.read(227)
+    header_size, points_at, vlrs = struct.unpack_from("<HII", head, 94)
+    return bool(head[104] & COMPRESSED), _laszip(file, header_size, vlrs, points_at), points_at
+
+
 def _laszip(file, header_size, vlrs, points_at):
     """The LASzip record; None where there is none, or it is too short."""
     at = header_size

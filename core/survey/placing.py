@@ -1,9 +1,9 @@
 """Station and offset of many points at once: a lookup along the trajectory, then the foot on the reference line.
 
 The vehicle's station at a point's time says where on the road the foot is sought.
-Two steps from node to node of the reference line come within a node of it, and
-within one node the foot follows in closed form, as the line between nodes is straight
-and its direction turns evenly. The few points that this does not reach (in tight bends, far
+A few steps from node to node of the reference line come within a node of it (one where
+the road is straight), and within one node the foot follows in closed form, as the line
+between nodes is straight and its direction turns evenly. The few points that this does not reach (in tight bends, far
 beside the road) are followed step by step with `Road.locate`.
 """
 
@@ -13,6 +13,8 @@ from .driven_pass import MOST_TICKS, TICK
 from .reference_line import NODE
 
 AT_ONCE = 1 << 15     # points worked at a time: what fits the processor's cache
+MOST_STEPS = 3        # from node to node for the few points that one step from the vehicle's node leaves beside their own
+BESIDE = 1e-3         # of a node beyond its ends: the direction there is that of the next one to 1e-6
 CLOCK_SLACK = 1.0     # s that a cloud may begin before or end after the trajectory
 
 
@@ -111,36 +113,56 @@ class _Line:
         self.length, self.sag, self.turn = dx * c + dy * n, dx * n - dy * c, dx * dn - dy * dc
 
     def _seen_from(self, k, x, y):
-        """Metres ahead of a node and to its left, and its direction."""
+        """Metres east and north of a node, its direction, metres ahead of it and to its left, and the bend there."""
         c, n = self.c.take(k), self.n.take(k)
-        x, y = x - self.x.take(k), y - self.y.take(k)
-        return x, y, c, n, x * c + y * n, y * c - x * n
+        east, north = self.x.take(k), self.y.take(k)
+        np.subtract(x, east, out=east)
+        np.subtract(y, north, out=north)
+        ahead, left = east * c, north * c
+        ahead += north * n
+        left -= east * n
+        return east, north, c, n, ahead, left, self.bend.take(k)
 
-    def _step(self, k, x, y, rounding):
-        """The node at whose normal a place lies, as seen from node k."""
-        *_, ahead, left = self._seen_from(k, x, y)
-        left *= self.bend.take(k)
-        np.subtract(1.0, left, out=left)
-        np.clip(left, 0.4, 2.5, out=left)
-        ahead /= left
-        np.clip(ahead, -30.0, 30.0, out=ahead)
-        ahead *= 1.0 / NODE
-        ahead += rounding
-        np.floor(ahead, out=ahead)
-        k = k + ahead.astype(np.intp)
+    @staticmethod
+    def _nodes_on(ahead, left, bend):
+        """How many nodes on, a whole number, the place lies that a node sees so far ahead and to its left."""
+        on = left * bend
+        np.subtract(1.0, on, out=on)
+        np.clip(on, 0.4, 2.5, out=on)
+        np.divide(ahead, on, out=on)
+        np.clip(on, -30.0, 30.0, out=on)
+        on *= 1.0 / NODE
+        return np.floor(on, out=on)
+
+    def _moved(self, k, on):
+        k = k + on.astype(np.intp)
         return np.clip(k, 0, self.last, out=k)
 
     def feet(self, x, y, k, corridor):
         """Station and offset of places near whose foot node k lies; NaN as `Road.locate` has it."""
         start = k
-        k = self._step(self._step(start, x, y, 0.5), x, y, 0.0)
-        x0, y0, c, n, ahead, left = self._seen_from(k, x, y)
+        k = self._moved(start, self._nodes_on(*self._seen_from(start, x, y)[4:]))
+        seen = self._seen_from(k, x, y)
+        on = self._nodes_on(*seen[4:])
+        rows = np.flatnonzero(on != 0)
+        on = on.take(rows)
+        for _ in range(MOST_STEPS):
+            if not len(rows):
+                break
+            k[rows] = self._moved(k.take(rows), on)
+            again = self._seen_from(k.take(rows), x.take(rows), y.take(rows))
+            for whole, part in zip(seen, again):
+                whole[rows] = part
+            on = self._nodes_on(*again[4:])
+            left_over = np.flatnonzero(on)
+            rows, on = rows.take(left_over), on.take(left_over)
+        x0, y0, _, _, ahead, left, bend = seen
         dc, dn = self.dc.take(k), self.dn.take(k)
         # (E - f D) . (T + f T') = 0 for the share f of the node; D . T' is nothing beside D . T
         share = ahead / (self.length.take(k) - x0 * dc - y0 * dn)
         d = left + share * (y0 * dc - x0 * dn + self.sag.take(k) + share * self.turn.take(k))
         s = self.road.start + (k + share) * NODE
-        near = (share >= -1e-6) & (share <= 1.0 + 1e-6) & (np.abs(left * self.bend.take(k)) < 0.55)
+        near = (share >= -BESIDE) & (share <= 1.0 + BESIDE) & (np.abs(left * bend) < 0.55)
         inside = near & (s >= self.road.start) & (s < self.road.end) & (np.abs(d) <= corridor)
         if not inside.all():
             s[~inside] = d[~inside] = np.nan

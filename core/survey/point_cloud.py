@@ -4,10 +4,8 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from ..errors import Cancelled, RoadExtractionError
-from .laz_check import damage
+from .laz_check import damage, points_per_chunk
 
 BLOCK = 200_000  # points decoded at a time
 SUFFIXES = (".las", ".laz")
@@ -20,7 +18,8 @@ class CloudFile:
 
     `minimum` and `maximum` are (3,) map coordinates; `crs` is WKT or "";
     `adjusted_time` tells whether gps_time is adjusted standard GPS time
-    (global encoding bit 0) or seconds of the GPS week.
+    (global encoding bit 0) or seconds of the GPS week. `chunk` is the number of
+    points that are compressed together: 1 in a LAS file, 0 where it changes.
     """
 
     path: str
@@ -34,13 +33,15 @@ class CloudFile:
     has_time: bool
     has_channel: bool
     adjusted_time: bool
+    chunk: int = 0
 
 
-def open_cloud(path, wanted=None):
+def open_cloud(path, wanted=None, alone=False):
     """Open a LAS/LAZ/COPC file for reading with laspy, or say in one sentence why it cannot be read.
 
     `wanted` names the layers of a LAZ 1.4 file that are decoded beside place and
-    return numbers ("z", "intensity" ...), all by default.
+    return numbers ("z", "intensity" ...), all by default. `alone` has them decoded
+    in the thread that asks for them, of a file that was opened before.
     """
     import laspy
 
@@ -49,20 +50,28 @@ def open_cloud(path, wanted=None):
         raise RoadExtractionError(f"There is no file {path}. Check the path of the point cloud.")
     if not path.lower().endswith(SUFFIXES):
         raise RoadExtractionError(f"{path} is not a LAS or LAZ file. Lanewright reads .las, .laz and .copc.laz; convert other formats first.")
-    if wrong := damage(path):
+    if not alone and (wrong := damage(path)):
         raise RoadExtractionError(f"{path} is damaged or cut off: {wrong}. Copy or export the file again.")
     try:
-        if wanted is None:
-            return laspy.open(path)
-        selection = laspy.DecompressionSelection.base()
-        for name in wanted:
-            selection = getattr(selection, f"decompress_{name}")()
-        return laspy.open(path, decompression_selection=selection)
+        options = dict(laz_backend=(laspy.LazBackend.Lazrs, laspy.LazBackend.Laszip)) if alone else {}
+        return laspy.open(path, decompression_selection=layers(wanted), **options)
     except BaseException as problem:  # laspy and its backends raise many kinds for a damaged file, no Exceptions among them
         if isinstance(problem, NOT_THE_FILE):
             raise
         raise RoadExtractionError(
             f"{path} cannot be read as a LAS/LAZ file ({problem}). It may be damaged or cut off; copy or export it again.") from problem
+
+
+def layers(wanted):
+    """laspy's selection of the layers with these names, of all where they are None."""
+    import laspy
+
+    if wanted is None:
+        return laspy.DecompressionSelection.all()
+    selection = laspy.DecompressionSelection.base()
+    for name in wanted:
+        selection = getattr(selection, f"decompress_{name}")()
+    return selection
 
 
 def read_header(path):
@@ -76,33 +85,11 @@ def read_header(path):
     with open_cloud(path) as reader:
         header = reader.header
         names = set(header.point_format.dimension_names)
-        if not (np.isfinite(header.scales).all() and np.isfinite(header.offsets).all() and np.all(header.scales)):
-            raise RoadExtractionError(
-                f"{path} is damaged: its header says scales of {_listed(header.scales)} and offsets of {_listed(header.offsets)}, with which "
-                "no point has a place. Export the file again.")
-        count, low, high = int(header.point_count), header.mins, header.maxs
-        reach = 2.0**31 * np.abs(header.scales)  # of coordinates kept as 32-bit integers
-        there = (header.offsets - reach <= low) & (low <= high) & (high <= header.offsets + reach)
-        if count > 1 and not (there.all() and (low < high).any()):
-            low, high = _bounds(path)  # a program that never filled them in
         return CloudFile(
-            str(path), str(header.version), header.point_format.id, count,
-            tuple(map(float, low)), tuple(map(float, high)), tuple(map(float, header.scales)),
+            str(path), str(header.version), header.point_format.id, int(header.point_count),
+            tuple(map(float, header.mins)), tuple(map(float, header.maxs)), tuple(map(float, header.scales)),
             _crs_of(header), "gps_time" in names, "scanner_channel" in names,
-            bool(header.global_encoding.gps_time_type.value))
-
-
-def _listed(numbers):
-    return ", ".join(f"{number:g}" for number in numbers)
-
-
-def _bounds(path):
-    """Least and largest coordinates of the points themselves, (3,) each."""
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for block in read_blocks(path):
-        places = np.stack([np.asarray(block[name], float) for name in "xyz"])
-        low, high = np.minimum(low, places.min(axis=1)), np.maximum(high, places.max(axis=1))
-    return low, high
+            bool(header.global_encoding.gps_time_type.value), points_per_chunk(path))
 
 
 def _crs_of(header):
@@ -124,19 +111,44 @@ def read_blocks(path, size=BLOCK, wanted=None):
     """
     with open_cloud(path, wanted) as reader:
         promised, read = reader.header.point_count, 0
-        try:
-            for points in reader.chunk_iterator(size):
-                read += len(points)
-                yield points
-        except BaseException as problem:
-            if isinstance(problem, (RoadExtractionError, *NOT_THE_FILE)):
-                raise
-            raise RoadExtractionError(
-                f"{path} is damaged: its header promises {promised} points, {read} could be read ({problem}). "
-                "Copy or export the file again.") from problem
-        if read < promised:
-            raise RoadExtractionError(
-                f"{path} is cut off: its header promises {promised} points, {read} are there. Copy or export the file again.")
+        while read < promised:
+            points = read_points(reader, path, read, size)
+            read += len(points)
+            yield points
+
+
+def read_points(reader, path, first, count):
+    """`count` points of an open file from number `first` on, or what is left of them.
+
+    Raises
+    ------
+    RoadExtractionError
+        If they cannot be read, or the file ends before.
+    """
+    promised = reader.header.point_count
+
+    def read():
+        if reader.points_read != first:
+            reader.seek(first)
+        return reader.read_points(count)
+
+    points = told(read, path, promised, first)
+    if len(points) < min(count, promised - first):
+        raise RoadExtractionError(
+            f"{path} is cut off: its header promises {promised} points, {first + len(points)} are there. Copy or export the file again.")
+    return points
+
+
+def told(read, path, promised, first):
+    """What a function reads from number `first` on, or in one sentence why it cannot."""
+    try:
+        return read()
+    except BaseException as problem:
+        if isinstance(problem, NOT_THE_FILE):
+            raise
+        raise RoadExtractionError(
+            f"{path} is damaged: its header promises {promised} points, {first} could be read ({problem}). "
+            "Copy or export the file again.") from problem
 
 
 def read_headers(paths):

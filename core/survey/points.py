@@ -64,23 +64,24 @@ class Points:
 
 def canonical_order(records):
     """Indices that sort records by station, offset, height and time: the same whatever order files came in."""
-    s, d = records["s"], records["d"]
-    if not len(s):
+    if not len(records):
         return np.empty(0, np.intp)
-    across, along = above_least(d), above_least(s)
-    across = (across >> max(int(across.max()).bit_length() - BITS, 0)).astype(np.uint16)
-    order = np.argsort(across, kind="stable")
-    for shift in range(0, max(int(along.max()).bit_length(), 1), BITS):
+    across, along = above_least(records["d"]), above_least(records["s"])
+    across >>= max(int(across.max()).bit_length() - BITS, 0)
+    length = int(along.max()).bit_length()
+    order = np.argsort(across.astype(np.uint16), kind="stable")
+    for shift in range(0, max(length, 1), BITS):
         digit = (along >> shift).astype(np.uint16)
-        order = order[np.argsort(digit[order], kind="stable")]
+        order = order.take(np.argsort(digit.take(order), kind="stable"))
     # the few that share a station to the last digit and an offset nearly are left to sort
-    along, across = along[order], across[order]
-    as_before = np.r_[False, (along[1:] == along[:-1]) & (across[1:] == across[:-1])]
-    tied = np.flatnonzero(as_before | np.r_[as_before[1:], False])
-    if len(tied):
+    place = along.astype(np.uint64 if length > BITS else np.uint32) << BITS
+    place = np.bitwise_or(place, across, out=place).take(order)
+    repeated = np.flatnonzero(place[1:] == place[:-1])
+    if len(repeated):
+        tied = np.union1d(repeated, repeated + 1)
         rows = order[tied]
         keys = [records[name][rows] for name in ("returns", "source", "y", "x", "intensity", "time", "z", "d")]
-        order[tied] = rows[np.lexsort([*keys, np.cumsum(~as_before[tied])])]
+        order[tied] = rows[np.lexsort([*keys, place[tied]])]
     return order
 
 

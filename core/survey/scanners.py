@@ -17,14 +17,16 @@ class ScannerCensus:
 
     def add(self, name, values, time):
         """Take note of a block: (N,) values of one LAS field and (N,) gps_time."""
+        self.take(name, times_by_value(values, time))
+
+    def take(self, name, times):
+        """Take note of what `times_by_value` found in a block."""
         seen = self.spans[name]
         if len(seen) > 4 * MOST_SCANNERS:
             return
-        counts = np.bincount(values)
-        for value in np.flatnonzero(counts)[: 4 * MOST_SCANNERS + 1]:
-            times = time if counts[value] == len(values) else time[values == value]
-            first, last, count = seen.get(int(value), (np.inf, -np.inf, 0))
-            seen[int(value)] = min(first, float(times.min())), max(last, float(times.max())), count + len(times)
+        for value, (start, end, number) in times.items():
+            first, last, count = seen.get(value, (np.inf, -np.inf, 0))
+            seen[value] = min(first, start), max(last, end), count + number
 
     def choose(self, wanted="automatic"):
         """The LAS field that tells the scanners apart, or None where there is one scanner.
@@ -54,6 +56,19 @@ class ScannerCensus:
         if 1 < len(sources) <= MOST_SCANNERS and _interleaved(sources.values()):
             return "point_source_id", sorted(sources)
         return None, [0]
+
+
+def times_by_value(values, time):
+    """{value: (first time, last time, count)} of (N,) small integers and times; of many values those that show there are many."""
+    if not len(values):
+        return {}
+    low, high = int(values.min()), int(values.max())
+    present = [low] if low == high else np.flatnonzero(np.bincount(values))[: 4 * MOST_SCANNERS + 1].tolist()
+    found = {}
+    for value in present:
+        times = time if low == high else time[values == value]
+        found[value] = float(times.min()), float(times.max()), len(times)
+    return found
 
 
 def _interleaved(spans):

@@ -1,21 +1,45 @@
 """A bounded store of points by road section: memory up to a limit, then a temporary file."""
 
-import os
-import tempfile
 import threading
 from bisect import bisect_left
-from collections import OrderedDict, defaultdict
+from collections import OrderedDict
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..parallel import go_on
-from .columns import Columns
+from .columns import Columns, in_columns
 from .points import UNIT, Points, canonical_order
+from .spill_file import SpillFile
 
 SECTION_LENGTH = 5.0   # m of station; results must not depend on it
-MEMORY_LIMIT = 128 * 2**20  # bytes of records kept before they are spilled
+MEMORY_LIMIT = 64 * 2**20  # bytes of records kept before they are spilled
 KEPT = 64 * 2**20      # bytes of spilled sections kept as last read: neighbours ask for them again
 TURNS = 16             # locks that sections share while they are put in order
+
+
+@dataclass(frozen=True)
+class Parted:
+    """Records of a road sorted by section: those of section `first + k` end before row `ends[k]`."""
+
+    road: int
+    records: np.ndarray
+    first: int
+    ends: list
+
+
+class _Section:
+    """The records of one section: some as they came, row by row, others in order, column by column; in memory or in the file."""
+
+    __slots__ = ("rows", "row_places", "columns", "places")
+
+    def __init__(self):
+        self.rows, self.row_places = [], []  # structured arrays; (place, count) of such in the file
+        self.columns, self.places = [], []   # Columns; (place, count) of such in the file, before those in memory
+
+    @property
+    def nbytes(self):
+        return sum(part.nbytes for part in self.rows + self.columns)
 
 
 class SectionStore:
@@ -24,11 +48,12 @@ class SectionStore:
     A section is a fixed cell of station of one road, cut from 0. What is read
     back is sorted by station, offset, height and time, so it does not depend on
     the order of appending, and a window is a run of rows; a section is sorted
-    once, when it is first read. The spill file has no name on disk (on Windows it
-    is deleted when it is closed), so a killed run leaves nothing.
+    once, when it is first read: till then its records lie row by row, so that
+    each is moved in one go.
 
-    `finish`, where set, is a function of road and Columns that is applied to
-    every section once, when it is first read, and returns its final points.
+    `finish`, where set, is a function of road and the records of a section (a
+    structured array, in no order). It is called once, before they are sorted; it
+    may change them, and returns which of them stay, a mask or None for all.
     """
 
     def __init__(self, dtype, section_length=SECTION_LENGTH, memory_limit=MEMORY_LIMIT, finish=None):
@@ -36,84 +61,80 @@ class SectionStore:
         self.section_length = section_length
         self.memory_limit = memory_limit
         self.finish = finish
-        # in the file the widest columns of a piece come first, so that each begins at a multiple of its width
-        self._names = sorted(self.dtype.names, key=lambda name: -self.dtype[name].itemsize)
-        self._waiting = defaultdict(list)   # (road, section) -> Columns in memory
-        self._spilled = defaultdict(list)   # (road, section) -> (offset, count) in the file, before those in memory
-        self._in_order = set()              # sections whose records lie sorted, in the file and in memory
+        self._sections = {}                 # (road, section) -> _Section
         self._kept = OrderedDict()          # a few spilled sections as last read
         self._kept_bytes = 0
         self._lock = threading.Lock()       # sections are read by several threads
         self._turns = [threading.Lock() for _ in range(TURNS)]
         self._waiting_bytes = 0
         self._file = None
-        self._end = 0
         self.count = 0
 
     def append(self, road, records):
         """Add (N,) records of one road (a structured array or Columns); each goes to the section of its station."""
         if len(records):
-            self.add(self.parted(road, Columns.of(records)))
+            self.add(self.parted(road, np.asarray(records)))
 
-    def parted(self, road, records):
-        """[((road, section), Columns)] of the sections that (N,) Columns lie in: the work of `append` that any thread may do."""
-        section = np.floor(records["s"] * UNIT / self.section_length).astype(np.int64)
+    def parted(self, road, records, rows=None):
+        """Records sorted by section: the work of `append` that any thread may do.
+
+        `rows` are the indices of those that are meant, all by default.
+        """
+        station = records["s"] if rows is None else records["s"].take(rows)
+        section = np.floor(station * UNIT / self.section_length).astype(np.int64)
         low, high = int(section.min()), int(section.max())
-        if low == high:
-            return [((int(road), low), records.whole())]
         section -= low
-        section = section.astype(np.uint16) if high - low < 2**16 else section
-        records = records.take(np.argsort(section, kind="stable")).whole()
-        ends = np.cumsum(np.bincount(section))
-        return [((int(road), low + k), records[first:end])
-                for k, (first, end) in enumerate(zip([0, *ends[:-1].tolist()], ends.tolist())) if end > first]
+        order = np.argsort(section.astype(np.uint16) if high - low < 2**16 else section, kind="stable")
+        records = records.take(order if rows is None else rows.take(order))
+        return Parted(int(road), records, low, np.cumsum(np.bincount(section)).tolist())
 
     def add(self, parted):
         """Add what `parted` made."""
-        for key, records in parted:
-            self._add(key, records)
+        for k, (first, end) in enumerate(zip([0, *parted.ends], parted.ends)):
+            if end > first:
+                records = parted.records[first:end]
+                self._place((parted.road, parted.first + k), records).rows.append(records)
         self._spill_beyond_limit()
 
     def put(self, road, section, records):
-        """Add the records of one section, which lie in order already and are all that it will hold."""
+        """Add the Columns of one section, which lie in order already and are all that it will hold."""
         if len(records):
-            self._add((int(road), int(section)), records.whole())
-            self._in_order.add((int(road), int(section)))
+            self._place((int(road), int(section)), records).columns.append(records.whole())
             self._spill_beyond_limit()
 
-    def _add(self, key, records):
-        self._waiting[key].append(records)
-        self._in_order.discard(key)
+    def _place(self, key, records):
+        section = self._sections.get(key)
+        if section is None:
+            section = self._sections[key] = _Section()
         self._forget(key)
         self.count += len(records)
         self._waiting_bytes += records.nbytes
+        return section
 
     def _spill_beyond_limit(self):
         if self._waiting_bytes <= self.memory_limit:
             return
         if self._file is None:
-            self._file = tempfile.TemporaryFile(prefix="lanewright-")
-        for key, parts in self._waiting.items():
-            records = Columns.joined(parts, self.dtype)
-            if len(records):
-                # every piece begins at a multiple of the widest column
-                self._end += -self._end % 8
-                self._write(self._end, records)
-                self._spilled[key].append((self._end, len(records)))
-                self._end += records.nbytes
-        self._waiting.clear()
+            self._file = SpillFile()
+        for section in self._sections.values():
+            if section.rows:
+                section.row_places.append((self._file.end, sum(map(len, section.rows))))
+                for records in section.rows:
+                    self._file.append(records)
+            for records in section.columns:
+                section.places.append((self._file.end, len(records)))
+                for name in self.dtype.names:
+                    self._file.append(records[name])
+            section.rows, section.columns = [], []
         self._waiting_bytes = 0
 
     def roads(self):
         """Numbers of the roads that have points, ascending."""
-        return sorted({road for road, _ in self._keys()})
+        return sorted({road for road, _ in self._sections})
 
     def sections(self, road):
         """Numbers of the sections of a road that have points, ascending."""
-        return sorted({section for number, section in self._keys() if number == road})
-
-    def _keys(self):
-        return set(self._waiting) | set(self._spilled)
+        return sorted(section for number, section in self._sections if number == road)
 
     def section(self, road, section):
         """The Columns of one section in canonical order (empty where there are none); not to be written to."""
@@ -125,39 +146,52 @@ class SectionStore:
                 if records is not None:
                     self._kept.move_to_end(key)
                     return records
-            records = self._read(key)
-            if len(records) and key not in self._in_order:
-                records = self._put_in_order(key, records)
-            records.locked()
-            if key in self._spilled:
+            section = self._sections.get(key)
+            if section is None:
+                return Columns.joined([], self.dtype).locked()
+            if section.rows or section.row_places:
+                self._put_in_order(road, section)
+            records = self._in_order(section).locked()
+            if section.places:
                 self._keep(key, records)
             return records
 
-    def _put_in_order(self, key, records):
-        records = records.take(canonical_order(records)).whole()
-        if self.finish is not None:
-            records = self.finish(key[0], records).whole()
-        self._put_back(key, records)
-        self._in_order.add(key)
-        return records
+    def _in_order(self, section):
+        """The Columns of a section, those in the file read one by one when they are asked for."""
+        return Columns.joined([self._read_columns(*place) for place in section.places] + section.columns, self.dtype)
 
-    def _read(self, key):
-        """What was appended to a section, as it lies in the file and in memory."""
-        parts = [self._read_piece(offset, count) for offset, count in self._spilled.get(key, ())]
-        return Columns.joined(parts + self._waiting.get(key, []), self.dtype)
-
-    def _put_back(self, key, records):
-        """Records in their new order, no more than before, into the places they came from."""
+    def _put_in_order(self, road, section):
+        """Sort what came to a section, and what was in order before, into the places they came from."""
+        before = section.nbytes
+        records = self._rows_of(section)
+        stay = None if self.finish is None else self.finish(road, records)
+        if stay is not None:
+            records = records.take(np.flatnonzero(stay))
+        columns = in_columns(records, canonical_order(records))
         first, places = 0, []
-        for offset, count in self._spilled.get(key, ()):
-            count = min(count, len(records) - first)
-            self._write(offset, records[first:first + count])
-            places.append((offset, count))
+        for place, count in section.row_places + section.places:
+            count = min(count, len(columns) - first)
+            self._write_columns(place, columns[first:first + count])
+            places.append((place, count))
             first += count
-        if places:
-            self._spilled[key] = places
-        if key in self._waiting:
-            self._waiting[key] = [records[first:].copy() if first else records]
+        section.rows, section.row_places, section.places = [], [], places
+        section.columns = [columns[first:].copy() if first else columns] if first < len(columns) or not places else []
+        with self._lock:
+            self._waiting_bytes += section.nbytes - before
+
+    def _rows_of(self, section):
+        """All records of a section, as an array of their own."""
+        parts = section.rows + [np.asarray(self._in_order(section))] * bool(section.places or section.columns)
+        records = np.empty(sum(map(len, parts)) + sum(count for _, count in section.row_places), self.dtype)
+        whole = np.dtype((np.void, self.dtype.itemsize))  # or rows would be copied field by field
+        first = 0
+        for place, count in section.row_places:
+            self._file.read(place, records[first:first + count])
+            first += count
+        for part in parts:
+            records.view(whole)[first:first + len(part)] = part.view(whole)
+            first += len(part)
+        return records
 
     def _keep(self, key, records):
         with self._lock:
@@ -171,39 +205,22 @@ class SectionStore:
             records = self._kept.pop(key, None)
             self._kept_bytes -= 0 if records is None else records.nbytes
 
-    def _read_piece(self, offset, count):
+    def _read_columns(self, place, count):
         """Columns of a piece of the file, each read when it is asked for."""
-        starts = dict(zip(self._names, offset + count * np.cumsum([0] + [self.dtype[name].itemsize for name in self._names])))
+        sizes = [count * self.dtype[name].itemsize for name in self.dtype.names]
+        places = dict(zip(self.dtype.names, np.cumsum([place, *sizes]).tolist()))
 
         def read(name):
-            return np.frombuffer(self._read_at(int(starts[name]), count * self.dtype[name].itemsize), self.dtype[name])
+            column = np.empty(count, self.dtype[name])
+            self._file.read(places[name], column)
+            return column
 
         return Columns({}, self.dtype, count, read)
 
-    def _write(self, offset, records):
-        for name in self._names:
-            column = np.ascontiguousarray(records[name])
-            self._write_at(offset, column.view(np.uint8))
-            offset += column.nbytes
-
-    # pread and pwrite leave the file's position alone, so threads may use it together; Windows has neither
-    def _read_at(self, offset, size):
-        if hasattr(os, "pread"):
-            return os.pread(self._file.fileno(), size, offset)
-        with self._lock:
-            self._file.seek(offset)
-            return self._file.read(size)
-
-    def _write_at(self, offset, data):
-        if hasattr(os, "pwrite"):
-            while len(data):  # a full disk raises, a signal only shortens
-                written = os.pwrite(self._file.fileno(), data, offset)
-                data, offset = data[written:], offset + written
-            return
-        with self._lock:
-            self._file.seek(offset)
-            self._file.write(data)
-            self._file.flush()
+    def _write_columns(self, place, columns):
+        for name in self.dtype.names:
+            self._file.write(place, columns[name])
+            place += columns[name].nbytes
 
     def window(self, road, start, end):
         """Points of a road with start <= station < end (metres), in canonical order."""
@@ -238,9 +255,7 @@ class SectionStore:
 
     def close(self):
         """Forget everything and give the disk space back."""
-        self._waiting.clear()
-        self._spilled.clear()
-        self._in_order.clear()
+        self._sections.clear()
         self._kept.clear()
         self._kept_bytes = self._waiting_bytes = 0
         if self._file is not None:

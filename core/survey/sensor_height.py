@@ -29,19 +29,27 @@ class Tracks:
 
     def drops(self, road, records):
         """Per pass over a road: (pass number, (N,) metres from the trajectory down to the points on its own track)."""
-        number = records["pass_number"]
-        only = len(number) and number.min() == number.max()
+        if not len(records):
+            return
+        number, along, across = records["pass_number"], records["s"], records["d"]
+        ends = np.array([along.min(), along.max()]) * UNIT
+        only = number.min() == number.max()
         for p in self.frame.passes_of(road):
-            m = np.flatnonzero(number == p.number) if not only else slice(None) if number[0] == p.number else []
-            s, d = records["s"][m] * UNIT, records["d"][m] * UNIT
-            if not len(s):
+            if only and p.number != number[0]:
                 continue
             first, track = self._rough[p.number]
+            low, high = np.clip(((ends - first) * (1.0 / LOOKUP) + 0.5).astype(np.intp), 0, len(track) - 1)
+            reach, stretch = NEAR_TRACK + WINDING, track[low:high + 1]
+            # a look at whole numbers leaves out most of what lies beside the track
+            beside = (across > (stretch.min() - reach) / UNIT) & (across < (stretch.max() + reach) / UNIT)
+            rows = np.flatnonzero(beside if only else beside & (number == p.number))
+            s, d = along[rows] * UNIT, across[rows] * UNIT
             k = ((s - first) * (1.0 / LOOKUP) + 0.5).astype(np.intp)
-            near = np.flatnonzero(np.abs(d - track.take(k, mode="clip")) < NEAR_TRACK + WINDING)
+            near = np.flatnonzero(np.abs(d - track.take(k, mode="clip")) < reach)
             track_d, track_z = p.at_station(s[near])
             on = np.abs(d[near] - track_d) < NEAR_TRACK
-            yield p.number, track_z[on] - records["z"][m][near[on]] * UNIT
+            if on.any():
+                yield p.number, track_z[on] - records["z"][rows[near[on]]] * UNIT
 
 
 def first_estimate(drops):

@@ -6,10 +6,12 @@ import numpy as np
 
 from ..errors import RoadExtractionError
 from ..progress import Progress
+from .block_points import ABOVE, BELOW, carried_on
+from .cloud_blocks import CloudReaders
 from .crs import check_projected, crs_note, parse_crs, reproject_trajectory
 from .point_cloud import BLOCK, read_headers
 from .points import SURVEY_POINT, UNIT, Points
-from .reading import ABOVE, BELOW, SurveyReader, carried_on
+from .reading import SurveyReader
 from .road_frame import CORRIDOR, build_frame
 from .section_store import MEMORY_LIMIT, SECTION_LENGTH, SectionStore
 from .time_systems import align_time, wrapped_week
@@ -70,26 +72,27 @@ class Survey:
         return Points(self.store.section(road, number))
 
     def _finished(self, road, records):
-        """A section's points near the road's height, scanners numbered from 0."""
-        h = records["z"] * UNIT - self._height_beneath(road, records["s"] * UNIT)
-        near = (h > -BELOW) & (h < ABOVE)
-        records = records if near.all() else records.take(near)
+        """Number the scanners of a section's records from 0; tells which lie near the road's height, None where all do."""
         if self.scanner_field is None:
-            scanner = np.zeros(len(records), np.uint8)
+            records["scanner"] = 0
         else:
             numbers = records["source" if self.scanner_field == "point_source_id" else "scanner"]
-            scanner = np.searchsorted(self.scanners, np.arange(int(numbers.max(initial=0)) + 1)).astype(np.uint8)[numbers]
-        return records.with_columns(scanner=scanner)
-
-    def _height_beneath(self, road, s):
-        """`road_height` from nodes at fixed stations, so that many points cost little."""
-        if not len(s):
-            return np.empty(0)
-        first = int(np.floor(s.min() / HEIGHT_STEP))
-        nodes = self.road_height(road, np.arange(first, int(np.floor(s.max() / HEIGHT_STEP)) + 2) * HEIGHT_STEP)
-        at = s / HEIGHT_STEP - first
+            records["scanner"] = np.searchsorted(self.scanners, np.arange(int(numbers.max()) + 1)).astype(np.uint8).take(numbers)
+        # most are near beyond doubt: the others are looked at one by one
+        z = records["z"]
+        first, nodes = self._heights(road, records["s"].min() * UNIT, records["s"].max() * UNIT)
+        doubtful = np.flatnonzero((z < (nodes.max() - BELOW) / UNIT + 1) | (z > (nodes.min() + ABOVE) / UNIT - 1))
+        at = records["s"][doubtful] * UNIT / HEIGHT_STEP - first
         k = at.astype(np.int64)
-        return nodes[k] + (at - k) * (nodes[k + 1] - nodes[k])
+        h = z[doubtful] * UNIT - (nodes[k] + (at - k) * (nodes[k + 1] - nodes[k]))
+        near = np.ones(len(records), bool)
+        near[doubtful] = (h > -BELOW) & (h < ABOVE)
+        return None if near[doubtful].all() else near
+
+    def _heights(self, road, start, end):
+        """`road_height` at fixed stations about a stretch, so that many points cost little: number of the first, heights."""
+        first = int(np.floor(start / HEIGHT_STEP))
+        return first, self.road_height(road, np.arange(first, int(np.floor(end / HEIGHT_STEP)) + 2) * HEIGHT_STEP)
 
     def road_height(self, road, s):
         """(N,) local z of the road under the vehicle's track at stations of a road: a prior, good to decimetres."""
@@ -123,10 +126,6 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
     frame.has_time = has_time
     for note in frame.notes:
         progress.say(note)
-    if not has_time and len(frame.passes) > len(frame.roads):
-        progress.warn(f"The trajectory drives {len(frame.passes)} times over {len(frame.roads)} road(s), and without time in the points and the "
-                      "trajectory the passes are mixed: whatever they differ by blurs the map. Export both with gps_time, or process "
-                      "the files of each drive with its own part of the trajectory.")
     _check_extent(files, frame, crs, trajectory.crs)
     store = SectionStore(SURVEY_POINT, settings.section_length, settings.memory_limit)
     reader = SurveyReader(frame, store, settings.corridor, has_time, week_ends)
@@ -164,27 +163,11 @@ def match_clocks(files, trajectory, settings, progress):
 def _time_span(files):
     """((first, last) gps_time in samples of every file, whether the week ends between), or None where time stands still.
 
-    Whole files are not read for it: blocks at the start of each file, and the
-    last block, give the span to within the overlap test's needs.
+    Whole files are not read for it: points at several places of each, its last
+    among them, give the span to within the overlap test's needs.
     """
-    from .point_cloud import open_cloud
-
-    samples = []
-    for file in files:
-        if not file.count:
-            continue
-        with open_cloud(file.path) as reader:
-            starts = np.unique(np.linspace(0, max(file.count - 1000, 0), 5).astype(int))
-            for start in starts:
-                try:
-                    reader.seek(int(start))
-                    time = np.asarray(reader.read_points(1000)["gps_time"], float)
-                except Exception as problem:
-                    raise RoadExtractionError(
-                        f"{file.path} is damaged: its header promises {file.count} points, but those from "
-                        f"{start} on cannot be read ({problem}). Copy or export the file again.") from problem
-                time = time[np.isfinite(time)]
-                samples.append(time)
+    with CloudReaders(("gps_time",)) as readers:
+        samples = [time[np.isfinite(time)] for file in files if file.count for time in readers.times(file)]
     times = np.concatenate(samples)
     if not len(times) or times.max() <= times.min():
         return None

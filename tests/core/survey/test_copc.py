@@ -42,6 +42,17 @@ def test_the_survey_is_that_of_the_laz(street):
     np.testing.assert_array_equal(contents(open_survey([copc], trajectory)), contents(open_survey([laz], trajectory)))
 
 
+def test_its_times_are_found_out_as_those_of_the_laz(street, tmp_path):
+    trajectory, laz, _ = street
+    start = 318_204_000.0
+    cloud = laspy.read(laz)
+    cloud.gps_time = np.asarray(cloud.gps_time) - 1000.0 + start
+    cloud.write(str(tmp_path / "adjusted.laz"))
+    copc = write_copc(tmp_path / "adjusted.laz", tmp_path / "adjusted.copc.laz")
+    survey = open_survey([copc], trajectory.shifted((start + 1e9) % 604800 - 1000.0))
+    assert survey.counts["kept"] == len(cloud.points)
+
+
 def lying(path, folder, change):
     """The file with its hierarchy entries changed: (N, 32) bytes in, the same out."""
     data = bytearray(open(path, "rb").read())
