@@ -1,6 +1,7 @@
 """What a fit of a curve gives back, and the robust least squares that all fits share."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -27,12 +28,16 @@ class Fit:
         """Root mean square of the orthogonal residuals, metres; outliers count in full."""
         return float(np.sqrt(np.mean(self.residuals**2)))
 
-    @property
+    @cached_property
     def worst(self):
         """95 % of the residuals are smaller, metres."""
-        return float(np.percentile(np.abs(self.residuals), 95))
+        size, rank = np.abs(self.residuals), 0.95 * (len(self.residuals) - 1)
+        low = int(rank)
+        high = min(low + 1, len(size) - 1)
+        size.partition((low, high))
+        return float(size[low] + (rank - low) * (size[high] - size[low]))
 
-    @property
+    @cached_property
     def _information(self):
         n = len(self.residuals)
         spread = 2 * F_SCALE**2 * np.sum(np.sqrt(1 + (self.residuals / F_SCALE) ** 2) - 1) / n

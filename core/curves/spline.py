@@ -7,10 +7,11 @@ from scipy.interpolate import BSpline
 from scipy.linalg import solveh_banded
 
 from .curve import TabledCurve
-from .fit import Fit, checked, robust_weights
+from .fit import Fit, checked, least_bic, robust_weights
 
 BANDWIDTHS = (2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0, 40.0, 60.0)  # m; waves shorter than 6 of them are smoothed away
 DEGREE = 3
+SETTLED = 1e-6  # of a weight: its next change moves the curve by less than a micrometre
 
 
 @dataclass(frozen=True)
@@ -83,12 +84,22 @@ def fit_spline(x, y, along=None, bandwidth=None):
     t = _chord_lengths(x, y) if along is None else np.asarray(along, float) - along[0]
     length = float(t[-1])
     best, best_score = None, np.inf
-    for b in ([bandwidth] if bandwidth else [b for b in BANDWIDTHS if b < max(length, 2.5)]):
-        fit = _penalised(x, y, t, length, b)
-        # the larger bandwidth wins unless the smaller one earns its freedom
-        if fit.bic <= best_score:
-            best, best_score = fit, fit.bic
+    for b in [bandwidth] if bandwidth else [b for b in BANDWIDTHS[::-1] if b < max(length, 2.5)]:
+        # the larger bandwidth wins unless the smaller one earns its freedom, which it may be too dear for however well it fits
+        if best is None or least_bic(len(t), _freedom(length, b)) < best_score:
+            fit = _penalised(x, y, t, length, b)
+            if fit.bic < best_score:
+                best, best_score = fit, fit.bic
     return best
+
+
+def _freedom(length, bandwidth):
+    """The effective number of parameters of a coordinate."""
+    return min(3 + length / (3 * bandwidth), _pieces(length, bandwidth) + DEGREE)
+
+
+def _pieces(length, bandwidth):
+    return max(1, int(np.ceil(length / max(bandwidth, 1.0))))
 
 
 def _chord_lengths(x, y):
@@ -112,7 +123,7 @@ class _Basis:
     """The cubic B-splines on even knots that places t in [0, length] lie in, four a place, with their penalty."""
 
     def __init__(self, t, length, bandwidth):
-        pieces = max(1, int(np.ceil(length / max(bandwidth, 1.0))))
+        pieces = _pieces(length, bandwidth)
         step = length / pieces
         self.knots = step * np.arange(-DEGREE, pieces + DEGREE + 1)
         self.count = pieces + DEGREE
@@ -154,11 +165,13 @@ def _penalised(x, y, t, length, bandwidth):
         slope = basis.of(control, slope=True)
         size = np.maximum(np.hypot(slope[:, 0], slope[:, 1]), 1e-12)
         across = (gap[:, 1] * slope[:, 0] - gap[:, 0] * slope[:, 1]) / size
-        weight = robust_weights(across)
+        before, weight = weight, robust_weights(across)
+        if np.abs(weight - before).max() < SETTLED:
+            break
     control = control + middle
     knots = basis.knots
     curve = Spline(tuple(knots.tolist()), tuple(control[:, 0].tolist()), tuple(control[:, 1].tolist()))
-    return Fit(curve, across, min(3 + length / (3 * bandwidth), len(knots) - 4))
+    return Fit(curve, across, _freedom(length, bandwidth))
 
 
 def _roughness(count):
@@ -186,6 +199,8 @@ def smooth_profile(t, values, bandwidth):
     weight = np.ones(len(t))
     for _ in range(6):
         control = basis.solve(weight, values[:, None] - level)
-        weight = robust_weights(values - level - basis.of(control)[:, 0])
+        before, weight = weight, robust_weights(values - level - basis.of(control)[:, 0])
+        if np.abs(weight - before).max() < SETTLED:
+            break
     spline = BSpline(basis.knots, control[:, 0], DEGREE)
     return lambda at: level + spline(np.clip(np.asarray(at, float) - t[0], 0.0, basis.knots[-DEGREE - 1]))
