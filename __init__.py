@@ -7,6 +7,7 @@ plugin itself begins in `classFactory`.
 import importlib
 import os
 import sys
+import warnings
 
 
 def add_library_folders(profile=""):
@@ -69,6 +70,8 @@ def classFactory(iface):
 
     add_library_folders(QgsApplication.qgisSettingsDirPath())
     load_shapely()
+    # QGIS shows every warning, and laspy is warned of what Python 3.19 will refuse: nothing a user can act on
+    warnings.filterwarnings("ignore", category=DeprecationWarning, module="laspy")
     from .processing_provider.texts import install_translator
 
     translator = install_translator()

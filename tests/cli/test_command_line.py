@@ -9,6 +9,7 @@ from pathlib import Path
 import laspy
 import numpy as np
 import pytest
+from spoken import complaints
 
 ROOT = Path(__file__).resolve().parents[2]
 QGIS_PROCESS = str(ROOT / "tools" / "qgis_process")
@@ -37,7 +38,7 @@ def survey(tmp_path_factory):
 def one_sentence(run):
     """What went wrong; qgis_process itself says it three times, we say nothing besides."""
     assert run.returncode == 1, run.stdout + run.stderr
-    said = {line.removeprefix("ERROR:\t").strip() for line in run.stderr.splitlines()} - {""}
+    said = complaints(run.stderr)
     assert len(said) == 1, run.stderr
     return said.pop()
 

@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 
 import pytest
+from spoken import complaints
 
 ROOT = Path(__file__).resolve().parents[2]
 QGIS_PROCESS = str(ROOT / "tools" / "qgis_process")
@@ -136,7 +137,7 @@ def test_a_full_disk_is_one_sentence_and_yesterdays_result_stands(survey, tmp_pa
     (small_disk / "road.laz").write_bytes(b"yesterday")
     (small_disk / "ballast").write_bytes(b"\0" * 1_500_000)
     code, _, err = run(*road_map(survey)[:3], f"--ROAD_POINTS={small_disk / 'road.laz'}", folder=tmp_path)
-    said = {line.removeprefix("ERROR:\t").strip() for line in err.splitlines()} - {""}
+    said = complaints(err)
     assert code == 1 and len(said) == 1, err
     assert "space" in said.pop()
     assert (small_disk / "road.laz").read_bytes() == b"yesterday"
