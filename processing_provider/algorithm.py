@@ -90,7 +90,7 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         return f"lanewright:{self.ID}"
 
     def tags(self):
-        return [tr(tag) for tag in self.TAGS] + ["mls", "lidar", "road"]
+        return [tr(tag) for tag in self.TAGS] + ["mls", "mobile mapping", "lidar", "point cloud", "las", "laz", "road"]
 
     def shortHelpString(self):
         """The summary and every parameter's own help: written once, on the parameter."""

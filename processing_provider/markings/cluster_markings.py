@@ -24,7 +24,7 @@ CLUSTER_KNOBS = (
 class ClusterMarkings(LanewrightAlgorithm):
     ID, TITLE, ROOM = "clustermarkings", "Cluster markings", "Markings"
     SUMMARY = "Gathers paint into markings, measures them and tells lines from crossings, arrows and the rest."
-    TAGS = ("road marking", "cluster", "zebra crossing", "stop line", "arrow")
+    TAGS = ("road marking", "lane marking", "cluster", "zebra crossing", "stop line", "arrow")
 
     def initAlgorithm(self, configuration=None):
         self.add_cloud("MARKING_POINTS", tr("Marking points"), tr("The file written by Remove outliers or Extract markings."))

@@ -98,7 +98,7 @@ SEGMENT_KNOBS = (
 class ExtractMarkings(LanewrightAlgorithm):
     ID, TITLE, ROOM = "extractmarkings", "Extract markings", "Markings"
     SUMMARY = "Tells paint from asphalt by its intensity and takes the points of it."
-    TAGS = ("road marking", "threshold", "otsu", "intensity peak", "density")
+    TAGS = ("road marking", "lane marking", "paint", "threshold", "otsu", "intensity peak", "density")
 
     def initAlgorithm(self, configuration=None):
         self.add_cloud("ROAD_POINTS", tr("Road points"), tr("The file that the intensity image was made from."))

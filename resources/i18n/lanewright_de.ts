@@ -1060,6 +1060,11 @@
         </message>
         <message>
             <location filename="../../processing_provider/markings/cluster_markings.py" />
+            <source>lane marking</source>
+            <translation>Fahrbahnmarkierung</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/markings/cluster_markings.py" />
             <source>cluster</source>
             <translation>Gruppe</translation>
         </message>
@@ -1177,6 +1182,11 @@
             <location filename="../../processing_provider/markings/extract_markings.py" />
             <source>Tells paint from asphalt by its intensity and takes the points of it.</source>
             <translation>Unterscheidet Farbe an ihrer Intensität vom Asphalt und nimmt ihre Punkte.</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/markings/extract_markings.py" />
+            <source>paint</source>
+            <translation>Farbe</translation>
         </message>
         <message>
             <location filename="../../processing_provider/markings/extract_markings.py" />

@@ -3,6 +3,7 @@
 import os
 import shutil
 import signal
+import sqlite3
 import subprocess
 import time
 from pathlib import Path
@@ -142,6 +143,23 @@ def test_a_full_disk_is_one_sentence_and_yesterdays_result_stands(survey, tmp_pa
     assert "space" in said.pop()
     assert (small_disk / "road.laz").read_bytes() == b"yesterday"
     assert files(small_disk) == {"road.laz", "road.laz.keep", "ballast"}
+
+
+def test_a_layer_that_another_program_holds_open_is_replaced_or_told_in_one_sentence(survey, tmp_path):
+    """As when yesterday's layer is still loaded, and being edited, in another QGIS."""
+    layer = tmp_path / "edges.gpkg"
+    stage = "lanewright:importtrajectory", f"--INPUT={survey / 'drive.gpkg'}", f"--OUTPUT={layer}"
+    assert run(*stage, folder=tmp_path)[0] == 0
+    yesterday = layer.read_bytes()
+    with sqlite3.connect(layer, isolation_level=None) as other:
+        other.execute("BEGIN EXCLUSIVE")
+        code, _, err = run(*stage, folder=tmp_path)
+        other.execute("ROLLBACK")
+    assert code == 0 or len(complaints(err)) == 1, err
+    assert code == 0 or layer.read_bytes() == yesterday
+    assert files(tmp_path) <= {"edges.gpkg", "edges.gpkg-journal"}
+    with sqlite3.connect(layer) as whole:
+        assert whole.execute("PRAGMA integrity_check").fetchone() == ("ok",)
 
 
 def test_inputs_are_never_changed(survey, tmp_path):
