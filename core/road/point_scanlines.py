@@ -9,6 +9,7 @@ stands above the ground is kept as lines of its own, for it tells what hides a c
 import numpy as np
 
 from .profiles import pseudo_scan_lines
+from .scanline_chains import increasing
 from .scanlines import Scanlines
 from .sides import expected_height
 
@@ -19,6 +20,7 @@ STEEP, STEEP_SIGMAS = 0.02, 6.0  # m of height within one bin, and times the noi
 TALL = 0.45         # m above the expected road from which what is not ground is kept
 WIDEST_GAP = 0.30   # m between neighbouring vertices of one line
 FEWEST = 3          # vertices of a line
+SLACK = 0.01        # m more than the slices need are read: which points belong to a slice the slice decides
 LEAST_SLICE = 0.20  # m along the road: thinner slices fall between two turns of a scanner
 
 
@@ -40,7 +42,7 @@ def point_scanlines(survey, road, start, end, interval, corridor):
     half = 0.5 * max(LEAST_SLICE, interval)
     if last <= first:
         return Scanlines.none()
-    points = survey.window(road, first * interval - half, (last - 1) * interval + half + 1e-4)
+    points = survey.window(road, first * interval - half - SLACK, (last - 1) * interval + half + SLACK)
     points = points[np.abs(points.d) < corridor]
     s, d = points.s, points.d
     h = points.z - expected_height(survey, road, s)
@@ -107,9 +109,8 @@ def _joined(row, d, h, intensity, first, interval, pass_number, scanner):
     new = np.r_[True, (np.diff(row) != 0) | (np.diff(d) > WIDEST_GAP) | (np.abs(np.diff(h)) > 2 * WIDEST_GAP)]
     begins = np.flatnonzero(new)
     count = len(begins)
-    # noise brings points of a face out of order: midway between the greatest before and the least behind they are in it
-    apart = 1e3 * np.cumsum(new)
-    d = 0.5 * (np.maximum.accumulate(d + apart) + np.minimum.accumulate((d + apart)[::-1])[::-1]) - apart
+    # noise brings points of a face out of order
+    d = increasing(d, np.r_[begins, len(row)])
     lines = Scanlines((row[begins] + first) * interval, np.full(count, pass_number), np.full(count, scanner),
                       np.r_[begins, len(row)], d, h, intensity.astype(np.float32))
     return lines[np.diff(lines.first) >= FEWEST]

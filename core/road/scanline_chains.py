@@ -9,6 +9,8 @@ from .mesh import GRAZING, LONGEST_EDGE, MISSING, NEIGHBOURS, RANGE_JUMP
 BACKWARD = 0.05   # m that a line may go back across the road (noise on a face) before it is parted
 BETWEEN = 3       # pieces of something else that may lie between two pieces of one line: a scanner that looks ahead
 #                   sees a car and the ground beside it at one phase of its mirror, in different turns
+STEP = 1e-7       # m in which offsets are counted where they are put in order
+APART = 2 * 10**10  # of them, 2 km, lie between the offsets of one line and the next
 FINENESS = 65535  # steps of a turn by which vertices are put in order
 
 
@@ -83,7 +85,13 @@ def plane_order(plane, phase):
 
 
 def increasing(d, first):
-    """Offsets that do not decrease within a line: midway between the greatest before and the least behind."""
-    apart = 1e3 * np.repeat(np.arange(len(first) - 1), np.diff(first))
-    shifted = d + apart
-    return 0.5 * (np.maximum.accumulate(shifted) + np.minimum.accumulate(shifted[::-1])[::-1]) - apart
+    """Offsets that do not decrease within a line: midway between the greatest before and the least behind.
+
+    They are counted in whole STEPs, so that those of a line do not depend on how many lines come before it.
+    """
+    place = np.rint(d / STEP).astype(np.int64)
+    place += np.repeat(np.arange(len(first) - 1) * APART, np.diff(first))
+    middle = np.maximum.accumulate(place)
+    middle += np.minimum.accumulate(place[::-1])[::-1]
+    middle -= np.repeat(np.arange(len(first) - 1) * (2 * APART), np.diff(first))
+    return middle * (0.5 * STEP)

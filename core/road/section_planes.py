@@ -18,7 +18,7 @@ from ..parallel import in_order
 from ..progress import Progress
 from ..survey.scan_lattice import find_lattice, scanner_runs
 from .mesh import LINES_AHEAD, LONGEST_EDGE, LONGEST_RIB, Ribs, ribs_of, scan_lines, slanting_edges
-from .point_scanlines import point_scanlines
+from .point_scanlines import LEAST_SLICE, point_scanlines
 from .scanline_chains import PlaneVertices, increasing, plane_order
 from .scanlines import Scanlines
 from .sides import SECTION
@@ -81,7 +81,7 @@ def runs_of(survey, road, start, end, settings=ScanlineSettings(), lattice=None,
         lattice = find_lattice(survey, settings.rotation_frequency)
     parts, apart = [], not lattice.clocks
     if lattice.clocks:
-        margin = _margin(survey, road, lattice)
+        margin = max(_margin(survey, road, lattice), LEAST_SLICE, interval)
         records = survey.window(road, first * interval - margin, (last - 1) * interval + margin).records
         for key, own in scanner_runs(records):
             clock = lattice.clocks.get(key)

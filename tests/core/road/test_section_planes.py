@@ -184,6 +184,17 @@ def test_without_times_the_points_near_the_planes_make_the_scanlines():
     np.testing.assert_allclose(heights(survey, lines)[road], 0.0, atol=0.01)
 
 
+@pytest.mark.parametrize("interval", [0.05, 0.10, 0.37, 1.0])
+def test_where_a_window_ends_changes_no_scanline_of_points_by_a_hair(interval):
+    """Rough faces bring points out of order, and how they are put in order must not tell of the lines before."""
+    survey = survey_of(scanned(pulses=200_000.0, noise=0.008), has_time=False)
+    whole = point_scanlines(survey, 0, 20.0, 40.0, interval, 15.0)
+    for cuts in ((20.0, 29.97, 40.0), (20.0, 20.8, 33.0, 33.4, 40.0)):
+        parts = Scanlines.join([point_scanlines(survey, 0, a, b, interval, 15.0) for a, b in zip(cuts[:-1], cuts[1:])])
+        for name in ("first", "station", "pass_number", "scanner", "d", "z", "intensity"):
+            np.testing.assert_array_equal(getattr(whole, name), getattr(parts, name))
+
+
 def test_a_single_line_makes_no_scanline_and_no_complaint():
     cloud = scanned()
     survey = survey_of(cloud[cloud.line == 200])
