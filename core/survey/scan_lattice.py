@@ -31,6 +31,7 @@ BIN_TURNS = 10        # turns whose points tell one phase
 STRETCH = 20.0        # m of road looked at in one go
 POINTS_PER_TURN = 40  # looked at for it; more tell no more
 LOWEST_AXIS = 1.5     # m above the road: from below, angles of road points tell nothing
+SECTORS = 36          # of a turn, in each of which lines are counted
 ENOUGH = 10_000       # points of a window that tell the mounting of a scanner
 DIRECTIONS = 360      # about the trajectory, for which the mounting of a scanner is told
 
@@ -271,6 +272,14 @@ def _stride(windows, frequency):
     return 2 * int(max(per_turn / POINTS_PER_TURN, 1.0) / 2) + 1
 
 
+def _lines_apart(line, phase):
+    """(K,) turns from one line to the next that shows the same sector of a turn: of a cloud thinned by its times half a turn may be there."""
+    line = line - line.min()
+    turns = int(line.max()) + 1
+    seen = np.unique((phase * SECTORS).astype(np.int64) * turns + line)
+    return np.diff(seen)[np.diff(seen // turns) == 0]
+
+
 def _usual(windows, clock):
     """What is usual on the lines of a scanner: the fields of a MirrorClock that only looking at points tells."""
     gaps, apart, onward = [], [], 0
@@ -279,7 +288,7 @@ def _usual(windows, clock):
         usual = np.median(step[step > 0])
         # the mean, for clocks that count in steps as long as the pulses are apart
         gaps.append(np.mean(step[(step > 0) & (step < 1.5 * usual)]))
-        apart.append(np.diff(np.unique(clock.lines_and_phase(w.time)[0])))
+        apart.append(_lines_apart(*clock.lines_and_phase(w.time)))
         onward += np.sign(np.diff(w.offset)).sum()
     apart = np.concatenate(apart)
     return dict(pulse=float(np.median(gaps) * abs(clock.frequency)), spacing=int(np.median(apart)) if len(apart) else 1,
