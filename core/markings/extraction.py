@@ -29,6 +29,7 @@ RIM = 0.60        # m from the rim of the road where gutters end and asphalt is 
 NOISY = 0.40      # of asphalt's level: single points that scatter more are averaged (multi-beam scanners)
 METHODS = ("multi-threshold", "intensity-peaks", "point-segments")
 WINDOW = 500      # cells: thresholds are taken from 20 m of road
+AT_ONCE = 1 << 15 # points put into cells at a time: what fits the processor's cache
 HALO = 100        # cells: 4 m about a window in which rims and runs are still looked at
 
 
@@ -157,29 +158,33 @@ class _Look:
         return scatter_of(points)
 
     def _grid(self, window):
-        """The grid of a window with its halo, the records in it with row and column, which are its own, and rim distance."""
+        """_Cells of a window with its halo; None where it has no points of its own."""
         first, last = window * WINDOW - HALO, (window + 1) * WINDOW + HALO
         records = self.road_points.window(self.road, (first - 1) * CELL * UNIT, (last + 1) * CELL * UNIT).records
-        row = records["s"] // CELL - first
-        inside = (row >= 0) & (row < last - first)
-        records, row = chosen(records, inside), row[inside]
-        own = (row >= HALO) & (row < HALO + WINDOW)
-        if not own.any():
+        # they come in order of station
+        begin, own, behind, end = np.searchsorted(records["s"], np.array([first, first + HALO, last - HALO, last]) * CELL)
+        if own == behind:
             return None
-        column = records["d"] // CELL
-        low, high = int(column.min()) - 1, int(column.max()) + 2
-        column = column - low
+        records = records[begin:end]
+        low, high = int(records["d"].min()) // CELL - 1, int(records["d"].max()) // CELL + 2
         grid = RoadGrid(first, last, low, high)
-        occupied = np.zeros(grid.shape, bool)
-        occupied[row, column] = True
-        return grid, records, row, column, own, rim_distance(occupied)
+        occupied, cells = np.zeros(grid.shape, bool), np.empty(len(records), np.int32)
+        for k in range(0, len(records), AT_ONCE):
+            cell = cells[k:k + AT_ONCE]
+            np.floor_divide(records["s"][k:k + AT_ONCE], CELL, out=cell)
+            cell -= first
+            cell *= high - low
+            cell += records["d"][k:k + AT_ONCE] // CELL
+            cell -= low
+            occupied.ravel()[cell] = True
+        return _Cells(grid, records, cells, slice(own - begin, behind - begin), rim_distance(occupied))
 
     def bins(self, window):
         """Bins of asphalt and Otsu's splits of one window; an empty list where there is nothing to see."""
         found = self._grid(window)
         if found is None:
             return []
-        grid, records, _, _, own, rim = found
+        grid, rim = found.grid, found.rim
         brightness = grid.read(self.image, self.frame, self.road)
         rows = slice(HALO, HALO + WINDOW)
         offsets = np.broadcast_to(grid.offsets(), grid.shape)
@@ -191,7 +196,7 @@ class _Look:
             interior[:HALO] = interior[HALO + WINDOW:] = False
         if not interior.any():
             return []
-        edges = bin_edges(records["d"][own] * UNIT, offsets[interior].min(), offsets[interior].max())
+        edges = bin_edges(found.records["d"][found.own], offsets[interior].min(), offsets[interior].max())
         bins = asphalt_bins(brightness[interior], offsets[interior], edges)
         z, gutter = flatten(brightness, *asphalt_profile(bins, grid.offsets()), rim)
         counted = (seen & ~gutter)[rows]
@@ -207,39 +212,53 @@ class _Look:
         found = self._grid(window)
         if found is None or not len(levels.numbers):
             return self._nothing()
-        grid, records, row, column, own, rim = found
+        grid = found.grid
         brightness = grid.read(self.image, self.frame, self.road)
         median, spread, scale, threshold = levels.at(grid)
-        z, gutter = flatten(brightness, median, spread, rim)
+        z, gutter = flatten(brightness, median, spread, found.rim)
         with np.errstate(invalid="ignore"):
             mask = morphology((z > threshold * scale) & ~gutter, self.settings)
         # what was taken from the cell as background is taken from the point as well
         least = (brightness - z * spread) + (threshold - 0.5) * (spread * scale)
-        bright = Points(records).value > least[row, column]
-        return self._handed_out(grid, mask, records, row, column, own, bright)
+        return self._handed_out(found, mask, least)
 
     def strokes(self, window):
         """The same where single points are noisy: what is as bright as paint must have its shape too."""
         found = self._grid(window)
         if found is None:
             return self._nothing()
-        grid, records, row, column, own, rim = found
-        cell, points = row * grid.shape[1] + column, Points(records)
-        averages = Averages.of(cell, points.value, records["z"], grid.shape)
+        cell, points = found.cell, Points(found.records)
+        averages = Averages.of(cell, points.value, found.records["z"], found.grid.shape)
         witnesses = Witnesses(cell, points.value, points.covered > 0, views(points, self.frame))
-        mask = stroke_cells(averages, rim, witnesses, self.settings.faint)
-        return self._handed_out(grid, mask, records, row, column, own, np.ones(len(records), bool))
+        return self._handed_out(found, stroke_cells(averages, found.rim, witnesses, self.settings.faint))
 
     def _nothing(self):
         return self.road_points.window(self.road, 0, 0).records, np.empty(0), np.empty(0)
 
-    def _handed_out(self, grid, mask, records, row, column, own, bright):
-        """Records of the window itself that are bright in painted cells, and the mask's pixels."""
-        records, row, column = chosen(records, own), row[own], column[own]
-        kept = mask[row, column] & bright[own]
+    def _handed_out(self, found, mask, least=None):
+        """Records of the window itself in painted cells, brighter than `least` of their cell, and the mask's pixels."""
+        records, cell = found.records[found.own], found.cell[found.own]
+        kept = np.flatnonzero(mask.ravel().take(cell))
+        if least is not None:
+            kept = kept[Points(chosen(records, kept)).value > least.ravel().take(cell.take(kept))]
         if not self.masked:
             return chosen(records, kept), np.empty(0), np.empty(0)
         # the image spreads a point over its neighbours: a cell whose own points are dark is no marking
-        mask[row, column] = False
-        mask[row[kept], column[kept]] = True
-        return chosen(records, kept), *self._pixels(mask, grid)
+        mask.ravel()[cell] = False
+        mask.ravel()[cell[kept]] = True
+        return chosen(records, kept), *self._pixels(mask, found.grid)
+
+
+@dataclass(frozen=True)
+class _Cells:
+    """A window with its halo in cells.
+
+    grid : RoadGrid; records : of the points in it; cell : (N,) flat number of each point's cell
+    own : slice, the records of the window itself; rim : (rows, columns) m from the rim of the road
+    """
+
+    grid: RoadGrid
+    records: object
+    cell: np.ndarray
+    own: slice
+    rim: np.ndarray

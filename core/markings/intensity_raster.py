@@ -12,6 +12,7 @@ from ..progress import Progress
 
 TILE = 512          # px, side of a tile of the file and of the work
 NODATA = -9999.0
+AT_ONCE = 4 * TILE**2   # px that are read in one piece to be sampled
 COMPRESSING = 2     # threads
 DISPLAY_LONGEST = 2000  # px of the reduced image from which the stretch is taken
 
@@ -123,7 +124,18 @@ class IntensityImage:
         if bilinear:
             column, row = column - 0.5, row - 0.5
         values = np.full(len(column), np.nan, np.float32)
-        whole_column, whole_row = np.floor(column).astype(np.int64), np.floor(row).astype(np.int64)
+        if not len(values):
+            return values
+        floor_column, floor_row = np.floor(column), np.floor(row)
+        box = [int(end) for whole in (floor_column, floor_row) for end in (whole.min(), whole.max())]
+        if not bilinear and (box[1] - box[0] + 1) * (box[3] - box[2] + 1) <= AT_ONCE:
+            pixels = self.read_pixels(box[0], box[2], box[1] - box[0] + 1, box[3] - box[2] + 1)
+            floor_row -= box[2]
+            floor_row *= pixels.shape[1]
+            floor_row += floor_column
+            floor_row -= box[0]
+            return pixels.ravel().take(floor_row.astype(np.intp))
+        whole_column, whole_row = floor_column.astype(np.int64), floor_row.astype(np.int64)
         inside = np.flatnonzero((whole_column >= -1) & (whole_row >= -1) & (whole_column < self.width) & (whole_row < self.height))
         tile = (whole_row[inside] // TILE) * (self.width // TILE + 2) + whole_column[inside] // TILE
         order = inside[np.argsort(tile, kind="stable")]

@@ -21,7 +21,7 @@ def morphology(mask, settings):
 def runs(mask, axis):
     """Length of the run of on cells through each cell along one axis, in cells; 0 where off."""
     on = np.moveaxis(mask, axis, 0)
-    index = np.arange(len(on)).reshape(-1, 1)
+    index = np.arange(len(on), dtype=np.int32).reshape(-1, 1)
     before = np.maximum.accumulate(np.where(on, -1, index), axis=0)
     after = np.minimum.accumulate(np.where(on, len(on), index)[::-1], axis=0)[::-1]
     return np.moveaxis(np.where(on, after - before - 1, 0), 0, axis)

@@ -5,6 +5,7 @@ together across it, and paint is worn through in places. So gaps are closed
 along the road, and much less across it, where the next stripe may begin.
 """
 
+import cv2
 import numpy as np
 import shapely
 from scipy import ndimage
@@ -28,12 +29,14 @@ def fill_gaps(mask, limit, axis=0):
     """Close runs of at most `limit` cells that are off between two that are on, along one axis."""
     if limit < 1:
         return mask.copy()
-    on = np.moveaxis(mask, axis, 0)
-    count = len(on)
-    index = np.arange(count).reshape((-1,) + (1,) * (on.ndim - 1))
-    before = np.maximum.accumulate(np.where(on, index, -count * 2), axis=0)
-    after = np.minimum.accumulate(np.where(on, index, count * 4)[::-1], axis=0)[::-1]
-    return np.moveaxis(on | (after - before - 1 <= limit), 0, axis)
+    length = limit + 1
+    size, behind = ((1, length), (0, length - 1)) if axis == 0 else ((length, 1), (length - 1, 0))
+    along = np.ones(size[::-1], np.uint8)
+    margin = [length, length, 0, 0] if axis == 0 else [0, 0, length, length]
+    # off beyond the rim, so that nothing is closed towards it
+    grown = cv2.dilate(cv2.copyMakeBorder(mask.astype(np.uint8), *margin, cv2.BORDER_CONSTANT, value=0), along, anchor=(0, 0))
+    closed = cv2.erode(grown, along, anchor=behind)
+    return closed[margin[0]:margin[0] + mask.shape[0], margin[2]:margin[2] + mask.shape[1]].astype(bool)
 
 
 def band(s, d, shape):

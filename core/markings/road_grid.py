@@ -25,6 +25,5 @@ class RoadGrid:
 
     def read(self, image, frame, road):
         """(rows, columns) float32 brightness, NaN where nothing was scanned."""
-        s, d = np.meshgrid(self.stations(), self.offsets(), indexing="ij")
-        x, y = frame.road(road).to_map(s.ravel(), d.ravel())
-        return np.asarray(image.sample(x, y, frame.origin), np.float32).reshape(self.shape)
+        x, y = frame.road(road).to_map(self.stations()[:, None], self.offsets())
+        return np.asarray(image.sample(x.ravel(), y.ravel(), frame.origin), np.float32).reshape(self.shape)

@@ -11,6 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
+from ..survey.points import UNIT
+from ..survey.sorting import ascending, order_by, quantiles, quantiles_in_order
+
 NARROWEST, WIDEST = 0.75, 3.0  # m, limits of the bin width
 FEWEST = 500          # cells of a bin, below which it joins its neighbour
 LEVELS = 256          # histogram levels of Otsu's method
@@ -57,7 +60,7 @@ def bin_edges(d, low, high):
 
     Parameters
     ----------
-    d : (N,) offsets of the window's points, metres
+    d : (N,) int32 offsets of the window's points, units of 0.1 mm
     low, high : extent of the road, metres
 
     Returns
@@ -75,9 +78,9 @@ def bin_edges(d, low, high):
     """
     if not len(d):
         return np.array([low, high])
-    middle = float(np.median(d))
+    first, middle, third = (quantiles(d, [0.25, 0.5, 0.75]) * UNIT).tolist()
     # the Gaussian that has the quartiles of the density: far stray points do not widen it
-    width = float(np.clip(np.subtract(*np.percentile(d, [75, 25])) / 1.349, NARROWEST, WIDEST))
+    width = float(np.clip((third - first) / 1.349, NARROWEST, WIDEST))
     left, right = int(max(high - middle, 0) / width) + 1, int(max(middle - low, 0) / width) + 1
     return middle + width * np.arange(-right, left + 1)
 
@@ -92,15 +95,16 @@ def asphalt(values):
     -------
     median, spread : spread is the distance from the median to the 15.9 % quantile
     """
-    rest = values
+    values = ascending(values)
+    count = len(values)
     for _ in range(4):
-        low, median = np.quantile(rest, [LOWER, 0.5])
+        low, median = quantiles_in_order(values[:count], [LOWER, 0.5]).tolist()
         spread = max(median - low, 1e-6 * max(abs(median), 1.0))
-        kept = values[values <= median + 3.0 * spread]
-        if len(kept) == len(rest):
+        kept = int(np.searchsorted(values, median + 3.0 * spread, side="right"))
+        if kept == count:
             break
-        rest = kept
-    return float(median), float(spread)
+        count = kept
+    return median, spread
 
 
 def scatter_of(points):
@@ -109,10 +113,14 @@ def scatter_of(points):
     The lower half of a square tells it, which paint is not in. None where no square has enough points.
     """
     value = points.intensity
-    column, row = np.floor(points.d / SQUARE).astype(np.int64), np.floor(points.s / SQUARE).astype(np.int64)
-    square = ((row - row.min()) * (np.ptp(column) + 1) + column - column.min()) * 256 + points.scanner
-    square = square * 65536 + points.pass_number  # another pass is another distance
-    order = np.lexsort((value, square))
+    side = int(round(SQUARE / UNIT))
+    square = np.zeros(len(value), np.int32)
+    # another pass is another distance
+    for key in (points.records["s"] // side, points.records["d"] // side, points.scanner, points.pass_number):
+        low, high = int(key.min()), int(key.max())
+        square *= high - low + 1
+        square += key.astype(np.int32) - low
+    order = order_by(value, square)
     value = value[order].astype(float)
     starts = np.flatnonzero(np.r_[True, np.diff(square[order]) != 0])
     count = np.diff(np.r_[starts, len(value)])

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.markings.thresholds import asphalt, asphalt_bins, background, bin_edges, otsu, split_bins
+from lanewright.core.survey.points import to_units
 
 RNG = np.random.default_rng(4)
 
@@ -29,7 +30,7 @@ def test_paint_does_not_change_what_asphalt_is(share):
 
 def test_bins_are_as_wide_as_the_points_are_dense_within_limits():
     for sigma, width in ((0.3, 0.75), (1.5, 1.5), (8.0, 3.0)):
-        edges = bin_edges(RNG.normal(0.0, sigma, 50_000), -5.0, 5.0)
+        edges = bin_edges(to_units(RNG.normal(0.0, sigma, 50_000)), -5.0, 5.0)
         np.testing.assert_allclose(np.diff(edges), width, rtol=0.03)
         assert edges[0] <= -5.0 and edges[-1] >= 5.0
 
