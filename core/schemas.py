@@ -4,6 +4,7 @@ from .features import Field
 
 ROAD = Field("road", int, "Road")
 PASS = Field("pass", int, "Pass")
+NEAREST_PASS = Field("pass", int, "Pass that drove nearest")
 SIDE = Field("side", str, "Side (left/right)")
 STATUS = Field("status", str, "Status")
 STATION = Field("station_m", float, "Station (m)")
@@ -21,11 +22,11 @@ RMSE = Field("rmse_m", float, "RMSE of the fit (m)")
 # station_m of a line is where it starts, end_m where it ends, along the road
 END = Field("end_m", float, "End station (m)")
 
-CURB_POINTS = [ROAD, PASS, SIDE, STATUS, STATION, OFFSET, HEIGHT, PART,
+CURB_POINTS = [ROAD, NEAREST_PASS, SIDE, STATUS, STATION, OFFSET, HEIGHT, PART,
                CURB_KIND, Field("chain", int, "Chain along the curb"), Field("along_m", float, "Distance along the chain (m)"),
                Field("residual_m", float, "Residual (m)"),
                Field("support", int, "Supporting points")]
-ROAD_EDGES = [ROAD, PASS, SIDE, STATUS, STATION, END, HEIGHT, PART, AGREE, LENGTH, RMSE,
+ROAD_EDGES = [ROAD, NEAREST_PASS, SIDE, STATUS, STATION, END, HEIGHT, PART, AGREE, LENGTH, RMSE,
               CURB_KIND, Field("chain", int, "Chain along the curb")]
 SCANLINES = [ROAD, PASS, Field("scanner", int, "Scanner"), STATION, LENGTH, Field("interval_m", float, "Interval of the planes (m)")]
 ROAD_SURFACE = [ROAD, STATUS, STATION, END, Field("area_m2", float, "Area (m²)"), Field("points", int, "Road points")]
@@ -36,7 +37,7 @@ MARKINGS = [ROAD, Field("cluster", int, "Cluster"), Field("class", str, "Class")
 MARKING_LINES = [ROAD, Field("line", int, "Line"), Field("kind", str, "Kind (edge/lane/centre)"),
                  Field("pattern", str, "Pattern"), STATUS, Field("curve", str, "Curve"), RADIUS, RMSE,
                  STATION, END, OFFSET, LENGTH, WIDTH, Field("params", str, "Fitted function (JSON)")]
-DRIVING_LINES = [ROAD, Field("lane", int, "Lane"), Field("kind", str, "Kind"), Field("pattern", str, "Pattern"),
+DRIVING_LINES = [ROAD, Field("lane", int, "Lane"), Field("kind", str, "Kind"), Field("pattern", str, "Lines to its left|right"),
                  Field("direction", int, "Direction (1 along, -1 against the road)"),
                  Field("source", str, "Source (pair/offset)"), STATUS, Field("curve", str, "Curve"), RADIUS, RMSE,
                  STATION, END, OFFSET, LENGTH, WIDTH, Field("params", str, "Fitted function (JSON)")]

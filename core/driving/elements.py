@@ -54,7 +54,7 @@ def curve_points(start, heading, radius, delta, left):
 
 
 def design_check(radius, length, complete=True):
-    """The highest design speed that CJJ 37-2012 allows for a curve, km/h (0 below all), and a sentence.
+    """The highest design speed that CJJ 37-2012 allows for a curve, km/h (None below all), and a sentence.
 
     complete : False where the arc runs on beyond the line, so that its length is not known
     """
@@ -62,12 +62,12 @@ def design_check(radius, length, complete=True):
     by_length = max((speed for speed, _, least in DESIGN_CODE if length >= least), default=0)
     speed = min(by_radius, by_length) if complete else by_radius
     if not by_radius:
-        return 0, f"CJJ 37-2012: radius {radius:.0f} m is below {DESIGN_CODE[0][1]:.0f} m, the least for 30 km/h"
+        return None, f"CJJ 37-2012: radius {radius:.0f} m is below {DESIGN_CODE[0][1]:.0f} m, the least for 30 km/h"
     text = f"CJJ 37-2012: radius allows {by_radius} km/h"
     if not complete:
         return speed, text + "; the curve goes on beyond the line"
     if not by_length:
-        return 0, text + f", length {length:.0f} m is below {DESIGN_CODE[0][2]:.0f} m, the least for 30 km/h"
+        return None, text + f", length {length:.0f} m is below {DESIGN_CODE[0][2]:.0f} m, the least for 30 km/h"
     return speed, text + f", length {by_length} km/h"
 
 

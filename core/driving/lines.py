@@ -68,7 +68,7 @@ def driving_lines(marking_lines, frame, settings=DrivingSettings(), progress=Pro
             progress.warn("Neither the marking lines nor road points have heights; the trajectory's are used.")
             heights = [frame.track_height(number, road_lines.s[t.first:t.last + 1]) for t in tracks]
         for lane, (track, way, found_elements, z) in enumerate(zip(tracks, ways, alignment, heights), start=1):
-            _write_lane(lines, lane, track, way, found_elements, road_lines.s, z, frame, number)
+            _write_lane(lines, lane, track, way, found_elements, road_lines, z, frame, number)
             _write_elements(elements, lane, way, found_elements, number, frame.origin)
         progress.at(0.4 + 0.6 * (count + 1) / len(found))
     _say(lines, side, progress)
@@ -114,8 +114,8 @@ def _traffic_side(found, settings, progress):
     return "left" if left > right else "right"
 
 
-def _write_lane(lines, lane, track, way, elements, s, z, frame, number):
-    origin = frame.origin
+def _write_lane(lines, lane, track, way, elements, road_lines, z, frame, number):
+    origin, s = frame.origin, road_lines.s
     course = lane_course(track, s, frame.roads[number], elements)
     grid = s[track.first:track.last + 1]
     status = settled(track.status)
@@ -130,11 +130,19 @@ def _write_lane(lines, lane, track, way, elements, s, z, frame, number):
         element = element_of(elements, start, end)
         curve = element.arc if element is not None else course.curve
         length = float(np.hypot(*np.diff(places[:, :2], axis=0).T).sum())
-        lines.add(shapely.linestrings(places), road=number, lane=lane, kind="lane", pattern="", direction=way,
+        lines.add(shapely.linestrings(places), road=number, lane=lane, kind="lane",
+                  pattern=_patterns(track, rows, way, road_lines.patterns), direction=way,
                   source="offset" if track.offset[rows].mean() > 0.5 else "pair", status=STATUS[code], curve=curve.kind,
                   radius_m=float(curve.radius) if np.isfinite(curve.radius) else None, rmse_m=float(course.rmse),
                   station_m=start, end_m=end, offset_m=float(np.median(track.d[rows])), length_m=length,
                   width_m=float(np.median(track.width[rows])), params=_function(curve.moved(*origin[:2])))
+
+
+def _patterns(track, rows, way, patterns):
+    """The patterns of the lines left and right of a stretch of lane in the direction of travel, as "dashed|solid"; "none" where there is no line."""
+    sides = [track.left[rows], track.right[rows]][::way]
+    most = [np.bincount(side + 1).argmax() - 1 for side in sides]
+    return "|".join(patterns[line] or "none" if line >= 0 else "none" for line in most)
 
 
 def _between(course, start, end, code_first, code_last):

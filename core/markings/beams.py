@@ -6,8 +6,7 @@ always points at the same elevation: points gather there in rings, and the aspha
 each ring tells what the laser makes of asphalt.
 """
 
-import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
@@ -21,7 +20,7 @@ RINGS = 1.5          # how much fuller than the mean of a degree about them ring
 UNEQUAL = 0.05       # of asphalt's level: beams that differ less from those beside them are alike
 BESIDE = 3           # beams either side
 WINDOWS, WINDOW = 12, 5.0   # how many windows of a road are looked at to tell whether there are beams; m
-MOST = 20_000        # points of a window that are looked at
+MOST = 8_000         # points of a window that are looked at
 LONGEST_FRAME = 1.0  # s that a turn of a spinning scanner may last
 TILTS = ((0, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))  # signs in which roll and pitch are told
 
@@ -81,24 +80,50 @@ class View:
     def elevation_bin(self, points):
         """(N,) int, the bin of elevation; -1 where no pass drove at the point's time."""
         found = np.full(len(points), -1)
+        for rows, sight in self.sights(points):
+            found[rows] = sight.elevation_bin(self.tilt)
+        return found
+
+    def sights(self, points):
+        """(indices, Sight) of the points of each pass, the same for all tilts."""
         time, number = points.time, points.pass_number
         if self.by_frame:
             middle = self.frames.middle[points.source]
             time = np.where(np.isfinite(middle), middle, time)
         for p in self.passes:
             rows = np.flatnonzero((number == p.number) & (time >= p.time[0] - 1.0) & (time <= p.time[-1] + 1.0))
-            if not len(rows):
-                continue
-            here, when = points[rows], time[rows]
-            px, py, pz = p.position(when)
-            dx, dy, dz = here.x - px, here.y - py, here.z - pz
-            if any(self.tilt) and p.attitude is not None:
-                roll, pitch, heading = (np.interp(when, p.time, angle) for angle in p.attitude)
-                c, n = np.cos(heading), np.sin(heading)
-                dz = dz + self.tilt[0] * roll * (dx * c - dy * n) + self.tilt[1] * pitch * (dx * n + dy * c)
-            elevation = np.degrees(np.arctan2(dz, np.hypot(dx, dy)))
-            found[rows] = np.clip(np.floor((elevation - LOWEST) / STEP), -1, STEPS - 1)
-        return found
+            if len(rows):
+                yield rows, Sight.of(p, points[rows], time[rows])
+
+
+@dataclass(frozen=True)
+class Sight:
+    """How points lie from the vehicle.
+
+    reach, rise : (N,) m, horizontally and up; lean, nod : (N,) m that roll and pitch raise them by, 0 where neither is known
+    """
+
+    reach: np.ndarray
+    rise: np.ndarray
+    lean: np.ndarray
+    nod: np.ndarray
+
+    @classmethod
+    def of(cls, p, points, time):
+        px, py, pz = p.position(time)
+        dx, dy = points.x - px, points.y - py
+        if p.attitude is None:
+            lean = nod = 0.0
+        else:
+            roll, pitch, heading = (np.interp(time, p.time, angle) for angle in p.attitude)
+            c, n = np.cos(heading), np.sin(heading)
+            lean, nod = roll * (dx * c - dy * n), pitch * (dx * n + dy * c)
+        return cls(np.hypot(dx, dy), points.z - pz, lean, nod)
+
+    def elevation_bin(self, tilt):
+        """(N,) int; `tilt` are the signs of roll and pitch."""
+        elevation = np.degrees(np.arctan2(self.rise + tilt[0] * self.lean + tilt[1] * self.nod, self.reach))
+        return np.clip(np.floor((elevation - LOWEST) / STEP), -1, STEPS - 1).astype(int)
 
 
 @dataclass
@@ -194,14 +219,15 @@ def _samples(road_points, frame, scanner):
 def _sharpest(samples, passes, frames):
     """The view in which points gather most clearly in rings; None where they do in no view."""
     samples = list(samples)
-    tilted = any(p.attitude is not None for p in passes)
-    views = [View(passes, frames, by_frame, tilt) for by_frame, tilt in
-             itertools.product((False, True) if frames.known else (False,), TILTS if tilted else TILTS[:1])]
+    tilts = TILTS if any(p.attitude is not None for p in passes) else TILTS[:1]
     best, sharpest = RINGS, None
-    for view in views:
-        found = sharpness(sum((_histogram(view.elevation_bin(points)) for points in samples), np.zeros(STEPS)))
-        if found > best:
-            best, sharpest = found, view
+    for by_frame in (False, True) if frames.known else (False,):
+        view = View(passes, frames, by_frame)
+        sights = [sight for points in samples for _, sight in view.sights(points)]
+        for tilt in tilts:
+            found = sharpness(sum((_histogram(sight.elevation_bin(tilt)) for sight in sights), np.zeros(STEPS)))
+            if found > best:
+                best, sharpest = found, replace(view, tilt=tilt)
     return sharpest
 
 

@@ -186,8 +186,8 @@ def _gutter(shape, room, line, zebra):
 
 def _other_kind(shape):
     turn = abs(shape.direction)
-    if turn > np.radians(60) and STOP_WIDTH[0] <= shape.width <= STOP_WIDTH[1] and shape.length >= STOP_LENGTH \
-            and shape.area >= FILLED * shape.length * shape.width:
+    if shape.across and STOP_WIDTH[0] <= shape.width <= STOP_WIDTH[1] and shape.length >= STOP_LENGTH \
+            and shape.closed_area >= FILLED * shape.length * shape.width:
         return "stop"
     along, across = shape.s1 - shape.s0, shape.d1 - shape.d0
     if 1.5 <= along <= 8.0 and 0.3 <= across <= 1.8 and shape.area < 0.7 * along * across and turn < np.radians(25):

@@ -1,8 +1,8 @@
 """Markings that touch taken apart: a stop line that runs into an edge line is two markings.
 
 A cluster joins whatever touches. Where it holds a strip that runs on along the
-road and something else beside it, the strip is cut free, so that the line keeps its
-width and the rest its shape.
+road, or a bar that runs on across it, and something else beside it, the two are cut
+free, so that the line keeps its width and the rest its shape.
 """
 
 import cv2
@@ -18,6 +18,9 @@ from .shapes import CELL
 
 LEAST_ALONG, LEAST_ACROSS = 5.0, 0.9  # m: arrows, letters and single dashes are smaller and stay whole
 RUN = 1.0          # m along the road that a strip does not break off; stop lines and hatching bars are shorter
+BAR = 2.0          # m across the road that a bar does not break off; no arrow or letter is as broad
+LEAST_BESIDE = 1.0  # m along the road: what is shorter is nothing but a bar
+PAINT_GAP = 0.24   # m across the road, closed; the stripes of a zebra crossing leave more
 SCAN_GAP = 0.40    # m between scan lines, closed
 CHUNK = 100.0      # m of road looked at together
 SMALLEST = 0.05    # m2: smaller left-overs are the frayed rim of the strip
@@ -43,7 +46,8 @@ def split_compounds(records, labels):
     following = int(labels.max()) + 1
     along, across = records["s"].take(order), records["d"].take(order)
     ranges = [np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts) for values in (along, across)]
-    large = (ranges[0] * UNIT >= LEAST_ALONG) & (ranges[1] * UNIT >= LEAST_ACROSS)
+    large = (ranges[0] * UNIT >= LEAST_ALONG) & (ranges[1] * UNIT >= LEAST_ACROSS) \
+        | (ranges[0] * UNIT >= LEAST_BESIDE) & (ranges[1] * UNIT >= BAR)
     for a, b in zip(starts[large], np.r_[starts[1:], len(order)][large]):
         rows = order[a:b]
         cells, member = occupied(along[a:b] // CELL, across[a:b] // CELL)
@@ -57,35 +61,49 @@ def split_compounds(records, labels):
 def _parts(cells):
     """(K,) the part of every cell, numbered from 0, and how many parts there are."""
     size = CELL * UNIT
-    along = _in_long_runs(cells)
-    strips = _linked(cells[along], SCAN_GAP / size, 1.0)
-    count = strips.max(initial=-1) + 1
-    first, last = np.full(count, np.inf), np.full(count, -np.inf)
-    np.minimum.at(first, strips, cells[along, 0])
-    np.maximum.at(last, strips, cells[along, 0])
-    long = (last - first) * size >= LEAST_ALONG
-    if not long.any():
+    parts, every = np.full(len(cells), -1), np.arange(len(cells))
+    count = _number_strips(parts, 0, cells, every[_in_runs(cells, SCAN_GAP, RUN)], SCAN_GAP, size, LEAST_ALONG)
+    rest, turned = np.flatnonzero(parts < 0), cells[:, ::-1]
+    # scan lines lie apart within a bar
+    count = _number_strips(parts, count, turned, rest[_in_runs(turned[rest], PAINT_GAP, BAR)], PAINT_GAP, SCAN_GAP, BAR)
+    if not count:
         return np.zeros(len(cells), np.int64), 1
-    parts = np.full(len(cells), -1)
-    number = np.where(long, np.cumsum(long) - 1, -1)
-    parts[along] = number[strips]
     rest = np.flatnonzero(parts < 0)
     pieces = _linked(cells[rest], SCAN_GAP / size, 3.0)
     areas = np.bincount(pieces) * size**2 if len(pieces) else np.empty(0)
     kept = areas >= SMALLEST
-    later = np.where(kept, long.sum() + np.cumsum(kept) - 1, -1)
+    later = np.where(kept, count + np.cumsum(kept) - 1, -1)
     parts[rest] = later[pieces]
     lost = parts < 0
     if lost.any():
         owned = np.flatnonzero(~lost)
         parts[lost] = parts[owned[cKDTree(cells[owned]).query(cells[lost])[1]]]
-    return parts, int(long.sum() + kept.sum())
+    return parts, int(count + kept.sum())
 
 
-def _in_long_runs(cells):
-    """(K,) whether a cell lies in a run of paint along the road of at least RUN."""
+def _number_strips(parts, count, cells, rows, gap, gap_across, least):
+    """Number in `parts` the strips that the cells `rows` make, from `count` on; returns the next number.
+
+    cells : (K, 2) along the strips and across them; gap, gap_across : m between cells of one; least : m, its length
+    """
     size = CELL * UNIT
-    gap, run, chunk = int(SCAN_GAP / size), int(RUN / size), int(CHUNK / size)
+    strips = _linked(cells[rows], gap / size, gap_across / size)
+    number = strips.max(initial=-1) + 1
+    first, last = np.full(number, np.inf), np.full(number, -np.inf)
+    np.minimum.at(first, strips, cells[rows, 0])
+    np.maximum.at(last, strips, cells[rows, 0])
+    long = (last - first) * size >= least
+    parts[rows] = np.where(long, count + np.cumsum(long) - 1, -1)[strips]
+    return count + int(long.sum())
+
+
+def _in_runs(cells, longest_gap, shortest_run):
+    """(K,) whether a cell lies in a run of paint along the first axis; gaps are closed."""
+    if not len(cells):
+        return np.zeros(0, bool)
+    size = CELL * UNIT
+    # OpenCV moves what an even number of cells closes or opens
+    gap, run, chunk = round(longest_gap / size) // 2 * 2, round(shortest_run / size) | 1, int(CHUNK / size)
     halo = 2 * (gap + run)
     result = np.zeros(len(cells), bool)
     numbers = np.floor_divide(cells[:, 0], chunk)

@@ -10,7 +10,7 @@ the brighter of the two.
 import numpy as np
 from scipy import ndimage
 
-from .polygons import fill_gaps
+from .shapes import fill_gaps
 
 CELL = 0.04          # m
 BAND = 2             # cells: 8 cm bands inwards from the rim

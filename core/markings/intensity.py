@@ -7,9 +7,13 @@ import numpy as np
 from ..errors import RoadExtractionError
 from ..parallel import in_order
 from ..progress import Progress
+from ..survey.points import Points
 from .beams import Beams
-from .intensity_table import BIN, REACH, AsphaltTable, asphalt_of, count_levels, distances_from_vehicle
+from .intensity_table import AWAY, BIN, REACH, AsphaltTable, asphalt_of, count_levels, distances_from_vehicle
 
+ENOUGH = 16_000   # points of a metre of road: more tell nothing new of asphalt
+STRIPE = 100    # units of 0.1 mm along the road: where there are more, stripes of it are looked at
+AT_ONCE = 1 << 15  # points corrected at a time: what fits the processor's cache
 WITHOUT_VEHICLE = 0.2   # share of points that may lack a vehicle's position before the correction is given up
 
 
@@ -85,9 +89,9 @@ def correct_intensity(road_points, frame, settings=IntensitySettings(), progress
     """Bring asphalt to one intensity at every distance and for every scanner.
 
     The beams of a spinning scanner are made alike first, where they are not.
-    In a first round the levels of all points are counted by scanner and distance
-    from the vehicle, left and right apart; the asphalt I0 of each bin is the median of what
-    is not paint. In the second every point becomes I * reference / I0, or
+    In a first round the levels of points are counted by scanner and distance from the
+    vehicle, left and right apart (where points crowd, of those in stripes across the
+    road); the asphalt I0 of each bin is the median of what is not paint. In the second every point becomes I * reference / I0, or
     I + reference - I0 where the intensities are logarithmic: there asphalt
     keeps its spread while its level falls.
 
@@ -108,24 +112,26 @@ def correct_intensity(road_points, frame, settings=IntensitySettings(), progress
         progress.warn(reason)
         return road_points, IntensityReport(reason=reason)
     sections = road_points.all_sections()
-    scanners = 1 + max(in_order(lambda key: int(road_points.section(*key).scanner.max()), sections))
+    by_scanner = sum(in_order(lambda key: np.bincount(road_points.section(*key).scanner, minlength=256), sections))
+    scanners = int(np.flatnonzero(by_scanner)[-1]) + 1
     beams = Beams.of(road_points, frame, scanners, progress.part(0.0, 0.2))
     even = beams.even if beams else (lambda points: points.intensity)
+    step = _step(road_points)
 
     def count(key):
-        points = road_points.section(*key)
+        points = _stripes(road_points.section(*key), step)
         distance = distances_from_vehicle(points, frame.passes)
         raw = count_levels(points.scanner, distance, points.intensity, scanners)
         evened = count_levels(points.scanner, distance, even(points), scanners) if beams else raw
-        return raw, evened, np.count_nonzero(np.isnan(distance[0]))
+        return step * raw, step * evened, np.array([np.count_nonzero(np.isnan(distance[0])), len(points)])
 
     before, evened, placeless = 0, 0, 0
     for counts, even_counts, lost in in_order(count, sections, progress.part(0.2, 0.5)):
         before, evened, placeless = before + counts, evened + even_counts, placeless + lost
     table = AsphaltTable.of(evened)
-    if placeless > WITHOUT_VEHICLE * len(road_points):
+    if placeless[0] > WITHOUT_VEHICLE * placeless[1]:
         reason = ("Intensity was left as it is: the trajectory does not say where the vehicle was when "
-                  f"{placeless:,} of {len(road_points):,} points were measured.")
+                  f"{placeless[0]:,} of {placeless[1]:,} points were measured.")
     elif table is None:
         reason = "Intensity was left as it is: there are too few road points to learn from how asphalt looks at each distance."
     if reason:
@@ -134,22 +140,44 @@ def correct_intensity(road_points, frame, settings=IntensitySettings(), progress
     if settings.scale != "automatic":
         table.logarithmic = settings.scale == "logarithmic"
 
+    away = bool((table.told_by == AWAY).any())
+
     def correct(key):
         points = road_points.section(*key)
-        distance = distances_from_vehicle(points, frame.passes)
-        corrected = table.correct(even(points), points.scanner, distance)
-        return key, corrected, count_levels(points.scanner, distance, corrected, scanners)
+        corrected = np.empty(len(points), np.float32)
+        for first in range(0, len(points), AT_ONCE):
+            here = points[first:first + AT_ONCE]
+            corrected[first:first + AT_ONCE] = table.correct(even(here), here.scanner, distances_from_vehicle(here, frame.passes, away))
+        some = _stripes(Points(points.records.with_columns(corrected=corrected)), step)
+        return key, corrected, step * count_levels(some.scanner, distances_from_vehicle(some, frame.passes), some.corrected, scanners)
 
     result = replace(road_points, store=road_points.store.with_column("corrected"), has_corrected=True)
     after = 0
     for key, corrected, counts in in_order(correct, sections, progress.part(0.5, 1.0)):
         result.store.put(*key, corrected)
         after = after + counts
-    report = _report(before, after, table)
+    report = _report(before, after, table, by_scanner)
     report.beams = beams.count if beams else 0
     for line in report.lines()[:1]:
         progress.say(line)
     return result, report
+
+
+def _step(road_points):
+    """Of how many centimetres of road one is looked at for the level of asphalt; its points then stand for all of theirs."""
+    length = sum(end - start for start, end in map(road_points.store.span, road_points.roads()))
+    return max(int(len(road_points) / max(length, 1.0) / ENOUGH), 1)
+
+
+def _stripes(points, step):
+    """The points in every step-th centimetre of the road, the same ones however sections are cut."""
+    s = points.records["s"]
+    if step == 1 or not len(s):
+        return points
+    first = np.arange(s[0] // (STRIPE * step), s[-1] // (STRIPE * step) + 1) * (STRIPE * step)
+    begins, ends = np.searchsorted(s, first), np.searchsorted(s, first + STRIPE)
+    count = ends - begins
+    return points[np.repeat(begins - (np.cumsum(count) - count), count) + np.arange(count.sum())]
 
 
 def _why_not(road_points, frame):
@@ -161,7 +189,7 @@ def _why_not(road_points, frame):
     return ""
 
 
-def _report(before, after, table):
+def _report(before, after, table, by_scanner):
     rows = table.told_by, np.arange(len(table.told_by))
     medians = [asphalt_of(counts[rows])[0] for counts in (before, after)]
     weight = before[rows].sum(axis=-1)
@@ -170,7 +198,7 @@ def _report(before, after, table):
     distances = np.abs(np.arange(weight.shape[1]) * BIN + BIN / 2 - REACH)
     for scanner in np.flatnonzero(known.any(axis=1)):
         use = known[scanner]
-        row = dict(scanner=int(scanner), points=int(weight[scanner].sum()),
+        row = dict(scanner=int(scanner), points=int(by_scanner[scanner]),
                    nearest=float(distances[use].min()), farthest=float(distances[use].max()))
         for name, levels in zip(("before", "after"), medians):
             mean, variation = _variation(levels[scanner, use], weight[scanner, use])

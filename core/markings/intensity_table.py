@@ -17,7 +17,7 @@ ACROSS, AWAY = 0, 1  # how distance is told
 LEVEL_OF = np.clip(np.rint(np.log2(np.arange(2**16) + 1.0) * PER_DOUBLING), 0, LEVELS - 1).astype(np.int32)  # of whole numbers
 
 
-def distances_from_vehicle(points, passes):
+def distances_from_vehicle(points, passes, away=True):
     """Where each point lies as seen from the vehicle at the time it was measured.
 
     On a road the place relative to the vehicle stands for range and incidence
@@ -30,11 +30,12 @@ def distances_from_vehicle(points, passes):
     ----------
     points : (N) road points
     passes : the passes of the frame
+    away : whether the second distance is asked for
 
     Returns
     -------
     (2, N) metres, left of travel positive: across the track, and horizontally
-    away with the sign of the side; NaN where no pass drove at the point's time
+    away with the sign of the side; NaN where no pass drove at the point's time, or where it is not asked for
     """
     distance = np.full((2, len(points)), np.nan)
     time, number = points.time, points.pass_number
@@ -45,15 +46,18 @@ def distances_from_vehicle(points, passes):
             continue
         rows = slice(None) if whole else np.flatnonzero(rows)
         here = points[rows]
-        px, py, pd = p.at(time[rows], "x", "y", "d")
-        across = (here.d - pd) * p.direction
-        px -= here.x
-        py -= here.y
-        px *= px
-        py *= py
-        px += py
+        across = here.d
+        across -= p.at(time[rows], "d")[0]
+        across *= p.direction
         distance[ACROSS, rows] = across
-        distance[AWAY, rows] = np.copysign(np.sqrt(px, out=px), across)
+        if away:
+            px, py = p.at(time[rows], "x", "y")
+            px -= here.x
+            py -= here.y
+            px *= px
+            py *= py
+            px += py
+            distance[AWAY, rows] = np.copysign(np.sqrt(px, out=px), across)
     return distance
 
 

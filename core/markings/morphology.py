@@ -3,8 +3,7 @@
 import numpy as np
 
 from ..survey.points import UNIT
-from .polygons import fill_gaps
-from .shapes import CELL
+from .shapes import CELL, fill_gaps
 
 
 def morphology(mask, settings):

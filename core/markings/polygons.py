@@ -5,14 +5,13 @@ together across it, and paint is worn through in places. So gaps are closed
 along the road, and much less across it, where the next stripe may begin.
 """
 
-import cv2
 import numpy as np
 import shapely
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from ..survey.points import UNIT
-from .shapes import middle
+from .shapes import fill_gaps, middle
 
 CELL = 0.04          # m, in station and in offset
 CLOSE_ALONG = 0.40   # m of station over which a gap is closed
@@ -23,20 +22,6 @@ SMALLEST_PART = 0.005  # m2: three cells
 OUTLINE = 0.025      # m by which a simplified outline may leave the cells
 VERTEX_SPACING = 1.0  # m of station between vertices: 2 mm of sagitta at R = 60 m
 HEIGHT_NEIGHBOURS = 8
-
-
-def fill_gaps(mask, limit, axis=0):
-    """Close runs of at most `limit` cells that are off between two that are on, along one axis."""
-    if limit < 1:
-        return mask.copy()
-    length = limit + 1
-    size, behind = ((1, length), (0, length - 1)) if axis == 0 else ((length, 1), (length - 1, 0))
-    along = np.ones(size[::-1], np.uint8)
-    margin = [length, length, 0, 0] if axis == 0 else [0, 0, length, length]
-    # off beyond the rim, so that nothing is closed towards it
-    grown = cv2.dilate(cv2.copyMakeBorder(mask.astype(np.uint8), *margin, cv2.BORDER_CONSTANT, value=0), along, anchor=(0, 0))
-    closed = cv2.erode(grown, along, anchor=behind)
-    return closed[margin[0]:margin[0] + mask.shape[0], margin[2]:margin[2] + mask.shape[1]].astype(bool)
 
 
 def band(s, d, shape):

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 
 from ..survey.points import UNIT
@@ -12,6 +13,8 @@ CELL = 400          # units of 0.1 mm: 4 cm, the cells that areas and directions
 BIN = 5000          # units: 0.5 m of station that the run of a line is followed in
 RANGE = 95.0        # % of the points that the width spans; divided out again
 ALONG = np.radians(20.0)   # closer to the road's direction than this is "along" it
+ACROSS = np.radians(60.0)  # farther from it is "across"
+BAR_GAPS = 10, 6    # cells along the road and across it: gaps between the scan lines on a bar
 
 
 @dataclass(frozen=True)
@@ -20,6 +23,7 @@ class Shape:
 
     direction is 0 along the road, pi/2 across it, within (-pi/2, pi/2].
     s0, s1, d0, d1 bound it; `offset` is the median offset, `area` that of its 4 cm cells;
+    `closed_area` is the area with the gaps between scan lines, of what runs across the road (`area` of what does not);
     `begin` and `finish` are the offsets of its middle line at s0 and s1 (the median for what is not along the road).
     """
 
@@ -35,6 +39,7 @@ class Shape:
     points: int
     begin: float
     finish: float
+    closed_area: float
 
     @property
     def elongation(self):
@@ -48,6 +53,11 @@ class Shape:
     def along(self):
         """Whether it runs along the road."""
         return abs(self.direction) <= ALONG
+
+    @property
+    def across(self):
+        """Whether it runs across the road."""
+        return abs(self.direction) > ACROSS
 
 
 def measure(s, d):
@@ -76,8 +86,34 @@ def measure(s, d):
         length = np.ptp(along) * UNIT
         across = d * c - s * n
         begin = finish = float(np.median(d)) * UNIT
+    closed = _closed(cells) if abs(direction) > ACROSS else len(cells)
+    area, closed_area = (count * (CELL * UNIT) ** 2 for count in (len(cells), closed))
     return Shape(s0 * UNIT, s1 * UNIT, d0 * UNIT, d1 * UNIT, float(np.median(d)) * UNIT, float(length),
-                 spread(across) * UNIT, direction, len(cells) * (CELL * UNIT) ** 2, len(s), float(begin), float(finish))
+                 spread(across) * UNIT, direction, area, len(s), float(begin), float(finish), closed_area)
+
+
+def fill_gaps(mask, limit, axis=0):
+    """Close runs of at most `limit` cells that are off between two that are on, along one axis."""
+    if limit < 1:
+        return mask.copy()
+    length = limit + 1
+    size, behind = ((1, length), (0, length - 1)) if axis == 0 else ((length, 1), (length - 1, 0))
+    along = np.ones(size[::-1], np.uint8)
+    margin = [length, length, 0, 0] if axis == 0 else [0, 0, length, length]
+    # off beyond the rim, so that nothing is closed towards it
+    grown = cv2.dilate(cv2.copyMakeBorder(mask.astype(np.uint8), *margin, cv2.BORDER_CONSTANT, value=0), along, anchor=(0, 0))
+    closed = cv2.erode(grown, along, anchor=behind)
+    return closed[margin[0]:margin[0] + mask.shape[0], margin[2]:margin[2] + mask.shape[1]].astype(bool)
+
+
+def _closed(cells):
+    """How many cells there are when the gaps between scan lines are closed."""
+    low = cells.min(axis=0)
+    mask = np.zeros(cells.max(axis=0) - low + 1, bool)
+    mask[tuple((cells - low).T)] = True
+    for axis, limit in enumerate(BAR_GAPS):
+        mask = fill_gaps(mask, limit, axis)
+    return int(mask.sum())
 
 
 def spread(across):

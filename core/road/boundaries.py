@@ -8,6 +8,7 @@ from ..progress import Progress
 from .boundary_agreement import chosen_points, note_agreement
 from .curbs import CurbSettings, detect_curbs
 from .edges import EdgeSettings, fit_road_edges
+from .nearest_pass import name_passes
 from .scanline_boundaries import ScanlineBoundarySettings, curbs_from_scanlines
 from .scanline_source import SurveyScanlines
 from .section_planes import ScanlineSettings
@@ -67,6 +68,7 @@ def find_curb_points(survey, settings=BoundarySettings(), progress=Progress()):
         if both:
             drawn = found["both"] = _better_points(found, survey.frame)
         add_turned_curbs(drawn, survey, settings.curbs, progress.part(0.85, 1.0))
+        name_passes(drawn, survey.frame)
     return found
 
 

@@ -13,6 +13,7 @@ from ..schemas import CURB_POINTS
 from .averaged_steps import AVERAGE, find_averaged_steps
 from .chains import NOISY, choose_along, curb_chains, link_chains, long_enough
 from .corners import Steps
+from .nearest_pass import name_passes
 from .profiles import SPREAD_ROWS
 from .shadows import Sight
 from .sides import REACH, SECTION, SIDES, Track, expected_height, profiles_beside, sections_of
@@ -92,6 +93,7 @@ def detect_curbs(survey, settings=CurbSettings(), progress=Progress(), turned=Tr
     measured = sum(row["status"] == "measured" for row in found.rows)
     if turned:
         add_turned_curbs(found, survey, settings, progress.part(MAIN_SHARE, 1.0))
+    name_passes(found, survey.frame)
     progress.say(f"Curb points: {measured:,} measured, {len(found) - measured:,} hidden by something in front.")
     return found
 

@@ -12,6 +12,7 @@ from ..features import Features
 from ..parallel import go_on
 from ..progress import Progress
 from ..schemas import ROAD_EDGES, of_main_curb
+from .nearest_pass import name_passes
 from .turned_edges import draw_turned, turned_lines
 
 CONNECT = 2.5          # m between curb points that are joined as measured
@@ -72,6 +73,7 @@ def fit_road_edges(curb_points, frame, settings=EdgeSettings(), progress=Progres
             if settings.fallback_width:
                 lines = _draw_fallback(edges, frame, road, side, drawn, settings.fallback_width, lines)
         lines = draw_turned(edges, road.number, turned.get(road.number, []), lines)
+    name_passes(edges, frame)
     length = {status: sum(r["length_m"] for r in edges.rows if r["status"] == status) for status in ("measured", "bridged")}
     if len(edges):
         progress.say(f"Road edges: {length['measured']:.0f} m measured, {length['bridged']:.0f} m bridged.")

@@ -64,14 +64,6 @@ class Ribs:
     def joined(cls, parts):
         return cls(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(cls)))
 
-    def __getitem__(self, which):
-        return Ribs(*(getattr(self, f.name)[which] for f in fields(self)))
-
-    def at_far_end(self, values):
-        """Values where the ribs end, from those of the points."""
-        near = values[self.ahead]
-        return near + self.share * (values[self.ahead + 1] - near)
-
 
 def scan_lines(records, p, clock, corridor):
     """The points of a scanner as lines.
@@ -113,9 +105,9 @@ def scan_lines(records, p, clock, corridor):
     length = (begins[1:] - begins[:-1])[used]
     phase = (time - np.repeat(begins[:-1][used], counts)) / np.repeat(length, counts)
     s, d, z = (records[name] * UNIT for name in ("s", "d", "z"))
-    reach = _reach(s, d, z, p, begins[:-1][used], counts)
+    reach = _reach(records, p, begins[:-1][used], counts)
     joined = _side_by_side(line, phase, reach, (s, d, z), clock)
-    return ScanLines(line, phase, s, d, z, records["intensity"].astype(np.float64), reach, joined, np.diff(driven)[used])
+    return ScanLines(line, phase, s, d, z, records["intensity"], reach, joined, np.diff(driven)[used])
 
 
 def _side_by_side(line, phase, reach, places, clock):
@@ -135,15 +127,17 @@ def _side_by_side(line, phase, reach, places, clock):
     return joined
 
 
-def _reach(s, d, z, p, time, counts):
-    """(N,) m from the vehicle to its points; within a line the vehicle counts as standing."""
-    away = s - np.repeat(np.interp(time, p.time, p.s), counts)
-    away *= away
-    for values, track in ((d, p.d), (z, p.z)):
-        across = values - np.repeat(np.interp(time, p.time, track), counts)
+def _reach(records, p, time, counts):
+    """(N,) float32 m from the vehicle to its points; within a line the vehicle counts as standing."""
+    away = np.zeros(len(records), np.float32)
+    for name, track in (("s", p.s), ("d", p.d), ("z", p.z)):
+        stood = np.rint(np.interp(time, p.time, track) / UNIT).astype(np.int32)
+        across = (records[name] - np.repeat(stood, counts)).astype(np.float32)
         across *= across
         away += across
-    return np.sqrt(away)
+    np.sqrt(away, out=away)
+    away *= np.float32(UNIT)
+    return away
 
 
 def ribs_of(lines, direction, clock, interval):
@@ -163,27 +157,45 @@ def ribs_of(lines, direction, clock, interval):
     key = lines.line + lines.phase
     number = np.arange(len(key), dtype=np.float64)
     station = lines.s / interval
-    rest = np.arange(len(key))
-    found = []
+    cell = np.ceil(station).astype(np.int32)
+    cell_after = np.append(cell[1:], cell[-1:])
+    longest = np.maximum(LONGEST_RIB, LINES_AHEAD * clock.spacing * lines.driven) / interval
+    found, rest = [], None   # rest: points that have no neighbour ahead yet, None for all
     for step in range(1, LINES_AHEAD * clock.spacing + 1):
-        place = np.interp(key[rest] + step, key, number) + SAME
+        own_key, own_line, own_cell = (values if rest is None else values[rest] for values in (key, lines.line, cell))
+        place = np.interp(own_key + step, key, number)
+        place += SAME
         ahead = place.astype(np.int64)
-        hit = lines.joined[ahead] & (lines.line[ahead] == lines.line[rest] + step)
-        share = place - ahead
-        # a rib that meets a point ends in it exactly, so that no plane slips through between it and the next one
-        share = np.where(share < 2 * SAME, 0.0, share - SAME)
-        near, far = station[rest], station[ahead]
-        far = far + share * (station[np.minimum(ahead + 1, len(key) - 1)] - far)
-        cut = np.flatnonzero(hit & (np.ceil(near) != np.ceil(far)))
-        found.append(Ribs(rest[cut], ahead[cut], share[cut], near[cut], far[cut]))
-        rest = rest[~hit]
+        hit = lines.joined.take(ahead)
+        hit &= lines.line.take(ahead) == own_line + step
+        # between points of one cell no plane passes
+        cut = cell.take(ahead) != own_cell
+        cut |= cell_after.take(ahead) != own_cell
+        cut &= hit
+        cut = np.flatnonzero(cut)
+        found.append(_steep_enough(lines, station, longest, direction, cut if rest is None else rest[cut], ahead[cut], place[cut]))
+        rest = np.flatnonzero(~hit) if rest is None else rest[~hit]
         if not len(rest):
             break
-    ribs = Ribs.joined(found)
-    onward = direction * interval * (ribs.far - ribs.near)
-    longest = np.maximum(LONGEST_RIB, LINES_AHEAD * clock.spacing * lines.driven)
-    leap = np.abs(ribs.at_far_end(lines.reach) - lines.reach[ribs.point])
-    return ribs[(onward > 0) & (onward <= longest[lines.line[ribs.point]]) & (leap <= RANGE_JUMP)]
+    return Ribs.joined(found)
+
+
+def _steep_enough(lines, station, longest, direction, point, ahead, place):
+    """The Ribs from points to places ahead of them that planes cut and that lie on a surface."""
+    share = place - ahead
+    # a rib that meets a point ends in it exactly, so that no plane slips through between it and the next one
+    share = np.where(share < 2 * SAME, 0.0, share - SAME)
+    near, far = station[point], station[ahead]
+    far += share * (station[ahead + 1] - far)
+    onward = far - near
+    onward *= direction
+    reach = lines.reach[ahead]
+    reach += share * (lines.reach[ahead + 1] - reach)
+    reach -= lines.reach[point]
+    good = np.ceil(near) != np.ceil(far)
+    good &= (onward > 0) & (onward <= longest[lines.line[point]]) & (np.abs(reach) <= RANGE_JUMP)
+    good = np.flatnonzero(good)
+    return Ribs(point[good], ahead[good], share[good], near[good], far[good])
 
 
 def slanting_edges(lines, clock, interval):

@@ -21,6 +21,7 @@ from ..progress import Progress
 from ..schemas import CURB_POINTS
 from .chains import choose_along, curb_chains, link_chains, long_enough
 from .curbs import END_STEPS, MERGE_ACROSS, MERGE_UP, VEHICLE_HALF, block_edges, block_numbers, hidden_points
+from .nearest_pass import name_passes
 from .profiles import LEAST_NOISE
 from .scanline_candidates import NEIGHBOURS, find_candidates, rows_filled
 from .scanline_corners import CurbCorners, corners_of, rows_along
@@ -104,6 +105,7 @@ def curbs_from_scanlines(source, settings=ScanlineBoundarySettings(), block_leng
         for side in SIDES:
             if corners[side] is not None and len(corners[side]):
                 _report_side(found, source, road, side, corners[side], sight[side], settings, block_length)
+    name_passes(found, source.frame)
     bottoms = [row["status"] for row in found.rows if row["part"] == "bottom"]
     progress.say(f"Corners of curbs: {bottoms.count('measured'):,} measured on scanlines, "
                  f"{bottoms.count('occluded'):,} hidden by something in front.")

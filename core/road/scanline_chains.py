@@ -37,7 +37,7 @@ class PlaneVertices:
         return cls(plane, phase, d, z, d - track_d[plane - first], z - track_z[plane - first], (MISSING + 1.5) * clock.pulse)
 
     def __post_init__(self):
-        self.away = np.hypot(self.across, self.above)
+        self.away = np.sqrt(self.across * self.across + self.above * self.above)
 
     def side_by_side(self, i, j):
         """Whether vertices j are the next ones to the left of vertices i on one surface (i and j index alike)."""

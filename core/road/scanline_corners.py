@@ -63,13 +63,13 @@ def corners_of(side, candidates, settings):
     """
     owner, s, u, h, steep = _neighbourhood(side, candidates, settings)
     # heights over the road's own line, so that its slope does not count as part of the rise
-    over = h - candidates.slope[owner] * u
-    share = over / candidates.step[owner]
+    over = h - candidates.slope.astype(np.float32)[owner] * u
+    share = over / candidates.step.astype(np.float32)[owner]
     road = (u < -CLEAR) & (share < LOWER) & (over > -UNDER)
     # where points lie sparse a scanline slants from the last one on the road to the first on the face
     upright = steep > np.tan(np.radians(settings.vertical_angle - SLANT))
     face = upright & (np.abs(u) < FACE_REACH) & (share > FACE[0]) & (share < FACE[1])
-    raised = (u > CLEAR) & (share > UPPER) & (over < candidates.step[owner] + OVER)
+    raised = (u > CLEAR) & (share > UPPER) & (over < (candidates.step + OVER).astype(np.float32)[owner])
     count = len(candidates)
     parts = [_Part(np.flatnonzero(part), owner, count) for part in (road, face, raised)]
     # grass behind a curb scatters more than the road before it
@@ -149,20 +149,22 @@ def _neighbourhood(side, candidates, settings):
     reach = rows_along(side.interval, settings)
     stride = max(int(np.ceil((2 * reach + 1) / MOST_ROWS)), 1)
     key = side.row * 1000.0 + side.u
-    starts, ends, ahead = [], [], np.arange(-(reach // stride), reach // stride + 1) * stride
-    for k in ahead:
-        row = candidates.row + k
-        inside = (row >= 0) & (row < side.rows)
-        at = row * 1000.0 + candidates.u
-        starts.append(np.searchsorted(key, at - settings.distance_across))
-        ends.append(np.where(inside, np.searchsorted(key, at + settings.distance_across), starts[-1]))
-    start, end = np.stack(starts, 1).ravel(), np.stack(ends, 1).ravel()
-    length = end - start
-    which = np.repeat(np.arange(len(start)), length)
-    index = np.arange(length.sum()) - np.repeat(np.cumsum(length) - length, length) + start[which]
-    owner, along = which // len(ahead), ahead[which % len(ahead)] * side.interval
-    return (owner, along.astype(np.float32), (side.u[index] - candidates.u[owner]).astype(np.float32),
-            (side.h[index] - candidates.base[owner]).astype(np.float32), side.steep[index])
+    ahead = np.arange(-(reach // stride), reach // stride + 1) * stride
+    row = candidates.row[:, None] + ahead
+    at = row * 1000.0 + candidates.u[:, None]
+    start = np.searchsorted(key, at - settings.distance_across)
+    end = np.searchsorted(key, at + settings.distance_across)
+    length = np.where((row >= 0) & (row < side.rows), end - start, 0).ravel()
+    first = start.ravel() - (np.cumsum(length) - length)
+    index = np.repeat(first, length)
+    index += np.arange(len(index))
+    each = length.reshape(row.shape).sum(1)
+    owner = np.repeat(np.arange(len(candidates)), each)
+    along = np.repeat(np.tile((ahead * side.interval).astype(np.float32), len(candidates)), length)
+    u, h = side.u[index], side.h[index]
+    u -= np.repeat(candidates.u, each)
+    h -= np.repeat(candidates.base, each)
+    return owner, along, u.astype(np.float32), h.astype(np.float32), side.steep[index]
 
 
 def _meeting(level, face):

@@ -7,6 +7,7 @@ from ..features import Features
 from ..progress import Progress
 from ..schemas import ROAD_EDGES
 from .edges import HIDDEN_SHARE, HIDDEN_STEP, SHARPEST, SHORTEST, STEP_ACROSS, VERTEX, EdgeCurve, without_outliers
+from .nearest_pass import name_passes
 from .sides import SIDES
 
 MEASURED_GAP = 1.0   # m between corners that follow on each other; wider gaps are joined, but not measured
@@ -39,6 +40,7 @@ def boundary_lines(corners, frame, max_gap, progress=Progress()):
                 for points, status in _pieces(_points(corners, road.number, side, part), hidden, max_gap):
                     _draw(lines, points, status, road=road.number, side=side, part=part, chain=number)
                     number += 1
+    name_passes(lines, frame)
     length = {part: sum(row["length_m"] for row in lines.rows if row["part"] == part) for part in ("bottom", "top")}
     progress.say(f"Boundaries: {length['bottom']:.0f} m of bottom lines and {length['top']:.0f} m of top lines.")
     progress.at(1.0)

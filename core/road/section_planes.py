@@ -130,11 +130,10 @@ def _cut(records, p, key, clock, planes, settings, intensity=True):
         return Scanlines.none()
     near = ribs.near[rib]
     crossed = Crossings(ribs.point[rib], ribs.ahead[rib], ribs.share[rib], (plane - near) / (ribs.far[rib] - near))
-    phase = crossed.of(lines.phase)
+    phase, d, z = (crossed.of(values) for values in (lines.phase, lines.d, lines.z))
     order = plane_order(plane - planes[0], phase if clock.leftward else 1.0 - phase)
-    plane, phase, crossed = plane[order], phase[order], crossed[order]
-    d, z = crossed.of(lines.d), crossed.of(lines.z)
-    bright = crossed.of(lines.intensity).astype(np.float32) if intensity else np.zeros(len(d), np.float32)
+    plane, phase, d, z = (values[order] for values in (plane, phase, d, z))
+    bright = crossed.of(lines.intensity.astype(np.float64))[order].astype(np.float32) if intensity else np.zeros(len(d), np.float32)
     order, first = PlaneVertices.seen_from(p, settings.interval, clock, plane, phase, d, z).lines()
     if order is not None:
         plane, d, z, bright = plane[order], d[order], z[order], bright[order] if intensity else bright
@@ -147,14 +146,17 @@ def _cut(records, p, key, clock, planes, settings, intensity=True):
 def _planes_through(ribs, planes):
     """(rib, plane) of every plane that cuts a rib, among planes (first, last + 1)."""
     low = np.ceil(np.minimum(ribs.near, ribs.far)).astype(np.int64)
-    count = np.ceil(np.maximum(ribs.near, ribs.far)).astype(np.int64) - low
-    if (count == 1).all():
-        rib = np.flatnonzero((low >= planes[0]) & (low < planes[1]))
-        return rib, low[rib]
-    rib = np.repeat(np.arange(len(count)), count)
-    plane = low[rib] + np.arange(len(rib)) - np.repeat(np.cumsum(count) - count, count)
-    inside = (plane >= planes[0]) & (plane < planes[1])
-    return rib[inside], plane[inside]
+    count = np.ceil(np.maximum(ribs.near, ribs.far)).astype(np.int64)
+    count -= low
+    ribs_cut, planes_cut, some = [], [], None
+    for ahead in range(int(count.max(initial=0))):
+        # most ribs are cut once
+        some = np.flatnonzero(count > ahead) if ahead else np.arange(len(low))
+        plane = low[some] + ahead if ahead else low
+        inside = np.flatnonzero((plane >= planes[0]) & (plane < planes[1]) & (count[some] > ahead))
+        ribs_cut.append(some[inside])
+        planes_cut.append(plane[inside])
+    return (np.concatenate(ribs_cut), np.concatenate(planes_cut)) if ribs_cut else (np.empty(0, np.int64),) * 2
 
 
 @dataclass
@@ -165,9 +167,6 @@ class Crossings:
     ahead: np.ndarray
     share: np.ndarray
     along: np.ndarray
-
-    def __getitem__(self, which):
-        return Crossings(self.point[which], self.ahead[which], self.share[which], self.along[which])
 
     def of(self, values):
         """Values at the crossings, from those of the points."""

@@ -171,7 +171,8 @@ class _Counter:
             found.notes.append("All intensities are 0: road edges can be found, markings and driving lines cannot.")
         if not has_time:
             found.notes.append("There is no usable gps_time: each point is placed at the nearest foot on the trajectory, "
-                               "which mixes the passes where a street was driven twice.")
+                               "which mixes the passes where a street was driven twice. Export the point clouds with gps_time, or process "
+                               "each drive with its own files.")
         return found
 
     def _raster(self):
@@ -180,7 +181,7 @@ class _Counter:
         corner = (self.corner[0], self.corner[1] + height * cell)
         if width * height > MOST_CELLS:
             raise RoadExtractionError(
-                f"A density raster of {width} x {height} cells of {cell} m would be too large. Choose a larger cell, or "
+                f"A density raster of {width:,} x {height:,} cells of {cell} m would be too large. Choose a larger cell, or "
                 "inspect fewer files at once.")
         image = np.full((height, width), np.nan, np.float32)
         column, row, _ = _unkey(self.cells.keys)

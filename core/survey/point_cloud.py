@@ -4,6 +4,8 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from ..errors import Cancelled, RoadExtractionError
 from .laz_check import damage, points_per_chunk
 
@@ -85,11 +87,33 @@ def read_header(path):
     with open_cloud(path) as reader:
         header = reader.header
         names = set(header.point_format.dimension_names)
+        if not (np.isfinite(header.scales).all() and np.isfinite(header.offsets).all() and np.all(header.scales)):
+            raise RoadExtractionError(
+                f"{path} is damaged: its header says scales of {_listed(header.scales)} and offsets of {_listed(header.offsets)}, with which "
+                "no point has a place. Export the file again.")
+        count, low, high = int(header.point_count), header.mins, header.maxs
+        reach = 2.0**31 * np.abs(header.scales)  # of coordinates kept as 32-bit integers
+        there = (header.offsets - reach <= low) & (low <= high) & (high <= header.offsets + reach)
+        if count > 1 and not (there.all() and (low < high).any()):
+            low, high = _bounds(path)  # a program that never filled them in
         return CloudFile(
-            str(path), str(header.version), header.point_format.id, int(header.point_count),
-            tuple(map(float, header.mins)), tuple(map(float, header.maxs)), tuple(map(float, header.scales)),
+            str(path), str(header.version), header.point_format.id, count,
+            tuple(map(float, low)), tuple(map(float, high)), tuple(map(float, header.scales)),
             _crs_of(header), "gps_time" in names, "scanner_channel" in names,
             bool(header.global_encoding.gps_time_type.value), points_per_chunk(path))
+
+
+def _listed(numbers):
+    return ", ".join(f"{number:g}" for number in numbers)
+
+
+def _bounds(path):
+    """Least and largest coordinates of the points themselves, (3,) each."""
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for block in read_blocks(path):
+        places = np.stack([np.asarray(block[name], float) for name in "xyz"])
+        low, high = np.minimum(low, places.min(axis=1)), np.maximum(high, places.max(axis=1))
+    return low, high
 
 
 def _crs_of(header):

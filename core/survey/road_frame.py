@@ -171,6 +171,13 @@ class RoadFrame:
                 total[alone], count[alone] = p.height_at_station(s[alone]) - below.get(p.number, 0.0), 1
         return total / count
 
+    def nearest_pass(self, road, s, d):
+        """(N,) number of the pass whose track runs nearest to stations and offsets of a road, of those that were there."""
+        s, d = np.asarray(s, float), np.asarray(d, float)
+        passes = self.passes_of(road)
+        away = [np.where((s >= p.span[0]) & (s <= p.span[1]), 0.0, 1e6) + np.abs(p.at_station(s)[0] - d) for p in passes]
+        return np.array([p.number for p in passes])[np.argmin(away, axis=0)]
+
     def locate_nearest(self, x, y, corridor=CORRIDOR):
         """Road number, s and d of local places by the nearest foot; road is -1 where there is none."""
         x, y = np.asarray(x, float), np.asarray(y, float)

@@ -132,18 +132,30 @@ def phasors(survey, number, records):
 
 def _samples(survey, road):
     """{(pass number, scanner): list of _Window} at places spread along each pass."""
-    samples = {}
+    places = []
     for p in survey.frame.passes_of(road):
         first, last = p.span
         count = int(np.clip((last - first) / SAMPLE_LENGTH, 1, SAMPLES))
-        for middle in first + (np.arange(count) + 0.5) * (last - first) / count:
-            records = survey.window(road, middle - SAMPLE_LENGTH / 2, middle + SAMPLE_LENGTH / 2).records
-            for key, own in scanner_runs(chosen(records, records["pass_number"] == p.number)):
-                about = np.median(own["time"][::SPARSE])
-                own = chosen(own, np.abs(own["time"] - about) <= WINDOW / 2)
-                if len(own) >= FEWEST:
-                    own = chosen(own, time_order(own["time"]))
-                    samples.setdefault(key, []).append(_Window(*phasors(survey, key[0], own), own["d"] * UNIT))
+        places += [(p.number, middle) for middle in first + (np.arange(count) + 0.5) * (last - first) / count]
+
+    def look(place):
+        number, middle = place
+        records = survey.window(road, middle - SAMPLE_LENGTH / 2, middle + SAMPLE_LENGTH / 2).records
+        seen = {}
+        for key, own in scanner_runs(records):
+            if key[0] != number:
+                continue
+            time = own["time"]
+            near = np.flatnonzero(np.abs(time - np.median(time[::SPARSE])) <= WINDOW / 2)
+            if len(near) >= FEWEST:
+                own = chosen(own, near[time_order(time[near])])
+                seen[key] = _Window(*phasors(survey, number, own), own["d"] * UNIT)
+        return seen
+
+    samples = {}
+    for seen in in_order(look, places):
+        for key, window in seen.items():
+            samples.setdefault(key, []).append(window)
     return samples
 
 

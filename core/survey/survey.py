@@ -126,6 +126,10 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
     frame.has_time = has_time
     for note in frame.notes:
         progress.say(note)
+    if not has_time and len(frame.passes) > len(frame.roads):
+        progress.warn(f"The trajectory drives {len(frame.passes)} times over {len(frame.roads)} road(s), and without time in the points and the "
+                      "trajectory the passes are mixed: whatever they differ by blurs the map. Export both with gps_time, or process "
+                      "the files of each drive with its own part of the trajectory.")
     _check_extent(files, frame, crs, trajectory.crs)
     store = SectionStore(SURVEY_POINT, settings.section_length, settings.memory_limit)
     reader = SurveyReader(frame, store, settings.corridor, has_time, week_ends)

@@ -111,7 +111,7 @@ class AssessBoundaries(LanewrightAlgorithm):
         if call.wants("REPORT"):
             call.text("REPORT", boundary_report(accuracy, layer, (layer_name(call, "INPUT"), layer_name(call, "REFERENCE")), warnings))
         numbers = found_numbers(_numbers(accuracy))
-        progress.say(tr("{correct:.0f} intervals are correct, {missed:.0f} missed and {false:.0f} false within {tolerance:g} cm: {rates}.").format(
+        progress.say(tr("Intervals within {tolerance:g} cm: {correct:.0f} correct, {missed:.0f} missed, {false:.0f} false; {rates}.").format(
             correct=numbers["CORRECT"], missed=numbers["MISSED"], false=numbers["FALSE"], tolerance=100 * settings.tolerance,
             rates=shares_of(numbers, ("PRECISION", "RECALL", "F1"))))
         return numbers

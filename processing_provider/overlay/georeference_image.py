@@ -102,14 +102,18 @@ class GeoreferenceImage(LanewrightAlgorithm):
         from ...core.report.georeferencing import georeferencing_report
 
         image = open_image(call.raster("IMAGE"))
+        if image.geotransform is None:
+            # QGIS looks at a raster as a map layer before it starts an algorithm, and passes on what GDAL thinks of it
+            progress.say(tr("The image has no position yet; the control points give it one. A line above, GDAL ERROR 1: Unable to compute "
+                            "a transformation, is QGIS saying the same and harmless."))
         found = georeference(image, _control_points(call, image, progress), call.settings(GEOREFERENCE_KNOBS))
         for note in found.notes:
             progress.warn(note)
         values = _numbers(found)
-        progress.say(tr("{count} control points, order {order}: RMSE {rmse:.3f} m, each left out in turn {left:.3f} m.").format(
+        progress.say(tr("Control points: {count}, order {order}, RMSE {rmse:.3f} m, each left out in turn {left:.3f} m.").format(
             count=values["POINTS"], order=found.settings.order, rmse=values["RMSE"], left=found.left_out_rmse))
         if values["CHECK_POINTS"]:
-            progress.say(tr("{count} check points: RMSE {rmse:.3f} m.").format(count=values["CHECK_POINTS"], rmse=values["CHECK_RMSE"]))
+            progress.say(tr("Check points: {count}, RMSE {rmse:.3f} m.").format(count=values["CHECK_POINTS"], rmse=values["CHECK_RMSE"]))
         drawn = call.new_file("OUTPUT")
         departure = draw_image(found, drawn, progress.part(0.02, 0.97))
         call.layer("RESIDUALS", residual_vectors(found))

@@ -395,8 +395,8 @@
         </message>
         <message>
             <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>{correct:.0f} intervals are correct, {missed:.0f} missed and {false:.0f} false within {tolerance:g} cm: {rates}.</source>
-            <translation>{correct:.0f} Abschnitte sind richtig, {missed:.0f} fehlen und {false:.0f} sind falsch innerhalb von {tolerance:g} cm: {rates}.</translation>
+            <source>Intervals within {tolerance:g} cm: {correct:.0f} correct, {missed:.0f} missed, {false:.0f} false; {rates}.</source>
+            <translation>Intervalle innerhalb {tolerance:g} cm: {correct:.0f} richtig, {missed:.0f} verfehlt, {false:.0f} falsch; {rates}.</translation>
         </message>
         <message>
             <location filename="../../processing_provider/assess/assess_boundaries.py" />
@@ -1815,6 +1815,11 @@
         </message>
         <message>
             <location filename="../../processing_provider/overlay/georeference_image.py" />
+            <source>The image has no position yet; the control points give it one. A line above, GDAL ERROR 1: Unable to compute a transformation, is QGIS saying the same and harmless.</source>
+            <translation>Das Bild hat noch keine Lage; die Passpunkte geben ihm eine. Eine Zeile darüber, GDAL ERROR 1: Unable to compute a transformation, sagt dasselbe und ist harmlos.</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/overlay/georeference_image.py" />
             <source>Control points were given twice, as a layer and as a file. Leave one of them empty.</source>
             <translation>Passpunkte wurden zweimal angegeben, als Layer und als Datei. Eines davon leer lassen.</translation>
         </message>
@@ -1825,8 +1830,8 @@
         </message>
         <message>
             <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>{count} control points, order {order}: RMSE {rmse:.3f} m, each left out in turn {left:.3f} m.</source>
-            <translation>{count} Passpunkte, Ordnung {order}: RMSE {rmse:.3f} m, jeder der Reihe nach weggelassen {left:.3f} m.</translation>
+            <source>Control points: {count}, order {order}, RMSE {rmse:.3f} m, each left out in turn {left:.3f} m.</source>
+            <translation>Passpunkte: {count}, Ordnung {order}, RMSE {rmse:.3f} m, jeder für sich weggelassen {left:.3f} m.</translation>
         </message>
         <message>
             <location filename="../../processing_provider/overlay/georeference_image.py" />
@@ -1835,8 +1840,8 @@
         </message>
         <message>
             <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>{count} check points: RMSE {rmse:.3f} m.</source>
-            <translation>{count} Prüfpunkte: RMSE {rmse:.3f} m.</translation>
+            <source>Check points: {count}, RMSE {rmse:.3f} m.</source>
+            <translation>Prüfpunkte: {count}, RMSE {rmse:.3f} m.</translation>
         </message>
         <message>
             <location filename="../../processing_provider/progress.py" />
@@ -2414,6 +2419,16 @@
             <translation>Ziel-KBS</translation>
         </message>
         <message>
+            <location filename="../../processing_provider/survey/import_trajectory.py" />
+            <source>The trajectory names no CRS and none was given, so its layer has none: set CRS of the trajectory, or CRS to bring it to where the coordinates are in that of the point clouds.</source>
+            <translation>Die Trajektorie nennt kein KBS und es wurde keines angegeben, also hat ihr Layer keines: „KBS der Trajektorie“ setzen, oder „Ziel-KBS“, wenn ihre Koordinaten schon in dem der Punktwolken stehen.</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/survey/import_trajectory.py" />
+            <source>Trajectory: {count} positions.</source>
+            <translation>Trajektorie: {count} Positionen.</translation>
+        </message>
+        <message>
             <location filename="../../processing_provider/survey/inspect_survey.py" />
             <source>Inspect survey</source>
             <translation>Vermessung prüfen</translation>
@@ -2517,6 +2532,16 @@
             <location filename="../../processing_provider/survey/inspect_survey.py" />
             <source>Points per m² in every cell.</source>
             <translation>Punkte je m² in jeder Zelle.</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/survey/inspect_survey.py" />
+            <source>Survey: {count} points in {files} file(s), {density:.0f} points per m² where there are any, {scanners} scanner(s), intensities {darkest} to {brightest}.</source>
+            <translation>Vermessung: {count} Punkte in {files} Datei(en), {density:.0f} Punkte je m², wo welche sind, {scanners} Scanner, Intensitäten {darkest} bis {brightest}.</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/survey/inspect_survey.py" />
+            <source>Trajectory: {near:.0f} % of the points lie within {metres:.0f} m of it.</source>
+            <translation>Trajektorie: {near:.0f} % der Punkte liegen innerhalb von {metres:.0f} m.</translation>
         </message>
         <message>
             <location filename="../../processing_provider/survey/sample_survey.py" />
@@ -2700,8 +2725,8 @@
         </message>
         <message>
             <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>{count} points of a {length:.0f} m road.</source>
-            <translation>{count} Punkte einer {length:.0f} m langen Straße.</translation>
+            <source>Sample survey: {count} points along {length:.0f} m of road.</source>
+            <translation>Beispielvermessung: {count} Punkte entlang {length:.0f} m Straße.</translation>
         </message>
         <message>
             <location filename="../../processing_provider/survey_input.py" />
@@ -2762,6 +2787,11 @@
             <location filename="../../core/schemas.py" />
             <source>Pass</source>
             <translation>Befahrung</translation>
+        </message>
+        <message>
+            <location filename="../../core/schemas.py" />
+            <source>Pass that drove nearest</source>
+            <translation>Befahrung, die am nächsten fuhr</translation>
         </message>
         <message>
             <location filename="../../core/schemas.py" />
@@ -2932,6 +2962,11 @@
             <location filename="../../core/schemas.py" />
             <source>Kind</source>
             <translation>Art</translation>
+        </message>
+        <message>
+            <location filename="../../core/schemas.py" />
+            <source>Lines to its left|right</source>
+            <translation>Linien links|rechts davon</translation>
         </message>
         <message>
             <location filename="../../core/schemas.py" />

@@ -86,6 +86,23 @@ def test_a_trajectory_comes_from_a_csv_as_from_its_layer(survey, tmp_path):
     assert rows["drive.gpkg"] == rows["drive.csv"] > 100
 
 
+def test_a_trajectory_without_crs_is_taken_with_a_warning(survey, tmp_path):
+    run = qgis_process("run", "lanewright:importtrajectory", f"--INPUT={survey / 'drive.csv'}", "--OUTPUT=out.gpkg", folder=tmp_path)
+    assert run.returncode == 0 and "names no CRS and none was given" in run.stdout + run.stderr
+    run = qgis_process("run", "lanewright:importtrajectory", f"--INPUT={survey / 'drive.csv'}", "--INPUT_CRS=EPSG:32650", "--OUTPUT=out.gpkg",
+                       folder=tmp_path)
+    assert run.returncode == 0 and "CRS" not in (run.stdout + run.stderr).replace("INPUT_CRS", "")
+
+
+def test_an_image_without_a_position_is_georeferenced_and_the_false_alarm_explained(tmp_path):
+    made = qgis_process("run", "lanewright:samplesurvey", "--LENGTH=30", "--PULSE_RATE=20000", "--POINT_CLOUD=s.laz", "--TRAJECTORY=drive.gpkg",
+                        "--UAV_IMAGE=uav.tif", "--UAV_GCPS=gcps.gpkg", folder=tmp_path)
+    assert made.returncode == 0, made.stderr
+    run = qgis_process("run", "lanewright:georeferenceimage", "--IMAGE=uav.tif", "--GCPS=gcps.gpkg", "--ORDER=2", "--OUTPUT=map.tif", folder=tmp_path)
+    assert run.returncode == 0 and (tmp_path / "map.tif").stat().st_size > 10_000
+    assert "GDAL ERROR 1: Unable to compute a transformation, is QGIS saying the same and harmless" in run.stdout
+
+
 def test_a_survey_is_inspected_with_numbers_and_a_report(survey, tmp_path):
     run = qgis_process(
         "run", "lanewright:inspectsurvey", f"--POINT_CLOUDS={survey / 's.laz'}", f"--TRAJECTORY={survey / 'drive.csv'}",
@@ -94,6 +111,7 @@ def test_a_survey_is_inspected_with_numbers_and_a_report(survey, tmp_path):
     assert run.returncode == 0, run.stderr
     results = json.loads(run.stdout)["results"]
     assert results["SCANNERS"] == 2 and results["TIME_COVERED"] == 100 and results["NEAR_TRAJECTORY"] > 99
+    assert "Survey: " in json.dumps(json.loads(run.stdout)["log"]) and "of the points lie within 25 m of it" in run.stdout
     assert "Points per m" in (tmp_path / "report.html").read_text() and (tmp_path / "density.tif").stat().st_size > 300
 
 
@@ -143,6 +161,21 @@ def not_a_cloud(survey, folder):
     (folder / "bad.laz").write_text("x,y,z\n1,2,3\n")
 
 
+def a_zip(survey, folder):
+    """Nothing of it is unpacked."""
+    import zipfile
+
+    with zipfile.ZipFile(folder / "bad.laz", "w") as archive:
+        archive.write(survey / "s.laz", "s.laz")
+
+
+def without_scale(survey, folder):
+    """Every coordinate is no number then."""
+    whole = bytearray((survey / "s.laz").read_bytes())
+    whole[131:155] = np.full(3, np.nan).tobytes()
+    (folder / "bad.laz").write_bytes(whole)
+
+
 def nothing(survey, folder):
     pass
 
@@ -155,6 +188,8 @@ def nothing(survey, folder):
     (far_away, "does not run through the point cloud|not near"),
     (another_day, "does not cover the scan in time"),
     (in_degrees, "geographic CRS"),
+    (a_zip, "cannot be read as a LAS/LAZ file"),
+    (without_scale, "bad.laz is damaged: its header says scales of nan"),
 ], ids=lambda value: getattr(value, "__name__", ""))
 def test_a_cloud_that_cannot_be_worked_with_is_told_in_one_sentence(survey, tmp_path, cloud, says):
     cloud(survey, tmp_path)

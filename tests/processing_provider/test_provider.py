@@ -62,6 +62,16 @@ def test_every_number_has_help_and_a_unit(algorithm):
             assert UNIT.search(parameter.description()), parameter.description()
 
 
+def test_a_number_beyond_its_range_is_refused_before_the_work(algorithm):
+    """QGIS itself says "Incorrect parameter value for ..." of the parameter, before the algorithm is run."""
+    for parameter in algorithm.parameterDefinitions():
+        if parameter.type() == "number":
+            assert abs(parameter.minimum()) < 1e7 and abs(parameter.maximum()) < 1e10, parameter.name()
+            for value in (parameter.minimum() - 1.0, 2.0 * abs(parameter.maximum()) + 1.0, "many"):
+                assert not parameter.checkValueIsAcceptable(value), (parameter.name(), value)
+            assert parameter.checkValueIsAcceptable(parameter.defaultValue()), parameter.name()
+
+
 def test_every_input_explains_itself(algorithm):
     for parameter in algorithm.parameterDefinitions():
         if not parameter.isDestination():

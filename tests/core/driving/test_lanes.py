@@ -31,6 +31,18 @@ def test_a_lane_ends_at_the_nearer_line_of_a_double_line():
     assert middle(street, lines) == [pytest.approx(-1.9, abs=0.005), pytest.approx(1.9, abs=0.005)]
 
 
+def test_a_driving_line_says_which_lines_one_may_not_cross_on_its_left_and_right():
+    """Left and right of travel: the lane that is driven the other way has the same dashes on its left."""
+    street = Street(vehicle=-1.75, again=(1.75,)).paint(3.5, kind="edge").paint(0.0, pattern="dashed").paint(-3.5, kind="edge")
+    lines, _ = street.lanes()
+    assert [(row["direction"], row["pattern"]) for row in lines.rows] == [(1, "dashed|solid"), (-1, "dashed|solid")]
+
+
+def test_where_a_lane_has_one_line_only_the_other_side_is_none():
+    lines, _ = Street(vehicle=-1.6).paint(0.0, kind="centre", pattern="dashed").lanes(line_distance=1.6)
+    assert lines.rows[0]["pattern"] == "dashed|none"
+
+
 def test_lines_of_a_bend_give_the_arc_between_them_about_the_same_centre():
     street = Street(length=90.0, radius=100.0, vehicle=-1.75).paint(0.0).paint(-3.5)
     lines, elements = street.lanes()

@@ -83,6 +83,17 @@ def test_a_stop_line_is_a_stop_line_also_where_it_is_narrow():
         assert markings.rows[0]["width_m"] == pytest.approx(depth, abs=0.03)
 
 
+@pytest.mark.parametrize("side", [1, -1], ids=["left", "right"])
+@pytest.mark.parametrize("apart", [0.0, 0.23], ids=["dense", "scan lines 0.23 m apart"])
+def test_a_stop_line_and_the_dash_that_touches_it_are_what_they_are(side, apart):
+    near, far = sorted((0.15 * side, 3.2 * side))
+    records = paint(FRAME, [strip(20, 20.4, near, far), strip(20.4, 24.4, *sorted((-0.02 * side, 0.13 * side)))], density=4000)
+    if apart:
+        records = records[(records["s"] + records["d"]) * 1e-4 / apart % 1.0 < 0.15]
+    markings, _ = cluster_markings(road_points(records, FRAME), FRAME)
+    assert classes(markings) == ["lane", "stop"]
+
+
 @pytest.mark.parametrize("diameter", [0.40, 0.60, 0.90])
 def test_a_manhole_cover_is_no_marking(diameter):
     points = road_points(paint(FRAME, [disc(30, 1.5, diameter), strip(10, 20, 0.0, 0.15)]), FRAME)

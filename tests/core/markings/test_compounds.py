@@ -40,6 +40,35 @@ def test_an_edge_line_and_a_centre_line_joined_by_a_stop_line_are_three():
     assert len(np.unique(split(records))) == 3
 
 
+@pytest.mark.parametrize("side", [1, -1], ids=["left", "right"])
+@pytest.mark.parametrize("gap", [0.0, 0.08])
+def test_a_stop_line_that_touches_a_dash_is_two_markings(gap, side):
+    records, owner = paint((0, 0.4, 0.15, 3.2), (0.4, 4.4, -0.075 - gap, 0.15 - gap))
+    records["d"] *= side
+    labels = split(records)
+    assert len(np.unique(labels)) == 2
+    assert share_together(labels, owner, 0) > 0.9 and share_together(labels, owner, 1) > 0.9
+
+
+def test_a_stop_line_of_scan_lines_far_apart_is_cut_from_its_dash():
+    records, owner = paint((0, 0.4, 0.15, 3.2), (0.4, 4.4, -0.075, 0.15))
+    # scan lines askew, as a scanner mounted at 45 degrees draws them, 0.23 m apart
+    kept = np.abs((records["s"] + records["d"]) * 1e-4 / 0.23 % 1.0 - 0.5) < 0.08
+    records, owner = records[kept], owner[kept]
+    labels = split(records)
+    assert len(np.unique(labels)) == 2
+    assert share_together(labels, owner, 0) > 0.85 and share_together(labels, owner, 1) > 0.9
+
+
+def test_a_stop_line_alone_stays_whole():
+    assert len(np.unique(split(paint((0, 0.5, 0.0, 3.2))[0]))) == 1
+
+
+def test_a_zebra_crossing_is_not_cut_across_its_stripes():
+    stripes = [(0, 4, d, d + 0.5) for d in np.arange(-4.0, 4.0, 0.9)]
+    assert len(np.unique(split(paint(*stripes)[0]))) == 1
+
+
 def test_a_long_line_that_drifts_across_the_road_stays_one():
     s = np.arange(0, 200, 0.02)
     records = np.zeros(len(s) * 4, ROAD_POINT)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.errors import RoadExtractionError
+from lanewright.core.markings import intensity
 from lanewright.core.markings.intensity import IntensitySettings, correct_intensity
 from lanewright.core.survey.points import ROAD_POINT, to_units
 from lanewright.core.survey.road_frame import build_frame
@@ -133,6 +134,17 @@ def test_the_correction_does_not_depend_on_the_length_of_sections(section_length
     a, _ = corrected(records)
     b, _ = corrected(records[::-1], section_length=section_length)
     np.testing.assert_array_equal(np.sort(a.corrected), np.sort(b.corrected))
+
+
+def test_where_points_crowd_stripes_of_road_tell_the_same_asphalt(monkeypatch):
+    """Of 2000 points a metre each ninth centimetre is looked at, whatever the length of sections."""
+    usual, _ = corrected(street()[0])
+    monkeypatch.setattr(intensity, "ENOUGH", 220)
+    striped, report = corrected(street()[0])
+    other, _ = corrected(street()[0], section_length=7.3)
+    assert np.median(np.abs(striped.corrected / usual.corrected - 1)) < 0.01
+    assert sum(row["points"] for row in report.scanners) == len(usual)
+    np.testing.assert_array_equal(striped.corrected, other.corrected)
 
 
 def test_without_time_the_intensity_is_left_raw_and_the_report_says_why():

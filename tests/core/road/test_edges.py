@@ -149,3 +149,17 @@ def test_the_order_of_curb_points_changes_nothing():
 def test_settings_that_make_no_sense_are_refused(wrong, word):
     with pytest.raises(RoadExtractionError, match=word):
         EdgeSettings(**wrong)
+
+
+def test_curb_points_and_edges_name_the_pass_that_drove_nearest():
+    """There on the right, back on the left: each side's curb is best looked at in the drive beside it."""
+    time, x, y, z = streets.driven(60.0)
+    back = time[-1] + 100.0 + time
+    both = Trajectory(np.r_[time, back], np.r_[x, x[::-1]] + EAST, np.r_[y - 1.75, y + 1.75] + NORTH, np.r_[z, z] + 100)
+    frame = build_frame(both)
+    points = Features("PointZ", list(CURB_POINTS))
+    for side, north in (("left", 3.5), ("right", -3.5)):
+        for s in np.arange(0, 60, 1.0):
+            points.add(shapely.Point(EAST + s, NORTH + north, 100.0), road=0, side=side, status="measured", part="bottom",
+                       station_m=float(s), offset_m=north + 1.75, height_m=0.12, chain=0)  # offsets count from the first drive
+    assert [(row["side"], row["pass"]) for row in fit_road_edges(points, frame).rows] == [("left", 1), ("right", 0)]

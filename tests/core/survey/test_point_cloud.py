@@ -47,6 +47,31 @@ def test_what_is_no_point_cloud_is_refused_in_one_sentence(tmp_path, name, conte
         read_headers([tmp_path / name])
 
 
+def with_bounds(path, numbers):
+    data = bytearray(open(path, "rb").read())
+    data[179:227] = np.array(numbers, float).tobytes()  # max x, min x, max y, min y, max z, min z
+    open(path, "wb").write(data)
+    return path
+
+
+@pytest.mark.parametrize("numbers", [[0.0] * 6, [np.nan] * 6, [-1e300, 1e300] * 3, [1e300, -1e300] * 3],
+                         ids=["never filled in", "no numbers", "the other way round", "the whole universe"])
+def test_bounds_that_cannot_be_are_taken_from_the_points(tmp_path, numbers):
+    header = read_header(with_bounds(write_cloud(tmp_path / "cloud.laz", *places()), numbers))
+    for found, values in zip(zip(header.minimum, header.maximum), places()):
+        np.testing.assert_allclose(found, (values.min(), values.max()), atol=6e-4)
+
+
+@pytest.mark.parametrize("at", [131, 155], ids=["scales", "offsets"])
+def test_a_header_with_which_no_point_has_a_place_is_refused(tmp_path, at):
+    path = write_cloud(tmp_path / "cloud.laz", *places())
+    data = bytearray(open(path, "rb").read())
+    data[at:at + 24] = np.full(3, np.nan).tobytes()
+    open(path, "wb").write(data)
+    with pytest.raises(RoadExtractionError, match="damaged: its header says.*nan"):
+        read_header(path)
+
+
 def test_a_missing_file_is_named(tmp_path):
     with pytest.raises(RoadExtractionError, match="There is no file .*nowhere.laz"):
         read_headers([tmp_path / "nowhere.laz"])

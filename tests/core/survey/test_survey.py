@@ -126,6 +126,14 @@ def test_without_gps_time_each_point_goes_to_the_nearest_foot(street, tmp_path):
         assert survey.sensor_height[0] == pytest.approx(2.0, abs=0.01)
 
 
+def test_several_passes_without_time_are_warned_of_with_a_way_on(tmp_path):
+    there, back = drive(PATH), drive(PATH[::-1] + [0.0, 3.0], start=3000.0)
+    both = [np.r_[a, b] for a, b in zip(surveyed_points(there), surveyed_points(back))]
+    heard = Heard()
+    open_survey([write_cloud(tmp_path / "twice.laz", *both[:3], crs=CRS)], joined(there, back), progress=heard)
+    assert any(re.search("drives 2 times over 1 road.*passes are mixed.*Export both with gps_time", text) for text in heard.warnings)
+
+
 def test_a_scanner_channel_tells_the_scanners_apart(street, tmp_path):
     trajectory, (x, y, z, time), _ = street
     channel = np.arange(len(x)) % 2 + 1
@@ -134,19 +142,21 @@ def test_a_scanner_channel_tells_the_scanners_apart(street, tmp_path):
     np.testing.assert_array_equal(np.unique(contents(survey)["scanner"]), [0, 1])
 
 
-@pytest.mark.parametrize("cloud_crs, says", [("EPSG:4326", "geographic"), ("EPSG:2263", "foot")])
+@pytest.mark.parametrize("cloud_crs, says", [
+    ("EPSG:4326", "geographic"), ("EPSG:2263", "foot"), ("EPSG:32632+6360", "heights in US survey foot.*convert the heights")])
 def test_a_cloud_that_is_not_in_metres_is_refused(street, tmp_path, cloud_crs, says):
     trajectory, points, _ = street
     with pytest.raises(RoadExtractionError, match=says):
         open_survey([write_cloud(tmp_path / "bad.laz", *points, crs=cloud_crs)], trajectory)
 
 
-def test_a_trajectory_in_another_crs_is_brought_to_the_cloud(street):
+@pytest.mark.parametrize("other_crs", [25833, 31467], ids=["the next zone", "an old datum, a hundred metres off"])
+def test_a_trajectory_in_another_crs_is_brought_to_the_cloud(street, other_crs):
     from pyproj import Transformer
 
     trajectory, points, path = street
-    x, y = Transformer.from_crs(32632, 25833, always_xy=True).transform(trajectory.x, trajectory.y)
-    other = Trajectory(trajectory.time, x, y, trajectory.z, crs="EPSG:25833")
+    x, y = Transformer.from_crs(32632, other_crs, always_xy=True).transform(trajectory.x, trajectory.y)
+    other = Trajectory(trajectory.time, x, y, trajectory.z, crs=f"EPSG:{other_crs}")
     survey = open_survey([path], other)
     assert len(contents(survey)) == len(points[0])
     np.testing.assert_allclose(contents(survey)["d"], contents(open_survey([path], trajectory))["d"], atol=50)
