@@ -15,7 +15,7 @@ from ..progress import Progress
 from ..survey.points import UNIT, Points, chosen
 from ..survey.road_points import RoadPoints
 from .averages import Averages
-from .gutters import rim_distance
+from .gutters import edge_distance, rim_distance
 from .intensity_peaks import PeakSettings, points_on_peaks
 from .levels import Levels, asphalt_profile, flatten
 from .mask import burn_points, marking_mask, painted_pixels
@@ -177,7 +177,9 @@ class _Look:
             cell += records["d"][k:k + AT_ONCE] // CELL
             cell -= low
             occupied.ravel()[cell] = True
-        return _Cells(grid, records, cells, slice(own - begin, behind - begin), rim_distance(occupied))
+        rows = np.searchsorted(records["s"], np.arange(first, last + 1) * CELL)
+        edge = edge_distance(records["half_width"], records["d"], rows, grid.offsets())
+        return _Cells(grid, records, cells, slice(own - begin, behind - begin), rim_distance(occupied), edge)
 
     def bins(self, window):
         """Bins of asphalt and Otsu's splits of one window; an empty list where there is nothing to see."""
@@ -198,7 +200,7 @@ class _Look:
             return []
         edges = bin_edges(found.records["d"][found.own], offsets[interior].min(), offsets[interior].max())
         bins = asphalt_bins(brightness[interior], offsets[interior], edges)
-        z, gutter = flatten(brightness, *asphalt_profile(bins, grid.offsets()), rim)
+        z, gutter = flatten(brightness, *asphalt_profile(bins, grid.offsets()), (rim, found.edge))
         counted = (seen & ~gutter)[rows]
         return list(zip(bins, split_bins(z[rows][counted], offsets[rows][counted], bins, self.settings.separation)))
 
@@ -215,7 +217,7 @@ class _Look:
         grid = found.grid
         brightness = grid.read(self.image, self.frame, self.road)
         median, spread, scale, threshold = levels.at(grid)
-        z, gutter = flatten(brightness, median, spread, found.rim)
+        z, gutter = flatten(brightness, median, spread, (found.rim, found.edge))
         with np.errstate(invalid="ignore"):
             mask = morphology((z > threshold * scale) & ~gutter, self.settings)
         # what was taken from the cell as background is taken from the point as well
@@ -254,7 +256,7 @@ class _Cells:
     """A window with its halo in cells.
 
     grid : RoadGrid; records : of the points in it; cell : (N,) flat number of each point's cell
-    own : slice, the records of the window itself; rim : (rows, columns) m from the rim of the road
+    own : slice, the records of the window itself; rim, edge : (rows, columns) m inwards from the rim of what was scanned, and from the road's edge
     """
 
     grid: RoadGrid
@@ -262,3 +264,4 @@ class _Cells:
     cell: np.ndarray
     own: slice
     rim: np.ndarray
+    edge: np.ndarray

@@ -38,19 +38,47 @@ def rim_distance(occupied):
     return ndimage.distance_transform_edt(road) * CELL
 
 
+def edge_distance(half_width, offset, starts, offsets):
+    """(rows, columns) metres from each cell inwards from the road's edge on its side, past whatever hides road.
+
+    The rim of a shadow is no rim of the road: beside it nothing tells a gutter, and it
+    outnumbers what is seen of the gutter between parked vehicles.
+
+    Parameters
+    ----------
+    half_width : (N,) mm from the reference to the road's edge on each road point's side
+    offset : (N,) of the points, left positive, in any unit
+    starts : (rows + 1,) the first point of each row of the grid, and the end
+    offsets : (columns,) m
+    """
+    filled = np.flatnonzero(np.diff(starts))
+    distance = np.full((len(starts) - 1, len(offsets)), np.inf, np.float32)
+    for side in (1, -1):
+        columns = np.flatnonzero(offsets * side > 0)
+        if not len(columns) or not len(filled):
+            continue
+        beside = np.where(offset > 0 if side > 0 else offset < 0, half_width, 0)
+        widest = np.maximum.reduceat(beside[:starts[-1]], starts[filled]) * 1e-3
+        known = widest > 0
+        if known.any():
+            edge = np.interp(np.arange(len(distance)), filled[known], widest[known])
+            distance[:, columns] = np.maximum(edge[:, None] - np.abs(offsets[columns]) + CELL / 2, CELL)
+    return distance
+
+
 def gutter_cells(z, distance):
     """Cells of gutters.
 
     Parameters
     ----------
     z : (rows, columns) brightness in spreads above asphalt, NaN where nothing was scanned
-    distance : (rows, columns) of `rim_distance`
+    distance : (rows, columns) of `rim_distance` or `edge_distance`
 
     Returns
     -------
     (rows, columns) bool
     """
-    band = np.floor((distance / CELL - 0.5) / BAND).astype(np.int64)
+    band = np.floor(np.minimum(distance / CELL - 0.5, BANDS * BAND) / BAND).astype(np.int64)
     near = (distance > 0) & (band < BANDS) & np.isfinite(z)
     row, column = np.nonzero(near)
     if not len(row):

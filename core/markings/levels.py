@@ -9,10 +9,13 @@ from .thresholds import WIDEST, background
 BRIGHT = 2.5      # spreads: what is brighter is no background
 
 
-def flatten(brightness, median, spread, rim):
-    """Brightness in spreads above the asphalt about each cell, and the cells of gutters."""
+def flatten(brightness, median, spread, rims):
+    """Brightness in spreads above the asphalt about each cell, and the cells of gutters.
+
+    rims : distances inwards, from the rim of what was scanned and from the road's edges
+    """
     z = (brightness - median) / spread
-    gutter = gutter_cells(z, rim)
+    gutter = np.any([gutter_cells(z, rim) for rim in rims], axis=0)
     with np.errstate(invalid="ignore"):
         even = (z < BRIGHT) & (z > -2 * BRIGHT) & ~gutter
     z = z - background(z, even)

@@ -70,6 +70,18 @@ def test_a_concrete_gutter_is_left_out_and_the_edge_line_beside_it_kept(tmp_path
     assert np.count_nonzero(line(paint.s, paint.d)) > 0.9 * 70 * 0.15 * 1500
 
 
+@pytest.mark.parametrize("side", [1, -1], ids=["left", "right"])
+def test_what_parked_cars_leave_to_be_seen_of_a_gutter_is_no_paint(tmp_path, side):
+    line = strip(5, 75, *sorted((2.9 * side, 3.05 * side)))
+    records = street(FRAME, [line], level=lambda s, d: np.where(d * side > 3.65, 2.6, 1.0))
+    # shadows askew, as a scanner mounted at 45 degrees casts them over the parking strip and the lane beside it
+    s, d = records["s"] * 1e-4, records["d"] * side * 1e-4
+    paint = found_on(records[~((d > -1.0) & ((s - d) % 6.0 < 4.0))], tmp_path)
+    on_line = line(paint.s, paint.d)
+    assert on_line.mean() > 0.97
+    assert np.count_nonzero(on_line) > 0.85 * 70 * 0.15 * 1500 / 3
+
+
 def test_an_edge_line_painted_right_beside_a_gutter_is_found_and_the_gutter_is_not(tmp_path):
     line = strip(5, 75, 3.52, 3.67)
     street_ = street(FRAME, [line], level=lambda s, d: np.where(np.abs(d) > 3.7, 2.0, 1.0))
