@@ -4,7 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.interpolate import BSpline
-from scipy.linalg import solveh_banded
+from scipy.linalg import LinAlgError
+from scipy.linalg.lapack import dpbsv
 
 from .curve import TabledCurve
 from .fit import Fit, checked, least_bic, robust_weights
@@ -147,7 +148,11 @@ class _Basis:
         bands[DEGREE] += 1e-9 * bands[DEGREE].max()
         weighted, at = self.values * weight[:, None], self.at.ravel()
         right = np.stack([np.bincount(at, (weighted * column[:, None]).ravel(), self.count) for column in values.T], axis=1)
-        return solveh_banded(bands, right, overwrite_ab=True, overwrite_b=True, check_finite=False)
+        # solveh_banded checks more than it computes
+        _, control, trouble = dpbsv(bands, right)
+        if trouble:
+            raise LinAlgError(f"The spline's equations cannot be solved ({trouble}).")
+        return control
 
     def of(self, control, slope=False):
         """(N, C) what control points (K, C) give at the places, or the slope there."""

@@ -3,6 +3,8 @@
 import numpy as np
 from scipy.ndimage import gaussian_filter1d, median_filter
 
+from ..survey.points import UNIT
+from ..survey.sorting import order_by
 from .boundaries import STEP
 
 REACH = 0.3        # m either side of the driving line
@@ -34,22 +36,22 @@ def road_heights(road_points, road, s, tracks):
         points = road_points.window(road, s[first] - STEP / 2, s[last] + STEP / 2) if inside else ()
         if not len(points):
             continue
-        ps, pd, pz = points.s, points.d, points.z
         for z, track, a, b in inside:
             rows = slice(a - track.first, b - track.first + 1)
-            z[rows] = _medians(ps, pd, pz, s[a:b + 1], track.d[rows])
+            z[rows] = _medians(points.records, s[a:b + 1], track.d[rows])
     return found
 
 
-def _medians(ps, pd, pz, s, d):
-    near = np.flatnonzero((pd >= np.nanmin(d) - REACH) & (pd <= np.nanmax(d) + REACH))
-    ps, pd, pz = ps[near], pd[near], pz[near]
-    cell = np.rint((ps - s[0]) / STEP).astype(np.int64)
+def _medians(records, s, d):
+    offset = records["d"]
+    low, high = np.floor((np.nanmin(d) - REACH) / UNIT), np.ceil((np.nanmax(d) + REACH) / UNIT)
+    near = np.flatnonzero((offset >= low) & (offset <= high))
+    cell = np.rint((records["s"].take(near) * UNIT - s[0]) / STEP).astype(np.int32)
     inside = (cell >= 0) & (cell < len(s))
-    inside[inside] &= np.abs(pd[inside] - d[cell[inside]]) <= REACH
-    cell, pz = cell[inside], pz[inside]
-    order = np.lexsort((pz, cell))
-    cell, pz = cell[order], pz[order]
+    inside[inside] &= np.abs(offset.take(near[inside]) * UNIT - d[cell[inside]]) <= REACH
+    cell, z = cell[inside], records["z"].take(near[inside])
+    order = order_by(z, cell)
+    cell, pz = cell[order], z[order] * UNIT
     begin, end = (np.searchsorted(cell, np.arange(len(s)), side) for side in ("left", "right"))
     count = end - begin
     found = np.full(len(s), np.nan)

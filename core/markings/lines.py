@@ -103,7 +103,7 @@ def fit_marking_lines(clustered_points, markings, frame, settings=LineSettings()
 
 def _records_of(points, road):
     parts = [points.store.section(road, section) for section in points.sections(road)]
-    return np.asarray(joined(parts, ROAD_POINT))
+    return joined(parts, ROAD_POINT)
 
 
 def _add(found, one, shape, number, road, origin):

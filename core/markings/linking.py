@@ -7,6 +7,7 @@ searched where the line is, not where its last metre happened to point.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -95,6 +96,10 @@ class Line:
 
     def places(self):
         """s, d, z, weight of all places."""
+        return self._places
+
+    @cached_property
+    def _places(self):
         return tuple(np.concatenate([getattr(strand, name) for strand in self.strands])
                      for name in ("s", "d", "z", "weight"))
 

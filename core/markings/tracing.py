@@ -7,6 +7,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from ..survey.points import UNIT
+from ..survey.sorting import order_by
 from .classes import LINES
 
 BIN = 5000             # units of 0.1 mm: 0.5 m of station in which runs of paint are told apart
@@ -59,7 +60,7 @@ def line_paint(records, markings, road):
 
     Parameters
     ----------
-    records : (N,) ROAD_POINT of one road with `cluster`
+    records : N points of one road with `cluster`
     markings : Features MARKINGS
     road : number
 
@@ -92,8 +93,8 @@ def _narrow_there(records, number, mixed):
     result = np.zeros(len(records), bool)
     if not len(rows):
         return result
-    bins = records["s"][rows].astype(np.int64) // BIN
-    order = np.lexsort((bins, number[rows]))
+    bins = records["s"][rows] // BIN
+    order = order_by(bins, number[rows])
     rows, bins = rows[order], bins[order]
     starts = np.flatnonzero(np.r_[True, (np.diff(bins) != 0) | (np.diff(number[rows]) != 0)])
     across = records["d"][rows].astype(np.int64)
@@ -114,7 +115,7 @@ def trace(records, rank):
 
     Parameters
     ----------
-    records : (N,) ROAD_POINT
+    records : N points
     rank : (N,) class of each point as `line_paint` gives it
 
     Returns
@@ -123,9 +124,10 @@ def trace(records, rank):
     """
     if not len(records):
         return []
-    order = np.lexsort((records["z"], records["d"], records["s"].astype(np.int64) // BIN))
-    records, rank = records[order], rank[order]
-    bins, across = records["s"].astype(np.int64) // BIN, records["d"].astype(np.int64)
+    bins = records["s"] // BIN
+    order = order_by(records["z"], records["d"], bins)
+    records, rank, bins = records[order], rank[order], bins[order]
+    across = records["d"].astype(np.int64)
     run = _runs(bins, across)
     run = _without_thin(run)
     inside = run >= 0
@@ -239,8 +241,8 @@ def _mutual(node_bin, node_d, ends, starts, leap, span):
 def _strands(records, rank, label):
     used = label >= 0
     records, rank, label = records[used], rank[used], label[used]
-    place = records["s"].astype(np.int64) // PLACE
-    order = np.lexsort((records["z"], records["d"], place, label))
+    place = records["s"] // PLACE
+    order = order_by(records["z"], records["d"], place, label)
     records, rank, label, place = records[order], rank[order], label[order], place[order]
     bounds = np.flatnonzero(np.r_[True, np.diff(label) != 0, True]) if len(label) else np.zeros(1, int)
     found = []
