@@ -56,6 +56,21 @@ def with_help(parameter, text, advanced=False):
     return parameter
 
 
+def out_of_range(definitions, parameters):
+    """What may be given, for the first number or choice that may not be; QGIS itself says only that it is incorrect."""
+    for parameter in definitions:
+        value = parameters.get(parameter.name())
+        if value is None or parameter.checkValueIsAcceptable(value):
+            continue
+        if parameter.type() == "number":
+            return tr("{label} ({name}) is {value}; it must be a number from {least:g} to {most:g}.").format(
+                label=parameter.description(), name=parameter.name(), value=value, least=parameter.minimum(), most=parameter.maximum())
+        if parameter.type() == "enum":
+            return tr("{label} ({name}) is {value}; it must be one of {choices}.").format(
+                label=parameter.description(), name=parameter.name(), value=value, choices=", ".join(parameter.options()))
+    return ""
+
+
 class LanewrightAlgorithm(QgsProcessingAlgorithm):
     """Base of every algorithm; subclasses set the five texts below and write `work`."""
 
@@ -104,7 +119,8 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         return (not missing, missing)
 
     def checkParameterValues(self, parameters, context):
-        return super().checkParameterValues(accept_trajectory_file(self, parameters, context), context)
+        fine, said = super().checkParameterValues(accept_trajectory_file(self, parameters, context), context)
+        return fine, said if fine else out_of_range(self.parameterDefinitions(), parameters) or said
 
     def processAlgorithm(self, parameters, context, feedback):
         # canExecute is asked by the desktop only

@@ -170,6 +170,16 @@
         </message>
         <message>
             <location filename="../../processing_provider/algorithm.py" />
+            <source>{label} ({name}) is {value}; it must be a number from {least:g} to {most:g}.</source>
+            <translation>{label} ({name}) ist {value}; es muss eine Zahl von {least:g} bis {most:g} sein.</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/algorithm.py" />
+            <source>{label} ({name}) is {value}; it must be one of {choices}.</source>
+            <translation>{label} ({name}) ist {value}; möglich sind {choices}.</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/algorithm.py" />
             <source>Cancelled</source>
             <translation>Abgebrochen</translation>
         </message>

@@ -232,6 +232,8 @@ def test_a_setting_beyond_reason_is_refused(survey, tmp_path):
     (("--ROAD_EDGES=a.gpkg", "--MARKINGS=a.gpkg"), "Road edges and Markings would both be written to a.gpkg"),
     (("--INTENSITY_IMAGE=i.png",), "written as .tif or .tiff only"),
     (("--CRS=EPSG:999999",), "the CRS EPSG:999999 is not known"),
+    (("--CELL_SIZE=-0.04",), "CELL_SIZE) is -0.04; it must be a number from"),
+    (("--BOUNDARY_METHOD=magic",), "BOUNDARY_METHOD) is magic; it must be one of profiles, scanlines, both"),
 ])
 def test_what_cannot_be_meant_is_told_before_the_work(survey, tmp_path, outputs, says):
     run = qgis_process(
