@@ -35,7 +35,8 @@ class _Section:
 
     def __init__(self):
         self.rows, self.row_places = [], []  # structured arrays; (place, count) of such in the file
-        self.columns, self.places = [], []   # Columns; (place, count) of such in the file, before those in memory
+        # Columns; (place, count, alike) of such in the file, before those in memory. alike: what all points have, by column
+        self.columns, self.places = [], []
 
     @property
     def nbytes(self):
@@ -122,9 +123,12 @@ class SectionStore:
                 for records in section.rows:
                     self._file.append(records)
             for records in section.columns:
-                section.places.append((self._file.end, len(records)))
+                # a column whose points are all alike (one pass, not corrected yet) need not be written
+                alike = {name: records[name][:1].copy() for name in self.dtype.names if _all_alike(records[name])}
+                section.places.append((self._file.end, len(records), alike))
                 for name in self.dtype.names:
-                    self._file.append(records[name])
+                    if name not in alike:
+                        self._file.append(records[name])
             section.rows, section.columns = [], []
         self._waiting_bytes = 0
 
@@ -169,10 +173,11 @@ class SectionStore:
             records = records.take(np.flatnonzero(stay))
         columns = in_columns(records, canonical_order(records))
         first, places = 0, []
-        for place, count in section.row_places + section.places:
+        # where columns were left out there is no room for them now
+        for place, count in section.row_places + [(place, count) for place, count, alike in section.places if not alike]:
             count = min(count, len(columns) - first)
             self._write_columns(place, columns[first:first + count])
-            places.append((place, count))
+            places.append((place, count, {}))
             first += count
         section.rows, section.row_places, section.places = [], [], places
         section.columns = [columns[first:].copy() if first else columns] if first < len(columns) or not places else []
@@ -205,12 +210,14 @@ class SectionStore:
             records = self._kept.pop(key, None)
             self._kept_bytes -= 0 if records is None else records.nbytes
 
-    def _read_columns(self, place, count):
+    def _read_columns(self, place, count, alike):
         """Columns of a piece of the file, each read when it is asked for."""
-        sizes = [count * self.dtype[name].itemsize for name in self.dtype.names]
-        places = dict(zip(self.dtype.names, np.cumsum([place, *sizes]).tolist()))
+        written = [name for name in self.dtype.names if name not in alike]
+        places = dict(zip(written, np.cumsum([place] + [count * self.dtype[name].itemsize for name in written]).tolist()))
 
         def read(name):
+            if name in alike:
+                return np.repeat(alike[name], count)
             column = np.empty(count, self.dtype[name])
             self._file.read(places[name], column)
             return column
@@ -295,6 +302,12 @@ class _WithColumn(SectionStore):
     def close(self):
         self._column.close()
         self._points.close()
+
+
+def _all_alike(column):
+    """Whether all of one or more values are the same, bit by bit (so that NaN is NaN)."""
+    bits = np.ascontiguousarray(column).view(f"u{column.dtype.itemsize}")
+    return bool(bits[0] == bits[-1] == bits[len(bits) // 2] and (bits == bits[0]).all())
 
 
 class _Metres:

@@ -46,6 +46,25 @@ def test_columns_survive_the_file_whatever_their_widths():
         np.testing.assert_array_equal(spilled.section(0, number), kept.section(0, number))
 
 
+@pytest.mark.parametrize("more", [False, True])
+def test_columns_whose_points_are_alike_survive_the_file_without_being_written(more):
+    """Sections that are put in order already; more points may come to them later."""
+    made = records()
+    made["pass_number"], made["source"] = 3, 7
+    sections = filled([made])
+    store = SectionStore(SURVEY_POINT, memory_limit=0)
+    for number in sections.sections(0):
+        store.put(0, number, sections.section(0, number))
+    if more:
+        late = made[::5].copy()
+        late["source"] = 8
+        store.append(0, late)
+        sections = filled([made, late])
+    for number in sections.sections(0):
+        np.testing.assert_array_equal(np.asarray(store.section(0, number)), np.asarray(sections.section(0, number)))
+    np.testing.assert_array_equal(np.asarray(store.window(0, 0, 200).records), np.asarray(sections.window(0, 0, 200).records))
+
+
 def test_what_a_section_is_finished_with_is_seen_and_nothing_else():
     made = records()
     for limit in (0, 10_000, 10**9):
