@@ -172,7 +172,7 @@ def _take_points(survey, road, carriageway, road_points, progress):
         own = np.flatnonzero(np.floor(on_road.s / survey.store.section_length) == number)
         own = slice(own[0], own[-1] + 1) if len(own) else slice(0, 0)   # points come in order of station
         count = own.stop - own.start
-        records = points[found.surface[own]].records.with_columns(
+        records = on_road.records[own].with_columns(
             corrected=np.full(count, np.nan, np.float32), cluster=np.zeros(count, np.int32),
             covered=beneath[own].astype(np.uint8), half_width=found.half_width[own])
         return number, records.whole()

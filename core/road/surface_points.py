@@ -45,7 +45,7 @@ def points_on_road(points, carriageway):
     records = points.records
     if not len(records):
         return OnRoad(np.empty(0, np.intp), np.empty(0, np.uint16), np.empty(0, np.intp))
-    here = _Window(carriageway, records["s"])
+    here = _Window(carriageway, records["s"], records["d"])
     parts = []
     for first in range(0, len(records), AT_ONCE):
         found = here.points(*(records[name][first:first + AT_ONCE] for name in ("s", "d", "z")))
@@ -56,19 +56,15 @@ def points_on_road(points, carriageway):
 class _Window:
     """Limits and height of the rows about a window, as tables of half rows and of cells."""
 
-    def __init__(self, carriageway, s):
+    def __init__(self, carriageway, s, d):
         cells = carriageway.cells
-        last = len(cells.height) - 1
-        low, high = (int(np.clip(np.floor(end * UNIT / ROW - cells.first_row - 0.5), 0, last)) for end in (s.min(), s.max()))
-        rows = slice(min(low, max(last - 1, 0)), min(high + 2, last + 1))
-        if last == 0:
-            rows = np.zeros(2, int)   # one row is as wide and high everywhere
-        height = carriageway.height[rows].astype(float)
-        first_row = cells.first_row + (rows.start if last else 0)
-        self.count, self.columns = height.shape
-        self.s0, self.d0 = (int(round((first + 0.5) * size / UNIT)) for first, size in ((first_row, ROW), (cells.first_column, COLUMN)))
+        # as many rows and columns as the points need: beyond the outermost cells height and limits stay as they are there
+        (self.s0, rows), (self.d0, columns) = (
+            _middles(values, size, first, count) for values, size, first, count in
+            ((s, ROW, cells.first_row, cells.height.shape[0]), (d, COLUMN, cells.first_column, cells.height.shape[1])))
+        height = carriageway.height[np.ix_(rows, columns)].astype(float) / UNIT
+        self.columns = len(columns) - 1
         self.left, self.right = (_half_rows(limit[rows] / UNIT) for limit in (carriageway.left, carriageway.right))
-        height = height / UNIT
         across = np.diff(height, axis=1)
         self.corner = np.rint(height[:-1, :-1]).astype(np.int32).ravel()
         # height = corner + rest + across * v + (along + twist * v) * u, with u, v from 0 to 1 in the cell
@@ -78,40 +74,54 @@ class _Window:
 
     def points(self, s, d, z):
         """Indices of points of the road, their half widths (mm), and indices of points above it."""
-        row, u = _steps(s, self.s0, ROW, self.count)
-        half = 2 * row
+        row, u = _steps(s, self.s0, ROW)
+        half = row + row
         half += u >= np.float32(0.5)
-        left, right = (start.take(half) + slope.take(half) * u for start, slope in (self.left, self.right))
-        inside = np.flatnonzero((d < left) & (d > right))
-        u, cell, d = u.take(inside), row.take(inside), d.take(inside)
-        column, v = _steps(d, self.d0, COLUMN, self.columns)
-        cell *= self.columns - 1
-        cell += column
-        rest, across, along, twist = (table.take(cell) for table in self.tables)
+        left, right = (_line(*limit, half, u) for limit in (self.left, self.right))
+        cell, v = _steps(d, self.d0, COLUMN)
+        row *= np.int32(self.columns)
+        cell += row
+        rest, across, along, twist = (table.take(cell, mode="clip") for table in self.tables)
         twist *= v
         along += twist
         along *= u
         across *= v
         rest += across
         rest += along
-        rise = z.take(inside)
-        rise -= self.corner.take(cell)
+        rise = z - self.corner.take(cell, mode="clip")
         rise = rise - rest
-        on_road = np.flatnonzero(np.abs(rise) < self.tolerance)
-        kept, d = inside.take(on_road), d.take(on_road)
-        width = np.where(d >= 0, left.take(kept), -right.take(kept))
-        width = np.maximum(width, np.abs(d)) * np.float32(UNIT * 1e3)
-        return kept, np.clip(np.rint(width), 0, 65535).astype(np.uint16), inside[(rise > self.low) & (rise < self.high)]
+        d = d.astype(np.float32)
+        inside = d < left
+        inside &= d > right
+        on_road = np.flatnonzero((np.abs(rise) < self.tolerance) & inside)
+        width = np.where(d >= 0, left, -right).take(on_road)
+        width *= np.float32(UNIT * 1e3)
+        width += np.float32(0.5)
+        np.minimum(width, np.float32(65535), out=width)
+        return on_road, width.astype(np.uint16), np.flatnonzero((rise > self.low) & (rise < self.high) & inside)
 
 
-def _steps(units, first, size, count):
-    """The step that places lie in and the share of it behind them, (N,) int32 and float32, of `count` places `size` metres apart."""
-    size = int(round(size / UNIT))
-    place = np.clip(units - np.int32(first), 0, (count - 1) * size)
-    step = place // np.int32(size)
-    np.minimum(step, count - 2, out=step)
-    place -= step * np.int32(size)
+def _middles(units, size, first, count):
+    """Where the first of the middles of cells lies between which places lie, in units, and the index of each one's cell."""
+    low, high = (int(np.floor(int(end) * UNIT / size - 0.5)) for end in (units.min(), units.max()))
+    return int(round((low + 0.5) * size / UNIT)), np.clip(np.arange(low, high + 2) - first, 0, count - 1)
+
+
+def _steps(units, first, size):
+    """The step of `size` metres that places lie in, counted from `first`, and the share of it behind them, (N,) int32 and float32."""
+    size = np.int32(round(size / UNIT))
+    place = units - np.int32(first)
+    step = place // size
+    place -= step * size
     return step, place * np.float32(1.0 / size)
+
+
+def _line(start, slope, half, u):
+    """Values in half rows, (N,) float32."""
+    found = slope.take(half, mode="clip")
+    found *= u
+    found += start.take(half, mode="clip")
+    return found
 
 
 def _half_rows(limit):
