@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .profiles import HIGH_SIGMA
+from .profiles import HIGH_SIGMA, expand
 
 ROAD_SIDE = 0.40    # m of road before the face that give the road's line
 CLEARANCE = 0.05    # m next to the face left out of it: a blurred face begins there
@@ -83,8 +83,10 @@ def measure_corners(lines, rows, cells, least, highest):
     start = lines.starts[rows * cell_count + np.maximum(cells - reach, 0)]
     end = lines.starts[rows * cell_count + np.minimum(cells + reach + 1, cell_count)]
     owner, index = expand(start, end)
-    ground = lines.ground[index]
-    owner, index = owner[ground], index[ground]
+    ground = lines.ground.take(index)
+    if not ground.all():
+        ground = np.flatnonzero(ground)
+        owner, index = owner.take(ground), index.take(ground)
     seen = _seen(lines, rows, cells, owner, index, least, highest)
     # positions that drifted between one view and the next blur a face that each of them shows sharp: what is
     # no step in all points together may be one in those seen from before, or from behind alone
@@ -149,11 +151,13 @@ class NearSteps:
     def corners(self):
         """Everything a Steps holds, as a dict of (count,) arrays, `good`: is it a step, and `likely`: may it be one, seen otherwise?"""
         owner, u, s, h, count = self.owner, self.u, self.s, self.h, self.count
-        road = (u < -CLEARANCE) & (u > -ROAD_SIDE - CLEARANCE)
-        level, slope, noise, n_road = _line_per_owner(owner, u, h, road, count)
-        keep = road & (np.abs(h - level[owner] - slope[owner] * u) < np.maximum(2.5 * noise, 0.01)[owner])
-        level, slope, noise, n_road = _line_per_owner(owner, u, h, keep, count)
-        rise = h - level[owner] - slope[owner] * u
+        road = np.flatnonzero((u < -CLEARANCE) & (u > -ROAD_SIDE - CLEARANCE))
+        side = owner.take(road), u.take(road), h.take(road)
+        level, slope, noise, n_road = _line_per_owner(*side, count)
+        off = np.abs(side[2] - level.take(side[0]) - slope.take(side[0]) * side[1])
+        keep = np.flatnonzero(off < np.maximum(2.5 * noise, 0.01).take(side[0]))
+        level, slope, noise, n_road = _line_per_owner(*(v.take(keep) for v in side), count)
+        rise = h - level.take(owner) - slope.take(owner) * u
         height, n_behind, stays = self._raised(rise)
         found = dict(level=level, slope=slope, noise=noise, n_road=n_road, height=height, n_behind=n_behind, stays=stays)
         # most candidates are no step from whatever direction they are seen: their faces need no measuring
@@ -199,30 +203,27 @@ class NearSteps:
 
     def _raised(self, rise):
         """Height of the ground behind the face, how many points lie there, and whether it stays up and level."""
-        u, owner, total = self.u, self.owner, self.total
-        raised = (u > 0.03) & (u < BEHIND) & (rise > 0.4 * self.least) & (rise < self.highest + 0.1)
-        first = _mean(total(raised, rise), total(raised))
-        raised &= np.abs(rise - first[owner]) < 0.05
-        n_behind = total(raised)
+        count = self.count
+        beyond = np.flatnonzero((self.u > 0.03) & (self.u < BEHIND))
+        owner, u, rise_there = self.owner.take(beyond), self.u.take(beyond), rise.take(beyond)
+        raised = np.flatnonzero((rise_there > 0.4 * self.least) & (rise_there < self.highest + 0.1))
+        up, out, to = owner.take(raised), u.take(raised), rise_there.take(raised)
+        first = _mean(np.bincount(up, to, count), np.bincount(up, minlength=count))
+        alike = np.flatnonzero(np.abs(to - first.take(up)) < 0.05)
+        up, out, to = up.take(alike), out.take(alike), to.take(alike)
         # a ramp goes on rising where the ground behind a curb is as level as a road
-        _, climb, _, _ = _line_per_owner(owner, u, rise, raised, self.count)
+        _, climb, _, n_behind = _line_per_owner(up, out, to, count)
         level = (n_behind < 4) | (np.abs(climb) <= STEEPEST_ROAD + NOISE_CLIMB * self.usual)
-        peak = np.zeros(self.count)
-        near = np.flatnonzero((u > -0.03) & (u < FACE_WINDOW) & (n_behind < 2).take(owner))
-        np.maximum.at(peak, owner[near], rise[near])
-        height = np.where(n_behind >= 2, _mean(total(raised, rise), n_behind),
+        peak = np.zeros(count)
+        near = np.flatnonzero((self.u > -0.03) & (self.u < FACE_WINDOW) & (n_behind < 2).take(self.owner))
+        np.maximum.at(peak, self.owner.take(near), rise.take(near))
+        height = np.where(n_behind >= 2, _mean(np.bincount(up, to, count), n_behind),
                           np.maximum(peak - HIGH_SIGMA * self.usual, 0.0))
-        beyond = (u > 0.10) & (u < BEHIND)
-        low = total(beyond & (rise < 0.5 * height[owner]))
-        return height, n_behind, level & (low <= np.maximum(LOW_SHARE * total(beyond), 1))
-
-
-def expand(start, end):
-    """Every index of ragged ranges, and which range it belongs to."""
-    length = np.maximum(end - start, 0)
-    owner = np.repeat(np.arange(len(start)), length)
-    index = np.arange(length.sum()) - np.repeat(np.cumsum(length) - length, length) + np.repeat(start, length)
-    return owner, index
+        far = np.flatnonzero(u > 0.10)
+        low = np.flatnonzero(rise_there < 0.5 * height.take(owner))
+        low = low[u.take(low) > 0.10]
+        low, far = (np.bincount(owner.take(v), minlength=count) for v in (low, far))
+        return height, n_behind, level & (low <= np.maximum(LOW_SHARE * far, 1))
 
 
 def _skew(owner, u, s, mask, scatter, count):
@@ -261,13 +262,12 @@ def _mean(total, count):
     return total / np.maximum(count, 1)
 
 
-def _line_per_owner(owner, u, h, mask, count):
+def _line_per_owner(owner, u, h, count):
     """Least-squares line h = level + slope * u for each owner: level, slope, scatter, points."""
-    owner, u, h = owner[mask], u[mask], h[mask]
     n = np.bincount(owner, minlength=count)
-    mu, mh = _mean(np.bincount(owner, u, count), n), _mean(np.bincount(owner, h, count), n)
-    du, dh = u - mu[owner], h - mh[owner]
-    suu, suh, shh = (np.bincount(owner, v, count) for v in (du * du, du * dh, dh * dh))
+    mu, mh, suu, suh, shh = (np.bincount(owner, v, count) for v in (u, h, u * u, u * h, h * h))
+    mu, mh = _mean(mu, n), _mean(mh, n)
+    suu, suh, shh = suu - n * mu * mu, suh - n * mu * mh, np.maximum(shh - n * mh * mh, 0.0)
     # points that all lie at one offset do not give a slope
     slope = np.where(suu > n * 0.03**2, suh / np.maximum(suu, 1e-12), 0.0)
     scatter = np.sqrt(np.maximum(shh - slope * (2 * suh - slope * suu), 0.0) / np.maximum(n - 2, 1))

@@ -61,9 +61,7 @@ def _few_of(points, width, spacing, most):
 
 def _thinned(s, d, z, width, spacing, most):
     """Indices of the points taken of every cell; stations s (ascending), offsets d and heights z in 0.1 mm."""
-    rows = np.arange(np.floor(s[0] * UNIT / width), np.floor(s[-1] * UNIT / width) + 1)
-    count = np.diff(np.searchsorted(s, np.ceil(rows[1:] * width / UNIT - 0.01).astype(np.int32)), prepend=0, append=len(s))
-    if count.max() <= most:
+    if len(s) <= most:
         return np.arange(len(s))
     bits = int(np.rint(np.log2(spacing / UNIT)))
     half = (FARTHEST >> bits) + 1
@@ -72,8 +70,13 @@ def _thinned(s, d, z, width, spacing, most):
     cell = np.minimum(out, FARTHEST)
     cell >>= bits
     cell += (d < 0) * np.int32(half)
-    cell += np.repeat((np.arange(len(count)) * 2 * half).astype(np.int32), count)
-    cell = cell.astype(np.intp)
+    profile = s + 0.5  # off the bounds between profiles, which are whole units
+    profile *= UNIT / width
+    np.floor(profile, out=profile)
+    profile -= profile[0]
+    profile *= 2 * half
+    profile += cell
+    cell = profile.astype(np.intp)
     held = np.bincount(cell)
     if held.max() <= most:
         return np.arange(len(s))

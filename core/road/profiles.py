@@ -199,14 +199,28 @@ def lowest_layers(place, h, layer_jump):
     new_layer |= new_cell
     layer_start = np.flatnonzero(new_layer)
     layer_count = np.diff(layer_start, append=len(place))
-    layer_cell = np.cumsum(new_cell[layer_start]) - 1
+    first_of_cell = new_cell[layer_start]
+    ground = np.ones(len(place), bool)
+    if first_of_cell.all():
+        return ground, layer_start, layer_count
+    layer_cell = np.cumsum(first_of_cell) - 1
     cell_count = np.bincount(layer_cell, layer_count)
     real = layer_count >= GHOST_SHARE * cell_count[layer_cell]
     chosen = np.flatnonzero(real)
     chosen = chosen[np.r_[True, np.diff(layer_cell[chosen]) > 0]]
-    ground = np.zeros(len(layer_start), bool)
-    ground[chosen] = True
-    return np.repeat(ground, layer_count), layer_start[chosen], layer_count[chosen]
+    other = np.ones(len(layer_start), bool)
+    other[chosen] = False
+    ground[expand(layer_start[other], layer_start[other] + layer_count[other])[1]] = False
+    return ground, layer_start[chosen], layer_count[chosen]
+
+
+def expand(start, end):
+    """Every index of ragged ranges, and which range it belongs to: (N,) owners and (N,) indices."""
+    length = np.maximum(end - start, 0)
+    owner = np.repeat(np.arange(len(start)), length)
+    index = np.arange(len(owner))
+    index += np.repeat(start - (np.cumsum(length) - length), length)
+    return owner, index
 
 
 def _profile_noise(noise):
@@ -223,10 +237,12 @@ def _smooth(h, held, low):
         size = held.flat[there]
         first = np.cumsum(size) - size
         off = np.abs(h - np.repeat(low.flat[there], size))
-        near = off < SAME_GROUND
-        count = np.add.reduceat(near, first, dtype=np.int64)
+        near, count = off < SAME_GROUND, size
+        if not near.all():
+            off = np.where(near, off, 0.0)
+            count = np.add.reduceat(near, first, dtype=np.int64)
         # 1.2533 mean distances of a normal distribution are its sigma
-        mean = 1.2533 * np.add.reduceat(np.where(near, off, 0.0), first) / np.maximum(count, 1)
+        mean = 1.2533 * np.add.reduceat(off, first) / np.maximum(count, 1)
         own.flat[there] = np.where(count >= SPREAD_POINTS, mean, np.nan)
     # grass is rough with any scanner, so the smoother cells tell
     ordered, n = _sorted_rows(own)

@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from ..parallel import in_order
 from ..progress import Progress
 from ..survey.road_frame import CORRIDOR
-from .crowds import FEW, few_of_every_cell
+from .crowds import few_of_every_cell
 from .plan_chains import joined_chains, trace_chains
 from .plan_steps import PlanSteps, measure_plan_steps
 from .sides import BESIDE, SIDES, ahead_of_vehicle, expected_height, sections_of
@@ -25,6 +25,7 @@ OPENING = 6.0        # m without main curb that are an opening and no driveway
 AT_OPENING = 6.0     # m of main curb beside an opening behind which corners are sought
 BEHIND_CURB = 0.6    # m behind a main curb that are looked at elsewhere
 INNER, INNER_HEIGHT = 0.5, 0.3  # m from a main curb, and about the expected road, where ground inside is road for certain
+FEW_IN_PLAN = 6      # points of a profile's cell on level ground: there are four such cells and more in one of the raster
 NODE = 0.05          # m along the road between the stations at which that is decided
 MARGIN = 2.0         # m of road either side of a section that its own steps need
 NOISY, DENSE = 0.12, 6  # share of the least curb that heights in a cell scatter, and points in one, above which they are averaged
@@ -165,7 +166,7 @@ def _runs(main, line):
     return found
 
 
-def _steps_of_section(survey, road, section, limits, known, barrier, settings, most=FEW):
+def _steps_of_section(survey, road, section, limits, known, barrier, settings, most=FEW_IN_PLAN):
     """(PlanSteps of a section, where the ground behind each falls again, the scanner's noise); None where there are none."""
     width = settings.profile_width
     margin = int(np.ceil(MARGIN / width))
@@ -207,15 +208,14 @@ def _beside_vehicle(survey, road, points, reach):
     """Of points within reach and near the vehicle: local x, y, height above the expected road, metres ahead of the vehicle,
     and whether each lies between the road's own curbs: the far side of a long island is road, too, but may not be
     connected with the track by as short a stretch as a section."""
-    inside, inner = reach(points.s, points.d)
-    points, inner = points[inside], inner[inside]
-    s = points.s
+    s, d = points.s, points.d
+    inside, inner = reach(s, d)
     along = ahead_of_vehicle(survey, points, s)
-    near = np.abs(along) < BESIDE + np.abs(points.d)
-    if not near.all():
-        points, s, along, inner = points[near], s[near], along[near], inner[near]
+    inside &= np.abs(along) < BESIDE + np.abs(d)
+    own = np.flatnonzero(inside)
+    s, points = s.take(own), points[own]
     h = points.z - expected_height(survey, road, s)
-    return points.x, points.y, h, along, inner & (np.abs(h) < INNER_HEIGHT)
+    return points.x, points.y, h, along.take(own), inner.take(own) & (np.abs(h) < INNER_HEIGHT)
 
 
 class _Reach:
