@@ -14,7 +14,7 @@ demo: setup ## a sample survey with known truth through the whole chain, into bu
 test: setup ## core tests without QGIS, then the plugin in QGIS, then real qgis_process calls
 	@tools/test.sh
 
-bench: setup ## seconds per stage and peak memory on 5 and 20 million points
+bench: setup ## time and memory of every stage beside PCL, Open3D, GDAL and laspy's read, into docs/benchmarks.md
 	@tools/bench.sh
 
 accuracy: setup ## every method over surveys with truth (SURVEYS=folder; default: the sample scenes), into docs/accuracy.md

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The benchmark of `make bench`; arguments go to tools/bench.py, for example: tools/bench.sh --sizes 5000000
+# The benchmark of `make bench`; arguments go to tools/bench, for example: tools/bench.sh --quick
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/env.sh"
-exec "$LANEWRIGHT_BUILD/venv/bin/python" "$LANEWRIGHT_ROOT/tools/bench.py" "$@"
+export PYTHONPATH="$LANEWRIGHT_ROOT/tools"
+exec "$LANEWRIGHT_BUILD/venv/bin/python" -m bench "$@"

@@ -1,0 +1,116 @@
+"""`make bench`: rounds of figures in, a page out."""
+
+import json
+
+import numpy as np
+import pytest
+
+pytest.importorskip("osgeo.gdal")
+
+from bench import meaning, surveys  # noqa: E402
+from bench.chain import Watch  # noqa: E402
+from bench.measures import MEASURES, PARTS  # noqa: E402
+from bench.page import page  # noqa: E402
+from bench.rows import ROWS, reached  # noqa: E402
+
+CHAIN = dict(wall=9.0, cpu=12.0, peak=1024.0, points=18_000_000, road_points=13_000_000, length=200.0, bar_off=0.04,
+             seconds=dict(survey=4.0, curbs=1.0, edges=0.1, lines=0.1, driving=0.1), silence=(0.8, "Detecting curbs …"), found={})
+READ = dict(wall=3.0, cpu=5.0, points=18_000_000)
+MACHINE = dict(processor="A processor", cores=2, of=2, memory_gib=16.0, system="Debian", python="3.11", numpy="1.24", laspy="2", lazrs="0.8",
+               scipy="1.10")
+
+
+def a_round(others=0.0, **more):
+    figures = {name: dict(CHAIN) for name in ("profiles", "las", "both", "tiles", "short")}
+    figures.update(read=dict(READ), sor_ours=dict(wall=2.0, cpu=2.0), sor_pcl=dict(cpu=4.0), sor_open3d=dict(missing="No Open3D here."))
+    figures.update(more)
+    return {name: dict(dict(peak=500.0, load=0.1, took=10.0, others=others), **f) for name, f in figures.items()}
+
+
+def a_page(*rounds, size="full"):
+    same = dict(sor_pcl=dict(same=0.9999, ours=900_000, theirs=900_010))
+    return page(json.loads(json.dumps(dict(size=size, machine=MACHINE, rounds=rounds, meaning=same, took=600.0))))
+
+
+def row(text, unit=""):
+    return next(r for r in ROWS if text in r.text and unit in r.unit)
+
+
+def test_figures_are_ratios_within_a_round_and_the_median_decides():
+    slow = {name: dict(f, wall=f["wall"] * 3) if "wall" in f else f for name, f in a_round().items()}
+    rounds = [a_round(), a_round(profiles=dict(CHAIN, wall=12.0)), slow]
+    middle, least, most, verdict = reached(row("whole road map", "× reading"), rounds)
+    assert (middle, least, most, verdict) == (3.0, 3.0, 4.0, "yes")
+    assert reached(row("outliers", "PCL"), rounds)[::3] == (0.5, "yes")
+    assert reached(row("outliers", "Open3D"), rounds) is None
+
+
+def test_a_figure_above_what_is_asked_is_said_to_be():
+    assert reached(row("peak memory, dense"), [a_round(profiles=dict(CHAIN, peak=1300.0))])[3] == "no"
+    assert "| no |" in a_page(a_round(profiles=dict(CHAIN, peak=1300.0)))
+
+
+def test_a_busy_machine_is_told_of_and_a_quiet_one_is_not():
+    assert "was not quiet" in a_page(a_round(others=0.9))
+    assert "was not quiet" not in a_page(a_round(others=0.02))
+
+
+def test_a_program_that_is_not_here_is_left_out_and_said_so():
+    text = a_page(a_round())
+    assert "Open3D (outliers): No Open3D here." in text
+    assert "99.99 %" in text and "not measured" in text
+
+
+def test_the_short_form_says_that_it_is_no_measurement():
+    assert "not to be quoted" in a_page(a_round(), size="quick")
+    assert "not to be quoted" not in a_page(a_round())
+
+
+def test_how_long_cancel_took_is_told_where_it_was_tried():
+    waits = [(1.0, 0.2, "Reading the survey …"), (5.0, 0.9, "Detecting curbs …"), (9.0, 0.1, "Reading the survey …")]
+    text = a_page(a_round(cancel=dict(wall=10.0, waits=waits, left=[])))
+    assert "3 random moments" in text and "0.90 s at most (“Detecting curbs …”)" in text and "behind: none" in text
+    assert "random moments" not in a_page(a_round())
+
+
+def test_every_part_measures_what_there_is_and_every_row_can_be_filled():
+    names = {name for part in PARTS.values() for name in part}
+    assert names | {"prepare"} == set(MEASURES)
+    assert {name for r in ROWS for name in r.needs} <= names
+
+
+def test_a_bar_that_moves_evenly_is_not_off_and_the_longest_silence_is_found(monkeypatch):
+    now = [0.0]
+    monkeypatch.setattr("bench.chain.time.perf_counter", lambda: now[0])
+    watch = Watch()
+    for second, what in ((1.0, "Reading"), (2.0, "Curbs"), (5.0, ""), (6.0, ""), (8.0, "")):
+        now[0] = second
+        watch.at(second / 8.0)
+        if what:
+            watch.say(what)
+    assert watch.figures() == dict(bar_off=0.0, silence=(3.0, "Curbs"))
+    watch.at(0.5)
+    assert watch.figures()["bar_off"] == pytest.approx(0.5)
+
+
+@pytest.fixture
+def files(tmp_path, monkeypatch):
+    monkeypatch.setattr(surveys, "SURVEYS", tmp_path)
+    monkeypatch.setattr(meaning, "prepared", lambda name, size: tmp_path / name)
+    return tmp_path
+
+
+def test_clusters_are_alike_whatever_their_numbers(files):
+    ours = np.array([0, 0, 0, 1, 1, 2])
+    np.save(files / "clusters_ours.npy", ours)
+    np.save(files / "clusters_pcl.npy", 7 - ours)
+    assert meaning.same_clusters("full", "pcl") == dict(same=1.0, ours=3, theirs=3)
+    np.save(files / "clusters_pcl.npy", np.array([5, 5, 5, 5, 5, 9]))  # the first two are one
+    found = meaning.same_clusters("full", "pcl")
+    assert found["same"] == pytest.approx((3 * 3 / 5 + 2 * 2 / 5 + 1) / 6)
+
+
+def test_outliers_are_alike_where_both_keep_or_leave_a_point(files):
+    np.save(files / "sor_ours.npy", np.array([True, True, False, True]))
+    np.save(files / "sor_pcl.npy", np.array([True, False, False, True]))
+    assert meaning.same_outliers("full", "pcl") == dict(same=0.75, ours=3, theirs=2)

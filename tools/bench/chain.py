@@ -1,0 +1,52 @@
+"""The whole chain, with what its user sees of the time: how the bar moves and how long Cancel is not heard."""
+
+import time
+from pathlib import Path
+
+from lanewright.core.parallel import heard
+from lanewright.core.progress import Progress
+from lanewright.core.road_map import RoadMapSettings, make_road_map
+from lanewright.core.survey.trajectory_file import read_trajectory
+
+from .ours import peak_mib, timed
+from .prepare import prepared
+from .surveys import clouds_of, trajectory_of
+
+
+class Watch(Progress):
+    """Notes when it is asked, since every such moment may end the work, and what is being done."""
+
+    def __init__(self):
+        self.began = time.perf_counter()
+        self.moments = [(0.0, 0.0, "")]  # seconds, fraction, the last line of the log
+
+    def at(self, fraction):
+        self.moments.append((time.perf_counter() - self.began, fraction, self.moments[-1][2]))
+
+    def ask(self):
+        self.at(self.moments[-1][1])
+
+    def say(self, text):
+        self.moments.append((*self.moments[-1][:2], text))
+
+    def figures(self):
+        """How far the bar lay from the truth at worst (of 1), and the longest time without a question: seconds, where."""
+        end = self.moments[-1][0]
+        off = max(abs(fraction - seconds / end) for seconds, fraction, _ in self.moments)
+        gaps = [(b[0] - a[0], a[2]) for a, b in zip(self.moments, self.moments[1:])]
+        return dict(bar_off=off, silence=max(gaps))
+
+
+def run(survey, size, method="profiles", suffix="laz"):
+    """Figures of the chain on a survey; `seconds` of every stage."""
+    target = prepared(f"chain_{survey}.tif", size)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    watch = Watch()
+    settings = RoadMapSettings(boundary_method=method)
+    clouds = clouds_of(survey, size, suffix)
+    with heard(watch):
+        road_map, seconds = timed(lambda: make_road_map(clouds, read_trajectory(trajectory_of(survey, size)), target, settings, watch))
+    Path(target).unlink()
+    found = {name: len(getattr(road_map, name) or ()) for name in ("edges", "markings", "marking_lines", "driving_lines")}
+    return dict(seconds, seconds=road_map.seconds, points=road_map.survey_facts["read"], road_points=len(road_map.road_points),
+                length=sum(road.length for road in road_map.frame.roads), peak=peak_mib(), found=found, **watch.figures())

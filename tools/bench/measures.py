@@ -1,0 +1,71 @@
+"""Everything that is measured, by name, and one measurement in a process of its own."""
+
+import json
+import os
+import resource
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from . import cancel, chain, ours, theirs
+from .prepare import prepare
+
+MEASURES = {
+    "prepare": prepare, "cancel": cancel.cancel,
+    "read": ours.read,
+    "placing": ours.placing,
+    "profiles": lambda size: chain.run("dense", size),
+    "las": lambda size: chain.run("dense", size, suffix="las"),
+    "both": lambda size: chain.run("dense", size, "both"),
+    "scanlines": ours.scanlines,
+    "short": lambda size: chain.run("short", size),
+    "tiles": lambda size: chain.run("long", size),
+    "image_ours": ours.image_ours, "image_gdal": theirs.image_gdal,
+    "sor_ours": ours.sor_ours, "sor_pcl": theirs.sor_pcl, "sor_open3d": theirs.sor_open3d,
+    "clusters_ours": ours.clusters_ours, "clusters_pcl": theirs.clusters_pcl, "clusters_open3d": theirs.clusters_open3d,
+}
+ONE_THREAD = ("sor_", "clusters_")   # PCL has no more, so nobody gets more
+PARTS = dict(stages=("read", "placing", "profiles", "las", "both", "scanlines"), memory=("profiles", "short", "tiles"),
+             image=("image_ours", "image_gdal"), outliers=("sor_ours", "sor_pcl", "sor_open3d"),
+             clusters=("clusters_ours", "clusters_pcl", "clusters_open3d"), cancel=("cancel",))
+LATER = ("cancel",)  # takes longer than all the others together, so it runs where it is asked for
+
+
+def measure(name, size, cores):
+    """Figures of one measurement, taken in a process of its own on `cores` processor cores."""
+    threads = 1 if name.startswith(ONE_THREAD) else cores
+    environment = dict(os.environ, **{key: str(threads) for key in ("RAYON_NUM_THREADS", "GDAL_NUM_THREADS")})
+    # our own arrays are worked on by threads of ours, so numpy's stay at the one that the plugin gives them
+    environment["OMP_NUM_THREADS"] = str(threads if name.endswith("open3d") else 1)
+    load, began, before = os.getloadavg()[0], time.perf_counter(), _busy_seconds()
+    child = subprocess.run([sys.executable, "-m", "bench", "--child", name, "--size", size, "--cores", str(threads)],
+                           env=environment, stdout=subprocess.PIPE, text=True)
+    if child.returncode:
+        raise SystemExit(f"{name} could not be measured; the lines above say why.")
+    took, after = time.perf_counter() - began, _busy_seconds()
+    # what the machine worked beyond what the child and its children did
+    others = max(after[0] - before[0] - (after[1] - before[1]), 0.0) / took
+    return dict(json.loads(child.stdout.strip().splitlines()[-1]), load=load, took=took, others=others)
+
+
+def _busy_seconds():
+    """(CPU seconds of the whole machine, those of our own finished children); the first 0 where it is not told."""
+    own = resource.getrusage(resource.RUSAGE_CHILDREN)
+    try:
+        first = Path("/proc/stat").read_text().split("\n", 1)[0].split()[1:]
+    except OSError:
+        return 0.0, 0.0
+    user, nice, system, _, _, irq, soft, steal, *_ = map(int, first)
+    return (user + nice + system + irq + soft + steal) / os.sysconf("SC_CLK_TCK"), own.ru_utime + own.ru_stime
+
+
+def in_this_process(name, size, cores):
+    """Measure, and print the figures as one line of JSON."""
+    os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[:cores])
+    try:
+        figures = MEASURES[name](size)
+    except theirs.PeerMissing as why:
+        figures = dict(missing=str(why))
+    figures = figures or {}
+    print(json.dumps({**figures, "peak": figures.get("peak", ours.peak_mib())}))

@@ -1,0 +1,114 @@
+"""What of ours is timed: each function works on the surveys of a size and returns its figures as a dict."""
+
+import resource
+import time
+from pathlib import Path
+
+import numpy as np
+
+from .prepare import prepared
+from .surveys import clouds_of, trajectory_of
+
+SECONDS = ("wall", "cpu")
+
+
+def timed(work):
+    """(result, dict of wall and CPU seconds)."""
+    began = time.perf_counter(), time.process_time()
+    result = work()
+    return result, dict(wall=time.perf_counter() - began[0], cpu=time.process_time() - began[1])
+
+
+def peak_mib():
+    """The highest resident memory of this process so far."""
+    status = Path("/proc/self/status")  # getrusage would tell the parent's where that was higher
+    if status.exists():
+        return next(int(line.split()[1]) for line in status.read_text().splitlines() if line.startswith("VmHWM")) / 2**10
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**10
+
+
+def read(size):
+    """laspy's own read of the dense LAZ in blocks of 100,000 points: the floor."""
+    import laspy
+
+    def count():
+        points = 0
+        for path in clouds_of("dense", size):
+            with laspy.open(path) as reader:
+                points += sum(len(block.x) for block in reader.chunk_iterator(100_000))
+        return points
+
+    points, seconds = timed(count)
+    return dict(seconds, points=points)
+
+
+def placing(size):
+    """Points that are decoded already into the sections of the road frame, ready for the next stage."""
+    from lanewright.core.survey import reading
+    from lanewright.core.survey.point_cloud import BLOCK
+    from lanewright.core.survey.survey import open_survey
+    from lanewright.core.survey.trajectory_file import read_trajectory
+
+    clouds, trajectory = clouds_of("dense", size), read_trajectory(trajectory_of("dense", size))
+    decoded = {str(path): list(reading.read_blocks(str(path), BLOCK, reading.LAYERS)) for path in clouds}
+    reading.read_blocks = lambda path, *_: decoded[str(path)]
+    survey, seconds = timed(lambda: open_survey(clouds, trajectory))
+    return dict(seconds, points=survey.store.count)
+
+
+def scanlines(size):
+    """Normalized scanlines in memory, and the boundaries found on them, after the survey was read."""
+    from lanewright.core.road.boundaries import BoundarySettings, find_curb_points
+    from lanewright.core.survey.survey import open_survey
+    from lanewright.core.survey.trajectory_file import read_trajectory
+
+    survey = open_survey(clouds_of("dense", size), read_trajectory(trajectory_of("dense", size)))
+    for road in survey.store.roads():
+        for section in survey.store.sections(road):  # put in order when they are first read
+            survey.section(road, section)
+    found, seconds = timed(lambda: find_curb_points(survey, BoundarySettings(method="scanlines"))["scanlines"])
+    return dict(seconds, corners=len(found))
+
+
+def image_ours(size):
+    """Road points of 50 m as LAZ to the 4 cm intensity image by inverse distance alone, as gdal_grid does it."""
+    from lanewright.core.markings.image import ImageSettings, write_intensity_image
+    from lanewright.core.survey.road_points_file import read_road_points
+
+    target = prepared("ours.tif", size)
+    _, seconds = timed(lambda: write_intensity_image(read_road_points(prepared("strip.laz", size)), target, ImageSettings(beta=0.0)))
+    return seconds
+
+
+def sor_ours(size):
+    """Outliers of a million points by one limit for all, 20 neighbours."""
+    from lanewright.core.markings.outliers import OutlierSettings, remove_outliers
+
+    points = _paint(size)
+    kept, seconds = timed(lambda: remove_outliers(points, OutlierSettings(scope="all")))
+    mask = np.zeros(len(points), bool)
+    mask[kept.all_points().time.astype(np.int64)] = True
+    np.save(prepared("sor_ours.npy", size), mask)
+    return dict(seconds, points=len(points), kept=len(kept))
+
+
+def clusters_ours(size):
+    """Which of a million points on paint belong together."""
+    from lanewright.core.markings.clusters import ClusterSettings, group
+
+    points = _paint(size)
+    (records, labels), seconds = timed(lambda: group(points, points.roads()[0], ClusterSettings.distance))
+    clusters = np.empty(len(labels), np.int64)
+    clusters[records["time"].astype(np.int64)] = labels
+    np.save(prepared("clusters_ours.npy", size), clusters)
+    return dict(seconds, points=len(labels), clusters=len(np.unique(labels)))
+
+
+def _paint(size):
+    """The prepared million, in memory and in order."""
+    from lanewright.core.survey.road_points_file import read_road_points
+
+    points = read_road_points(prepared("paint.laz", size))
+    for key in points.all_sections():
+        points.section(*key)
+    return points

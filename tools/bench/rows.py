@@ -1,0 +1,69 @@
+"""The table of what must be reached: each row is a ratio within one round, or a figure of a process."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from statistics import median
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line: what it is, what it is given in, at most what it may be (None: shown only), and its value in a round."""
+
+    text: str
+    unit: str
+    goal: float
+    value: Callable
+    needs: tuple
+
+    def values(self, rounds):
+        """Its values, one a round in which all it needs was measured."""
+        return [self.value(r) for r in rounds if all(name in r and "missing" not in r[name] for name in self.needs)]
+
+
+def _against_reading(name, part=None):
+    """Wall seconds of a measurement, or of some of its stages, over those of laspy's read."""
+    def value(r):
+        seconds = r[name]["wall"] if part is None else sum(r[name]["seconds"].get(stage, 0.0) for stage in part)
+        return seconds / r["read"]["wall"]
+    return value
+
+
+def _over(one, other, kind):
+    return lambda r: r[one][kind] / r[other][kind]
+
+
+READ = "× reading"
+ROWS = (
+    Row("placing decoded points in the road frame", READ, 0.35, _against_reading("placing"), ("read", "placing")),
+    Row("profiles and curbs", READ, 0.4, _against_reading("profiles", ("curbs", "edges")), ("read", "profiles")),
+    Row("normalized scanlines and boundaries on them, in memory", READ, 4.0, _against_reading("scanlines"), ("read", "scanlines")),
+    Row("intensity image of 4 cm, 50 m of road", "× gdal_grid (invdistnn)", 0.25, _over("image_ours", "image_gdal", "wall"),
+        ("image_ours", "image_gdal")),
+    Row("outliers, a million points", "× PCL, CPU seconds", 1.4, _over("sor_ours", "sor_pcl", "cpu"), ("sor_ours", "sor_pcl")),
+    Row("outliers, a million points", "× Open3D, CPU seconds", None, _over("sor_ours", "sor_open3d", "cpu"), ("sor_ours", "sor_open3d")),
+    Row("clusters, a million points", "× PCL (conditional), CPU seconds", 1.0, _over("clusters_ours", "clusters_pcl", "cpu"),
+        ("clusters_ours", "clusters_pcl")),
+    Row("clusters, a million points", "× Open3D (DBSCAN), CPU seconds", None, _over("clusters_ours", "clusters_open3d", "cpu"),
+        ("clusters_ours", "clusters_open3d")),
+    Row("marking lines and driving lines", READ, 0.1, _against_reading("profiles", ("lines", "driving")), ("read", "profiles")),
+    Row("**whole road map**, boundaries by profiles, LAZ", READ, 3.0, _against_reading("profiles"), ("read", "profiles")),
+    Row("**whole road map**, boundaries by profiles, LAS", READ + " the LAZ", 1.5, _against_reading("las"), ("read", "las")),
+    Row("**whole road map**, boundaries by both methods (the default), LAZ", READ, None, _against_reading("both"), ("read", "both")),
+    Row("2 km in tiles, as many points, boundaries by profiles", READ + " the dense LAZ", None, _against_reading("tiles"), ("read", "tiles")),
+    Row("peak memory, dense 200 m", "GiB", 1.2, lambda r: r["profiles"]["peak"] / 1024, ("profiles",)),
+    Row("peak memory, 2 km in tiles", "GiB", 1.2, lambda r: r["tiles"]["peak"] / 1024, ("tiles",)),
+    Row("peak memory of ten times the length at as many points", "× dense", 1.15, _over("tiles", "profiles", "peak"), ("tiles", "profiles")),
+    Row("peak memory of ten times the length and the points", "× 200 m", None, _over("tiles", "short", "peak"), ("tiles", "short")),
+    Row("progress bar, farthest from the time passed (profiles)", "% of the whole", None, lambda r: 100 * r["profiles"]["bar_off"], ("profiles",)),
+    Row("progress bar, farthest from the time passed (both)", "% of the whole", None, lambda r: 100 * r["both"]["bar_off"], ("both",)),
+    Row("longest time in which Cancel is not asked for (both)", "s", 2.0, lambda r: r["both"]["silence"][0], ("both",)),
+)
+
+
+def reached(row, rounds):
+    """(median, least, most, "yes", "no" or "") of a row; None where it was not measured."""
+    values = row.values(rounds)
+    if not values:
+        return None
+    middle = median(values)
+    return middle, min(values), max(values), "" if row.goal is None else "yes" if middle <= row.goal else "no"

@@ -1,0 +1,1 @@
+"""The programs that ours is timed beside; nothing of the plugin needs them."""
