@@ -10,8 +10,8 @@ from ..parallel import go_on
 from .places import Segments, single_lines
 
 KERNEL = 0.2         # m, radius of the neighbourhood, as the driving-line thesis has it
-TRIED = 4500         # marking points, spread evenly, that are looked at for being beside a line,
-SAMPLE = 1500        # and how many of these have their curvature taken
+TRIED = 1800         # marking points, spread evenly, that are looked at for being beside a line,
+SAMPLE = 600         # and how many of these have their curvature taken
 LEAST = 12           # neighbours that a quadric of six coefficients needs to mean something
 FLAT = 0.03          # least share of the second principal direction: below, the neighbours lie in a line
 STEADY = 1e3         # largest condition of the equations for the quadric
