@@ -11,6 +11,7 @@ ROW, COLUMN = 0.5, 0.25   # m along and across the road
 LAYER_JUMP = 0.06         # m between two layers: ground below, a car's sill above
 LAYER_DEPTH = 0.12        # m of the lowest layer that count as ground: a wall has no upper end
 SHARE = 0.08              # of a cell's points that the lowest layer holds at least: less is multipath below the road
+GOLDEN = 0x9E3779B9       # of 2^32
 MOST = 100                # points of a cell that are looked at: more tell nothing new of it
 AT_ONCE = 1 << 15         # points worked at a time: what fits the processor's cache
 FEWEST_LAYER = 3          # points of a layer
@@ -102,31 +103,39 @@ def ground_cells(points, first_row, rows, reach, road_height, row_size=ROW, colu
 def _near_ground(records, first_row, rows, half, prior, row_size, column_size):
     """Indices of records in the window and near the road's height, no more of a cell than tell anything, and the cell of each."""
     prior = np.rint(prior / UNIT).astype(np.int32)
-    along, across = int(round(row_size / UNIT)), int(round(column_size / UNIT))
-    kept, cells = [np.empty(0, np.intp)], [np.empty(0, np.int32)]
+    along, across = (np.int32(round(size / UNIT)) for size in (row_size, column_size))
+    nowhere = rows * 2 * half
+    cell, count = np.empty(len(records), np.int32), np.zeros(nowhere + 1, np.int64)
     for first in range(0, len(records), AT_ONCE):
         s, d, z = (records[name][first:first + AT_ONCE] for name in ("s", "d", "z"))
         row = s // along
-        row -= first_row
+        row -= np.int32(first_row)
         column = d // across
-        column += half
-        inside = (row >= 0) & (row < rows) & (column >= 0) & (column < 2 * half)
+        column += np.int32(half)
+        # below 0 is far above as a number without a sign
+        inside = row.view(np.uint32) < np.uint32(rows)
+        inside &= column.view(np.uint32) < np.uint32(2 * half)
         above = z - prior.take(row, mode="clip")
-        inside &= np.abs(above) < np.abs(d * np.float32(PER_METRE)) + np.float32(NEAR / UNIT)
-        row *= 2 * half
+        reach = np.abs(d * np.float32(PER_METRE))
+        reach += np.float32(NEAR / UNIT)
+        inside &= np.abs(above) < reach
+        row *= np.int32(2 * half)
         row += column
-        rest = np.flatnonzero(inside)
-        cells.append(row.take(rest))
-        rest += first
-        kept.append(rest)
-    kept, cell = np.concatenate(kept), np.concatenate(cells)
-    share = MOST / np.maximum(np.bincount(cell), MOST)
-    if not (share < 1.0).any():
-        return kept, cell
+        row[~inside] = nowhere
+        cell[first:first + AT_ONCE] = row
+        count += np.bincount(row, minlength=nowhere + 1)
     # multiples of the golden section lie evenly whatever run of them is looked at
-    turn = np.arange(len(cell), dtype=np.uint32) * np.uint32(0x9E3779B9)
-    some = np.flatnonzero(turn <= np.floor(share * 0xFFFFFFFF).astype(np.uint32).take(cell))
-    return kept[some], cell[some]
+    share = np.floor(0xFFFFFFFF * np.minimum(MOST / np.maximum(count, 1), 1.0)).astype(np.uint32)
+    share[nowhere] = 0
+    turn = np.arange(1, AT_ONCE + 1, dtype=np.uint32) * np.uint32(GOLDEN)
+    kept = [np.empty(0, np.intp)]
+    for first in range(0, len(cell), AT_ONCE):
+        here = share.take(cell[first:first + AT_ONCE])
+        some = np.flatnonzero(turn[:len(here)] + np.uint32(first * GOLDEN % 2**32) < here)
+        some += first
+        kept.append(some)
+    kept = np.concatenate(kept)
+    return kept, cell.take(kept)
 
 
 def _in_lowest_layer(cell, z, total):
