@@ -25,14 +25,20 @@ MEMORY = 6 * 1024**3   # bytes
 def seeds(folder):
     """Whole files of every kind, by the reader they are for."""
     import laspy
+    from lanewright.core.survey.cloud_blocks import CloudReaders
     from lanewright.core.survey.point_cloud import read_blocks, read_header
     from lanewright.core.survey.trajectory_file import read_trajectory
     from pyproj import CRS
 
     def cloud(path):
-        read_header(path)
+        header = read_header(path)
         for block in read_blocks(path, 1000):
             np.asarray(block.array["X"])
+        with CloudReaders() as readers:  # as a survey is read
+            for load in readers.blocks([header], 100):
+                np.asarray(load().array["X"])
+            for times in readers.times(header) if header.has_time and header.count else ():
+                np.asarray(times)
 
     rng = np.random.default_rng(0)
     made = []

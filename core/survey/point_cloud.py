@@ -11,6 +11,7 @@ from .laz_check import damage, points_per_chunk
 
 BLOCK = 200_000  # points decoded at a time
 SUFFIXES = (".las", ".laz")
+MOST_SCALE, MOST_OFFSET = 1e3, 1e12  # m, of coordinates kept as integers; beyond them nothing on earth lies
 NOT_THE_FILE = (KeyboardInterrupt, SystemExit, GeneratorExit, Cancelled)
 
 
@@ -87,7 +88,7 @@ def read_header(path):
     with open_cloud(path) as reader:
         header = reader.header
         names = set(header.point_format.dimension_names)
-        if not (np.isfinite(header.scales).all() and np.isfinite(header.offsets).all() and np.all(header.scales)):
+        if not ((np.abs(header.scales) < MOST_SCALE).all() and (np.abs(header.offsets) < MOST_OFFSET).all() and np.all(header.scales)):
             raise RoadExtractionError(
                 f"{path} is damaged: its header says scales of {_listed(header.scales)} and offsets of {_listed(header.offsets)}, with which "
                 "no point has a place. Export the file again.")

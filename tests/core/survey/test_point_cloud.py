@@ -62,13 +62,15 @@ def test_bounds_that_cannot_be_are_taken_from_the_points(tmp_path, numbers):
         np.testing.assert_allclose(found, (values.min(), values.max()), atol=6e-4)
 
 
+@pytest.mark.parametrize("value", [np.nan, np.inf, 1e300])
 @pytest.mark.parametrize("at", [131, 155], ids=["scales", "offsets"])
-def test_a_header_with_which_no_point_has_a_place_is_refused(tmp_path, at):
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_a_header_with_which_no_point_has_a_place_is_refused(tmp_path, at, value):
     path = write_cloud(tmp_path / "cloud.laz", *places())
     data = bytearray(open(path, "rb").read())
-    data[at:at + 24] = np.full(3, np.nan).tobytes()
+    data[at:at + 24] = np.full(3, value).tobytes()
     open(path, "wb").write(data)
-    with pytest.raises(RoadExtractionError, match="damaged: its header says.*nan"):
+    with pytest.raises(RoadExtractionError, match="damaged: its header says"):
         read_header(path)
 
 

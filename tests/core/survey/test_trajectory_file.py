@@ -303,7 +303,7 @@ def test_a_vertical_tab_in_a_field_costs_that_field_only(tmp_path):
 
 @pytest.mark.parametrize("words", [("inf", "inf"), ("1e999", "-inf"), ("9" * 200, "-1e300")])
 @pytest.mark.parametrize("header", [None, ""], ids=["with header", "without"])
-@pytest.mark.filterwarnings("error")
+@pytest.mark.filterwarnings("error::RuntimeWarning")
 def test_numbers_beyond_reason_count_as_none(tmp_path, words, header):
     """No sum survives them, and what numpy says then is no sentence for anybody."""
     path = write(tmp_path / "t.csv", street(), header=header)
@@ -318,7 +318,7 @@ def test_numbers_beyond_reason_count_as_none(tmp_path, words, header):
     assert np.isnan(found.heading).sum() == 1 == np.isnan(found.pitch).sum()
 
 
-@pytest.mark.filterwarnings("error")
+@pytest.mark.filterwarnings("error::RuntimeWarning")
 def test_one_row_without_names_is_refused_in_one_sentence(tmp_path):
     path = tmp_path / "one.csv"
     path.write_text("318204000.0,500000.0,5400000.0,102.0,0.1,0.2,90.0\n")
