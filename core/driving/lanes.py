@@ -17,7 +17,7 @@ BESIDE = 5.0       # m that they go on
 OFF_PLACE = 0.5    # m from where the line between two lanes of a strip should be
 SHORT_LANE = 2.0   # m: shorter, it is where lines end unevenly
 SHORT_CLASS = 5.0  # m: a shorter change of class is noise of the width
-SHOULDER = 2.6     # m between two edge lines: a hard shoulder or a row of parking places, unless driven on
+SHOULDER = 3.0     # m between two edge lines: a hard shoulder or a row of parking places, unless driven on
 
 
 def chosen_lines(lines, driven):

@@ -212,7 +212,7 @@ def _extension(track, others, lines, kept, head, most_bridged):
     best, best_line = 0, None
     for line in {int(track.left[tip]), int(track.right[tip])} - {-1}:
         length = _first_false(kept[line, ahead] & lines.seen[line, ahead])
-        if length > best:
+        if length > best and not _outside(track, lines, line, tip, start):
             best, best_line = length, line
     if best_line is None:
         return None
@@ -236,6 +236,12 @@ def _extension(track, others, lines, kept, head, most_bridged):
         length, d[rows], np.full(length, width), INFERRED, True,
         best_line if best_line == track.left[tip] else -1, best_line if best_line == track.right[tip] else -1))
     return Track(more.first, *(v[::-1] for v in more._columns())) if head else more
+
+
+def _outside(track, lines, line, tip, start):
+    """Whether a lane lies outside an edge line: where another line bounds it, it may be one, but not beyond that."""
+    edge = lines.d[line, start]
+    return lines.kinds[line] == "edge" and (track.d[tip] - edge) * edge > 0
 
 
 def _arrives(track, others, k, d, width):

@@ -23,8 +23,10 @@ FILLED = 0.7          # of its length times its width: a stop line is a full bar
 TOUCHING = 0.3        # m from a bar of hatching to its outline
 RIM = 0.60            # m from the road edge where verge, gutter and curb may look like paint
 BEYOND = 0.80         # m outside an edge line that strips are mistrusted
-AT_RIM, NO_LANE = 0.10, 2.6  # m: what lies this near the road edge is mistrusted as far out as no lane has room
+AT_RIM, NO_LANE = 0.10, 3.0  # m: what lies this near the road edge is mistrusted as far out as no lane has room
 THIN = 0.10           # m: at the very rim a narrower strip is the top or the face of a curb
+THIN_ON_EDGE = 0.14   # m: likewise where it reaches the edge itself
+TOUCHING_EDGE = 0.02  # m between a strip and the road's edge: paint keeps more
 LONGER = 2.0          # times as long as them is the line that says so
 SPECK = 0.30          # m: what is not longer than this and has no companion is no marking
 SPECK_AREA = 0.03     # m2
@@ -140,7 +142,8 @@ def _beyond_the_edge_line(column, line, room):
     outward = np.sign(column["offset"][rows])[:, None] * (column["offset"][rows][:, None] - column["offset"][lines])
     overlap = np.minimum(column["s1"][rows][:, None], column["s1"][lines]) - np.maximum(column["s0"][rows][:, None], column["s0"][lines])
     # a double line is as long on either side
-    longer = column["length"][lines] > LONGER * column["length"][rows][:, None]
+    on_edge = room[rows] < column["width"][rows] / 2 + TOUCHING_EDGE
+    longer = column["length"][lines] > (np.where(on_edge, 1.0, LONGER) * column["length"][rows])[:, None]
     reach = np.where(room[rows] < AT_RIM, NO_LANE, BEYOND)[:, None]
     result[rows] = ((outward > 0.1) & (outward < reach) & (overlap > 0) & longer).any(axis=1)
     return result
@@ -176,7 +179,8 @@ def _round_cover(shape):
 
 def _curb(shape, room):
     """A hair of brightness along the very edge of the road."""
-    return shape.along and room < AT_RIM and shape.width < THIN
+    on_edge = room < shape.width / 2 + TOUCHING_EDGE / 2
+    return shape.along and room < AT_RIM and shape.width < (THIN_ON_EDGE if on_edge else THIN)
 
 
 def _gutter(shape, room, line, zebra):

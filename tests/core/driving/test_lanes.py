@@ -172,6 +172,18 @@ def test_beyond_the_edge_line_nobody_drives():
     assert len(lines) == 1
 
 
+@pytest.mark.parametrize("side", [1, -1], ids=["left", "right"])
+def test_a_short_strip_outside_an_edge_line_does_not_become_a_long_lane(side):
+    """At a lowered curb its bright face may look like one more edge line."""
+    street = Street(vehicle=-1.75 * side).paint(0.0, kind="centre", pattern="dashed")
+    for away in (3.5, -3.5):
+        street.paint(away, kind="edge")
+    street.paint(-3.5 * side - 3.2 * side, first=50.0, last=62.0, kind="edge")
+    found, _ = street.lanes(traffic_side="right" if side > 0 else "left")
+    outside = sum(line.length for line, _ in found if np.median(np.abs(street.offsets(line))) > 3.5)
+    assert outside <= 12.5
+
+
 def test_no_lane_runs_along_a_curb_or_over_a_hatched_area():
     street = Street(vehicle=-1.75).paint(0.0).paint(-3.5).paint(3.5)
     assert len(street.lanes()[0]) == 2

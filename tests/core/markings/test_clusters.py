@@ -117,6 +117,12 @@ def test_the_bright_top_of_a_curb_is_no_edge_line():
     assert len(markings_of([strip(30, 60, 5.93, 6.0)])) == 0
     assert len(markings_of([inner, strip(30, 60, 5.93, 6.0)])) == 1
     assert len(markings_of([inner, strip(30, 36, 5.85, 6.0)])) == 1, "a parking strip lies between the two"
+    assert len(markings_of([strip(30, 60, 5.88, 6.0)])) == 0, "it reaches the very edge"
+    assert len(markings_of([strip(5, 70, 3.2, 3.32), strip(30, 60, 5.84, 6.0)])) == 1
+
+
+def test_an_edge_line_a_hand_from_the_edge_is_one():
+    assert classes(markings_of([strip(10, 60, 5.65, 5.80)])) == ["edge"]
 
 
 def test_a_strip_of_verge_outside_an_edge_line_is_no_marking():
