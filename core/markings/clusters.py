@@ -6,7 +6,7 @@ farther along the road, where scan lines lie apart and paint wears through, than
 across it, where a decimetre may separate the two lines of a double line.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -18,7 +18,6 @@ from ..features import Features
 from ..progress import Progress
 from ..schemas import MARKINGS
 from ..survey.points import ROAD_POINT, UNIT, joined
-from ..survey.road_points import RoadPoints
 from ..survey.sorting import order_by
 from . import polygons
 from .cells import components, occupied
@@ -69,17 +68,18 @@ def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress
     clustered : RoadPoints with `cluster`, the number of the marking; 0 on what is no marking
     """
     markings = Features("PolygonZ", MARKINGS, crs=marking_points.crs)
-    clustered = RoadPoints.empty_like(marking_points)
-    clustered.has_cluster = True
+    clustered = replace(marking_points, store=marking_points.store.with_column("cluster"), has_cluster=True)
     number, refused = 0, 0
     roads = marking_points.roads()
     for k, road in enumerate(roads):
         part = progress.part(k / len(roads), (k + 1) / len(roads))
         records, labels = group(marking_points, road, settings.distance, part.part(0, 0.4))
-        records, starts, _ = _by_cluster(records, split_compounds(records, labels), FRAGMENT)
+        order, starts, _ = _by_cluster(split_compounds(records, labels), FRAGMENT)
+        records = records.take(order)
         pieces = [measure(records["s"][a:b], records["d"][a:b]) for a, b in zip(starts[:-1], starts[1:])]
         joins = join_fragments(pieces, settings.classes.max_width)
-        records, starts, labels = _by_cluster(records, _relabelled(records, starts, joins), settings.min_points)
+        again, starts, labels = _by_cluster(_relabelled(records, starts, joins), settings.min_points)
+        records, order = records.take(again), order[again]
         rows = list(zip(starts[:-1], starts[1:]))
         alone = _alone(pieces, joins)
         shapes = [alone.get(label) or measure(records["s"][a:b], records["d"][a:b]) for label, (a, b) in zip(labels.tolist(), rows)]
@@ -92,12 +92,21 @@ def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress
                 continue
             number += 1
             a, b = rows[i]
-            cluster[a:b] = number
+            cluster[order[a:b]] = number
             _add(markings, records[a:b], shapes[i], kinds[i], number, road, frame)
             part.at(0.4 + 0.6 * number / max(len(rows), 1))
-        clustered.store.append(road, records.with_columns(cluster=cluster))
+        _put(clustered.store, road, cluster, marking_points)
     progress.say(f"Markings: {number} found; {refused} clusters were left out as gutters, covers or specks.")
     return markings, clustered
+
+
+def _put(store, road, cluster, points):
+    """Clusters of all points of a road, by station, into their sections."""
+    first = 0
+    for section in points.sections(road):
+        count = len(points.section(road, section))
+        store.put(road, section, cluster[first:first + count])
+        first += count
 
 
 def _alone(pieces, joins):
@@ -207,19 +216,19 @@ def _shared(cells, labels, others, other_labels):
     return np.c_[labels[a], other_labels[b]]
 
 
-def _by_cluster(records, labels, fewest):
-    """Records of clusters large enough, one cluster after the other; those of the rest at the end.
+def _by_cluster(labels, fewest):
+    """Points of clusters large enough, one cluster after the other; those of the rest at the end.
 
-    Returns records, the bounds of the clusters (one more than there are clusters), and the label of each.
+    Returns their order, the bounds of the clusters in it (one more than there are clusters), and the label of each.
     """
-    if not len(records):
-        return records, np.zeros(1, np.int64), np.empty(0, np.int32)
+    if not len(labels):
+        return np.empty(0, np.intp), np.zeros(1, np.int64), np.empty(0, np.int32)
     labels = labels.astype(np.int32, copy=False)
     large = (np.bincount(labels) >= fewest)[labels]
     order = order_by(labels, ~large)
     labels = labels[order[:np.count_nonzero(large)]]
     starts = np.flatnonzero(np.r_[True, labels[1:] != labels[:-1]]) if len(labels) else np.empty(0, np.int64)
-    return records.take(order), np.r_[starts, len(labels)], labels[starts]
+    return order, np.r_[starts, len(labels)], labels[starts]
 
 
 def _add(markings, records, shape, kind, number, road, frame):

@@ -81,12 +81,11 @@ def remove_outliers(points, settings=OutlierSettings(), progress=Progress()):
     """
     kept = RoadPoints.empty_like(points)
     if settings.scope == "all":
-        _clean_all(points, kept, settings, progress)
+        _put(kept, points, _kept_of_all(points, settings, progress))
     else:
         windows = [(road, number) for road in points.roads() for number in _windows(*points.store.span(road))]
-        cleaned = in_order(lambda window: _clean_window(points, *window, settings), windows, progress)
-        for (road, _), records in zip(windows, cleaned):
-            kept.store.append(road, records)
+        keep = list(in_order(lambda window: _kept_of_window(points, *window, settings), windows, progress))
+        _put(kept, points, np.concatenate([np.empty(0, bool), *keep]))
     progress.say(f"Outliers: {len(points) - len(kept):,} of {len(points):,} points lay apart from the others and were left out.")
     return kept
 
@@ -95,7 +94,17 @@ def _windows(start, end):
     return range(int(np.floor(start / WINDOW)), int(np.ceil(end / WINDOW)))
 
 
-def _clean_window(points, road, number, settings):
+def _put(kept, points, keep):
+    """The points of a mask, which goes through them road by road and by station."""
+    first = 0
+    for road, number in points.all_sections():
+        records = points.section(road, number).records
+        kept.store.put(road, number, chosen(records, keep[first:first + len(records)]))
+        first += len(records)
+
+
+def _kept_of_window(points, road, number, settings):
+    """(N,) bool of the points of a window, without those about it."""
     records = points.window(road, number * WINDOW - HALO, (number + 1) * WINDOW + HALO).records
     s = records["s"] * UNIT
     own = np.flatnonzero((s >= number * WINDOW) & (s < (number + 1) * WINDOW))
@@ -109,7 +118,9 @@ def _clean_window(points, road, number, settings):
             lonely[rows] = ~within_spread(distances[rows], settings.std_ratio)
     lonely = np.flatnonzero(lonely)
     lonely = lonely[distances[lonely] > LONELIER * _usual(neighbours, own, distances, nearest[lonely])]
-    return chosen(records, np.delete(own, lonely))
+    keep = np.ones(len(own), bool)
+    keep[lonely] = False
+    return keep
 
 
 def _usual(neighbours, own, distances, nearest):
@@ -122,15 +133,11 @@ def _usual(neighbours, own, distances, nearest):
     return np.median(known[nearest], axis=1)
 
 
-def _clean_all(points, kept, settings, progress):
-    parts = [(road, points.section(road, number).records) for road, number in points.all_sections()]
-    units = np.concatenate([np.empty((0, 3), np.int32), *(_units(records) for _, records in parts)])
-    keep = within_spread(mean_distances(units, settings.neighbours, progress), settings.std_ratio)
-    first = 0
-    for road, records in parts:
-        kept.store.append(road, chosen(records, keep[first:first + len(records)]))
-        first += len(records)
-    progress.at(1.0)
+def _kept_of_all(points, settings, progress):
+    """(N,) bool of all points."""
+    sections = [points.section(*key).records for key in points.all_sections()]
+    units = np.concatenate([np.empty((0, 3), np.int32), *map(_units, sections)])
+    return within_spread(mean_distances(units, settings.neighbours, progress), settings.std_ratio)
 
 
 def _units(records):
