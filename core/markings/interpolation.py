@@ -10,7 +10,7 @@ from ..survey.points import UNIT
 from ..survey.sorting import order_by
 
 NEAREST = 1e-3      # m added to a distance, so that a point on a cell's centre has a finite weight
-AT_ONCE = 1 << 18   # distances worked at a time: what fits the processor's cache
+AT_ONCE = 1 << 19   # distances worked at a time: what fits the processor's cache
 ROUNDING = 2e-6     # of the weight at the radius: a point right on it counts, whatever rounding makes of it
 
 
@@ -88,12 +88,12 @@ def interpolation_sums(points, weigh, origin, settings):
         runs = sparse.csr_matrix((weight, np.arange(len(number), dtype=np.int32), np.append(starts, len(number)).astype(np.int32)),
                                  shape=(len(starts), len(number)))
         shares = kernel.shares(east.take(order), north.take(order))
-        added = np.empty((len(kernel.offsets), len(starts)), np.complex64)
-        added.real = (runs @ shares).T
+        added = np.empty((len(starts), len(kernel.offsets)), np.complex64)
+        added.real = runs @ shares
         runs.data = weight * value
-        added.imag = (runs @ shares).T
+        added.imag = runs @ shares
         target = number[starts].astype(np.intp)
-        for (right, up), both in zip(kernel.offsets, added):
+        for (right, up), both in zip(kernel.offsets, added.T):
             sums[target + (right - up * width)] += both
     sums = sums.reshape(height, width)
     return Sums(left, top, sums.imag, sums.real)
