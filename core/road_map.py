@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from .assess.curvature import marking_curvature
 from .driving.lines import DrivingSettings, driving_lines
 from .features import Features
+from .freed_memory import hand_back
 from .markings.clusters import ClusterSettings, cluster_markings
 from .markings.extraction import MarkingSettings, extract_markings
 from .markings.image import ImageSettings, IntensityImage, write_intensity_image
@@ -106,6 +107,7 @@ class _Stages:
         self.progress.say(title)
         began = time.perf_counter()
         result = function(*arguments, progress=self.progress.part(self.done, self.done + share), **options)
+        hand_back()
         self.seconds[name] = time.perf_counter() - began
         self.done += share
         self.progress.at(self.done)
