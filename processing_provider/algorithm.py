@@ -127,25 +127,30 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         missing = missing_packages()
         if missing:
             raise QgsProcessingException(missing)
-        call = Call(self, parameters, context, feedback)
+        results, failure = self._run(Call(self, parameters, context, feedback), feedback)
+        if failure:
+            # QGIS never lets go of an exception: raised where the work was, it would keep all of the survey in memory
+            raise QgsProcessingException(failure)
+        return results
+
+    def _run(self, call, feedback):
+        """(results, "") of the work, or ({}, why there are none)."""
         try:
             call.check_destinations()
             progress = FeedbackProgress(feedback)
             with heard(progress):
                 results = self.work(call, progress)
-            return call.finish(results or {})
+            return call.finish(results or {}), ""
         except RoadExtractionError as error:
-            raise QgsProcessingException(call.in_users_names(str(error))) from None
+            return {}, call.in_users_names(str(error))
         except Cancelled:
-            raise QgsProcessingException(tr("Cancelled")) from None
+            return {}, tr("Cancelled")
         except OSError as error:
             if error.strerror is None:
                 raise
-            raise QgsProcessingException(f"{error.strerror}: {error.filename or tr('while writing')}") from error
-        except MemoryError as error:
-            raise QgsProcessingException(
-                tr("Not enough memory for this step; close other programs or process fewer files at once.")
-            ) from error
+            return {}, f"{error.strerror}: {error.filename or tr('while writing')}"
+        except MemoryError:
+            return {}, tr("Not enough memory for this step; close other programs or process fewer files at once.")
         finally:
             call.discard_unfinished()
 

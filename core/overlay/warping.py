@@ -91,7 +91,9 @@ def draw_image(found, path, progress=None):
         result = gdal.GetDriverByName("GTiff").CreateCopy(str(unfinished), view, options=_file_options(found.image),
                                                           callback=_callback(progress, 0.1, 0.8, cancelled))
         levels = [2**k for k in range(1, 16) if max(width, height) / 2**k >= _SMALLEST_OVERVIEW]
+        result = None  # GDAL 3.6 may wait for its own threads for ever where it reads what they still write
         if levels and not cancelled:
+            result = gdal.Open(str(unfinished), gdal.GA_Update)
             result.BuildOverviews("AVERAGE", levels, callback=_callback(progress, 0.8, 1.0, cancelled))
         result = None  # closes the file
         if not cancelled:

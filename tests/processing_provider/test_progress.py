@@ -1,10 +1,13 @@
 """What the dialog shows while an algorithm works."""
 
+import gc
+import weakref
+
 import pytest
-from lanewright.core.errors import Cancelled
+from lanewright.core.errors import Cancelled, RoadExtractionError
 from lanewright.core.remaining_time import RemainingTime
 from lanewright.processing_provider.progress import FeedbackProgress, time_left
-from qgis.core import QgsProcessingFeedback
+from qgis.core import QgsApplication, QgsProcessingContext, QgsProcessingFeedback
 
 
 class Dialog(QgsProcessingFeedback):
@@ -39,3 +42,26 @@ def test_cancel_is_raised_at_the_next_question(qgis_app):
     dialog.cancel()
     with pytest.raises(Cancelled):
         progress.at(0.2)
+
+
+@pytest.mark.parametrize("end", [Cancelled(), RoadExtractionError("The road ends here."), OSError(28, "No space left on device", "map.gpkg")])
+def test_a_run_that_ends_early_leaves_nothing_in_memory(provider, monkeypatch, end):
+    """QGIS keeps every exception for ever, and with it what its frames held."""
+
+    class Survey:
+        pass
+
+    held = []
+
+    def work(self, call, progress):
+        survey = Survey()
+        held.extend([weakref.ref(survey), weakref.ref(call)])
+        raise type(end)(*end.args)
+
+    algorithm = QgsApplication.processingRegistry().createAlgorithmById("lanewright:samplesurvey")
+    monkeypatch.setattr(type(algorithm), "work", work)
+    dialog = QgsProcessingFeedback(False)
+    _, fine = algorithm.run({}, QgsProcessingContext(), dialog)
+    gc.collect()
+    assert not fine and (str(end.args[-1]) if end.args else "Cancelled") in dialog.textLog()
+    assert [reference() for reference in held] == [None, None]
