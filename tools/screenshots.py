@@ -91,7 +91,7 @@ def sample():
     """The sample survey, run from the menu, until its layers are there."""
     ours = plugins["lanewright"].menu
     ours.actions[1].trigger()
-    needed(wait(150, lambda: not ours.sample.running), "the sample survey took longer than 150 s")
+    needed(wait(400, lambda: not ours.sample.running), "the sample survey took longer than 400 s")
     wait(2)
     names = {layer.name() for layer in QgsProject.instance().mapLayers().values()}
     needed(len(names) >= 6, f"the sample left only {sorted(names)}")

@@ -20,7 +20,7 @@ Xvfb ":$number" -screen 0 1400x900x24 >/dev/null 2>&1 &
 screen=$!
 trap 'kill $screen 2>/dev/null || true' EXIT
 sleep 1
-DISPLAY=":$number" timeout 150 qgis --nologo --noversioncheck --lang "${LANEWRIGHT_LANG:-en}" \
+DISPLAY=":$number" timeout 600 qgis --nologo --noversioncheck --lang "${LANEWRIGHT_LANG:-en}" \
   --code "$LANEWRIGHT_ROOT/tools/screenshots.py" >"$LANEWRIGHT_BUILD/screenshots.log" 2>&1 || true
 cat "$LANEWRIGHT_SAID" 2>/dev/null
 grep -q '^finished$' "$LANEWRIGHT_SAID" 2>/dev/null ||

@@ -216,7 +216,8 @@ class NearSteps:
         level = (n_behind < 4) | (np.abs(climb) <= STEEPEST_ROAD + NOISE_CLIMB * self.usual)
         peak = np.zeros(count)
         near = np.flatnonzero((self.u > -0.03) & (self.u < FACE_WINDOW) & (n_behind < 2).take(self.owner))
-        np.maximum.at(peak, self.owner.take(near), rise.take(near))
+        with np.errstate(invalid="ignore"):  # a rise that could not be told stays one; newer numpy says so aloud
+            np.maximum.at(peak, self.owner.take(near), rise.take(near))
         height = np.where(n_behind >= 2, _mean(np.bincount(up, to, count), n_behind),
                           np.maximum(peak - HIGH_SIGMA * self.usual, 0.0))
         far = np.flatnonzero(u > 0.10)
