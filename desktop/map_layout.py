@@ -1,4 +1,4 @@
-"""A print layout of a road map: intensity image below, lines above, title, legend and scale bar."""
+"""A print layout of a road map: intensity image below, lines above, title, legend, scale bar and north arrow."""
 
 from qgis.core import (
     Qgis,
@@ -6,6 +6,7 @@ from qgis.core import (
     QgsLayoutItemLabel,
     QgsLayoutItemLegend,
     QgsLayoutItemMap,
+    QgsLayoutItemPicture,
     QgsLayoutItemScaleBar,
     QgsLayoutPoint,
     QgsLayoutSize,
@@ -17,6 +18,8 @@ from qgis.PyQt.QtGui import QColor, QFont
 
 PAGE_WIDTH, HEADING, LEGEND = 400.0, 12.0, 34.0  # mm
 MARGIN = 4.0  # m of ground around the road
+ARROW = 16.0  # mm
+NORTH_ARROW = ":/images/north_arrows/layout_default_north_arrow.svg"  # of QGIS itself
 
 
 def road_map_layout(project, layers, title):
@@ -43,6 +46,7 @@ def road_map_layout(project, layers, title):
     add_heading(layout, title)
     add_legend(layout, chart, layers, HEADING + map_height)
     add_scale_bar(layout, chart, HEADING + map_height, length)
+    add_north_arrow(layout, chart)
     return layout
 
 
@@ -129,3 +133,14 @@ def add_scale_bar(layout, chart, bottom, length):
     bar.setBackgroundColor(QColor(255, 255, 255, 225))
     bar.update()
     place(layout, bar, PAGE_WIDTH - bar.rect().width() - 4, bottom - bar.rect().height() - 4)
+
+
+def add_north_arrow(layout, chart):
+    """In the upper right corner of the map, which is turned so that the road lies along the page."""
+    arrow = QgsLayoutItemPicture(layout)
+    arrow.setPicturePath(NORTH_ARROW)
+    arrow.setSvgFillColor(QColor(255, 255, 255))
+    arrow.setSvgStrokeColor(QColor(255, 255, 255))
+    arrow.setLinkedMap(chart)
+    arrow.setNorthMode(QgsLayoutItemPicture.NorthMode.GridNorth)
+    place(layout, arrow, PAGE_WIDTH - ARROW - 4, HEADING + 4, ARROW, ARROW)

@@ -79,6 +79,10 @@ def apply_style(layer, qml, schema=()):
             QgsContrastEnhancement.ContrastEnhancementAlgorithm.StretchToMinimumMaximum,
             QgsRasterMinMaxOrigin.Limits.CumulativeCut,
         )
+        stretch = layer.renderer().contrastEnhancement()
+        if stretch.maximumValue() - stretch.minimumValue() > 100:  # in the legend six decimals say nothing
+            stretch.setMinimumValue(round(stretch.minimumValue()))
+            stretch.setMaximumValue(round(stretch.maximumValue()))
 
 
 def group_of(paths):

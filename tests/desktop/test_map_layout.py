@@ -3,7 +3,16 @@
 import pytest
 from lanewright.desktop.map_layout import MARGIN, road_map_layout
 from lanewright.desktop.menu import unused_name
-from qgis.core import QgsFeature, QgsGeometry, QgsLayoutItemLegend, QgsLayoutItemMap, QgsLayoutItemScaleBar, QgsProject, QgsVectorLayer
+from qgis.core import (
+    QgsFeature,
+    QgsGeometry,
+    QgsLayoutItemLegend,
+    QgsLayoutItemMap,
+    QgsLayoutItemPicture,
+    QgsLayoutItemScaleBar,
+    QgsProject,
+    QgsVectorLayer,
+)
 
 
 @pytest.fixture
@@ -37,6 +46,14 @@ def test_the_road_lies_along_the_page_whichever_way_it_runs(project, angle):
     chart = item(layout, QgsLayoutItemMap)
     assert abs((chart.mapRotation() + angle + 90) % 180 - 90) < 1
     assert chart.extent().width() == pytest.approx(100 + 2 * MARGIN, rel=0.01)
+
+
+@pytest.mark.parametrize("angle", [0, 30, 145])
+def test_the_north_arrow_points_north_on_the_turned_map(project, angle):
+    layout = road_map_layout(project, [street(project, angle)], "A street")
+    arrow, chart = item(layout, QgsLayoutItemPicture), item(layout, QgsLayoutItemMap)
+    assert not arrow.isMissingImage()
+    assert abs((arrow.pictureRotation() - chart.mapRotation() + 180) % 360 - 180) < 0.01
 
 
 def test_the_scale_bar_is_a_part_of_the_page(project):
