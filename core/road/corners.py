@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .profiles import HIGH_SIGMA, expand
+from .layers import expand
+from .profiles import HIGH_SIGMA
 
 ROAD_SIDE = 0.40    # m of road before the face that give the road's line
 CLEARANCE = 0.05    # m next to the face left out of it: a blurred face begins there
@@ -22,6 +23,7 @@ WIDEST_FACE = 0.10   # m across
 NOISE_RUN = 4.0      # sigmas by which noise widens a face
 ALMOST = 0.8         # share of the least height below which no turning makes a step of a rise
 SIGMAS = 4.0        # a step must stand this far above the noise of its road side
+LEAST_VIEW = 5       # points of a view that is measured by itself, and of the other: else it shows what all points show
 FACE_LOW, FACE_HIGH = 0.15, 0.70  # part of the height that counts as face: grass hangs over the top
 LEAST_SHARE = 0.5    # noise brings points from above and below into a thinner part
 TURNED = 0.1         # m outward per m along beyond which a face is measured again, turned straight
@@ -90,13 +92,15 @@ def measure_corners(lines, rows, cells, least, highest):
     seen = _seen(lines, rows, cells, owner, index, least, highest)
     # positions that drifted between one view and the next blur a face that each of them shows sharp: what is
     # no step in all points together may be one in those seen from before, or from behind alone
-    left = np.flatnonzero(seen["likely"] & ~seen["good"])
+    ahead = lines.along.take(index) > 0
+    ahead_of, count = np.bincount(owner, ahead, len(rows)), np.bincount(owner, minlength=len(rows))
+    mixed = np.minimum(ahead_of, count - ahead_of) >= LEAST_VIEW
+    left = np.flatnonzero(seen["likely"] & ~seen["good"] & mixed)
     if len(left):
         number = np.full(len(rows), -1)
         number[left] = np.arange(len(left))
         own = np.flatnonzero(number.take(owner) >= 0)
-        owner, index = number.take(owner.take(own)), index.take(own)
-        ahead = lines.along.take(index) > 0
+        owner, index, ahead = number.take(owner.take(own)), index.take(own), ahead.take(own)
         views = [_seen(lines, rows[left], cells[left], owner[view], index[view], least, highest) for view in (~ahead, ahead)]
         support = [np.where(view["good"], view["support"], 0) for view in views]
         for view, better in zip(views, (support[0] >= support[1], support[0] < support[1])):

@@ -12,7 +12,7 @@ FEW = 12          # points of a cell that tell level ground
 LEVEL = 0.008     # m, standard deviation of heights in a cell that is level, on a road that climbs as on one that does not
 UNEVEN = 60       # points of any other cell: more hardly tell its layers better
 TOGETHER = 5.0    # m of road that are read at once
-PIECE = 128_000   # points that are looked through at once: they fit the processor's cache
+PIECE = 256_000   # points that are looked through at once
 LOTS = tuple(np.uint32(odd) for odd in (2654435761, 2246822519, 3266489917))  # large odd factors strew neighbours far apart
 FARTHEST = (1 << 18) - 1  # 0.1 mm from the reference line; what lies beyond is as if it lay there
 
@@ -38,7 +38,7 @@ def few_of_every_cell(survey, road, profiles, width, spacing, most=FEW):
 
 
 def in_pieces(points, start, width):
-    """Points in runs along the road of whole profiles counted from station `start`, small enough for the processor's cache."""
+    """Points in runs along the road of whole profiles counted from station `start`, PIECE or so each."""
     cuts = np.arange(0, len(points), PIECE)
     if len(cuts) > 1:
         edges = np.unique(np.floor((points.records["s"][cuts[1:]] * UNIT - start) / width)) * width + start

@@ -11,7 +11,7 @@ import numpy as np
 from scipy import ndimage
 
 from ..survey.sorting import order_by
-from .profiles import lowest_layers
+from .layers import lowest_layers
 
 CELL = 0.10          # m
 BELOW, ABOVE = 1.0, 1.0  # m about the expected road within which ground is sought

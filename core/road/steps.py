@@ -8,10 +8,12 @@ not carry the grain of the cells.
 
 import numpy as np
 
-from .corners import CLEARANCE, ROAD_SIDE, SIGMAS, STEEPEST_ROAD, measure_corners
+from .corners import BEHIND, CLEARANCE, ROAD_SIDE, SIGMAS, STEEPEST_ROAD, measure_corners
 from .profiles import HIGH_SIGMA, PseudoScanLines
 
 WINDOW = 0.15       # m across within which the whole rise must lie
+SEEN_BEHIND = 3     # cells of raised ground behind a rise that tell its height
+LOW_LOOK = 0.65     # share of the least height that they must show
 
 
 def find_steps(lines: PseudoScanLines, least, highest):
@@ -28,7 +30,7 @@ def find_steps(lines: PseudoScanLines, least, highest):
 def _rising_cells(lines, least, highest):
     """(row, cell) of the cells in which a profile crosses the middle of a step."""
     low, high, spacing = lines.low, lines.high, lines.spacing
-    base, _, rough, count = road_before(low, spacing)
+    base, slope, rough, count = road_before(low, spacing)
     span = max(int(round(WINDOW / spacing)), 2)
     noise = lines.noise[:, None]
     top = max_ahead(high, span) - HIGH_SIGMA * noise
@@ -45,7 +47,23 @@ def _rising_cells(lines, least, highest):
     beyond = max_ahead(score, span, inclusive=False)
     nearer = max_ahead(score[:, ::-1], span, inclusive=False)[:, ::-1]
     best = score >= np.maximum(beyond, nearer)
-    return np.nonzero(found & best)
+    rows, columns = np.nonzero(found & best)
+    stays = _stays_up(low, base, slope, rows, columns, least, spacing)
+    return rows[stays], columns[stays]
+
+
+def _stays_up(low, base, slope, rows, columns, least, spacing):
+    """(M,) bool: does the ground behind rising cells look as high as a step, or is too little of it seen to tell?
+
+    What a single high point among many made rise need not be measured.
+    """
+    cells = np.arange(1, int(round(BEHIND / spacing)) + 1)
+    padded = np.pad(low, ((0, 0), (0, len(cells))), constant_values=np.nan)
+    rise = padded[rows[:, None], columns[:, None] + cells] - base[rows, columns, None] - slope[rows, columns, None] * cells * spacing
+    with np.errstate(invalid="ignore"):
+        raised = rise > 0.4 * least
+    count = raised.sum(1)
+    return (count < SEEN_BEHIND) | (np.where(raised, rise, 0.0).sum(1) >= LOW_LOOK * least * count)
 
 
 def road_before(low, spacing):
