@@ -162,13 +162,8 @@ def make_road_map(paths, trajectory, image_path, settings=RoadMapSettings(), pro
 
 def _density(points, store, progress, done):
     """CubeDensity of points; `done` is where the bar stands meanwhile."""
-    def sections():
-        for road in store.roads():
-            for number in store.sections(road):
-                progress.at(done)
-                yield points.section(road, number)
-
-    return cube_density(sections())
+    sections = [(road, number) for road in store.roads() for number in store.sections(road)]
+    return cube_density(sections, lambda key: points.section(*key), progress.part(done, done))
 
 
 def _paint(result, image_path, settings, stages):

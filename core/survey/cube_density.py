@@ -4,6 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..parallel import in_order
+from ..progress import Progress
+
 CUBE = 1.0  # m
 
 
@@ -19,17 +22,21 @@ class CubeDensity:
     of_a_point: float
 
 
-def cube_density(sections):
-    """CubeDensity of points given as an iterable of objects with x, y, z (local metres), one a section of road.
+def cube_density(sections, points_of=lambda section: section, progress=Progress()):
+    """CubeDensity of points, counted side by side.
 
     A cube that two sections share counts once: the cubes are those of the map, and only their numbers are kept.
+
+    Parameters
+    ----------
+    sections : one for each section of road
+    points_of : function of one of them that returns its points, an object with x, y, z (local metres)
     """
     keys, counts = [], []
-    for points in sections:
-        if len(points):
-            key, count = _counted(points)
-            keys.append(key)
-            counts.append(count)
+    for found in in_order(lambda section: _counted(points_of(section)), sections, progress):
+        if found is not None:
+            keys.append(found[0])
+            counts.append(found[1])
     if not keys:
         return CubeDensity(0, float("nan"), float("nan"))
     _, place = np.unique(np.concatenate(keys), return_inverse=True)
@@ -39,7 +46,9 @@ def cube_density(sections):
 
 
 def _counted(points):
-    """Keys of the occupied cubes and how many points each holds."""
+    """Keys of the occupied cubes and how many points each holds; None without points."""
+    if not len(points):
+        return None
     cell = [np.floor(axis / CUBE).astype(np.int32) for axis in (points.x, points.y, points.z)]
     low = [int(axis.min()) for axis in cell]
     size = [int(axis.max()) - first + 1 for axis, first in zip(cell, low)]
