@@ -30,6 +30,7 @@ TOUCHING_EDGE = 0.02  # m between a strip and the road's edge: paint keeps more
 LONGER = 2.0          # times as long as them is the line that says so
 SPECK = 0.30          # m: what is not longer than this and has no companion is no marking
 SPECK_AREA = 0.03     # m2
+ROW = 2.0             # m: points in a row of this length are no speck, however few scan lines met it
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,7 @@ def classify(shapes, half_widths, settings=ClassSettings()):
     found = []
     doubles = _has_partner(column, line)
     for k, shape in enumerate(shapes):
-        no_paint = _speck(shape) or scrap[k] or _curb(shape, room[k]) or _round_cover(shape)
+        no_paint = _speck(shape) and not (line[k] and shape.length >= ROW) or scrap[k] or _curb(shape, room[k]) or _round_cover(shape)
         if room[k] < -settings.margin or no_paint or _gutter(shape, room[k], line[k], zebra[k]):
             kind = NOT_PAINT
         elif zebra[k]:

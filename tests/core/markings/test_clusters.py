@@ -5,7 +5,7 @@ import pytest
 import shapely
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.markings.clusters import ClusterSettings, cluster_markings
-from painted_streets import assert_same_points, disc, drive, paint, road_points, shuffled, strip
+from painted_streets import assert_same_points, disc, drive, paint, records_at, road_points, shuffled, strip
 
 FRAME = drive()
 
@@ -106,6 +106,15 @@ def test_a_manhole_cover_is_no_marking(diameter):
 def test_specks_are_no_markings():
     specks = [disc(s, d, 0.15) for s, d in ((12, 1.0), (30, -2.0), (47, 0.3))]
     assert len(markings_of(specks)) == 0
+
+
+def test_a_line_that_every_scan_line_meets_once_is_a_line():
+    rng = np.random.default_rng(4)
+    s = np.arange(10.0, 30.0, 0.28)
+    records = records_at(FRAME, s, rng.uniform(-3.15, -3.0, len(s)), np.full(len(s), 4000.0), 6.0)
+    markings, _ = cluster_markings(road_points(records, FRAME), FRAME)
+    assert set(classes(markings)) <= {"lane", "centre"}
+    assert sum(markings.column("length_m")) > 15.0
 
 
 def test_bright_concrete_along_the_road_edge_is_no_marking():
