@@ -62,16 +62,15 @@ def least_bic(count, parameters):
 def robust_weights(residuals):
     """(N,) weights of soft L1: 1 for small residuals, falling as 1/|r| for large ones."""
     residuals = np.asarray(residuals)
-    scale = max(F_SCALE, 1.4826 * _median_size(residuals))
+    scale = max(F_SCALE, 1.4826 * median(np.abs(residuals)))
     return 1.0 / np.sqrt(1.0 + (residuals / scale) ** 2)
 
 
-def _median_size(residuals):
-    # np.median takes ten times as long over so few
-    size = np.abs(residuals)
-    middle = (len(size) - 1) // 2, len(size) // 2
-    size.partition(middle)
-    return float(size[middle[0]] + size[middle[1]]) / 2
+def median(values):
+    """Median of (N,) float, N >= 1, without NaN; np.median takes ten times as long over so few."""
+    middle = (len(values) - 1) // 2, len(values) // 2
+    ordered = np.partition(values, middle)
+    return float(ordered[middle[0]] + ordered[middle[1]]) / 2
 
 
 def minimise(residuals, jacobian, start, scale):
@@ -85,7 +84,7 @@ def minimise(residuals, jacobian, start, scale):
     """
     scale = np.asarray(scale, float)
     found = _levenberg(residuals, jacobian, np.asarray(start, float), scale, np.inf)
-    misfit = 1.4826 * _median_size(residuals(found))
+    misfit = 1.4826 * median(np.abs(residuals(found)))
     return _levenberg(residuals, jacobian, found, scale, max(F_SCALE, misfit))
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from .clothoid import Clothoid
-from .fit import Fit, checked, chord, minimise
+from .fit import Fit, checked, chord, median, minimise
 
 FOOT_STEPS = 10   # of Newton's
 SETTLED = 1e-5    # m: a step this short leaves 1e-10
@@ -78,7 +78,7 @@ def _start(x, y):
     """Unknowns (x, y, heading, curvature, change) at the middle of the points, and their arc lengths."""
     count = int(np.clip(len(x) // 3, 3, 12))
     bins = [rows for rows in np.array_split(np.arange(len(x)), count)]
-    bx, by = (np.array([np.median(c[rows]) for rows in bins]) for c in (x, y))
+    bx, by = (np.array([median(c[rows]) for rows in bins]) for c in (x, y))
     steps = np.hypot(np.diff(bx), np.diff(by))
     at = np.r_[0.0, np.cumsum(steps)]
     heading = np.unwrap(np.arctan2(np.diff(by), np.diff(bx)))

@@ -3,6 +3,7 @@
 import numpy as np
 from scipy.ndimage import gaussian_filter1d, median_filter
 
+from ..parallel import in_order
 from ..survey.points import UNIT
 from ..survey.sorting import order_by
 from .boundaries import STEP
@@ -29,16 +30,20 @@ def road_heights(road_points, road, s, tracks):
     """
     found = [np.full(len(track), np.nan) for track in tracks]
     size = int(WINDOW / STEP)
-    for first in range(0, len(s), size):
+
+    def of_window(first):
         last = min(first + size, len(s)) - 1
-        inside = [(z, track, max(first, track.first), min(last, track.last)) for z, track in zip(found, tracks)]
-        inside = [row for row in inside if row[2] <= row[3]]
+        inside = [(k, max(first, track.first), min(last, track.last)) for k, track in enumerate(tracks)]
+        inside = [row for row in inside if row[1] <= row[2]]
         points = road_points.window(road, s[first] - STEP / 2, s[last] + STEP / 2) if inside else ()
         if not len(points):
-            continue
-        for z, track, a, b in inside:
-            rows = slice(a - track.first, b - track.first + 1)
-            z[rows] = _medians(points.records, s[a:b + 1], track.d[rows])
+            return []
+        return [(k, a - tracks[k].first, _medians(points.records, s[a:b + 1], tracks[k].d[a - tracks[k].first:b - tracks[k].first + 1]))
+                for k, a, b in inside]
+
+    for heights in in_order(of_window, range(0, len(s), size)):
+        for k, first, z in heights:
+            found[k][first:first + len(z)] = z
     return found
 
 
