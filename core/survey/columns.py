@@ -13,11 +13,12 @@ class Columns:
     only when a column of the result is asked for: most steps look at few.
     """
 
-    __slots__ = ("_arrays", "_make", "_chosen", "_locked", "_length", "dtype")
+    __slots__ = ("_arrays", "_make", "_chosen", "_parts", "_locked", "_length", "dtype")
 
-    def __init__(self, arrays, dtype, length=None, make=None, chosen=None):
+    def __init__(self, arrays, dtype, length=None, make=None, chosen=None, parts=None):
         self._arrays, self._make = arrays, make
         self._chosen = chosen  # (Columns, rows) that these were chosen from
+        self._parts = parts    # Columns that these are joined of
         self._locked = False
         self.dtype = np.dtype(dtype)
         self._length = len(next(iter(arrays.values()))) if length is None else length
@@ -38,7 +39,7 @@ class Columns:
         dtype = np.dtype(dtype)
         if not parts:
             return cls({name: np.empty(0, dtype[name]) for name in dtype.names}, dtype, 0)
-        return cls({}, dtype, sum(map(len, parts)), lambda name: np.concatenate([part[name] for part in parts]))
+        return cls({}, dtype, sum(map(len, parts)), lambda name: np.concatenate([part[name] for part in parts]), parts=parts)
 
     def __len__(self):
         return self._length
@@ -63,6 +64,8 @@ class Columns:
                 self._arrays[which] = found
             return found
         if isinstance(which, slice):
+            if self._parts is not None and not self._arrays and which.step in (None, 1):
+                return self._joined_slice(*which.indices(self._length)[:2])
             return Columns({}, self.dtype, len(range(*which.indices(self._length))), lambda name: self[name][which])
         return self.take(which)
 
@@ -76,7 +79,29 @@ class Columns:
         source, rows = self, which.astype(np.intp, copy=False)
         if self._chosen is not None:
             source, rows = self._chosen[0], self._chosen[1].take(rows)
-        return Columns({}, self.dtype, len(rows), lambda name: source[name].take(rows), (source, rows))
+        return Columns({}, self.dtype, len(rows), lambda name: source._rows(name, rows), (source, rows))
+
+    def _rows(self, name, rows):
+        """Rows of one column; of joined parts only those are asked that the rows lie in."""
+        # taken apart only where rows ascend within bounds
+        if self._parts is None or name in self._arrays or not len(rows) or rows[0] < 0 or rows[-1] >= self._length \
+                or (rows[1:] < rows[:-1]).any():
+            return self[name].take(rows)
+        ends = np.cumsum([len(part) for part in self._parts])
+        bounds = [0, *np.searchsorted(rows, ends).tolist()]
+        found = [part[name].take(rows[a:b] - (end - len(part)))
+                 for part, end, a, b in zip(self._parts, ends, bounds[:-1], bounds[1:]) if b > a]
+        return found[0] if len(found) == 1 else np.concatenate(found)
+
+    def _joined_slice(self, first, end):
+        """The rows from first to end, joined of what of the parts lies there."""
+        parts, start = [], 0
+        for part in self._parts:
+            a, b = max(first - start, 0), min(end - start, len(part))
+            if b > a:
+                parts.append(part if b - a == len(part) else part[a:b])
+            start += len(part)
+        return Columns.joined(parts, self.dtype)
 
     def __setitem__(self, name, values):
         array = self[name]
@@ -88,7 +113,7 @@ class Columns:
         """These columns, every one of them made, and what they were made of let go."""
         for name in self.dtype.names:
             self[name]
-        self._make = self._chosen = None  # arrays are there for every name, so it is not missed
+        self._make = self._chosen = self._parts = None  # arrays are there for every name, so it is not missed
         return self
 
     def locked(self):

@@ -217,7 +217,7 @@ class SectionStore:
 
         def read(name):
             if name in alike:
-                return np.repeat(alike[name], count)
+                return np.broadcast_to(alike[name], count)
             column = np.empty(count, self.dtype[name])
             self._file.read(places[name], column)
             return column

@@ -37,6 +37,36 @@ def test_what_was_chosen_may_be_changed_and_leaves_its_source_alone():
     assert chosen["s"].tolist() == [0, 0] and columns["s"].tolist() == list(range(100))
 
 
+@pytest.mark.parametrize("which", [np.array([3, 30, 30, 99]), np.array([40, 41]), np.array([99, 0, 50]), np.array([-1, 5]), np.empty(0, int),
+                                   slice(20, 80), slice(33, 34), slice(None), slice(90, 10), slice(0, 100, 9), slice(-30, -2)], ids=str)
+def test_rows_of_joined_parts_are_those_of_the_whole(which):
+    records = some()
+    parts = [Columns.of(records[a:b]) for a, b in ((0, 33), (33, 34), (34, 70), (70, 100))]
+    joined = Columns.joined(parts, records.dtype)
+    np.testing.assert_array_equal(joined[which], records[which])
+    np.testing.assert_array_equal(joined[10:95][:80][1::3], records[10:95][:80][1::3])
+    few = joined[10:95][np.array([0, 23, 24, 60])]
+    np.testing.assert_array_equal(few["s"], [10, 33, 34, 70])
+    joined["s"] = 7
+    assert (joined[which]["s"] == 7).all() and (joined[which]["time"] == records[which]["time"]).all()
+
+
+def test_a_row_beyond_joined_parts_is_refused():
+    joined = Columns.joined([Columns.of(some(5)), Columns.of(some(5))], some().dtype)
+    with pytest.raises(IndexError):
+        joined[np.array([3, 10])]["s"]
+
+
+def test_only_those_parts_are_read_that_chosen_rows_lie_in():
+    def unread(name):
+        raise AssertionError(f"{name} was read")
+
+    parts = [Columns({}, some().dtype, 100, unread), Columns.of(some())]
+    joined = Columns.joined(parts, some().dtype)
+    assert joined[np.array([100, 150])]["s"].tolist() == [0, 50]
+    assert joined[120:130][np.array([1])]["s"].tolist() == [21]
+
+
 def test_parts_are_joined_in_order_and_none_are_none():
     records = some()
     np.testing.assert_array_equal(Columns.joined([Columns.of(records[:30]), Columns.of(records[30:])], records.dtype), records)
