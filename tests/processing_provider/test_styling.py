@@ -49,6 +49,7 @@ def test_an_image_is_stretched_to_its_own_values(qgis_app, tmp_path):
     Styler.make(STYLES / "intensity_image.qml").postProcessLayer(layer, QgsProcessingContext(), None)
     stretch = layer.renderer().contrastEnhancement()
     assert 3000 <= stretch.minimumValue() < 3300 and 8700 < stretch.maximumValue() <= 9000
+    assert stretch.minimumValue() % 1 == stretch.maximumValue() % 1 == 0, "the legend is read by people"
 
 
 def test_what_is_loaded_comes_named_and_grouped(qgis_app):
