@@ -138,6 +138,7 @@ def add_scale_bar(layout, chart, bottom, length):
 def add_north_arrow(layout, chart):
     """In the upper right corner of the map, which is turned so that the road lies along the page."""
     arrow = QgsLayoutItemPicture(layout)
+    arrow.setId("North")
     arrow.setPicturePath(NORTH_ARROW)
     arrow.setSvgFillColor(QColor(255, 255, 255))
     arrow.setSvgStrokeColor(QColor(255, 255, 255))

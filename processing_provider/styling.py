@@ -83,6 +83,7 @@ def apply_style(layer, qml, schema=()):
         if stretch.maximumValue() - stretch.minimumValue() > 100:  # in the legend six decimals say nothing
             stretch.setMinimumValue(round(stretch.minimumValue()))
             stretch.setMaximumValue(round(stretch.maximumValue()))
+            layer.rendererChanged.emit()
 
 
 def group_of(paths):

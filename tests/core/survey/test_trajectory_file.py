@@ -269,12 +269,15 @@ def test_any_encoding_and_line_ending(tmp_path, encoding, ending):
     assert_same(read_trajectory(path), street())
 
 
-def test_half_a_million_rows_take_seconds(tmp_path):
+def test_half_a_million_rows_cost_a_few_times_what_cutting_them_costs(tmp_path):
+    """Not a Python loop over rows; in processor seconds, beside the same machine's own."""
     row = "318204000.123456,500123.4567,5400123.4567,101.2345,0.012345,0.012345,91.234567\n"
     (tmp_path / "t.csv").write_text("time,x,y,z,roll,pitch,heading\n" + row * 500_000)
-    begun = time.perf_counter()
+    begun = time.process_time()
+    assert len([line.split(",") for line in open(tmp_path / "t.csv", encoding="utf-8")]) == 500_001
+    cut = time.process_time() - begun
     assert len(read_trajectory(tmp_path / "t.csv")) == 500_000
-    assert time.perf_counter() - begun < 10.0
+    assert time.process_time() - begun - cut < 10 * cut
 
 
 def test_names_without_a_role_are_ignored_and_units_do_not_matter():
