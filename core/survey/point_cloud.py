@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import Cancelled, RoadExtractionError
 from .laz_check import damage, points_per_chunk
 
-BLOCK = 200_000  # points decoded at a time
+BLOCK = 400_000  # points decoded at a time
 SUFFIXES = (".las", ".laz")
 MOST_SCALE, MOST_OFFSET = 1e3, 1e12  # m, of coordinates kept as integers; beyond them nothing on earth lies
 NOT_THE_FILE = (KeyboardInterrupt, SystemExit, GeneratorExit, Cancelled)
@@ -39,12 +39,12 @@ class CloudFile:
     chunk: int = 0
 
 
-def open_cloud(path, wanted=None, alone=False):
+def open_cloud(path, wanted=None, again=False):
     """Open a LAS/LAZ/COPC file for reading with laspy, or say in one sentence why it cannot be read.
 
     `wanted` names the layers of a LAZ 1.4 file that are decoded beside place and
-    return numbers ("z", "intensity" ...), all by default. `alone` has them decoded
-    in the thread that asks for them, of a file that was opened before.
+    return numbers ("z", "intensity" ...), all by default. A file that is opened `again`
+    is not looked over for damage once more.
     """
     import laspy
 
@@ -53,11 +53,10 @@ def open_cloud(path, wanted=None, alone=False):
         raise RoadExtractionError(f"There is no file {path}. Check the path of the point cloud.")
     if not path.lower().endswith(SUFFIXES):
         raise RoadExtractionError(f"{path} is not a LAS or LAZ file. Lanewright reads .las, .laz and .copc.laz; convert other formats first.")
-    if not alone and (wrong := damage(path)):
+    if not again and (wrong := damage(path)):
         raise RoadExtractionError(f"{path} is damaged or cut off: {wrong}. Copy or export the file again.")
     try:
-        options = dict(laz_backend=(laspy.LazBackend.Lazrs, laspy.LazBackend.Laszip)) if alone else {}
-        return laspy.open(path, decompression_selection=layers(wanted), **options)
+        return laspy.open(path, decompression_selection=layers(wanted))
     except BaseException as problem:  # laspy and its backends raise many kinds for a damaged file, no Exceptions among them
         if isinstance(problem, NOT_THE_FILE):
             raise

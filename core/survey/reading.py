@@ -16,7 +16,7 @@ from .sensor_height import DEFAULT_HEIGHT, HeightTally, Tracks, first_estimate
 LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags")  # what is decoded of a LAZ file
 WAITING = 4_000_000    # points kept back at most until the height of the road is known
 SAMPLES = 5_000        # points on the track that tell it
-THREADS = 4            # at most: each decodes blocks and places their points
+THREADS = 4            # at most: each has blocks decoded, by all cores (lazrs keeps the others waiting), and places their points
 
 
 class SurveyReader:
