@@ -86,9 +86,9 @@ class RoadMap:
 
 # How long each stage takes by boundary method, in proportions, as `make bench` measures it
 SHARES = {
-    "profiles": dict(survey=22, curbs=22, edges=0.5, surface=12, intensity=7, image=7, markings=15, outliers=3, clusters=2, lines=4, driving=5),
-    "scanlines": dict(survey=18, curbs=36, edges=0.5, surface=9, intensity=6, image=6, markings=13, outliers=3, clusters=2, lines=3, driving=4),
-    "both": dict(survey=15, curbs=45, edges=0.5, surface=8, intensity=5, image=5, markings=11, outliers=2, clusters=2, lines=3, driving=3.5),
+    "profiles": dict(survey=29, curbs=22, edges=0.2, surface=10, intensity=6, image=7, markings=12, outliers=4, clusters=3, lines=3, driving=3),
+    "scanlines": dict(survey=24, curbs=34, edges=0.3, surface=9, intensity=6, image=6, markings=10, outliers=3, clusters=2, lines=3, driving=3),
+    "both": dict(survey=21, curbs=42, edges=0.3, surface=8, intensity=5, image=5, markings=9, outliers=3, clusters=2, lines=2, driving=3),
 }
 
 

@@ -15,6 +15,9 @@ from .section_planes import ScanlineSettings
 from .turned_curbs import add_turned_curbs
 
 METHODS = ("profiles", "scanlines", "both")
+PROFILES = 0.3    # of the work with both methods; of the rest,
+LATTICE = 0.1     # the lattice ends here,
+TURNED = 0.85     # and what turns away begins here
 
 
 @dataclass(frozen=True)
@@ -58,16 +61,15 @@ def find_curb_points(survey, settings=BoundarySettings(), progress=Progress()):
     both = settings.method == "both"
     found = {}
     if settings.method != "scanlines":
-        found["profiles"] = detect_curbs(survey, settings.curbs, progress.part(0.0, 0.25) if both else progress, turned=not both)
+        found["profiles"] = detect_curbs(survey, settings.curbs, progress.part(0.0, PROFILES) if both else progress, turned=not both)
     if settings.method != "profiles":
-        start = 0.25 if both else 0.0
-        source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, progress=progress.part(start, start + 0.1))
-        found["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length,
-                                                  progress.part(start + 0.1, 0.85))
+        part = progress.part(PROFILES if both else 0.0, 1.0)
+        source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, progress=part.part(0.0, LATTICE))
+        found["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length, part.part(LATTICE, TURNED))
         drawn = found["scanlines"]
         if both:
             drawn = found["both"] = _better_points(found, survey.frame)
-        add_turned_curbs(drawn, survey, settings.curbs, progress.part(0.85, 1.0))
+        add_turned_curbs(drawn, survey, settings.curbs, part.part(TURNED, 1.0))
         name_passes(drawn, survey.frame)
     return found
 

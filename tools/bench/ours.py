@@ -71,7 +71,7 @@ def scanlines(size):
 
 
 def image_ours(size):
-    """Road points of 50 m as LAZ to the 4 cm intensity image by inverse distance alone, as gdal_grid does it."""
+    """Road points of 25 m as LAZ to the 4 cm intensity image by inverse distance alone, as gdal_grid does it."""
     from lanewright.core.markings.image import ImageSettings, write_intensity_image
     from lanewright.core.survey.road_points_file import read_road_points
 
