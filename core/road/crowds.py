@@ -11,6 +11,7 @@ from ..survey.points import UNIT
 FEW = 12          # points of a cell that tell level ground
 LEVEL = 0.008     # m, standard deviation of heights in a cell that is level, on a road that climbs as on one that does not
 UNEVEN = 60       # points of any other cell: more hardly tell its layers better
+TOLD, MOSTLY = 4, 0.7  # points of a cell that tell whether it is level, and share of points in cells that are not
 TOGETHER = 5.0    # m of road that are read at once
 PIECE = 256_000   # points that are looked through at once
 LOTS = tuple(np.uint32(odd) for odd in (2654435761, 2246822519, 3266489917))  # large odd factors strew neighbours far apart
@@ -63,11 +64,31 @@ def _thinned(s, d, z, width, spacing, most):
     """Indices of the points taken of every cell; stations s (ascending), offsets d and heights z in 0.1 mm."""
     if len(s) <= most:
         return np.arange(len(s))
+    cell = _cells(s, d, width, spacing)
+    held = np.bincount(cell)
+    if held.max() <= most:
+        return np.arange(len(s))
+    share = np.minimum(np.where(_level(cell, held, z), most, UNEVEN) * (65536.0 / np.maximum(held, 1)), 65535.0).astype(np.uint16)
+    return np.flatnonzero(_by_lot(s, np.abs(d)) <= share.take(cell))
+
+
+def mostly_uneven(survey, road, profile, width, spacing):
+    """Is the ground about a profile uneven nearly everywhere? So it looks to a noisy scanner; there thinning leaves little out."""
+    records = survey.window(road, (profile - 2) * width, (profile + 2) * width).records
+    if not len(records):
+        return False
+    cell = _cells(records["s"], records["d"], width, spacing)
+    held = np.bincount(cell)
+    told = np.where(held >= TOLD, held, 0)
+    return told[~_level(cell, held, records["z"])].sum() > MOSTLY * told.sum()
+
+
+def _cells(s, d, width, spacing):
+    """(N,) number of the cell of each point."""
     bits = int(np.rint(np.log2(spacing / UNIT)))
     half = (FARTHEST >> bits) + 1
     # the two sides of a road are parted alike
-    out = np.abs(d)
-    cell = np.minimum(out, FARTHEST)
+    cell = np.minimum(np.abs(d), FARTHEST)
     cell >>= bits
     cell += (d < 0) * np.int32(half)
     profile = s + 0.5  # off the bounds between profiles, which are whole units
@@ -76,16 +97,14 @@ def _thinned(s, d, z, width, spacing, most):
     profile -= profile[0]
     profile *= 2 * half
     profile += cell
-    cell = profile.astype(np.intp)
-    held = np.bincount(cell)
-    if held.max() <= most:
-        return np.arange(len(s))
+    return profile.astype(np.intp)
+
+
+def _level(cell, held, z):
+    """(C,) bool: is the ground of each cell level?"""
     z = z.astype(float)
     total, squares = np.bincount(cell, z), np.bincount(cell, z * z)
-    held = np.maximum(held, 1)
-    level = squares - total * total / held <= held * (LEVEL / UNIT) ** 2
-    share = np.minimum(np.where(level, most, UNEVEN) * (65536.0 / held), 65535.0).astype(np.uint16)
-    return np.flatnonzero(_by_lot(s, out) <= share.take(cell))
+    return squares - total * total / np.maximum(held, 1) <= held * (LEVEL / UNIT) ** 2
 
 
 def _by_lot(s, out):

@@ -13,6 +13,7 @@ from ..schemas import CURB_POINTS
 from .averaged_steps import AVERAGE, find_averaged_steps
 from .chains import NOISY, choose_along, curb_chains, link_chains, long_enough
 from .corners import Steps
+from .crowds import FEW, mostly_uneven
 from .nearest_pass import name_passes
 from .profiles import SPREAD_ROWS
 from .shadows import Sight
@@ -110,9 +111,10 @@ def _steps_of_road(survey, road, settings, progress):
     def work(section):
         found = {side: [] for side in SIDES}
         wide = section[0] - around, section[1] + around
-        seen = list(profiles_beside(survey, road, wide, tracks, settings))
+        most = None if mostly_uneven(survey, road, sum(section) // 2, width, settings.point_spacing) else FEW
+        seen = list(profiles_beside(survey, road, wide, tracks, settings, most))
         # where averages are wanted every point counts
-        if any((lines.part(*section).spread > NOISY * settings.min_height).any() for *_, lines in seen):
+        if most and any((lines.part(*section).spread > NOISY * settings.min_height).any() for *_, lines in seen):
             seen = profiles_beside(survey, road, wide, tracks, settings, most=None)
         for side, _, beside, lines in seen:
             sight[side].look(*beside, section, lines.part(*section))

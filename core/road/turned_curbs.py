@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from ..parallel import in_order
 from ..progress import Progress
 from ..survey.road_frame import CORRIDOR
-from .crowds import few_of_every_cell
+from .crowds import few_of_every_cell, mostly_uneven
 from .plan_chains import joined_chains, trace_chains
 from .plan_steps import PlanSteps, measure_plan_steps
 from .sides import BESIDE, SIDES, ahead_of_vehicle, expected_height, sections_of
@@ -166,13 +166,14 @@ def _runs(main, line):
     return found
 
 
-def _steps_of_section(survey, road, section, limits, known, barrier, settings, most=FEW_IN_PLAN):
+def _steps_of_section(survey, road, section, limits, known, barrier, settings, few=FEW_IN_PLAN):
     """(PlanSteps of a section, where the ground behind each falls again, the scanner's noise); None where there are none."""
     width = settings.profile_width
     margin = int(np.ceil(MARGIN / width))
     profiles = section[0] - margin, section[1] + margin
     start, end, first, last = (k * width for k in (*section, *profiles))
     reach = _Reach(limits, first, last)
+    most = None if few is None or mostly_uneven(survey, road, sum(section) // 2, width, settings.point_spacing) else few
     seen = [_beside_vehicle(survey, road, part, reach)
             for part in few_of_every_cell(survey, road, profiles, width, settings.point_spacing, most)]
     if not seen:
@@ -185,7 +186,7 @@ def _steps_of_section(survey, road, section, limits, known, barrier, settings, m
     noisy = dense and raster.noise > NOISY * settings.min_height
     if noisy and most is not None:
         # where averages are wanted every point counts
-        return _steps_of_section(survey, road, section, limits, known, barrier, settings, most=None)
+        return _steps_of_section(survey, road, section, limits, known, barrier, settings, few=None)
     line = survey.frame.road(road)
     slopes = ground_slopes(raster.low)
     driven, stepped = driven_ground(raster, slopes, *_track(survey, road, first, last), [v[inner] for v in place[:2]], *barrier,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from curbed_streets import driven, survey_of
-from lanewright.core.road.crowds import FEW, LEVEL, few_of_every_cell
+from lanewright.core.road.crowds import FEW, LEVEL, few_of_every_cell, mostly_uneven
 from lanewright.core.survey.points import UNIT
 
 WIDTH, SPACING = 0.25, 0.025
@@ -76,3 +76,12 @@ def test_a_second_pass_takes_nothing_from_the_first():
     alone = survey_of(points, driven(20.0))
     both = survey_of(points, driven(20.0), second=(later, driven(20.0, start=1100.0)))
     assert abs(len(taken(both)) / (2 * len(taken(alone))) - 1) < 0.05
+
+
+@pytest.mark.parametrize("noise, uneven", [(0.003, False), (0.02, True)])
+def test_only_to_a_noisy_scanner_level_ground_looks_uneven(noise, uneven):
+    assert mostly_uneven(survey_of(crowded(noise), driven(20.0)), 0, 48, WIDTH, SPACING) == uneven
+
+
+def test_where_nothing_was_scanned_nothing_is_uneven():
+    assert not mostly_uneven(survey_of(crowded(), driven(20.0)), 0, 400, WIDTH, SPACING)
