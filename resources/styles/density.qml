@@ -14,7 +14,7 @@
     <rasterrenderer classificationMin="0" type="singlebandpseudocolor" classificationMax="3000" band="1" opacity="1" nodataColor="" alphaBand="-1">
       <minMaxOrigin>
         <limits>CumulativeCut</limits>
-        <extent>UpdatedCanvas</extent>
+        <extent>WholeRaster</extent>
         <statAccuracy>Estimated</statAccuracy>
         <cumulativeCutLower>0.02</cumulativeCutLower>
         <cumulativeCutUpper>0.98</cumulativeCutUpper>

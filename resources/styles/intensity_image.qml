@@ -14,7 +14,7 @@
     <rasterrenderer type="singlebandgray" gradient="BlackToWhite" opacity="1" nodataColor="" grayBand="1" alphaBand="-1">
       <minMaxOrigin>
         <limits>CumulativeCut</limits>
-        <extent>UpdatedCanvas</extent>
+        <extent>WholeRaster</extent>
         <statAccuracy>Estimated</statAccuracy>
         <cumulativeCutLower>0.02</cumulativeCutLower>
         <cumulativeCutUpper>0.995</cumulativeCutUpper>

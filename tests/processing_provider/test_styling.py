@@ -7,7 +7,7 @@ from lanewright.processing_provider.embedded_style import embed_style
 from lanewright.processing_provider.layers import qgis_fields
 from lanewright.processing_provider.styling import LOOKS, STYLES, Styler, group_of, style_on_load
 from osgeo import gdal
-from qgis.core import QgsProcessingContext, QgsProject, QgsRasterLayer, QgsRenderContext, QgsVectorLayer
+from qgis.core import QgsProcessingContext, QgsProject, QgsRasterLayer, QgsRasterMinMaxOrigin, QgsRenderContext, QgsVectorLayer
 
 KINDS = {
     "ROAD_EDGES": ("LineStringZ", ROAD_EDGES),
@@ -50,6 +50,7 @@ def test_an_image_is_stretched_to_its_own_values(qgis_app, tmp_path):
     stretch = layer.renderer().contrastEnhancement()
     assert 3000 <= stretch.minimumValue() < 3300 and 8700 < stretch.maximumValue() <= 9000
     assert stretch.minimumValue() % 1 == stretch.maximumValue() % 1 == 0, "the legend is read by people"
+    assert layer.renderer().minMaxOrigin().extent() == QgsRasterMinMaxOrigin.Extent.WholeRaster, "one tone means one intensity, wherever one looks"
 
 
 def test_what_is_loaded_comes_named_and_grouped(qgis_app):
