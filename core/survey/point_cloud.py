@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import Cancelled, RoadExtractionError
+from ..parallel import go_on
 from .laz_check import damage, points_per_chunk
 
 BLOCK = 400_000  # points decoded at a time
@@ -136,6 +137,7 @@ def read_blocks(path, size=BLOCK, wanted=None):
     with open_cloud(path, wanted) as reader:
         promised, read = reader.header.point_count, 0
         while read < promised:
+            go_on()
             points = read_points(reader, path, read, size)
             read += len(points)
             yield points

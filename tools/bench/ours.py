@@ -45,13 +45,29 @@ def read(size):
 def placing(size):
     """Points that are decoded already into the sections of the road frame, ready for the next stage."""
     from lanewright.core.survey import reading
-    from lanewright.core.survey.point_cloud import BLOCK
+    from lanewright.core.survey.point_cloud import BLOCK, read_blocks
     from lanewright.core.survey.survey import open_survey
     from lanewright.core.survey.trajectory_file import read_trajectory
 
     clouds, trajectory = clouds_of("dense", size), read_trajectory(trajectory_of("dense", size))
-    decoded = {str(path): list(reading.read_blocks(str(path), BLOCK, reading.LAYERS)) for path in clouds}
-    reading.read_blocks = lambda path, *_: decoded[str(path)]
+    decoded = {str(path): list(read_blocks(str(path), BLOCK, reading.LAYERS)) for path in clouds}
+
+    class Decoded:
+        """Stands in for the readers of the files."""
+
+        def __init__(self, layers):
+            pass
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *problem):
+            pass
+
+        def blocks(self, files, size):
+            return (lambda block=block: block for file in files for block in decoded[file.path])
+
+    reading.CloudReaders = Decoded
     survey, seconds = timed(lambda: open_survey(clouds, trajectory))
     return dict(seconds, points=survey.store.count)
 
