@@ -1,6 +1,6 @@
 """What peers are given: made once by our own chain, in forms they read.
 
-    strip.laz, strip.fgb        road points of 25 m of the dense survey, as LAZ and as the FlatGeobuf that gdal_grid reads
+    strip.laz, strip.fgb        road points of 50 m of the dense survey, as LAZ and as the FlatGeobuf that gdal_grid reads
     strip.tif                   our image of them, whose cells gdal_grid is to fill
     paint.laz, paint.npy        a million points on and about paint of the long survey; (N, 5) x, y, z, station, offset
                                 in metres, in the order of the LAZ's times, which count from 0
@@ -12,7 +12,7 @@ import numpy as np
 
 from .surveys import SURVEYS, clouds_of, trajectory_of
 
-STRIP = 25.0       # m of road
+STRIP = 10.0, 60.0  # m of station
 PAINT = dict(full=1_000_000, quick=100_000)  # points
 
 
@@ -28,7 +28,7 @@ def prepare(size):
     folder = prepared("", size)
     folder.mkdir(parents=True, exist_ok=True)
     road_points = _road_points("dense", size)
-    strip = _part(road_points, road_points.window(road_points.roads()[0], 0.0, STRIP).records)
+    strip = _part(road_points, road_points.window(road_points.roads()[0], *STRIP).records)
     write_road_points(strip, folder / "strip.laz")
     _write_layer(strip, folder / "strip.fgb")
     write_intensity_image(strip, folder / "strip.tif")

@@ -37,7 +37,7 @@ ROWS = (
     Row("placing decoded points in the road frame", READ, 0.35, _against_reading("placing"), ("read", "placing")),
     Row("profiles and curbs", READ, 0.4, _against_reading("profiles", ("curbs", "edges")), ("read", "profiles")),
     Row("normalized scanlines and boundaries on them, in memory", READ, 4.0, _against_reading("scanlines"), ("read", "scanlines")),
-    Row("intensity image of 4 cm, 25 m of road", "× gdal_grid (invdistnn)", 0.25, _over("image_ours", "image_gdal", "wall"),
+    Row("intensity image of 4 cm, 50 m of road", "× gdal_grid (invdistnn)", 0.25, _over("image_ours", "image_gdal", "wall"),
         ("image_ours", "image_gdal")),
     Row("outliers, a million points", "× PCL, CPU seconds", 1.4, _over("sor_ours", "sor_pcl", "cpu"), ("sor_ours", "sor_pcl")),
     Row("outliers, a million points", "× Open3D, CPU seconds", None, _over("sor_ours", "sor_open3d", "cpu"), ("sor_ours", "sor_open3d")),

@@ -24,7 +24,7 @@ def inverse_distance(points, raster, like, radius, power, threads):
 
     Returns
     -------
-    dict of wall and CPU seconds, reading and writing included
+    dict of wall and CPU seconds, less those of a run that fills a single cell: of starting and of reading the points
 
     Raises
     ------
@@ -43,9 +43,20 @@ def inverse_distance(points, raster, like, radius, power, threads):
     # without an end to the number of points: all within the radius weigh, as in ours
     rule = f"invdistnn:power={power}:radius={radius}:max_points=100000:min_points=0:smoothing=0:nodata={NODATA}"
     words = [program, "-q", "-a", rule, "-txe", left, left + width * size, "-tye", top, top - height * size,
-             "-outsize", width, height, "-ot", "Float32", "-of", "GTiff", "-co", "TILED=YES", "-co", "COMPRESS=DEFLATE", points, raster]
-    before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
-    subprocess.run([str(word) for word in words], check=True, env=dict(os.environ, GDAL_NUM_THREADS=str(threads)))
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return dict(wall=time.perf_counter() - began,
-                cpu=after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, peak=after.ru_maxrss / 2**10)
+             "-ot", "Float32", "-of", "GTiff", "-co", "TILED=YES", "-co", "COMPRESS=DEFLATE"]
+    environment = dict(os.environ, GDAL_NUM_THREADS=str(threads))
+    reading = _timed([*words, "-outsize", 1, 1, points, f"{raster}.one.tif"], environment)
+    os.remove(f"{raster}.one.tif")
+    whole = _timed([*words, "-outsize", width, height, points, raster], environment)
+    return {**{name: whole[name] - reading[name] for name in whole}, "peak": _children().ru_maxrss / 2**10}
+
+
+def _children():
+    return resource.getrusage(resource.RUSAGE_CHILDREN)
+
+
+def _timed(words, environment):
+    before, began = _children(), time.perf_counter()
+    subprocess.run([str(word) for word in words], check=True, env=environment)
+    after = _children()
+    return dict(wall=time.perf_counter() - began, cpu=after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
