@@ -21,9 +21,9 @@ from .progress import Progress
 from .road.boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from .road.curbs import CurbSettings
 from .road.edges import EdgeSettings
-from .road.scanline_boundaries import ScanlineBoundarySettings
-from .road.section_planes import ScanlineSettings
-from .road.surface import SurfaceSettings, extract_road_surface
+from .road.scanlines.boundaries import ScanlineBoundarySettings
+from .road.scanlines.section_planes import ScanlineSettings
+from .road.surface.extraction import SurfaceSettings, extract_road_surface
 from .survey.cube_density import cube_density
 from .survey.survey import SurveySettings, open_survey
 

@@ -50,9 +50,9 @@ def measure(survey, sample, interval):
     """F1 and the errors of scanline boundaries against the sample's truth."""
     from lanewright.core.assess.boundaries import assess_boundaries
     from lanewright.core.road.edges import fit_road_edges
-    from lanewright.core.road.scanline_boundaries import curbs_from_scanlines
-    from lanewright.core.road.scanline_source import SurveyScanlines
-    from lanewright.core.road.section_planes import ScanlineSettings
+    from lanewright.core.road.scanlines.boundaries import curbs_from_scanlines
+    from lanewright.core.road.scanlines.section_planes import ScanlineSettings
+    from lanewright.core.road.scanlines.source import SurveyScanlines
 
     edges = fit_road_edges(curbs_from_scanlines(SurveyScanlines(survey, ScanlineSettings(interval=interval))), survey.frame)
     truth, dropped = [], []

@@ -9,10 +9,10 @@ from .boundary_agreement import chosen_points, note_agreement
 from .curbs import CurbSettings, detect_curbs
 from .edges import EdgeSettings, fit_road_edges
 from .nearest_pass import name_passes
-from .scanline_boundaries import ScanlineBoundarySettings, curbs_from_scanlines
-from .scanline_source import SurveyScanlines
-from .section_planes import ScanlineSettings
-from .turned_curbs import add_turned_curbs
+from .scanlines.boundaries import ScanlineBoundarySettings, curbs_from_scanlines
+from .scanlines.section_planes import ScanlineSettings
+from .scanlines.source import SurveyScanlines
+from .turned.curbs import add_turned_curbs
 
 METHODS = ("profiles", "scanlines", "both")
 PROFILES = 0.3    # of the work with both methods; of the rest,

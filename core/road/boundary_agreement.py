@@ -7,7 +7,7 @@ import shapely
 
 from ..features import Features
 from ..schemas import AGREE, END, LENGTH, ROAD, SIDE, STATION, of_main_curb
-from .sides import SIDES
+from .profiles.sides import SIDES
 
 NODE = 0.5           # m along the road between places that are compared
 SAME_CURB = 0.25     # m across within which two lines are of one curb

@@ -10,16 +10,16 @@ from ..features import Features
 from ..parallel import in_order
 from ..progress import Progress
 from ..schemas import CURB_POINTS
-from .averaged_steps import AVERAGE, find_averaged_steps
-from .chains import NOISY, choose_along, curb_chains, link_chains, long_enough
-from .corners import Steps
-from .crowds import FEW, mostly_uneven
 from .nearest_pass import name_passes
-from .profiles import SPREAD_ROWS
-from .shadows import Sight
-from .sides import REACH, SECTION, SIDES, Track, expected_height, profiles_beside, sections_of
-from .steps import find_steps
-from .turned_curbs import add_turned_curbs
+from .profiles.averaged_steps import AVERAGE, find_averaged_steps
+from .profiles.chains import NOISY, choose_along, curb_chains, link_chains, long_enough
+from .profiles.corners import Steps
+from .profiles.crowds import FEW, mostly_uneven
+from .profiles.profiles import SPREAD_ROWS
+from .profiles.shadows import Sight
+from .profiles.sides import REACH, SECTION, SIDES, Track, expected_height, profiles_beside, sections_of
+from .profiles.steps import find_steps
+from .turned.curbs import add_turned_curbs
 
 VEHICLE_HALF = 0.6      # m from the track: no curb nearer
 MERGE_ACROSS = 0.12     # m between the same step seen in two passes

@@ -13,7 +13,7 @@ from ..parallel import go_on
 from ..progress import Progress
 from ..schemas import ROAD_EDGES, of_main_curb
 from .nearest_pass import name_passes
-from .turned_edges import draw_turned, turned_lines
+from .turned.edges import draw_turned, turned_lines
 
 CONNECT = 2.5          # m between curb points that are joined as measured
 MEDIAN_WINDOW = 5.0    # m of running median

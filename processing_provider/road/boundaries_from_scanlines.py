@@ -6,7 +6,7 @@ from ..knobs import Knob
 from ..survey_input import frame_of
 from ..texts import tr
 
-SCANLINE_BOUNDARIES = "road.scanline_boundaries:ScanlineBoundarySettings"
+SCANLINE_BOUNDARIES = "road.scanlines.boundaries:ScanlineBoundarySettings"
 
 
 def knob(name, field, label, text, minimum, maximum, advanced=False):
@@ -90,10 +90,10 @@ class BoundariesFromScanlines(LanewrightAlgorithm):
                       geometry="LineStringZ", optional=True)
 
     def work(self, call, progress):
-        from ...core.road.scanline_boundaries import CORNER_BLOCK, curbs_from_scanlines
-        from ...core.road.scanline_layer import scanlines_from_features
-        from ...core.road.scanline_lines import boundary_lines
-        from ...core.road.scanline_source import LayerScanlines
+        from ...core.road.scanlines.boundaries import CORNER_BLOCK, curbs_from_scanlines
+        from ...core.road.scanlines.layer import scanlines_from_features
+        from ...core.road.scanlines.lines import boundary_lines
+        from ...core.road.scanlines.source import LayerScanlines
 
         settings = call.settings(BOUNDARY_KNOBS)
         layer = call.features("SCANLINES", SCANLINES, "LineStringZM")

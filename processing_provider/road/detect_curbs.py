@@ -73,7 +73,7 @@ class DetectCurbs(LanewrightAlgorithm):
         survey = open_survey_of(call, progress.part(0.0, 0.5))
         settings = call.settings(CURB_KNOBS)
         if call.wants("PRINCIPAL_POINTS"):
-            from ...core.road.principal_points import principal_points
+            from ...core.road.profiles.principal_points import principal_points
 
             call.layer("PRINCIPAL_POINTS", principal_points(survey, settings, progress.part(0.5, 0.6)))
         call.layer("CURB_POINTS", detect_curbs(survey, settings, progress.part(0.6, 1.0)))

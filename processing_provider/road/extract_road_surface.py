@@ -6,7 +6,7 @@ from ..knobs import Knob
 from ..survey_input import SURVEY_KNOBS, open_survey_of
 from ..texts import tr
 
-SURFACE = "road.surface:SurfaceSettings"
+SURFACE = "road.surface.extraction:SurfaceSettings"
 
 SURFACE_KNOBS = (
     Knob(
@@ -44,7 +44,7 @@ class ExtractRoadSurface(LanewrightAlgorithm):
         self.add_sink("ROAD_SURFACE", tr("Road surface"), fields=ROAD_SURFACE, geometry="PolygonZ", optional=True)
 
     def work(self, call, progress):
-        from ...core.road.surface import extract_road_surface
+        from ...core.road.surface.extraction import extract_road_surface
         from ...core.survey.belonging import check_features_on_roads
         from ...core.survey.road_points_file import write_road_points
 

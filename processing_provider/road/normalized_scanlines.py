@@ -8,7 +8,7 @@ from ..knobs import Knob
 from ..survey_input import SURVEY_KNOBS, open_survey_of
 from ..texts import tr
 
-PLANES = "road.section_planes:ScanlineSettings"
+PLANES = "road.scanlines.section_planes:ScanlineSettings"
 
 SCANLINE_KNOBS = (
     Knob(
@@ -30,14 +30,14 @@ SCANLINE_KNOBS = (
 )
 LAYER_KNOBS = (
     Knob(
-        "SIMPLIFY", "road.scanline_layer:ScanlineLayerSettings", "simplify", tr("Deviation allowed in thinning the scanlines (m)"),
+        "SIMPLIFY", "road.scanlines.layer:ScanlineLayerSettings", "simplify", tr("Deviation allowed in thinning the scanlines (m)"),
         tr("Larger draws and writes faster and shows less of the surface; 0 keeps every vertex."),
         minimum=0.0, maximum=1.0,
     ),
 )
 POINT_KNOBS = (
     Knob(
-        "RESAMPLED_SPACING", "road.scanline_resampling:ResamplingSettings", "spacing", tr("Spacing of resampled points along a scanline (m)"),
+        "RESAMPLED_SPACING", "road.scanlines.resampling:ResamplingSettings", "spacing", tr("Spacing of resampled points along a scanline (m)"),
         tr("Smaller gives more points, without more being known of the surface."),
         minimum=0.005, maximum=5.0, advanced=True,
     ),
@@ -64,8 +64,8 @@ class NormalizedScanlines(LanewrightAlgorithm):
                      "offset: a cloud of even density."), optional=True, by_default=False)
 
     def work(self, call, progress):
-        from ...core.road.scanline_layer import write_scanlines
-        from ...core.road.scanline_resampling import ResampledPoints
+        from ...core.road.scanlines.layer import write_scanlines
+        from ...core.road.scanlines.resampling import ResampledPoints
 
         survey = open_survey_of(call, progress.part(0.0, 0.5))
         points = nullcontext()

@@ -3,7 +3,7 @@
 import laspy
 import numpy as np
 import pytest
-from lanewright.core.road.scanline_layer import scanlines_from_features
+from lanewright.core.road.scanlines.layer import scanlines_from_features
 from lanewright.core.schemas import SCANLINES
 from lanewright.core.survey.road_frame import build_frame
 from lanewright.processing_provider.layers import read_features

@@ -16,7 +16,7 @@ from accuracy.figures import figures_of  # noqa: E402
 from accuracy.page import page  # noqa: E402
 from accuracy.surveys import _make_sample, read_case, surveys_in  # noqa: E402
 from lanewright.core.features import Features, Field  # noqa: E402
-from lanewright.core.road.corners import Steps  # noqa: E402
+from lanewright.core.road.profiles.corners import Steps  # noqa: E402
 from lanewright.core.sample.survey import SampleSettings  # noqa: E402
 from make_sample import write_layers  # noqa: E402
 

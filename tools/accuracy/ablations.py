@@ -4,8 +4,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from lanewright.core.driving.lines import driving_lines
-from lanewright.core.road.chains import Chain
-from lanewright.core.road.surface import extract_road_surface
+from lanewright.core.road.profiles.chains import Chain
+from lanewright.core.road.surface.extraction import extract_road_surface
 from lanewright.core.road_map import RoadMapSettings
 
 from .chain import set_in

@@ -13,7 +13,7 @@ from lanewright.core.markings.intensity import correct_intensity
 from lanewright.core.markings.lines import fit_marking_lines
 from lanewright.core.markings.outliers import remove_outliers
 from lanewright.core.road.boundaries import draw_boundaries, find_curb_points
-from lanewright.core.road.surface import extract_road_surface
+from lanewright.core.road.surface.extraction import extract_road_surface
 from lanewright.core.road_map import RoadMapSettings
 
 

@@ -43,7 +43,7 @@ def _road_points(name, size):
     """The road surface's points, intensity corrected."""
     from lanewright.core.markings.intensity import correct_intensity
     from lanewright.core.road.boundaries import BoundarySettings, draw_boundaries, find_curb_points
-    from lanewright.core.road.surface import extract_road_surface
+    from lanewright.core.road.surface.extraction import extract_road_surface
     from lanewright.core.survey.survey import open_survey
     from lanewright.core.survey.trajectory_file import read_trajectory
 

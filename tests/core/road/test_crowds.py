@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from curbed_streets import driven, survey_of
-from lanewright.core.road.crowds import FEW, LEVEL, few_of_every_cell, mostly_uneven
+from lanewright.core.road.profiles.crowds import FEW, LEVEL, few_of_every_cell, mostly_uneven
 from lanewright.core.survey.points import UNIT
 
 WIDTH, SPACING = 0.25, 0.025

@@ -6,9 +6,9 @@ import pytest
 from curbed_streets import GROUND, NORTH, driven, parked_car, street, survey_of
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.road.edges import fit_road_edges
-from lanewright.core.road.scanline_boundaries import ScanlineBoundarySettings, curbs_from_scanlines
-from lanewright.core.road.scanline_source import SurveyScanlines
-from lanewright.core.road.section_planes import ScanlineSettings
+from lanewright.core.road.scanlines.boundaries import ScanlineBoundarySettings, curbs_from_scanlines
+from lanewright.core.road.scanlines.section_planes import ScanlineSettings
+from lanewright.core.road.scanlines.source import SurveyScanlines
 
 
 def found(points, settings=ScanlineBoundarySettings(), interval=0.10, **survey):

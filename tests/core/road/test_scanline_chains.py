@@ -1,7 +1,7 @@
 """Vertices of section planes chained into lines."""
 
 import numpy as np
-from lanewright.core.road.scanline_chains import PlaneVertices, increasing, plane_order
+from lanewright.core.road.scanlines.chains import PlaneVertices, increasing, plane_order
 
 PULSE = 0.001
 

@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.features import Features
-from lanewright.core.line_spool import LineSpool, coordinates_of
-from lanewright.core.road.scanline_layer import ScanlineLayerSettings, lengths, scanlines_from_features, thinned, write_scanlines
-from lanewright.core.road.scanline_resampling import ResampledPoints, ResamplingSettings, resampled
-from lanewright.core.road.scanlines import Scanlines
-from lanewright.core.road.section_planes import ScanlineSettings, all_scanlines
+from lanewright.core.road.scanlines.layer import ScanlineLayerSettings, lengths, scanlines_from_features, thinned, write_scanlines
+from lanewright.core.road.scanlines.resampling import ResampledPoints, ResamplingSettings, resampled
+from lanewright.core.road.scanlines.scanlines import Scanlines
+from lanewright.core.road.scanlines.section_planes import ScanlineSettings, all_scanlines
+from lanewright.core.road.scanlines.spool import LineSpool, coordinates_of
 from scanned_streets import CURB, scanned, survey_of
 
 

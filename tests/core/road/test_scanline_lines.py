@@ -6,11 +6,11 @@ import shapely
 from curbed_streets import NORTH, SENSOR, parked_car, street, survey_of
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.features import Features
-from lanewright.core.road.scanline_boundaries import ScanlineBoundarySettings, curbs_from_scanlines
-from lanewright.core.road.scanline_lines import boundary_lines
-from lanewright.core.road.scanline_source import LayerScanlines, SurveyScanlines
-from lanewright.core.road.scanlines import Scanlines
-from lanewright.core.road.section_planes import ScanlineSettings, scanlines_of
+from lanewright.core.road.scanlines.boundaries import ScanlineBoundarySettings, curbs_from_scanlines
+from lanewright.core.road.scanlines.lines import boundary_lines
+from lanewright.core.road.scanlines.scanlines import Scanlines
+from lanewright.core.road.scanlines.section_planes import ScanlineSettings, scanlines_of
+from lanewright.core.road.scanlines.source import LayerScanlines, SurveyScanlines
 from lanewright.core.schemas import CURB_POINTS
 
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from lanewright.core.road.scanlines import Scanlines
-from lanewright.core.road.section_planes import ScanlineSettings, all_scanlines
+from lanewright.core.road.scanlines.scanlines import Scanlines
+from lanewright.core.road.scanlines.section_planes import ScanlineSettings, all_scanlines
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 from lanewright.core.survey.survey import open_survey
 

@@ -5,9 +5,9 @@ import os
 import numpy as np
 import pytest
 from lanewright.core.road.edges import fit_road_edges
-from lanewright.core.road.scanline_boundaries import curbs_from_scanlines
-from lanewright.core.road.scanline_source import SurveyScanlines
-from lanewright.core.road.section_planes import ScanlineSettings
+from lanewright.core.road.scanlines.boundaries import curbs_from_scanlines
+from lanewright.core.road.scanlines.section_planes import ScanlineSettings
+from lanewright.core.road.scanlines.source import SurveyScanlines
 from lanewright.core.survey.scan_lattice import find_lattice
 from scanned_streets import CURB, driven, scanned, survey_of
 

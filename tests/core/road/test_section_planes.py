@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from lanewright.core.errors import RoadExtractionError
-from lanewright.core.road.point_scanlines import point_scanlines
-from lanewright.core.road.scanlines import Scanlines
-from lanewright.core.road.section_planes import ScanlineSettings, all_scanlines, scanlines_of
+from lanewright.core.road.scanlines.point_scanlines import point_scanlines
+from lanewright.core.road.scanlines.scanlines import Scanlines
+from lanewright.core.road.scanlines.section_planes import ScanlineSettings, all_scanlines, scanlines_of
 from lanewright.core.survey.scan_lattice import find_lattice
 from scanned_streets import CURB, driven, scanned, survey_of
 

@@ -5,7 +5,7 @@ import pytest
 import shapely
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.features import Features
-from lanewright.core.road.surface import SurfaceSettings, extract_road_surface
+from lanewright.core.road.surface.extraction import SurfaceSettings, extract_road_surface
 from lanewright.core.schemas import ROAD_EDGES
 from lanewright.core.survey.points import SURVEY_POINT, to_units
 from lanewright.core.survey.road_frame import build_frame

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from lanewright.core.road.surface import Carriageway
-from lanewright.core.road.surface_cells import COLUMN, ROW, Cells
-from lanewright.core.road.surface_points import points_on_road
+from lanewright.core.road.surface.cells import COLUMN, ROW, Cells
+from lanewright.core.road.surface.extraction import Carriageway
+from lanewright.core.road.surface.points import points_on_road
 from lanewright.core.survey.columns import Columns
 from lanewright.core.survey.points import SURVEY_POINT, Points, to_units
 

@@ -9,7 +9,7 @@ import shapely
 from lanewright.core.assess.boundaries import assess_boundaries
 from lanewright.core.progress import Progress
 from lanewright.core.road.boundaries import BoundarySettings, draw_boundaries, find_curb_points
-from lanewright.core.road.scanline_source import SurveyScanlines
+from lanewright.core.road.scanlines.source import SurveyScanlines
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 from lanewright.core.survey.survey import open_survey
 

@@ -8,7 +8,7 @@ import shapely
 import shapely.affinity
 from lanewright.core.road.curbs import detect_curbs
 from lanewright.core.road.edges import fit_road_edges
-from lanewright.core.road.surface_limits import edge_offsets
+from lanewright.core.road.surface.limits import edge_offsets
 
 from .curbed_streets import EAST, NORTH, parked_car
 from .street_plans import LENGTH, scan, side_street, sidewalks, survey_along, with_points

@@ -14,21 +14,21 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from ..errors import RoadExtractionError
-from ..features import Features
-from ..parallel import in_order
-from ..progress import Progress
-from ..schemas import CURB_POINTS
-from .chains import choose_along, curb_chains, link_chains, long_enough
-from .curbs import END_STEPS, MERGE_ACROSS, MERGE_UP, VEHICLE_HALF, block_edges, block_numbers, hidden_points
-from .nearest_pass import name_passes
-from .profiles import LEAST_NOISE
-from .scanline_candidates import NEIGHBOURS, find_candidates, rows_filled
-from .scanline_corners import CurbCorners, corners_of, rows_along
-from .scanline_grid import height_grid
-from .scanline_samples import samples_near
-from .shadows import TALL, Sight
-from .sides import REACH, SECTION, SIDES, Track, expected_height
+from ...errors import RoadExtractionError
+from ...features import Features
+from ...parallel import in_order
+from ...progress import Progress
+from ...schemas import CURB_POINTS
+from ..curbs import END_STEPS, MERGE_ACROSS, MERGE_UP, VEHICLE_HALF, block_edges, block_numbers, hidden_points
+from ..nearest_pass import name_passes
+from ..profiles.chains import choose_along, curb_chains, link_chains, long_enough
+from ..profiles.profiles import LEAST_NOISE
+from ..profiles.shadows import TALL, Sight
+from ..profiles.sides import REACH, SECTION, SIDES, Track, expected_height
+from .candidates import NEIGHBOURS, find_candidates, rows_filled
+from .corners import CurbCorners, corners_of, rows_along
+from .grid import height_grid
+from .samples import samples_near
 
 MOST_NOISE = 0.005   # m: where planes scatter more, it is the ground that is rough, as verges are
 CORNER_BLOCK = 0.5   # m of road per corner where corners are asked for

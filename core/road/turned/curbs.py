@@ -10,15 +10,15 @@ import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
-from ..parallel import in_order
-from ..progress import Progress
-from ..survey.road_frame import CORRIDOR
-from .crowds import few_of_every_cell, mostly_uneven
+from ...parallel import in_order
+from ...progress import Progress
+from ...survey.road_frame import CORRIDOR
+from ..profiles.crowds import few_of_every_cell, mostly_uneven
+from ..profiles.sides import BESIDE, SIDES, ahead_of_vehicle, expected_height, sections_of
+from .kinds import like_a_curb, named_curbs
 from .plan_chains import joined_chains, trace_chains
 from .plan_steps import PlanSteps, measure_plan_steps
-from .sides import BESIDE, SIDES, ahead_of_vehicle, expected_height, sections_of
 from .step_raster import CELL, averaged, driven_ground, falls_again, ground_raster, ground_slopes, step_places
-from .turned_kinds import like_a_curb, named_curbs
 
 KINDS = {"main": "of the road's own", "corner": "of corners", "side_street": "of side streets", "island": "of islands"}
 OPENING = 6.0        # m without main curb that are an opening and no driveway

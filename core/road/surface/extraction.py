@@ -4,21 +4,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import RoadExtractionError
-from ..features import Features
-from ..parallel import in_order
-from ..progress import Progress
-from ..schemas import ROAD_SURFACE
-from ..survey.points import UNIT
-from ..survey.road_frame import CORRIDOR
-from ..survey.road_points import RoadPoints
+from ...errors import RoadExtractionError
+from ...features import Features
+from ...parallel import in_order
+from ...progress import Progress
+from ...schemas import ROAD_SURFACE
+from ...survey.points import UNIT
+from ...survey.road_frame import CORRIDOR
+from ...survey.road_points import RoadPoints
+from .cells import ROW, Cells, ground_cells
 from .cover import SQUARE, covered
-from .surface_cells import ROW, Cells, ground_cells
-from .surface_growth import follow_road, smooth_road
-from .surface_limits import edge_offsets
-from .surface_outline import add_outlines
-from .surface_points import points_on_road
-from .surface_verge import Profiles, grown_offsets
+from .growth import follow_road, smooth_road
+from .limits import edge_offsets
+from .outline import add_outlines
+from .points import points_on_road
+from .verge import Profiles, grown_offsets
 
 WINDOW_ROWS = 10      # rows of cells made at a time: 5 m
 TOLERANCE_FLOOR = 0.03  # m

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .corners import Steps
-from .scanline_planes import SIGMAS, fit_planes
+from ..profiles.corners import Steps
+from .planes import SIGMAS, fit_planes
 
 MOST_ROAD, MOST_FACE = 96, 64  # vertices of road, and of raised ground, that give a plane; and of the face
 MOST_ROWS = 9         # scanlines of a neighbourhood; narrower intervals leave some out

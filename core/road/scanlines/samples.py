@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from .scanline_grid import DEPTH, FAR, SPACING, row_of_lines
+from .grid import DEPTH, FAR, SPACING, row_of_lines
 
 UPRIGHT = 2.0       # m that a metre of height counts as, so that low faces keep vertices enough
 CELL = 0.10         # m across: the grain in which places are marked

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import gaussian_filter1d, uniform_filter1d
 
-from .surface_cells import COLUMN, ROW, known_median
+from .cells import COLUMN, ROW, known_median
 
 STEP = 0.035          # m off the height that the road promised: a curb, a car, an island
 NOISE = 2.0           # times the error of a cell's height on top

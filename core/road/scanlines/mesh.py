@@ -10,8 +10,8 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from ..survey.points import UNIT, chosen
-from ..survey.scan_lattice import time_order
+from ...survey.points import UNIT, chosen
+from ...survey.scan_lattice import time_order
 
 SLOW = 0.01          # m of driving between lines: nearer ones, of a vehicle that waits, tell nothing new
 LONGEST_RIB = 0.30   # m, or LINES_AHEAD times what was driven during a turn where that is more

@@ -8,10 +8,10 @@ stands above the ground is kept as lines of its own, for it tells what hides a c
 
 import numpy as np
 
-from .profiles import pseudo_scan_lines
-from .scanline_chains import increasing
+from ..profiles.profiles import pseudo_scan_lines
+from ..profiles.sides import expected_height
+from .chains import increasing
 from .scanlines import Scanlines
-from .sides import expected_height
 
 SPACING = 0.02      # m across between vertices
 UPWARD = 0.01       # m of height between them where the ground is steep

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import RoadExtractionError
-from ..survey.points import UNIT
+from ...errors import RoadExtractionError
+from ...survey.points import UNIT
 
 EXTRA = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", None), ("scanner", "uint8", "Scanner", None),
          ("station_m", "int32", "Station along the road", UNIT), ("offset_m", "int32", "Offset, left positive", UNIT)]
@@ -65,7 +65,7 @@ class ResampledPoints:
                                    **({} if scale is None else dict(scales=np.array([scale]), offsets=np.array([0.0]))))
             for name, kind, text, scale in EXTRA])
         if crs:
-            from ..survey.crs import parse_crs
+            from ...survey.crs import parse_crs
 
             self._header.add_crs(parse_crs(crs))
         suffix = ".las" if self.path.lower().endswith(".las") else ".laz"

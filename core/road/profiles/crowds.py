@@ -6,7 +6,7 @@ hedge, and whatever a noisy scanner saw, keep theirs.
 
 import numpy as np
 
-from ..survey.points import UNIT
+from ...survey.points import UNIT
 
 FEW = 12          # points of a cell that tell level ground
 LEVEL = 0.008     # m, standard deviation of heights in a cell that is level, on a road that climbs as on one that does not

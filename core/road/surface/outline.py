@@ -3,7 +3,7 @@
 import numpy as np
 import shapely
 
-from .surface_cells import COLUMN, ROW
+from .cells import COLUMN, ROW
 
 SHORTEST = 5.0  # m: a shorter change of status is not drawn
 

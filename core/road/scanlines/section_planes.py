@@ -13,15 +13,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import RoadExtractionError
-from ..parallel import in_order
-from ..progress import Progress
-from ..survey.scan_lattice import find_lattice, scanner_runs
+from ...errors import RoadExtractionError
+from ...parallel import in_order
+from ...progress import Progress
+from ...survey.scan_lattice import find_lattice, scanner_runs
+from ..profiles.sides import SECTION
+from .chains import PlaneVertices, increasing, plane_order
 from .mesh import LINES_AHEAD, LONGEST_EDGE, LONGEST_RIB, Ribs, ribs_of, scan_lines, slanting_edges
 from .point_scanlines import LEAST_SLICE, point_scanlines
-from .scanline_chains import PlaneVertices, increasing, plane_order
 from .scanlines import Scanlines
-from .sides import SECTION
 
 FEWEST = 2  # vertices of a line
 

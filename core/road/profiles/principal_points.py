@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from ..features import Features
-from ..parallel import in_order
-from ..progress import Progress
-from ..schemas import HEIGHT, OFFSET, PASS, ROAD, SIDE, STATION
+from ...features import Features
+from ...parallel import in_order
+from ...progress import Progress
+from ...schemas import HEIGHT, OFFSET, PASS, ROAD, SIDE, STATION
 from .sides import SIDES, Track, expected_height, profiles_beside, sections_of
 
 PRINCIPAL_POINTS = [ROAD, PASS, SIDE, STATION, OFFSET, HEIGHT]

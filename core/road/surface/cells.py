@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..survey.points import UNIT
-from ..survey.sorting import order_by
+from ...survey.points import UNIT
+from ...survey.sorting import order_by
 
 ROW, COLUMN = 0.5, 0.25   # m along and across the road
 LAYER_JUMP = 0.06         # m between two layers: ground below, a car's sill above

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from ..errors import RoadExtractionError
-from ..line_spool import LineSpool, coordinates_of
-from ..progress import Progress
-from ..schemas import SCANLINES
-from ..survey.scan_lattice import find_lattice
+from ...errors import RoadExtractionError
+from ...progress import Progress
+from ...schemas import SCANLINES
+from ...survey.scan_lattice import find_lattice
 from .scanlines import Scanlines
 from .section_planes import ScanlineSettings, all_scanlines
+from .spool import LineSpool, coordinates_of
 
 SHORTEST = 0.10    # m: pieces of leaves and railings are left out of the layer
 
@@ -93,7 +93,7 @@ def scanlines_from_features(features, frame):
 
     Parameters
     ----------
-    features : geometries LineStringZM as WKB (see line_spool) with the fields SCANLINES
+    features : geometries LineStringZM as WKB (see spool) with the fields SCANLINES
     frame : RoadFrame
 
     Returns

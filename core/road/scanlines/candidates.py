@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from .corners import CLEARANCE, ROAD_SIDE, STEEPEST_ROAD
-from .scanline_grid import FAR, SPACING
+from ..profiles.corners import CLEARANCE, ROAD_SIDE, STEEPEST_ROAD
+from .grid import FAR, SPACING
 
 LOWEST = 0.7         # share of MIN_HEIGHT that a rise must show before its planes measure it
 ROUGH_SHARE = 0.4    # of a rise at most that the road before it scatters

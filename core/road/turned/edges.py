@@ -4,8 +4,8 @@ import numpy as np
 import shapely
 from scipy.interpolate import Akima1DInterpolator
 
-from ..schemas import of_main_curb
-from .layers import expand
+from ...schemas import of_main_curb
+from ..profiles.layers import expand
 
 VERTEX = 0.25     # m between vertices: the nose of an island has a radius below a metre
 CONNECT = 2.5     # m from a main edge's end within which a corner begins there

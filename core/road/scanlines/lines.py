@@ -3,12 +3,12 @@
 import numpy as np
 import shapely
 
-from ..features import Features
-from ..progress import Progress
-from ..schemas import ROAD_EDGES
-from .edges import HIDDEN_SHARE, HIDDEN_STEP, SHARPEST, SHORTEST, STEP_ACROSS, VERTEX, EdgeCurve, without_outliers
-from .nearest_pass import name_passes
-from .sides import SIDES
+from ...features import Features
+from ...progress import Progress
+from ...schemas import ROAD_EDGES
+from ..edges import HIDDEN_SHARE, HIDDEN_STEP, SHARPEST, SHORTEST, STEP_ACROSS, VERTEX, EdgeCurve, without_outliers
+from ..nearest_pass import name_passes
+from ..profiles.sides import SIDES
 
 MEASURED_GAP = 1.0   # m between corners that follow on each other; wider gaps are joined, but not measured
 

@@ -8,7 +8,7 @@ look like is not the road's own.
 import numpy as np
 from scipy import ndimage
 
-from ..survey.points import UNIT
+from ...survey.points import UNIT
 
 LOW, HIGH = 0.25, 2.0   # m above the road: curbs and stray points end below, signs and branches begin above
 SQUARE = 0.20           # m

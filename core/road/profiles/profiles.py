@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..survey.sorting import order_by, thinned
+from ...survey.sorting import order_by, thinned
 from .layers import lowest_layers
 
 MOST = 60           # points of a cell that are looked at: more hardly tell its layers better

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from .chains import ROUGH_ROAD
+from ..profiles.chains import ROUGH_ROAD
+from ..profiles.sides import SIDES
 from .plan_chains import CONNECT, groups_in_line
 from .plan_steps import PlanSteps
-from .sides import SIDES
 
 SHORTEST = 1.0       # m of a line
 DENSEST = 0.6        # m between the steps of a line, on average, at most: scan lines lie apart

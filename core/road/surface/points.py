@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..survey.points import UNIT
+from ...survey.points import UNIT
+from .cells import AT_ONCE, COLUMN, ROW
 from .cover import HIGH, LOW
-from .surface_cells import AT_ONCE, COLUMN, ROW
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .surface_cells import ground_cells, known_median
+from .cells import ground_cells, known_median
 
 ALONG, ACROSS = 1.0, 0.1   # m, cells of the profile across the side
 STRETCH = 5                # rows that make one profile: 5 m

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from ..survey.sorting import order_by
-from .layers import lowest_layers
+from ...survey.sorting import order_by
+from ..profiles.layers import lowest_layers
 
 CELL = 0.10          # m
 BELOW, ABOVE = 1.0, 1.0  # m about the expected road within which ground is sought

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from ..errors import RoadExtractionError
-from ..progress import Progress
-from ..survey.scan_lattice import find_lattice
-from ..survey.sensor_height import DEFAULT_HEIGHT, height_above
-from .scanline_grid import FAR
+from ...errors import RoadExtractionError
+from ...progress import Progress
+from ...survey.scan_lattice import find_lattice
+from ...survey.sensor_height import DEFAULT_HEIGHT, height_above
+from .grid import FAR
 from .section_planes import ScanlineSettings, runs_of
 
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from .corners import BEHIND, CLEARANCE, ROAD_SIDE, NearSteps
-from .layers import expand
+from ..profiles.corners import BEHIND, CLEARANCE, ROAD_SIDE, NearSteps
+from ..profiles.layers import expand
 from .step_raster import CELL
 
 SHORT, LONG = 0.30, 0.90  # m either way along the curb of the points that tell one step: dense scans, sparse ones

@@ -1,0 +1,1 @@
+"""The road surface: its points, its outline, and what stands on it."""

@@ -1,0 +1,1 @@
+"""Curbs that turn away from the road: corners, side streets, islands, found in the plan."""
