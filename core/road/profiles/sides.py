@@ -59,6 +59,8 @@ def profiles_beside(survey, road, section, tracks, settings, most=FEW):
     runs, tall = {}, {}
     for part in few_of_every_cell(survey, road, section, width, spacing, most):
         s, d = part.s, part.d
+        if not len(s):
+            continue
         along = ahead_of_vehicle(survey, part, s)
         near = np.abs(along) < BESIDE + np.abs(d)
         h = part.z - expected_height(survey, road, s)
