@@ -150,6 +150,8 @@ def columns_from_numbers(values, path):
     values = values[np.isfinite(values).sum(axis=1) >= 3]
     sample = values[:20000]
     count = sample.shape[1]
+    if not len(sample):
+        raise _not_told_apart(path, count)
     time = _time_column(sample) if count > 3 else None
     others = [k for k in range(count) if k != time and not _is_counter(sample[:, k]) and np.isfinite(sample[:, k]).mean() > 0.9]
     plane, heading = _plane(sample, time, others)

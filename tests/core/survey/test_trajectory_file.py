@@ -327,3 +327,11 @@ def test_one_row_without_names_is_refused_in_one_sentence(tmp_path):
     path.write_text("318204000.0,500000.0,5400000.0,102.0,0.1,0.2,90.0\n")
     with pytest.raises(RoadExtractionError, match="one.csv"):
         read_trajectory(path)
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_rows_that_hold_no_numbers_at_all_are_refused_in_one_sentence(tmp_path):
+    path = tmp_path / "none.csv"
+    path.write_text("1e999,nan,inf,nan\n" * 5)
+    with pytest.raises(RoadExtractionError, match="none.csv"):
+        read_trajectory(path)
