@@ -1,12 +1,10 @@
 """Road points as a LAZ file: what a later stage must know travels in extra fields."""
 
-import os
-from pathlib import Path
-
 import numpy as np
 
 from ..errors import RoadExtractionError
 from ..progress import Progress
+from .new_laz import new_laz
 from .point_cloud import BLOCK, open_cloud, read_blocks
 from .points import ROAD_POINT, UNIT
 from .road_points import RoadPoints
@@ -30,23 +28,12 @@ def write_road_points(road_points, path, progress=Progress()):
 
     `path` ends in .laz or .las. Raises RoadExtractionError where it cannot be written.
     """
-    import laspy
-
-    header = _header(road_points)
-    path = str(path)
-    suffix = ".las" if path.lower().endswith(".las") else ".laz"
-    unfinished = f"{path}.unfinished{suffix}"
     sections = road_points.all_sections()
-    try:
-        with laspy.open(unfinished, mode="w", header=header, do_compress=suffix == ".laz") as writer:
-            for k, (road, number) in enumerate(sections):
-                writer.write_points(_record(road_points, road, number, header))
-                progress.at((k + 1) / len(sections))
-        os.replace(unfinished, path)
-    except (OSError, RuntimeError) as problem:  # lazrs raises RuntimeErrors
-        raise RoadExtractionError(f"{path} cannot be written ({problem}). Choose another folder or free its space.") from problem
-    finally:
-        Path(unfinished).unlink(missing_ok=True)
+    header = _header(road_points)
+    with new_laz(path, header) as writer:
+        for k, (road, number) in enumerate(sections):
+            writer.write_points(_record(road_points, road, number, header))
+            progress.at((k + 1) / len(sections))
 
 
 def _header(road_points):

@@ -14,7 +14,7 @@ from .prepare import prepare
 MEASURES = {
     "prepare": prepare, "cancel": cancel.cancel,
     "read": ours.read,
-    "placing": ours.placing,
+    "placing": ours.placing, "storing": ours.storing,
     "profiles": lambda size: chain.run("dense", size),
     "las": lambda size: chain.run("dense", size, suffix="las"),
     "both": lambda size: chain.run("dense", size, "both"),
@@ -26,7 +26,7 @@ MEASURES = {
     "clusters_ours": ours.clusters_ours, "clusters_pcl": theirs.clusters_pcl, "clusters_open3d": theirs.clusters_open3d,
 }
 ONE_THREAD = ("sor_", "clusters_")   # PCL has no more, so nobody gets more
-PARTS = dict(stages=("read", "placing", "profiles", "las", "both", "scanlines"), memory=("profiles", "short", "tiles"),
+PARTS = dict(stages=("read", "placing", "storing", "profiles", "las", "both", "scanlines"), memory=("profiles", "short", "tiles"),
              image=("image_ours", "image_gdal"), outliers=("sor_ours", "sor_pcl", "sor_open3d"),
              clusters=("clusters_ours", "clusters_pcl", "clusters_open3d"), cancel=("cancel",))
 LATER = ("cancel",)  # takes longer than all the others together, so it runs where it is asked for

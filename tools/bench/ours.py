@@ -43,6 +43,29 @@ def read(size):
 
 
 def placing(size):
+    """Station and offset of points that are decoded already, from their raw coordinates and times."""
+    from lanewright.core.parallel import in_order
+    from lanewright.core.survey import reading
+    from lanewright.core.survey.placing import Placing
+    from lanewright.core.survey.point_cloud import BLOCK, read_blocks
+    from lanewright.core.survey.road_frame import CORRIDOR, build_frame
+    from lanewright.core.survey.trajectory_file import read_trajectory
+
+    blocks = [block for path in clouds_of("dense", size) for block in read_blocks(str(path), BLOCK, reading.LAYERS)]
+    frame = build_frame(read_trajectory(trajectory_of("dense", size)))
+
+    def place(block):
+        x, y = (block.array[name] * scale + (offset - origin)
+                for name, scale, offset, origin in zip("XY", block.scales, block.offsets, frame.origin))
+        _, _, d = places.place(x, y, np.ascontiguousarray(block.array["gps_time"]))
+        return int(np.isfinite(d).sum())
+
+    places = Placing(frame, CORRIDOR)
+    points, seconds = timed(lambda: sum(in_order(place, blocks)))
+    return dict(seconds, points=points)
+
+
+def storing(size):
     """Points that are decoded already into the sections of the road frame, ready for the next stage."""
     from lanewright.core.survey import reading
     from lanewright.core.survey.point_cloud import BLOCK, read_blocks

@@ -141,7 +141,7 @@ def _memory(rounds):
         if found:
             rows.append([title, f"{found[0]['points'] / 1e6:.1f}", f"{found[0]['length']:.0f}", _spread([f["peak"] for f in found], 0)])
     return rows and ("## Memory\n\nThe highest resident memory of the process, Python and its libraries included. Each store of points keeps up to "
-                     "128 MiB in memory and puts the rest into a temporary file, so that a short street does not fill what a long one fills.\n\n"
+                     "64 MiB in memory and puts the rest into a temporary file, so that a short street does not fill what a long one fills.\n\n"
                      + table(["street", "points (million)", "m", "peak (MiB)"], rows))
 
 

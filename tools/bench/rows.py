@@ -35,6 +35,7 @@ def _over(one, other, kind):
 READ = "× reading"
 ROWS = (
     Row("placing decoded points in the road frame", READ, 0.35, _against_reading("placing"), ("read", "placing")),
+    Row("the same, chosen, packed and stored by section", READ, None, _against_reading("storing"), ("read", "storing")),
     Row("profiles and curbs", READ, 0.4, _against_reading("profiles", ("curbs", "edges")), ("read", "profiles")),
     Row("normalized scanlines and boundaries on them, in memory", READ, 4.0, _against_reading("scanlines"), ("read", "scanlines")),
     Row("intensity image of 4 cm, 50 m of road", "× gdal_grid (invdistnn)", 0.25, _over("image_ours", "image_gdal", "wall"),

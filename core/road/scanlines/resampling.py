@@ -1,12 +1,11 @@
 """Evenly spaced points along normalized scanlines: a cloud as dense where the scanner was far as where it was near."""
 
-import os
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from ...errors import RoadExtractionError
+from ...survey.new_laz import new_laz
 from ...survey.points import UNIT
 
 EXTRA = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", None), ("scanner", "uint8", "Scanner", None),
@@ -68,17 +67,11 @@ class ResampledPoints:
             from ...survey.crs import parse_crs
 
             self._header.add_crs(parse_crs(crs))
-        suffix = ".las" if self.path.lower().endswith(".las") else ".laz"
-        self._unfinished = f"{self.path}.unfinished{suffix}"
         self.count = 0
 
     def __enter__(self):
-        import laspy
-
-        try:
-            self._writer = laspy.open(self._unfinished, mode="w", header=self._header, do_compress=self._unfinished.endswith(".laz"))
-        except OSError as problem:
-            raise self._cannot(problem) from problem
+        self._file = new_laz(self.path, self._header)
+        self._writer = self._file.__enter__()
         return self
 
     def add(self, lines, frame, road):
@@ -98,22 +91,8 @@ class ResampledPoints:
         out["point_source_id"] = lines.scanner[line] + 1
         out.array["road"], out.array["pass"], out.array["scanner"] = road, lines.pass_number[line], lines.scanner[line]
         out.array["station_m"], out.array["offset_m"] = np.rint(s / UNIT), np.rint(d / UNIT)
-        try:
-            self._writer.write_points(out)
-        except (OSError, RuntimeError) as problem:  # lazrs raises RuntimeErrors
-            raise self._cannot(problem) from problem
+        self._writer.write_points(out)
         self.count += len(line)
 
-    def __exit__(self, kind, problem, trace):
-        try:
-            self._writer.close()
-            if kind is None:
-                os.replace(self._unfinished, self.path)
-        except (OSError, RuntimeError) as failed:
-            if kind is None:
-                raise self._cannot(failed) from failed
-        finally:
-            Path(self._unfinished).unlink(missing_ok=True)
-
-    def _cannot(self, problem):
-        return RoadExtractionError(f"{self.path} cannot be written ({problem}). Choose another folder or free its space.")
+    def __exit__(self, *problem):
+        return self._file.__exit__(*problem)
