@@ -207,12 +207,7 @@ def _block_points(steps, edges, chain):
     """One point per block from the steps of a chain: their line, read at the middle of what was seen."""
     if not len(steps):
         return []
-    block = block_numbers(steps, edges)
-    # a chain's ends stand for themselves, not for the middle of their blocks
-    if len(steps) > 2 * END_STEPS:
-        block[:END_STEPS] = block[0] - 1
-        block[-END_STEPS:] = block[-1] + 1
-    names, member = np.unique(block, return_inverse=True)
+    names, member = np.unique(block_numbers(steps, edges), return_inverse=True)
     n = np.bincount(member)
 
     def mean(v):
@@ -227,7 +222,7 @@ def _block_points(steps, edges, chain):
 
 
 def block_numbers(steps, edges):
-    """(M,) number of the block of each step, even numbers; blocks in which the curb bends are cut in four."""
+    """(M,) number of the block of each step of a chain; blocks in which the curb bends are cut in four, and the ends are their own."""
     block = np.searchsorted(edges, steps.s, side="right")
     names, member = np.unique(block, return_inverse=True)
     n = np.bincount(member)
@@ -237,7 +232,12 @@ def block_numbers(steps, edges):
     off = np.sqrt(np.bincount(member, (du - slope[member] * ds) ** 2) / n)
     start, length = edges[names - 1], np.diff(edges)[np.minimum(names, len(edges) - 1) - 1]
     quarter = np.clip(np.floor(4 * (steps.s - start[member]) / length[member]), 0, 3).astype(np.int64)
-    return 8 * block + 2 * np.where(off[member] > BENT, quarter, 0)
+    block = 8 * block + 2 * np.where(off[member] > BENT, quarter, 0)  # even numbers, so that there is room for the ends
+    # a chain's ends stand for themselves, not for the middle of their blocks
+    if len(steps) > 2 * END_STEPS:
+        block[:END_STEPS] = block[0] - 1
+        block[-END_STEPS:] = block[-1] + 1
+    return block
 
 
 def hidden_points(measured, sight, track):

@@ -19,7 +19,7 @@ from ...features import Features
 from ...parallel import in_order
 from ...progress import Progress
 from ...schemas import CURB_POINTS
-from ..curbs import END_STEPS, MERGE_ACROSS, MERGE_UP, VEHICLE_HALF, block_edges, block_numbers, hidden_points
+from ..curbs import MERGE_ACROSS, MERGE_UP, VEHICLE_HALF, block_edges, block_numbers, hidden_points
 from ..nearest_pass import name_passes
 from ..profiles.chains import choose_along, curb_chains, link_chains, long_enough
 from ..profiles.profiles import LEAST_NOISE
@@ -230,12 +230,7 @@ def _block_points(corners, edges, chain):
     """A bottom and a top corner per block from those of a chain: their means."""
     if not len(corners):
         return []
-    block = block_numbers(corners, edges)
-    # a chain's ends stand for themselves, not for the middle of their blocks
-    if len(corners) > 2 * END_STEPS:
-        block[:END_STEPS] = block[0] - 1
-        block[-END_STEPS:] = block[-1] + 1
-    names, member = np.unique(block, return_inverse=True)
+    names, member = np.unique(block_numbers(corners, edges), return_inverse=True)
     n = np.bincount(member)
     mean = {name: np.bincount(member, getattr(corners, name)) / n for name in ("s", "u", "h", "top_u", "top_h", "height")}
     off = corners.u - np.interp(corners.s, mean["s"], mean["u"])
