@@ -160,9 +160,13 @@ def read_points(reader, path, first, count):
 
     points = told(read, path, promised, first)
     if len(points) < min(count, promised - first):
-        raise RoadExtractionError(
-            f"{path} is cut off: its header promises {promised} points, {first + len(points)} are there. Copy or export the file again.")
+        raise cut_off(path, promised, first + len(points))
     return points
+
+
+def cut_off(path, promised, found):
+    """The error of a file that ends before its last point."""
+    return RoadExtractionError(f"{path} is cut off: its header promises {promised} points, {found} are there. Copy or export the file again.")
 
 
 def told(read, path, promised, first):

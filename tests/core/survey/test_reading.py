@@ -43,7 +43,7 @@ def test_blocks_asked_for_in_any_order_by_several_threads_are_the_file(tmp_path,
     with CloudReaders() as readers, ThreadPoolExecutor(3) as pool:
         loads = list(readers.blocks([file, file], size))
         order = np.random.default_rng(size).permutation(len(loads))
-        found = dict(zip(order.tolist(), pool.map(lambda k: loads[k]().array, order)))
+        found = dict(zip(order.tolist(), pool.map(lambda k: loads[k]().array.copy(), order)))
     read = np.concatenate([found[k] for k in range(len(loads))])
     for name in ("X", "Y", "Z", "gps_time"):
         np.testing.assert_array_equal(read[name], np.tile(whole[name], 2))
