@@ -14,6 +14,8 @@ UNEVEN = 60       # points of any other cell: more hardly tell its layers better
 TOLD, MOSTLY = 4, 0.7  # points of a cell that tell whether it is level, and share of points in cells that are not
 TOGETHER = 5.0    # m of road that are read at once
 PIECE = 256_000   # points that are looked through at once
+RARELY = 0.5      # share of points in crowded cells below which the others are not looked at
+EXACT = 1e-6      # 0.1 mm: bounds between profiles are whole numbers of it but for rounding
 LOTS = tuple(np.uint32(odd) for odd in (2654435761, 2246822519, 3266489917))  # large odd factors strew neighbours far apart
 FARTHEST = (1 << 18) - 1  # 0.1 mm from the reference line; what lies beyond is as if it lay there
 
@@ -66,9 +68,15 @@ def _thinned(s, d, z, width, spacing, most):
         return np.arange(len(s))
     cell = _cells(s, d, width, spacing)
     held = np.bincount(cell)
-    if held.max() <= most:
+    crowded = held > most
+    if not crowded.any():
         return np.arange(len(s))
-    share = np.minimum(np.where(_level(cell, held, z), most, UNEVEN) * (65536.0 / np.maximum(held, 1)), 65535.0).astype(np.uint16)
+    if held[crowded].sum() < RARELY * len(s):
+        own = np.flatnonzero(crowded.take(cell))
+        level = _level(cell.take(own), held, z.take(own))
+    else:
+        level = _level(cell, held, z)
+    share = np.minimum(np.where(level, most, UNEVEN) * (65536.0 / np.maximum(held, 1)), 65535.0).astype(np.uint16)
     return np.flatnonzero(_by_lot(s, np.abs(d)) <= share.take(cell))
 
 
@@ -84,26 +92,30 @@ def mostly_uneven(survey, road, profile, width, spacing):
 
 
 def _cells(s, d, width, spacing):
-    """(N,) number of the cell of each point."""
+    """(N,) number of the cell of each point; stations s (ascending) and offsets d in 0.1 mm."""
     bits = int(np.rint(np.log2(spacing / UNIT)))
     half = (FARTHEST >> bits) + 1
+    # stations ascend, so profiles are runs of points; bounds lie off the whole units
+    first, last = (int(np.floor((int(end) + 0.5) * UNIT / width)) for end in (s[0], s[-1]))
+    cuts = np.searchsorted(s, np.ceil(np.arange(first + 1, last + 1) * (width / UNIT) - 0.5 - EXACT).astype(np.int32)).tolist()
     # the two sides of a road are parted alike
-    cell = np.minimum(np.abs(d), FARTHEST)
+    cell = np.abs(d)
+    np.minimum(cell, FARTHEST, out=cell)
     cell >>= bits
-    cell += (d < 0) * np.int32(half)
-    profile = s + 0.5  # off the bounds between profiles, which are whole units
-    profile *= UNIT / width
-    np.floor(profile, out=profile)
-    profile -= profile[0]
-    profile *= 2 * half
-    profile += cell
-    return profile.astype(np.intp)
+    side = d >> 31
+    side &= half
+    cell += side
+    for k, (start, end) in enumerate(zip([0, *cuts], [*cuts, len(s)])):
+        cell[start:end] += np.int32(2 * half * k)
+    return cell.astype(np.intp)
 
 
 def _level(cell, held, z):
-    """(C,) bool: is the ground of each cell level?"""
+    """(C,) bool: is the ground of each cell level? Told for those of which all points are among (N,) cell and z."""
     z = z.astype(float)
-    total, squares = np.bincount(cell, z), np.bincount(cell, z * z)
+    total = np.bincount(cell, z, len(held))
+    z *= z
+    squares = np.bincount(cell, z, len(held))
     return squares - total * total / np.maximum(held, 1) <= held * (LEVEL / UNIT) ** 2
 
 

@@ -73,14 +73,16 @@ def road_before(low, spacing):
     there = np.isfinite(low)
     value = np.where(there, low, 0.0)
     c = np.arange(cells) * spacing
+    u = there * c
+    # running sums, before the first cell and as far as a window reaches back 0
+    total = np.zeros((rows, reach + skip + cells))
 
     def window(terms):
-        total = np.concatenate([np.zeros((rows, 1)), np.cumsum(terms, axis=1)], axis=1)
-        last = np.clip(np.arange(cells) - skip + 1, 0, cells)
-        return total[:, last] - total[:, np.clip(last - reach, 0, cells)]
+        np.cumsum(terms, axis=1, out=total[:, reach + skip:])
+        return total[:, reach:reach + cells] - total[:, :cells]
 
-    n, su, sz = window(there * 1.0), window(there * c), window(value)
-    suu, suz, szz = window(there * c * c), window(value * c), window(value * value)
+    n, su, sz = window(there), window(u), window(value)
+    suz, suu, szz = window(value * u), window(np.multiply(u, u, out=u)), window(np.multiply(value, value, out=value))
     with np.errstate(all="ignore"):
         mu, mz = su / n, sz / n
         vuu, vuz, vzz = suu / n - mu * mu, suz / n - mu * mz, szz / n - mz * mz

@@ -191,11 +191,16 @@ def _steps_of_section(survey, road, section, limits, known, barrier, settings, f
     slopes = ground_slopes(raster.low)
     driven, stepped = driven_ground(raster, slopes, *_track(survey, road, first, last), [v[inner] for v in place[:2]], *barrier,
                                     settings.min_height)
-    x, y, nx, ny = step_places(raster, slopes, driven, stepped, settings.min_height, settings.max_height)
-    own, _ = line.locate(x, y)
-    fresh = (own >= start) & (own < end)
-    if known.n and len(x):
-        fresh &= known.query(np.c_[x, y])[0] > ON_MAIN
+
+    def wanted(x, y):
+        own, _ = line.locate(x, y)
+        fresh = (own >= start) & (own < end)
+        if known.n and len(x):
+            fresh &= known.query(np.c_[x, y])[0] > ON_MAIN
+        return fresh
+
+    x, y, nx, ny = step_places(raster, slopes, driven, stepped, settings.min_height, settings.max_height, wanted)
+    fresh = wanted(x, y)
     if not fresh.any():
         return None
     views = _averaged_views(raster, place, along, settings.layer_jump) if noisy else [raster]

@@ -7,8 +7,8 @@ ground that is connected with the driven track ends at a rise.
 
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
-from scipy import ndimage
 
 from ...survey.sorting import order_by
 from ..profiles.layers import lowest_layers
@@ -16,6 +16,7 @@ from ..profiles.layers import lowest_layers
 CELL = 0.10          # m
 BELOW, ABOVE = 1.0, 1.0  # m about the expected road within which ground is sought
 FINE_CELL = 0.05     # m, cells whose points are averaged for a noisy scanner
+NOWHERE = 1e6        # m, farther up and down than any ground
 UNEVEN = 0.7         # share of the least step that level ground may differ within WINDOW cells
 WINDOW = 5           # cells, a square of which is looked at together
 BLOCK, BLOCKS = 5, 5  # cells a side of a block, and blocks a side of the window, that tell the slope of the ground
@@ -75,7 +76,7 @@ class GroundRaster:
         near = np.zeros(self.low.shape, np.uint8)
         near[self.inside(x, y)] = 1
         cells = 2 * int(np.ceil(reach / CELL)) + 1
-        near = ndimage.maximum_filter(near, cells).ravel().view(bool)
+        near = cv2.dilate(near, np.ones((cells, cells), np.uint8)).ravel().view(bool)
         own = np.flatnonzero(near.take(self.place))
         order = own.take(order_by(self.place.take(own)))
         count = np.bincount(self.place.take(order), minlength=self.low.size)
@@ -201,34 +202,52 @@ def driven_ground(raster, slopes, track_x, track_y, inner, barrier_x, barrier_y,
     stepped : (rows, columns) bool, occupied cells in whose neighbourhood the ground rises more than its slope says
     """
     there = np.isfinite(raster.low)
-    span = ndimage.maximum_filter(np.where(there, raster.low, -np.inf), WINDOW) \
-        - ndimage.minimum_filter(np.where(there, raster.low, np.inf), WINDOW)
+    window = np.ones((WINDOW, WINDOW), np.uint8)
+    span = cv2.dilate(np.where(there, raster.low, -NOWHERE), window) - cv2.erode(np.where(there, raster.low, NOWHERE), window)
     level = span <= UNEVEN * least + (np.abs(slopes[0]) + np.abs(slopes[1])) * (WINDOW - 1) * CELL
-    passable = level & ndimage.binary_dilation(there, iterations=EMPTY_REACH)
+    passable = level & _grown(there, _diamond(EMPTY_REACH))
     barrier = np.zeros(there.shape, bool)
     barrier[raster.inside(barrier_x, barrier_y)] = True
-    passable &= ~ndimage.binary_dilation(barrier, np.ones((3, 3)))
-    label, _ = ndimage.label(passable)
+    passable &= ~_grown(barrier, np.ones((3, 3), np.uint8))
+    count, label = cv2.connectedComponents(passable.view(np.uint8), connectivity=4)
     track = np.zeros(there.shape, bool)
     track[raster.inside(track_x, track_y)] = True
-    track = ndimage.binary_dilation(track, iterations=int(round(TRACK_HALF / CELL)))
+    track = _grown(track, _diamond(int(round(TRACK_HALF / CELL))))
     track[raster.inside(*inner)] = True
-    wanted = np.zeros(label.max() + 1, bool)
+    wanted = np.zeros(count, bool)
     wanted[label[track & passable]] = True
     wanted[0] = False
     return wanted[label], there & ~level
 
 
-def step_places(raster, slopes, driven, stepped, least, highest):
+def _grown(mask, about):
+    """(rows, columns) bool: is a cell of the mask among those about each one?"""
+    return cv2.dilate(mask.view(np.uint8), about).view(bool)
+
+
+def _diamond(reach):
+    """Cells up to `reach` away, counted along rows and columns."""
+    away = np.abs(np.arange(-reach, reach + 1))
+    return (away[:, None] + away <= reach).astype(np.uint8)
+
+
+def step_places(raster, slopes, driven, stepped, least, highest, wanted=None):
     """Where the ground rises beside driven ground: place and direction, one for every 0.2 m square at most.
+
+    wanted : function, local x, y -> bool: squares without such a cell may be left out
 
     Returns
     -------
     x, y : (M,) local metres
     nx, ny : (M,) unit vector uphill
     """
-    beside = ndimage.binary_dilation(driven, iterations=BESIDE_ROAD)
+    beside = _grown(driven, _diamond(BESIDE_ROAD))
     row, column = np.nonzero(stepped & beside)
+    if wanted is not None:
+        x, y = raster.middle(row, column)
+        _, square = np.unique(_squares(x, y), return_inverse=True)
+        own = np.flatnonzero(np.bincount(square, wanted(x, y))[square])
+        row, column = row[own], column[own]
     padded = np.pad(raster.low, ABOUT, constant_values=np.nan)
     reach = np.arange(-ABOUT, ABOUT + 1)
     down, along = (v.ravel() for v in np.meshgrid(reach, reach, indexing="ij"))
@@ -274,9 +293,14 @@ def _mean(values, mask):
 
 def _one_of_each_square(x, y, cost):
     """Indices of the cheapest place of every square of two cells, squares in order."""
-    key = np.floor(y / (2 * CELL)).astype(np.int64) * 10_000_000 + np.floor(x / (2 * CELL)).astype(np.int64)
+    key = _squares(x, y)
     order = np.lexsort((cost, key))
     return order[np.r_[True, np.diff(key[order]) > 0][:len(order)]]
+
+
+def _squares(x, y):
+    """(N,) number of the square of two cells in which places lie."""
+    return np.floor(y / (2 * CELL)).astype(np.int64) * 10_000_000 + np.floor(x / (2 * CELL)).astype(np.int64)
 
 
 def falls_again(raster, lean, x, y, nx, ny, bottom, height, farthest):
