@@ -198,8 +198,8 @@ def _angles(columns, x, y, crs, unit, notes):
         x = x * np.cos(np.radians(np.nanmedian(y))) * 1.11e5
         y = y * 1.11e5
     heading = found["heading"]
-    if heading is not None and np.isfinite(heading).sum() > 2:
-        good = np.isfinite(x) & np.isfinite(y) & np.isfinite(heading)
+    good = np.isfinite(x) & np.isfinite(y) & np.isfinite(np.nan if heading is None else heading)
+    if good.sum() > 2:
         rows, course = driven_course(x[good], y[good])
         heading_there = heading[good][rows]
         if np.abs(heading[good]).max() > 2 * np.pi + 0.1:

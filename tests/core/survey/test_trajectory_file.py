@@ -335,3 +335,16 @@ def test_rows_that_hold_no_numbers_at_all_are_refused_in_one_sentence(tmp_path):
     path.write_text("1e999,nan,inf,nan\n" * 5)
     with pytest.raises(RoadExtractionError, match="none.csv"):
         read_trajectory(path)
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_headings_of_rows_without_a_place_say_nothing_of_their_unit(tmp_path):
+    """Three rows are whole in their heading, and none of them in its place."""
+    path = tmp_path / "drive.txt"
+    path.write_text("GPSTime\tEasting\tNorthing\tHeight\tRoll\tPitch\tYaw\n"
+                    "100.0\t500000.0\t50003\x820.0\t100.0\t0.1\t0.2\t90.0\n"
+                    "101.0\t}00015.2\t5000299.6\t100.0\t0.1\t0.2\t92.9\n"
+                    "102.0\t50m022.8\t5\xca00299.1\t100.0\t0.1\t0.2\t94.3\n", encoding="latin-1")
+    found = read_trajectory(path)
+    assert len(found) == 3 and np.isnan(found.x + found.y).all()
+    np.testing.assert_array_equal(found.heading, [90.0, 92.9, 94.3])
