@@ -20,8 +20,8 @@ bench: setup ## time and memory of every stage beside PCL, Open3D, GDAL and lasp
 accuracy: setup ## every method over surveys with truth (SURVEYS=folder; default: the sample scenes), into docs/accuracy.md
 	@tools/accuracy.sh $(if $(SURVEYS),--surveys "$(SURVEYS)")
 
-package: ## the zip for QGIS's plugin manager, into dist/
-	@tools/package.sh
+package: ## the zip for QGIS's plugin manager, into dist/ (for plugins.qgis.org: REPOSITORY=https://… EMAIL=…)
+	@REPOSITORY="$(REPOSITORY)" EMAIL="$(EMAIL)" HOMEPAGE="$(HOMEPAGE)" TRACKER="$(TRACKER)" tools/package.sh
 
 manual: setup ## the manual's pages from the algorithms' own texts, into docs/manual/
 	@tools/make_manual.sh

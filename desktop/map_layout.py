@@ -2,6 +2,7 @@
 
 from qgis.core import (
     Qgis,
+    QgsExpressionContextUtils,
     QgsGeometry,
     QgsLayoutItemLabel,
     QgsLayoutItemLegend,
@@ -12,11 +13,14 @@ from qgis.core import (
     QgsLayoutSize,
     QgsPrintLayout,
     QgsRectangle,
+    QgsRenderContext,
     QgsTextFormat,
 )
+from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QColor, QFont
 
-PAGE_WIDTH, HEADING, LEGEND = 400.0, 12.0, 34.0  # mm
+PAGE_WIDTH, HEADING = 400.0, 12.0  # mm
+LEGEND, ENTRY = 14.0, 6.6  # mm: titles and margins, each entry below a title
 MARGIN = 4.0  # m of ground around the road
 ARROW = 16.0  # mm
 NORTH_ARROW = ":/images/north_arrows/layout_default_north_arrow.svg"  # of QGIS itself
@@ -41,9 +45,9 @@ def road_map_layout(project, layers, title):
     layout = QgsPrintLayout(project)
     layout.initializeDefaults()
     layout.setName(title)
-    page(layout, map_height + HEADING + LEGEND)
+    page(layout, map_height + HEADING + legend_height(layers))
     chart = add_map(layout, layers, centre, angle, length, map_height)
-    add_heading(layout, title)
+    add_heading(layout, title, project.crs())
     add_legend(layout, chart, layers, HEADING + map_height)
     add_scale_bar(layout, chart, HEADING + map_height, length)
     add_north_arrow(layout, chart)
@@ -68,6 +72,20 @@ def lie_of_the_road(layers):
     return box.centroid().asPoint(), (angle + 90.0) % 180.0 - 90.0, width, height
 
 
+def legend_height(layers):
+    """mm that the longest column of the legend takes, with the classes there are."""
+    entries = [1]
+    for layer in layers:
+        if layer.type() == Qgis.LayerType.Vector and layer.isSpatial():
+            context = QgsRenderContext()
+            context.expressionContext().appendScopes(QgsExpressionContextUtils.globalProjectLayerScopes(layer))
+            renderer = layer.renderer().clone()
+            renderer.startRender(context, layer.fields())
+            entries.append(len(set().union(*(renderer.legendKeysForFeature(feature, context) for feature in layer.getFeatures()))))
+            renderer.stopRender(context)
+    return LEGEND + ENTRY * max(entries)
+
+
 def page(layout, height):
     layout.pageCollection().page(0).setPageSize(QgsLayoutSize(PAGE_WIDTH, height, Qgis.LayoutUnit.Millimeters))
 
@@ -90,14 +108,18 @@ def add_map(layout, layers, centre, angle, length, height):
     return chart
 
 
-def add_heading(layout, title):
-    heading = QgsLayoutItemLabel(layout)
-    heading.setText(title)
-    style = QgsTextFormat()
-    style.setFont(QFont("DejaVu Sans"))
-    style.setSize(15)
-    heading.setTextFormat(style)
-    place(layout, heading, 5, 3, PAGE_WIDTH - 10, HEADING - 3)
+def add_heading(layout, title, crs):
+    """The title, and on the right the CRS of the map."""
+    for text, size, side in ((title, 15, Qt.AlignmentFlag.AlignLeft), (crs.userFriendlyIdentifier(), 9, Qt.AlignmentFlag.AlignRight)):
+        heading = QgsLayoutItemLabel(layout)
+        heading.setText(text)
+        heading.setHAlign(side)
+        heading.setVAlign(Qt.AlignmentFlag.AlignVCenter)
+        style = QgsTextFormat()
+        style.setFont(QFont("DejaVu Sans"))
+        style.setSize(size)
+        heading.setTextFormat(style)
+        place(layout, heading, 5, 1, PAGE_WIDTH - 10, HEADING - 2)
 
 
 def add_legend(layout, chart, layers, top):
@@ -114,6 +136,8 @@ def add_legend(layout, chart, layers, top):
     legend.setSplitLayer(False)
     legend.setEqualColumnWidth(True)
     legend.setColumnSpace(4)
+    # Of all the classes there may be, those that are there
+    legend.setLegendFilterByMapEnabled(True)
     legend.adjustBoxSize()
 
 

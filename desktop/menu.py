@@ -1,8 +1,8 @@
-"""The Lanewright menu and its toolbar button: what a user reaches without opening the toolbox."""
+"""The Lanewright menu and its button in the plugin toolbar: what a user reaches without opening the toolbox."""
 
 from pathlib import Path
 
-from qgis.core import Qgis, QgsProject
+from qgis.core import Qgis, QgsApplication, QgsProject
 from qgis.PyQt.QtCore import QObject
 from qgis.PyQt.QtGui import QAction, QIcon
 
@@ -25,28 +25,30 @@ class Menu(QObject):
         self.dialog = None  # kept, or Python would collect the open window
         self.sample = SampleRun(iface)
         self.manual = ManualWindow(iface.mainWindow())
-        self.toolbar = iface.addToolBar("Lanewright")
-        self.toolbar.setObjectName("LanewrightToolbar")
-        self._add(tr("Road map…"), self.open_road_map, tr("From a survey to driving lines in one call"), button=True)
-        self._add(tr("Run the sample survey"), self.sample.start, tr("A made street through the whole chain, into this project"))
-        self._add(tr("Print layout of the road map"), self.open_layout, tr("A map of the layers that Lanewright made"))
-        self._add(tr("Manual"), self.manual.open, tr("What every algorithm does, and a walk through a first survey"))
+        theme = QgsApplication.getThemeIcon
+        self._add(tr("Road map…"), self.open_road_map, tr("From a survey to driving lines in one call"), QIcon(str(ICON)))
+        self._add(tr("Run the sample survey"), self.sample.start, tr("A made street through the whole chain, into this project"),
+                  theme("/mActionStart.svg"))
+        self._add(tr("Print layout of the road map"), self.open_layout, tr("A map of the layers that Lanewright made"),
+                  theme("/mActionNewLayout.svg"))
+        self._add(tr("Manual"), self.manual.open, tr("What every algorithm does, and a walk through a first survey"),
+                  theme("/mActionHelpContents.svg"))
+        # A toolbar of its own would take a row of the window for one button
+        iface.addToolBarIcon(self.actions[0])
 
-    def _add(self, title, what, tip, button=False):
-        action = QAction(QIcon(str(ICON)), title, self.iface.mainWindow())
+    def _add(self, title, what, tip, icon):
+        action = QAction(icon, title, self.iface.mainWindow())
         action.setToolTip(f"Lanewright: {tip}")
         action.setStatusTip(tip)
         action.triggered.connect(lambda checked=False: what())
         self.iface.addPluginToMenu("Lanewright", action)
-        if button:
-            self.toolbar.addAction(action)
         self.actions.append(action)
 
     def remove(self):
+        self.iface.removeToolBarIcon(self.actions[0])
         for action in self.actions:
             self.iface.removePluginMenu("Lanewright", action)
         self.actions = []
-        self.toolbar.deleteLater()
         self.manual.forget()
 
     def open_road_map(self):

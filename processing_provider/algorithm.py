@@ -105,7 +105,8 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         return f"lanewright:{self.ID}"
 
     def tags(self):
-        return [tr(tag) for tag in self.TAGS] + ["mls", "mobile mapping", "lidar", "point cloud", "las", "laz", "road"]
+        # In the user's language and in English, which the field speaks everywhere
+        return list(dict.fromkeys([tr(tag) for tag in self.TAGS] + list(self.TAGS))) + ["mls", "mobile mapping", "lidar", "point cloud", "las", "laz", "road"]
 
     def shortHelpString(self):
         """The summary and every parameter's own help: written once, on the parameter."""

@@ -2,10 +2,11 @@
 
 from pathlib import Path
 
-from qgis.core import QgsProcessingModelAlgorithm, QgsProcessingProvider
+from qgis.core import QgsProcessingProvider
 from qgis.PyQt.QtGui import QIcon
 
 from .catalogue import ALGORITHMS
+from .models import read_model
 
 RESOURCES = Path(__file__).resolve().parents[1] / "resources"
 
@@ -27,6 +28,6 @@ class LanewrightProvider(QgsProcessingProvider):
         for algorithm in ALGORITHMS:
             self.addAlgorithm(algorithm())
         for path in sorted((RESOURCES / "models").glob("*.model3")):
-            model = QgsProcessingModelAlgorithm()
-            if model.fromFile(str(path)):
+            model = read_model(path)
+            if model is not None:
                 self.addAlgorithm(model)

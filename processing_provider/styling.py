@@ -4,12 +4,15 @@ import os
 from pathlib import Path
 
 from qgis.core import (
+    QgsCategorizedSymbolRenderer,
     QgsContrastEnhancement,
     QgsProcessingLayerPostProcessorInterface,
     QgsRasterLayer,
     QgsRasterMinMaxOrigin,
+    QgsRuleBasedRenderer,
     QgsSingleBandGrayRenderer,
 )
+from qgis.PyQt.QtXml import QDomDocument
 
 from .texts import tr
 
@@ -67,7 +70,11 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
 def apply_style(layer, qml, schema=()):
     """Give a layer the look of a QML file, its fields their aliases, an image its stretch."""
     if Path(qml).exists():
-        layer.loadNamedStyle(str(qml))
+        # loadNamedStyle would look into the layer's database first and bring yesterday's style back
+        document = QDomDocument()
+        document.setContent(Path(qml).read_text(encoding="utf-8"))
+        layer.importNamedStyle(document)
+        translate_legend(layer)
     for column in schema:
         # A scratch layer's own fields cannot carry them
         index = layer.fields().lookupField(column.name)
@@ -84,6 +91,17 @@ def apply_style(layer, qml, schema=()):
             stretch.setMinimumValue(round(stretch.minimumValue()))
             stretch.setMaximumValue(round(stretch.maximumValue()))
             layer.rendererChanged.emit()
+
+
+def translate_legend(layer):
+    """The legend of a vector layer in the user's language: the styles are written in English."""
+    renderer = layer.renderer()
+    if isinstance(renderer, QgsCategorizedSymbolRenderer):
+        for number, category in enumerate(renderer.categories()):
+            renderer.updateCategoryLabel(number, tr(category.label()))
+    elif isinstance(renderer, QgsRuleBasedRenderer):
+        for rule in renderer.rootRule().descendants():
+            rule.setLabel(tr(rule.label()))
 
 
 def group_of(paths):

@@ -33,17 +33,14 @@ def styled_layers(package, tables, image, title):
 
 
 def clear_map(layout):
-    """Move the scale bar from the map to the right of the legend, which then tells only of what there is."""
-    from lanewright.desktop.map_layout import LEGEND
-    from qgis.core import QgsLayoutItemLegend, QgsLayoutItemScaleBar, QgsLayoutPoint
+    """Move the scale bar from the map to the right of the legend."""
+    from qgis.core import QgsLayoutItemMap, QgsLayoutItemScaleBar, QgsLayoutPoint
 
     paper = layout.pageCollection().page(0).pageSize()
+    bottom = next(item.pos().y() + item.rect().height() for item in layout.items() if isinstance(item, QgsLayoutItemMap))
     for item in layout.items():
         if isinstance(item, QgsLayoutItemScaleBar):
-            item.attemptMove(QgsLayoutPoint(paper.width() - item.rect().width() - 4, paper.height() - LEGEND + 4, paper.units()))
-        if isinstance(item, QgsLayoutItemLegend):
-            item.setLegendFilterByMapEnabled(True)
-            item.adjustBoxSize()
+            item.attemptMove(QgsLayoutPoint(paper.width() - item.rect().width() - 4, bottom + 4, paper.units()))
 
 
 def draw(layers, picture, title, dpi=DPI, bare=False):

@@ -14,7 +14,7 @@ STEP_X, STEP_Y = 300, 130
 
 
 def definitions():
-    """Every input a model may have, by name."""
+    """Every input a model may have, by name; its help is that of the stage it goes to."""
     from lanewright.processing_provider.road.detect_boundaries import METHOD_KNOB
     from qgis.core import (
         QgsProcessing,
@@ -28,9 +28,9 @@ def definitions():
         QgsProcessingParameterMultipleLayers("POINT_CLOUDS", "Point clouds", source.TypeFile),
         QgsProcessingParameterFeatureSource("TRAJECTORY", "Trajectory", [source.TypeVector]),
         QgsProcessingParameterFeatureSource("REFERENCE_MARKINGS", "Reference markings", [source.TypeVectorPolygon]),
-        QgsProcessingParameterFeatureSource("REFERENCE_LINES", "Reference driving lines", [source.TypeVectorLine]),
+        QgsProcessingParameterFeatureSource("REFERENCE_LINES", "Reference lines", [source.TypeVectorLine]),
         METHOD_KNOB.parameter(),
-        QgsProcessingParameterCrs("CRS", "CRS of the point clouds, where they carry none", optional=True),
+        QgsProcessingParameterCrs("CRS", "CRS of the point clouds", optional=True),
     )
     return {definition.name(): definition for definition in made}
 
@@ -47,13 +47,18 @@ def add_inputs(model, names):
     model.setParameterOrder(list(names))
 
 
-def source(text):
+def child_id(stages, stage):
+    """Numbered, as QGIS lists results in the order of the names of their stages."""
+    return f"{list(stages).index(stage) + 1:02d}_{stage}"
+
+
+def source(text, stages):
     from qgis.core import QgsProcessingModelChildParameterSource as Source
 
     if text.startswith("@"):
         return Source.fromModelParameter(text[1:])
     child, output = text.split(".")
-    return Source.fromChildOutput(child, output)
+    return Source.fromChildOutput(child_id(stages, child), output)
 
 
 def add_stages(model, stages):
@@ -64,17 +69,17 @@ def add_stages(model, stages):
     read = {text for inputs, _ in stages.values() for text in inputs.values()}
     for number, (stage, (inputs, results)) in enumerate(stages.items()):
         child = QgsProcessingModelChildAlgorithm(f"lanewright:{stage}")
-        child.setChildId(stage)
+        child.setChildId(child_id(stages, stage))
         child.setDescription(registry.algorithmById(f"lanewright:{stage}").displayName())
         child.setPosition(QPointF(150 + STEP_X * (1 + number % 5), 80 + 2 * STEP_Y * (number // 5)))
         for name, text in inputs.items():
-            child.addParameterSources(name, [source(text)])
+            child.addParameterSources(name, [source(text, stages)])
         outputs = {}
         for result in results:
             name, title = result if isinstance(result, tuple) else (result, result)
             title = title.replace("_", " ").capitalize()
             output = QgsProcessingModelOutput(title)
-            output.setChildId(stage)
+            output.setChildId(child.childId())
             output.setChildOutputName(name)
             output.setDescription(title)
             # Left out, it would be missing to the stage that reads it
@@ -87,14 +92,18 @@ def add_stages(model, stages):
 
 def build(recipe):
     """Write one model; its inputs and results by name."""
+    from lanewright.processing_provider.models import explain
     from qgis.core import QgsProcessingModelAlgorithm
 
     model = QgsProcessingModelAlgorithm(recipe.name, GROUP)
     add_inputs(model, recipe.inputs)
     add_stages(model, recipe.stages)
     model.setHelpContent({"ALG_DESC": recipe.description, "ALG_VERSION": "1"})
-    model.setOutputOrder(list(recipe.results))
+    results = {output.description(): f"{child.childId()}:{output.childOutputName()}"
+               for child in model.childAlgorithms().values() for output in child.modelOutputs().values()}
+    model.setOutputOrder([results[title] for title in recipe.results])
     model.updateDestinationParameters()
+    explain(model)
     path = FOLDER / f"{recipe.file}.model3"
     if not model.toFile(str(path)):
         sys.exit(f"{path} could not be written.")

@@ -15,7 +15,7 @@ class Recipe:
     """file : name of the .model3
     inputs : names of the model's inputs, in the dialog's order
     stages : algorithm -> (its inputs, its outputs that are the model's: (name, title) or a name that is both)
-    results : "algorithm:title" in the dialog's order
+    results : titles, in the order in which the layers arrive
     """
 
     file: str
@@ -48,9 +48,9 @@ ROAD_MAP = Recipe(
              "ROAD_EDGES": "detectboundaries.ROAD_EDGES", "ROAD_POINTS": "correctintensity.OUTPUT", **DRIVE},
             ("DRIVING_LINES", "CURVE_ELEMENTS")),
     },
-    ("detectboundaries:Road edges", "extractroadsurface:Road surface", "correctintensity:Road points",
-     "intensityimage:Intensity image", "clustermarkings:Markings", "fitmarkinglines:Marking lines",
-     "drivinglines:Driving lines", "drivinglines:Curve elements"),
+    ("Road edges", "Road surface", "Road points",
+     "Intensity image", "Markings", "Marking lines",
+     "Driving lines", "Curve elements"),
 )
 
 SCANLINE_BOUNDARIES = Recipe(
@@ -62,7 +62,7 @@ SCANLINE_BOUNDARIES = Recipe(
         "normalizedscanlines": (SURVEY, ("SCANLINES",)),
         "boundariesfromscanlines": ({"SCANLINES": "normalizedscanlines.SCANLINES", **DRIVE}, ("CORNERS", "BOUNDARIES")),
     },
-    ("normalizedscanlines:Scanlines", "boundariesfromscanlines:Corners", "boundariesfromscanlines:Boundaries"),
+    ("Scanlines", "Corners", "Boundaries"),
 )
 
 ASSESSED_ROAD_MAP = Recipe(
@@ -78,9 +78,9 @@ ASSESSED_ROAD_MAP = Recipe(
         "assessdrivinglines": ({"INPUT": "roadmap.DRIVING_LINES", "REFERENCE": "@REFERENCE_LINES", **DRIVE},
                                (("OUTPUT", "ASSESSED_DRIVING_LINES"), ("REPORT", "DRIVING_LINES_REPORT"))),
     },
-    ("roadmap:Markings", "roadmap:Driving lines", "roadmap:Intensity image", "assessmarkings:Assessed markings",
-     "assessdrivinglines:Assessed driving lines", "roadmap:Road map report", "assessmarkings:Markings report",
-     "assessdrivinglines:Driving lines report"),
+    ("Markings", "Driving lines", "Intensity image", "Assessed markings",
+     "Assessed driving lines", "Road map report", "Markings report",
+     "Driving lines report"),
 )
 
 RECIPES = (ROAD_MAP, SCANLINE_BOUNDARIES, ASSESSED_ROAD_MAP)

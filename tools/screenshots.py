@@ -6,7 +6,7 @@ from pathlib import Path
 
 from qgis.core import QgsApplication, QgsProject
 from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, Qt, QTimer
-from qgis.PyQt.QtGui import QAction, QImage
+from qgis.PyQt.QtGui import QAction, QGuiApplication, QImage
 from qgis.PyQt.QtWidgets import QDockWidget
 from qgis.utils import iface, plugins
 
@@ -33,7 +33,10 @@ def wait(seconds, until=lambda: False):
 
 def keep(widget, name):
     wait(0.7)
-    picture = widget.grab()
+    save(widget.grab(), name)
+
+
+def save(picture, name):
     assert not picture.isNull(), name
     image = picture.toImage()
     if name not in MAPS:  # 256 colours do for windows, and a manual travels in the plugin's zip
@@ -81,10 +84,18 @@ def dialog():
 
 
 def menu():
-    found = next(a.menu() for a in iface.pluginMenu().actions() if a.menu() and "Lanewright" in a.menu().title())
-    found.popup(iface.mainWindow().mapToGlobal(iface.mainWindow().rect().center()))
-    keep(found, "window_menu")
-    found.close()
+    """The plugin menu, opened as by a click, with what the window shows around it."""
+    iface.messageBar().clearWidgets()
+    bar = iface.mainWindow().menuBar()
+    bar.setActiveAction(next(action for action in bar.actions() if action.menu() == iface.pluginMenu()))
+    ours = next(a for a in iface.pluginMenu().actions() if a.menu() and "Lanewright" in a.menu().title())
+    iface.pluginMenu().setActiveAction(ours)
+    needed(wait(5, ours.menu().isVisible), "the plugin menu did not open")
+    wait(0.7)
+    corner = ours.menu().mapToGlobal(ours.menu().rect().bottomRight())
+    save(QGuiApplication.primaryScreen().grabWindow(0, 0, 0, corner.x() + 120, corner.y() + 40), "window_menu")
+    ours.menu().close()
+    iface.pluginMenu().close()
 
 
 def sample():

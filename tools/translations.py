@@ -10,6 +10,8 @@ import sys
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
+from models import RECIPES
+
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "resources" / "i18n"
 CONTEXT = "Lanewright"
@@ -26,6 +28,11 @@ def texts():
             found.setdefault(text, path.relative_to(ROOT).as_posix())
     for text in aliases():
         found.setdefault(text, "core/schemas.py")
+    for recipe in RECIPES:
+        found.setdefault(recipe.description, "tools/models.py")
+    for path in sorted((ROOT / "resources" / "styles").glob("*.qml")):
+        for text in legend(path):
+            found.setdefault(text, path.relative_to(ROOT).as_posix())
     return found
 
 
@@ -52,6 +59,12 @@ def in_a_class(target, value):
 def constants(node):
     parts = node.elts if isinstance(node, (ast.Tuple, ast.List)) else [node]
     return [part.value for part in parts if isinstance(part, ast.Constant) and isinstance(part.value, str) and part.value.strip()]
+
+
+def legend(path):
+    """What a style writes beside its symbols."""
+    entries = (entry.get("label") for entry in ET.parse(path).getroot().iter() if entry.tag in ("category", "rule"))
+    return [text for text in entries if text]
 
 
 def aliases():

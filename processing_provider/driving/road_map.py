@@ -57,7 +57,7 @@ class RoadMap(LanewrightAlgorithm):
     ID, TITLE, ROOM = "roadmap", "Road map", "Road map"
     SUMMARY = "From a survey to driving lines in one call: edges, surface, intensity image, markings, lines and curve elements."
     HELP = "The same stages as the single algorithms, handed on in memory. Every output is optional."
-    TAGS = ("hd map", "lane", "driving line", "road marking", "curb")
+    TAGS = ("hd map", "lane", "driving line", "road marking", "curb", "kerb")
 
     def initAlgorithm(self, configuration=None):
         self.add_survey()

@@ -26,7 +26,7 @@ EDGE_KNOBS = (
 class FitRoadEdges(LanewrightAlgorithm):
     ID, TITLE, ROOM = "fitroadedges", "Fit road edges", "Road"
     SUMMARY = "Draws the road edges through curb points as smoothing splines, bridging short gaps and saying so."
-    TAGS = ("curb", "road edge", "spline")
+    TAGS = ("curb", "kerb", "road edge", "spline")
 
     def initAlgorithm(self, configuration=None):
         self.add_layer("CURB_POINTS", tr("Curb points"), tr("The layer written by Detect curbs."), "PointZ")

@@ -1000,6 +1000,11 @@
         </message>
         <message>
             <location filename="../../processing_provider/driving/road_map.py" />
+            <source>kerb</source>
+            <translation>Bordkante</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/driving/road_map.py" />
             <source>Road surface</source>
             <translation>Straßenoberfläche</translation>
         </message>
@@ -1106,7 +1111,7 @@
         <message>
             <location filename="../../processing_provider/markings/cluster_markings.py" />
             <source>Fewest points of a marking (points)</source>
-            <translation>Wenigste Punkte einer Markierung (points)</translation>
+            <translation>Wenigste Punkte einer Markierung (Punkte)</translation>
         </message>
         <message>
             <location filename="../../processing_provider/markings/cluster_markings.py" />
@@ -1531,7 +1536,7 @@
         <message>
             <location filename="../../processing_provider/markings/intensity_image.py" />
             <source>Reach of a point (cells)</source>
-            <translation>Reichweite eines Punktes (cells)</translation>
+            <translation>Reichweite eines Punktes (Zellen)</translation>
         </message>
         <message>
             <location filename="../../processing_provider/markings/intensity_image.py" />
@@ -1581,7 +1586,7 @@
         <message>
             <location filename="../../processing_provider/markings/remove_outliers.py" />
             <source>Nearest points looked at (points)</source>
-            <translation>Betrachtete nächste Punkte (points)</translation>
+            <translation>Betrachtete nächste Punkte (Punkte)</translation>
         </message>
         <message>
             <location filename="../../processing_provider/markings/remove_outliers.py" />
@@ -1617,6 +1622,11 @@
             <location filename="../../processing_provider/markings/remove_outliers.py" />
             <source>Marking points without outliers</source>
             <translation>Markierungspunkte ohne Ausreißer</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/models.py" />
+            <source>Models</source>
+            <translation>Modelle</translation>
         </message>
         <message>
             <location filename="../../processing_provider/overlay/control_point_layer.py" />
@@ -1882,11 +1892,6 @@
             <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
             <source>From the vehicle outward every scanline is searched for a step. About each step the points of the neighbouring scanlines give three planes: road, curb face and sidewalk. Where they meet the scanline's own plane lie the corners. Lines are cut by status: measured; bridged, a gap between corners; occluded, a gap that something hides.</source>
             <translation>Vom Fahrzeug nach außen wird jede Scanlinie nach einer Stufe abgesucht. Um jede Stufe geben die Punkte der benachbarten Scanlinien drei Ebenen: Straße, Bordsteinfläche und Gehweg. Wo sie die Ebene der Scanlinie treffen, liegen die Kanten. Linien sind nach status geschnitten: measured (gemessen); bridged, eine Lücke zwischen Kanten; occluded, eine Lücke, die etwas verdeckt.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>kerb</source>
-            <translation>Bordkante</translation>
         </message>
         <message>
             <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
@@ -2301,7 +2306,7 @@
         <message>
             <location filename="../../processing_provider/road/normalized_scanlines.py" />
             <source>Scan lines of each scanner, 0 = from the data (per second)</source>
-            <translation>Scanlinien jedes Scanners, 0 = aus den Daten (per second)</translation>
+            <translation>Scanlinien jedes Scanners, 0 = aus den Daten (je Sekunde)</translation>
         </message>
         <message>
             <location filename="../../processing_provider/road/normalized_scanlines.py" />
@@ -2606,7 +2611,7 @@
         <message>
             <location filename="../../processing_provider/survey/sample_survey.py" />
             <source>Seed of the random numbers (whole number)</source>
-            <translation>Startwert der Zufallszahlen (whole number)</translation>
+            <translation>Startwert der Zufallszahlen (ganze Zahl)</translation>
         </message>
         <message>
             <location filename="../../processing_provider/survey/sample_survey.py" />
@@ -2626,7 +2631,7 @@
         <message>
             <location filename="../../processing_provider/survey/sample_survey.py" />
             <source>Pulses of each scanner (per second)</source>
-            <translation>Pulse jedes Scanners (per second)</translation>
+            <translation>Pulse jedes Scanners (je Sekunde)</translation>
         </message>
         <message>
             <location filename="../../processing_provider/survey/sample_survey.py" />
@@ -2636,7 +2641,7 @@
         <message>
             <location filename="../../processing_provider/survey/sample_survey.py" />
             <source>Scan lines of each scanner (per second)</source>
-            <translation>Scanlinien jedes Scanners (per second)</translation>
+            <translation>Scanlinien jedes Scanners (je Sekunde)</translation>
         </message>
         <message>
             <location filename="../../processing_provider/survey/sample_survey.py" />
@@ -3232,6 +3237,186 @@
             <location filename="../../core/schemas.py" />
             <source>Judged area (m²)</source>
             <translation>Beurteilte Fläche (m²)</translation>
+        </message>
+        <message>
+            <location filename="../../tools/models.py" />
+            <source>The stages of the road map, one by one, with their results handed on through files: the same result as Road map. Copy it and change a stage to your needs.</source>
+            <translation>Die Stufen der Straßenkarte, eine nach der anderen, deren Ergebnisse über Dateien weitergereicht werden: dasselbe Ergebnis wie „Straßenkarte“. Kopieren und eine Stufe nach Bedarf ändern.</translation>
+        </message>
+        <message>
+            <location filename="../../tools/models.py" />
+            <source>Road boundaries alone, by normalized scanlines: the measured surface is cut by planes across the road, and bottom and top of the curb are the corners of the planes fitted to it.</source>
+            <translation>Nur Straßenränder, über normalisierte Scanlinien: Die gemessene Oberfläche wird quer zur Straße von Ebenen geschnitten; Unter- und Oberkante des Bordsteins sind die Ecken der eingepassten Ebenen.</translation>
+        </message>
+        <message>
+            <location filename="../../tools/models.py" />
+            <source>The road map, and how its markings and driving lines compare with reference layers of your own: reports, and layers coloured by outcome.</source>
+            <translation>Die Straßenkarte, und wie ihre Markierungen und Fahrlinien zu eigenen Referenzlayern passen: Berichte und Layer, gefärbt nach Ergebnis.</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/assessed_lines.qml" />
+            <source>Correct</source>
+            <translation>Richtig</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/assessed_lines.qml" />
+            <source>Missed</source>
+            <translation>Übersehen</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/assessed_lines.qml" />
+            <source>False</source>
+            <translation>Falsch</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/assessed_lines.qml" />
+            <source>Not judged</source>
+            <translation>Nicht bewertet</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/boundaries.qml" />
+            <source>Left, measured</source>
+            <translation>Links, gemessen</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/boundaries.qml" />
+            <source>Left, bridged</source>
+            <translation>Links, überbrückt</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/boundaries.qml" />
+            <source>Left, inferred</source>
+            <translation>Links, erschlossen</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/boundaries.qml" />
+            <source>Left, hidden</source>
+            <translation>Links, verdeckt</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/boundaries.qml" />
+            <source>Right, measured</source>
+            <translation>Rechts, gemessen</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/boundaries.qml" />
+            <source>Right, bridged</source>
+            <translation>Rechts, überbrückt</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/boundaries.qml" />
+            <source>Right, inferred</source>
+            <translation>Rechts, erschlossen</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/boundaries.qml" />
+            <source>Right, hidden</source>
+            <translation>Rechts, verdeckt</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/control_points.qml" />
+            <source>Control point</source>
+            <translation>Passpunkt</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/control_points.qml" />
+            <source>Check point</source>
+            <translation>Prüfpunkt</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/driving_lines.qml" />
+            <source>Measured</source>
+            <translation>Gemessen</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/driving_lines.qml" />
+            <source>Bridged</source>
+            <translation>Überbrückt</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/driving_lines.qml" />
+            <source>Inferred</source>
+            <translation>Erschlossen</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/marking_lines.qml" />
+            <source>Solid</source>
+            <translation>Durchgezogen</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/marking_lines.qml" />
+            <source>Dashed</source>
+            <translation>Gestrichelt</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/markings.qml" />
+            <source>Edge line</source>
+            <translation>Randlinie</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/markings.qml" />
+            <source>Lane line</source>
+            <translation>Fahrstreifenlinie</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/markings.qml" />
+            <source>Centre line</source>
+            <translation>Mittellinie</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/markings.qml" />
+            <source>Zebra crossing</source>
+            <translation>Zebrastreifen</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/markings.qml" />
+            <source>Stop line</source>
+            <translation>Haltlinie</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/markings.qml" />
+            <source>Arrow</source>
+            <translation>Pfeil</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/markings.qml" />
+            <source>Symbol</source>
+            <translation>Symbol</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/markings.qml" />
+            <source>Hatching</source>
+            <translation>Schraffur</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/markings.qml" />
+            <source>Other paint</source>
+            <translation>Andere Farbe</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/residuals.qml" />
+            <source>Control point (residual 100 times as long)</source>
+            <translation>Passpunkt (Restklaffung 100-fach)</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/residuals.qml" />
+            <source>Check point (residual 100 times as long)</source>
+            <translation>Prüfpunkt (Restklaffung 100-fach)</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/residuals.qml" />
+            <source>Disabled point</source>
+            <translation>Abgeschalteter Punkt</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/road_surface.qml" />
+            <source>Between edges</source>
+            <translation>Zwischen den Rändern</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/road_surface.qml" />
+            <source>Grown, no edge</source>
+            <translation>Gewachsen, ohne Rand</translation>
         </message>
     </context>
 </TS>

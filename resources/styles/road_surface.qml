@@ -48,7 +48,7 @@
         <layer id="{a022b866-70e7-48cc-ad2f-a9ff9d497f3c}" locked="0" pass="0" class="SimpleFill" enabled="1">
           <Option type="Map">
             <Option type="QString" name="border_width_map_unit_scale" value="3x:0,0,0,0,0,0"/>
-            <Option type="QString" name="color" value="120,132,140,70,rgb:0.47058823529411764,0.51764705882352946,0.5490196078431373,0.27450980392156865"/>
+            <Option type="QString" name="color" value="214,170,90,80,rgb:0.83921568627450982,0.66666666666666663,0.35294117647058826,0.31372549019607843"/>
             <Option type="QString" name="joinstyle" value="bevel"/>
             <Option type="QString" name="offset" value="0,0"/>
             <Option type="QString" name="offset_map_unit_scale" value="3x:0,0,0,0,0,0"/>

@@ -1,6 +1,7 @@
 """What goes out to users: the zip, its description, and code that runs on Qt 5 and Qt 6."""
 
 import configparser
+import os
 import re
 import subprocess
 import sys
@@ -60,7 +61,37 @@ def test_the_zip_has_one_folder_with_what_qgis_needs(archive):
 def test_the_zip_has_nothing_a_user_has_no_use_for(archive):
     names = [name.removeprefix("lanewright/") for name in archive.namelist()]
     assert not [name for name in names if name.startswith(("tests", "tools", ".", "build", "Makefile")) or "__pycache__" in name]
-    assert sum(entry.file_size for entry in archive.infolist()) < 25e6
+    assert sum(entry.compress_size for entry in archive.infolist()) < 5e6
+
+
+def test_no_address_leads_to_a_stranger(metadata):
+    """Until somebody publishes the plugin, its addresses are under a domain that nobody can own (RFC 2606)."""
+    for key in ("homepage", "repository", "tracker"):
+        assert re.match(r"https://[\w.]*\.example(/|$)", metadata[key]), key
+    assert metadata["email"].endswith(".example")
+
+
+def test_a_release_carries_the_addresses_of_its_publisher(tmp_path, metadata):
+    if not (ROOT / ".git").exists():
+        pytest.skip("the release is made from the git history")
+    path = tmp_path / "lanewright.zip"
+    named = {"REPOSITORY": "https://git.roads.test/lane", "EMAIL": "me@roads.test", "HOMEPAGE": "https://roads.test"}
+    subprocess.run([str(ROOT / "tools" / "package.sh"), str(path)], check=True, capture_output=True, env={**os.environ, **named})
+    parser = configparser.ConfigParser()
+    with zipfile.ZipFile(path) as archive:
+        parser.read_string(archive.read("lanewright/metadata.txt").decode("utf-8"))
+        assert archive.testzip() is None and len(archive.namelist()) > 200
+    written = parser["general"]
+    assert [written[key] for key in ("repository", "tracker", "homepage", "email")] == [
+        "https://git.roads.test/lane", "https://git.roads.test/lane/issues", "https://roads.test", "me@roads.test"]
+    assert written["version"] == metadata["version"] and sorted(written) == sorted(metadata)
+    assert {file.name for file in tmp_path.iterdir()} == {"lanewright.zip"}
+
+
+def test_an_address_that_is_none_makes_no_release(tmp_path):
+    call = subprocess.run([str(ROOT / "tools" / "package.sh"), str(tmp_path / "lanewright.zip")], capture_output=True, text=True,
+                          env={**os.environ, "REPOSITORY": "git.roads.test", "EMAIL": "me@roads.test"})
+    assert call.returncode and "repository is 'git.roads.test'" in call.stderr and not list(tmp_path.iterdir())
 
 
 def test_the_code_is_written_for_qt_5_and_qt_6_alike():

@@ -26,10 +26,10 @@ def test_every_model_is_listed_and_says_what_it_does(model, recipe):
 
 
 def test_the_file_is_that_of_the_recipe(model, recipe):
-    assert set(model.childAlgorithms()) == set(recipe.stages)
+    assert [child.algorithmId() for child in model.childAlgorithms().values()] == [f"lanewright:{stage}" for stage in recipe.stages]
     assert {p.name() for p in model.parameterDefinitions() if not p.isDestination()} == set(recipe.inputs)
-    titles = {result.partition(":")[2] for result in recipe.results}
-    assert {p.description() for p in model.destinationParameterDefinitions()} == titles
+    assert {p.description() for p in model.destinationParameterDefinitions()} == set(recipe.results)
+    assert [output.description() for output in model.orderedOutputs()] == list(recipe.results)
 
 
 def test_every_stage_exists_and_its_wiring_holds(model):
@@ -42,6 +42,21 @@ def test_every_stage_exists_and_its_wiring_holds(model):
 def test_no_result_that_a_later_stage_reads_can_be_left_out(model, recipe):
     optional = {p.description() for p in model.destinationParameterDefinitions() if p.flags() & Qgis.ProcessingParameterFlag.Optional}
     read = {text for inputs, _ in recipe.stages.values() for text in inputs.values()}
-    for stage in recipe.stages:
-        for output in model.childAlgorithm(stage).modelOutputs().values():
+    for child in model.childAlgorithms().values():
+        for output in child.modelOutputs().values():
+            stage = child.algorithmId().partition(":")[2]
             assert f"{stage}.{output.childOutputName()}" not in read or output.description() not in optional
+
+
+def test_every_input_explains_itself_in_the_words_of_its_stage(model):
+    for parameter in model.parameterDefinitions():
+        if not parameter.isDestination():
+            assert len(parameter.help()) > 20 and parameter.help() in model.shortHelpString(), parameter.name()
+
+
+def test_the_results_tell_their_fields(model):
+    assert "Fields:" in model.shortHelpString()
+
+
+def test_the_help_button_of_a_model_opens_the_page_on_models(model):
+    assert model.helpUrl() == "lanewright:models"

@@ -5,9 +5,10 @@ import pytest
 from lanewright.core.schemas import CONTROL_POINTS, DRIVING_LINES, MARKING_LINES, MARKINGS, RESIDUALS, ROAD_EDGES
 from lanewright.processing_provider.embedded_style import embed_style
 from lanewright.processing_provider.layers import qgis_fields
-from lanewright.processing_provider.styling import LOOKS, STYLES, Styler, group_of, style_on_load
+from lanewright.processing_provider.styling import LOOKS, STYLES, Styler, apply_style, group_of, style_on_load
+from lanewright.processing_provider.texts import install_translator, remove_translator
 from osgeo import gdal
-from qgis.core import QgsProcessingContext, QgsProject, QgsRasterLayer, QgsRasterMinMaxOrigin, QgsRenderContext, QgsVectorLayer
+from qgis.core import QgsExpression, QgsProcessingContext, QgsProject, QgsRasterLayer, QgsRasterMinMaxOrigin, QgsRenderContext, QgsVectorLayer
 
 KINDS = {
     "ROAD_EDGES": ("LineStringZ", ROAD_EDGES),
@@ -35,8 +36,39 @@ def test_every_result_has_a_style(name):
 def test_a_style_looks_at_fields_that_the_layer_has(qgis_app, name):
     layer = layer_of(*KINDS[name])
     Styler.make(STYLES / f"{LOOKS[name][0]}.qml").postProcessLayer(layer, QgsProcessingContext(), None)
-    used = layer.renderer().usedAttributes(QgsRenderContext())
+    used = {column for name in layer.renderer().usedAttributes(QgsRenderContext()) for column in QgsExpression(name).referencedColumns()}
     assert used and used <= {field.name() for field in layer.fields()}
+
+
+@pytest.mark.parametrize("name", [name for name in KINDS if name != "MARKING_LINES"])
+def test_every_class_of_a_style_is_drawn_and_in_the_legend(qgis_app, name):
+    """QGIS passes over a class whose symbol another has taken."""
+    path = STYLES / f"{LOOKS[name][0]}.qml"
+    layer = layer_of(*KINDS[name])
+    apply_style(layer, path)
+    assert len(layer.renderer().categories()) == path.read_text(encoding="utf-8").count("<category ")
+
+
+@pytest.mark.parametrize("name", ["ROAD_EDGES", "BOUNDARIES"])
+@pytest.mark.parametrize("status", ["measured", "bridged", "inferred"])
+def test_curbs_are_told_by_side_and_by_what_was_measured(qgis_app, name, status):
+    layer = layer_of("LineStringZ", ROAD_EDGES)
+    apply_style(layer, STYLES / f"{LOOKS[name][0]}.qml")
+    left, right = ([drawn.symbol().color().name() for drawn in layer.renderer().categories() if drawn.value() == f"{side} {status}"]
+                   for side in ("left", "right"))
+    assert len(left) == len(right) == 1 and left != right
+
+
+def test_the_legend_speaks_the_language_of_the_user(qgis_app):
+    german = install_translator("de")
+    try:
+        layer, lines = layer_of("LineStringZ", ROAD_EDGES), layer_of("LineStringZ", MARKING_LINES)
+        apply_style(layer, STYLES / "road_edges.qml")
+        apply_style(lines, STYLES / "marking_lines.qml")
+    finally:
+        remove_translator(german)
+    assert layer.renderer().categories()[0].label() == "Links, gemessen"
+    assert {rule.label() for rule in lines.renderer().rootRule().descendants()} >= {"Überbrückt"}
 
 
 def test_an_image_is_stretched_to_its_own_values(qgis_app, tmp_path):
@@ -94,11 +126,11 @@ def written(tmp_path, dest):
 def test_a_geopackage_made_without_a_window_opens_styled_and_with_aliases(qgis_app, tmp_path):
     path = tmp_path / "map.gpkg"
     dest = written(tmp_path, f"ogr:dbname='{path}' table=\"edges\" (geom)")
-    for _ in range(2):  # a second run into the same table replaces the style
-        embed_style("ROAD_EDGES", dest, "Road edges", ROAD_EDGES)
+    for output in ("CURB_POINTS", "ROAD_EDGES"):  # a second run into the same table replaces the style
+        embed_style(output, dest, "Road edges", ROAD_EDGES)
     layer = QgsVectorLayer(f"{path}|layername=edges", "edges", "ogr")
     assert layer.listStylesInDatabase()[2] == ["default"]
-    assert layer.renderer().type() != "singleSymbol"
+    assert layer.renderer().categories()[-1].value() == "right inferred"
     assert layer.attributeAlias(layer.fields().lookupField("station_m")) == "Station (m)"
 
 
