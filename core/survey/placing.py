@@ -10,6 +10,7 @@ beside the road) are followed step by step with `Road.locate`.
 import numpy as np
 
 from .driven_pass import MOST_TICKS, TICK
+from .kept_arrays import KeptArrays
 from .reference_line import NODE
 
 AT_ONCE = 1 << 15     # points worked at a time: what fits the processor's cache
@@ -32,6 +33,7 @@ class Placing:
         self.starts = np.array([p.time[0] for p in frame.passes])
         self.ends = np.array([p.time[-1] for p in frame.passes])
         self._lines = [_Line(road) for road in frame.roads]
+        self._kept = KeptArrays()
         self._ticks = [_Ticks(p, frame.road(p.road)) for p in frame.passes]
 
     def place(self, x, y, time):
@@ -53,7 +55,7 @@ class Placing:
             owner = passes[part]
             lowest = int(owner.min())
             if lowest == owner.max() and lowest >= 0:
-                s[part], d[part] = self._feet(lowest, x[part], y[part], time[part])
+                self._feet(lowest, x[part], y[part], time[part], s[part], d[part])
                 continue
             ps, pd = s[part], d[part]
             ps[:] = np.nan
@@ -61,7 +63,9 @@ class Placing:
             for number in np.unique(owner):
                 if number >= 0:
                     rows = np.flatnonzero(owner == number)
-                    ps[rows], pd[rows] = self._feet(int(number), x[part][rows], y[part][rows], time[part][rows])
+                    own_s, own_d = np.empty((2, len(rows)))
+                    self._feet(int(number), x[part][rows], y[part][rows], time[part][rows], own_s, own_d)
+                    ps[rows], pd[rows] = own_s, own_d
         return passes, s, d
 
     def _owner(self, time):
@@ -78,10 +82,10 @@ class Placing:
         inside = (time >= self.starts[k] - CLOCK_SLACK) & (time <= self.ends[k] + CLOCK_SLACK)
         return np.where(inside, k, -1).astype(np.int16)
 
-    def _feet(self, number, x, y, time):
+    def _feet(self, number, x, y, time, s, d):
+        kept = self._kept.of(len(x))
         road = self.frame.passes[number].road
-        node = self._ticks[number].node(time)
-        return self._lines[road].feet(x, y, node, self.corridor)
+        self._lines[road].feet(x, y, self._ticks[number].node(time, kept), self.corridor, s, d, kept)
 
 
 class _Ticks:
@@ -93,10 +97,15 @@ class _Ticks:
         times = self.first + self.tick * np.arange(int(span / self.tick) + 2)
         self.nodes = np.clip((np.interp(times, driven.time, driven.s) - road.start) / NODE, 0, len(road.x) - 2).astype(np.int32)
 
-    def node(self, time):
+    def node(self, time, kept):
         """(N,) intp node numbers; the ends serve times before and after the pass."""
-        k = ((time - self.first) * (1.0 / self.tick)).astype(np.intp)
-        return self.nodes.take(k, mode="clip")
+        at = np.subtract(time, self.first, out=kept("at"))
+        at *= 1.0 / self.tick
+        k = kept("tick", np.intp)
+        np.copyto(k, at, casting="unsafe")
+        node = kept("start", np.intp)
+        np.copyto(node, self.nodes.take(k, out=kept("node", np.int32), mode="clip"))
+        return node
 
 
 class _Line:
@@ -104,7 +113,7 @@ class _Line:
 
     def __init__(self, road):
         self.road = road
-        self.last = len(road.x) - 2
+        self.last, self._few = len(road.x) - 2, KeptArrays()
         x, y, c, n = road.x, road.y, road._cos, road._sin
         self.x, self.y, self.c, self.n = x, y, c, n
         self.bend = road._curvature
@@ -112,62 +121,81 @@ class _Line:
         self.dc, self.dn = dc, dn
         self.length, self.sag, self.turn = dx * c + dy * n, dx * n - dy * c, dx * dn - dy * dc
 
-    def _seen_from(self, k, x, y):
-        """Metres east and north of a node, its direction, metres ahead of it and to its left, and the bend there."""
-        c, n = self.c.take(k), self.n.take(k)
-        east, north = self.x.take(k), self.y.take(k)
+    def _seen_from(self, k, x, y, kept):
+        """Metres east and north of a node, its direction, metres ahead of it and to its left, and these times the bend there."""
+        c, n, bent = (table.take(k, out=kept(name), mode="clip") for name, table in (("c", self.c), ("n", self.n), ("bent", self.bend)))
+        east, north = self.x.take(k, out=kept("east"), mode="clip"), self.y.take(k, out=kept("north"), mode="clip")
         np.subtract(x, east, out=east)
         np.subtract(y, north, out=north)
-        ahead, left = east * c, north * c
-        ahead += north * n
-        left -= east * n
-        return east, north, c, n, ahead, left, self.bend.take(k)
+        ahead, left, part = np.multiply(east, c, out=kept("ahead")), np.multiply(north, c, out=kept("left")), kept("part")
+        ahead += np.multiply(north, n, out=part)
+        left -= np.multiply(east, n, out=part)
+        bent *= left
+        return east, north, c, n, ahead, left, bent
 
-    @staticmethod
-    def _nodes_on(ahead, left, bend):
-        """How many nodes on, a whole number, the place lies that a node sees so far ahead and to its left."""
-        on = left * bend
-        np.subtract(1.0, on, out=on)
+    def _moved(self, k, ahead, bent, kept):
+        """The node beside places that node k sees so far ahead and beside a line so far bent."""
+        on = np.subtract(1.0, bent, out=kept("part"))
         np.clip(on, 0.4, 2.5, out=on)
         np.divide(ahead, on, out=on)
         np.clip(on, -30.0, 30.0, out=on)
         on *= 1.0 / NODE
-        return np.floor(on, out=on)
+        moved = kept("moved", np.intp)
+        np.copyto(moved, np.floor(on, out=on), casting="unsafe")
+        moved += k
+        return np.clip(moved, 0, self.last, out=moved)
 
-    def _moved(self, k, on):
-        k = k + on.astype(np.intp)
-        return np.clip(k, 0, self.last, out=k)
+    def _foot(self, k, x, y, kept):
+        """Share of node k at which the foot of each place lies, its offset, metres left and ahead of the node, and how far the line is bent."""
+        east, north, c, n, ahead, left, bent = self._seen_from(k, x, y, kept)
+        # (E - f D) . (T + f T') = 0 for the share f of the node; D . T' is nothing beside D . T
+        dc, dn = self.dc.take(k, out=c, mode="clip"), self.dn.take(k, out=n, mode="clip")
+        part, share = kept("part"), self.length.take(k, out=kept("share"), mode="clip")
+        share -= np.multiply(east, dc, out=part)
+        share -= np.multiply(north, dn, out=part)
+        np.divide(ahead, share, out=share)
+        d = np.multiply(north, dc, out=north)
+        d -= np.multiply(east, dn, out=part)
+        d += self.sag.take(k, out=part, mode="clip")
+        turn = self.turn.take(k, out=part, mode="clip")
+        turn *= share
+        d += turn
+        d *= share
+        d += left
+        return share, d, left, ahead, bent
 
-    def feet(self, x, y, k, corridor):
-        """Station and offset of places near whose foot node k lies; NaN as `Road.locate` has it."""
-        start = k
-        k = self._moved(start, self._nodes_on(*self._seen_from(start, x, y)[4:]))
-        seen = self._seen_from(k, x, y)
-        on = self._nodes_on(*seen[4:])
-        rows = np.flatnonzero(on != 0)
-        on = on.take(rows)
+    def feet(self, x, y, start, corridor, s, d, kept):
+        """Put station and offset of places near whose foot node `start` lies into s and d; NaN as `Road.locate` has it."""
+        k = self._moved(start, *self._seen_from(start, x, y, kept)[4::2], kept)
+        found = self._foot(k, x, y, kept)
+        share, offset, left, ahead, bent = found
+        rows = np.flatnonzero(~_beside(share))
+        ahead = ahead.take(rows)
         for _ in range(MOST_STEPS):
             if not len(rows):
                 break
-            k[rows] = self._moved(k.take(rows), on)
-            again = self._seen_from(k.take(rows), x.take(rows), y.take(rows))
-            for whole, part in zip(seen, again):
+            few = self._few.of(len(rows))
+            moved = self._moved(k.take(rows), ahead, bent.take(rows), few)
+            k[rows] = moved
+            again = self._foot(moved, x.take(rows), y.take(rows), few)
+            for whole, part in zip((share, offset, left, bent), (*again[:3], again[4])):
                 whole[rows] = part
-            on = self._nodes_on(*again[4:])
-            left_over = np.flatnonzero(on)
-            rows, on = rows.take(left_over), on.take(left_over)
-        x0, y0, _, _, ahead, left, bend = seen
-        dc, dn = self.dc.take(k), self.dn.take(k)
-        # (E - f D) . (T + f T') = 0 for the share f of the node; D . T' is nothing beside D . T
-        share = ahead / (self.length.take(k) - x0 * dc - y0 * dn)
-        d = left + share * (y0 * dc - x0 * dn + self.sag.take(k) + share * self.turn.take(k))
-        s = self.road.start + (k + share) * NODE
-        near = (share >= -BESIDE) & (share <= 1.0 + BESIDE) & (np.abs(left * bend) < 0.55)
-        inside = near & (s >= self.road.start) & (s < self.road.end) & (np.abs(d) <= corridor)
+            left_over = np.flatnonzero(~_beside(again[0]))
+            rows, ahead = rows.take(left_over), again[3].take(left_over)
+        np.add(k, share, out=s)
+        s *= NODE
+        s += self.road.start
+        d[:] = offset
+        near = _beside(share) & (np.abs(bent, out=bent) < 0.55)
+        inside = near & (s >= self.road.start) & (s < self.road.end) & (np.abs(d, out=offset) <= corridor)
         if not inside.all():
             s[~inside] = d[~inside] = np.nan
             far = np.flatnonzero(~near & (np.abs(left) < 1.5 * corridor + 5.0))
             if len(far):
-                ahead = self._seen_from(start[far], x[far], y[far])[4]
+                ahead = self._seen_from(start[far], x[far], y[far], self._few.of(len(far)))[4]
                 s[far], d[far] = self.road.locate(x[far], y[far], self.road.start + start[far] * NODE + ahead, corridor)
-        return s, d
+
+
+def _beside(share):
+    """Whether feet lie within their node, or so little beyond that it serves them too."""
+    return (share >= -BESIDE) & (share <= 1.0 + BESIDE)
