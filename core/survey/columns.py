@@ -66,7 +66,10 @@ class Columns:
         if isinstance(which, slice):
             if self._parts is not None and not self._arrays and which.step in (None, 1):
                 return self._joined_slice(*which.indices(self._length)[:2])
-            return Columns({}, self.dtype, len(range(*which.indices(self._length))), lambda name: self[name][which])
+            length = len(range(*which.indices(self._length)))
+            if self._make is None:
+                return Columns({name: array[which] for name, array in self._arrays.items()}, self.dtype, length)
+            return Columns({}, self.dtype, length, lambda name: self[name][which])
         return self.take(which)
 
     def take(self, which):
@@ -104,10 +107,11 @@ class Columns:
         return Columns.joined(parts, self.dtype)
 
     def __setitem__(self, name, values):
-        array = self[name]
-        if not array.flags.writeable:
+        if self._locked:
             raise ValueError("assignment destination is read-only")
-        array[:] = values
+        if not self[name].flags.writeable:  # a view of one value
+            self._arrays[name] = np.array(self[name])
+        self._arrays[name][:] = values
 
     def whole(self):
         """These columns, every one of them made, and what they were made of let go."""

@@ -80,7 +80,8 @@ def canonical_order(records):
     if len(repeated):
         tied = np.union1d(repeated, repeated + 1)
         rows = order[tied]
-        keys = [records[name][rows] for name in ("returns", "source", "y", "x", "intensity", "time", "z", "d")]
+        some = chosen(records, rows)
+        keys = [some[name] for name in ("returns", "source", "y", "x", "intensity", "time", "z", "d")]
         order[tied] = rows[np.lexsort([*keys, place[tied]])]
     return order
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..parallel import go_on
 from .columns import Columns, in_columns
+from .packing import buffer, buffers
 from .points import UNIT, Points, canonical_order
 from .spill_file import SpillFile
 
@@ -20,27 +21,26 @@ TURNS = 16             # locks that sections share while they are put in order
 
 @dataclass(frozen=True)
 class Parted:
-    """Records of a road sorted by section: those of section `first + k` end before row `ends[k]`."""
+    """Columns of points of a road sorted by section: those of section `first + k` end before row `ends[k]`."""
 
     road: int
-    records: np.ndarray
+    records: Columns
     first: int
     ends: list
 
 
 class _Section:
-    """The records of one section: some as they came, row by row, others in order, column by column; in memory or in the file."""
+    """The points of one section in parts: Columns in memory, and dicts of what lies in the file by name of column."""
 
-    __slots__ = ("rows", "row_places", "columns", "places")
+    __slots__ = ("parts", "in_order")
 
-    def __init__(self):
-        self.rows, self.row_places = [], []  # structured arrays; (place, count) of such in the file
-        # Columns; (place, count, alike) of such in the file, before those in memory. alike: what all points have, by column
-        self.columns, self.places = [], []
+    def __init__(self, in_order):
+        self.parts, self.in_order = [], in_order
 
     @property
     def nbytes(self):
-        return sum(part.nbytes for part in self.rows + self.columns)
+        """Bytes in memory."""
+        return sum(part.nbytes for part in self.parts if isinstance(part, Columns))
 
 
 class SectionStore:
@@ -49,12 +49,11 @@ class SectionStore:
     A section is a fixed cell of station of one road, cut from 0. What is read
     back is sorted by station, offset, height and time, so it does not depend on
     the order of appending, and a window is a run of rows; a section is sorted
-    once, when it is first read: till then its records lie row by row, so that
-    each is moved in one go.
+    once, when it is first read.
 
-    `finish`, where set, is a function of road and the records of a section (a
-    structured array, in no order). It is called once, before they are sorted; it
-    may change them, and returns which of them stay, a mask or None for all.
+    `finish`, where set, is a function of road and the Columns of a section, in no
+    order. It is called once, before they are sorted; it may change them, and
+    returns which of them stay, a mask or None for all.
     """
 
     def __init__(self, dtype, section_length=SECTION_LENGTH, memory_limit=MEMORY_LIMIT, finish=None):
@@ -74,10 +73,10 @@ class SectionStore:
     def append(self, road, records):
         """Add (N,) records of one road (a structured array or Columns); each goes to the section of its station."""
         if len(records):
-            self.add(self.parted(road, np.asarray(records)))
+            self.add(self.parted(road, records))
 
     def parted(self, road, records, rows=None):
-        """Records sorted by section: the work of `append` that any thread may do.
+        """Points sorted by section: the work of `append` that any thread may do.
 
         `rows` are the indices of those that are meant, all by default.
         """
@@ -86,31 +85,30 @@ class SectionStore:
         low, high = int(section.min()), int(section.max())
         section -= low
         order = np.argsort(section.astype(np.uint16) if high - low < 2**16 else section, kind="stable")
-        records = records.take(order if rows is None else rows.take(order))
+        order = order if rows is None else rows.take(order)
+        records = records.take(order).whole() if isinstance(records, Columns) else in_columns(records, order)
         return Parted(int(road), records, low, np.cumsum(np.bincount(section)).tolist())
 
     def add(self, parted):
         """Add what `parted` made."""
         for k, (first, end) in enumerate(zip([0, *parted.ends], parted.ends)):
             if end > first:
-                records = parted.records[first:end]
-                self._place((parted.road, parted.first + k), records).rows.append(records)
+                self._place((parted.road, parted.first + k), parted.records[first:end], False)
         self._spill_beyond_limit()
 
     def put(self, road, section, records):
         """Add the Columns of one section, which lie in order already and are all that it will hold."""
         if len(records):
-            self._place((int(road), int(section)), records).columns.append(records.whole())
+            self._place((int(road), int(section)), records.whole(), True)
             self._spill_beyond_limit()
 
-    def _place(self, key, records):
-        section = self._sections.get(key)
-        if section is None:
-            section = self._sections[key] = _Section()
+    def _place(self, key, records, in_order):
+        section = self._sections.setdefault(key, _Section(in_order))
+        section.in_order = in_order and not section.parts
+        section.parts.append(records)
         self._forget(key)
         self.count += len(records)
         self._waiting_bytes += records.nbytes
-        return section
 
     def _spill_beyond_limit(self):
         if self._waiting_bytes <= self.memory_limit:
@@ -118,18 +116,10 @@ class SectionStore:
         if self._file is None:
             self._file = SpillFile()
         for section in self._sections.values():
-            if section.rows:
-                section.row_places.append((self._file.end, sum(map(len, section.rows))))
-                for records in section.rows:
-                    self._file.append(records)
-            for records in section.columns:
-                # a column whose points are all alike (one pass, not corrected yet) need not be written
-                alike = {name: records[name][:1].copy() for name in self.dtype.names if _all_alike(records[name])}
-                section.places.append((self._file.end, len(records), alike))
-                for name in self.dtype.names:
-                    if name not in alike:
-                        self._file.append(records[name])
-            section.rows, section.columns = [], []
+            waiting = [part for part in section.parts if isinstance(part, Columns)]
+            if waiting:
+                stored = {name: self._file.put(_end_to_end([part[name] for part in waiting])) for name in self.dtype.names}
+                section.parts = [part for part in section.parts if not isinstance(part, Columns)] + [stored]
         self._waiting_bytes = 0
 
     def roads(self):
@@ -151,52 +141,56 @@ class SectionStore:
                     self._kept.move_to_end(key)
                     return records
             section = self._sections.get(key)
-            if section is None:
-                return Columns.joined([], self.dtype).locked()
-            if section.rows or section.row_places:
+            if section is not None and not section.in_order:
                 self._put_in_order(road, section)
-            records = self._in_order(section).locked()
-            if section.places:
+            if section is None or not section.parts:
+                return Columns.joined([], self.dtype).locked()
+            records = section.parts[0]
+            if not isinstance(records, Columns):
+                records = self._in_file(records)
                 self._keep(key, records)
-            return records
+            return records.locked()
 
-    def _in_order(self, section):
-        """The Columns of a section, those in the file read one by one when they are asked for."""
-        return Columns.joined([self._read_columns(*place) for place in section.places] + section.columns, self.dtype)
+    def _in_file(self, stored):
+        """Columns that are read one by one when they are asked for."""
+        return Columns({}, self.dtype, stored[self.dtype.names[0]].packing.count, lambda name: self._file.get(stored[name]))
 
     def _put_in_order(self, road, section):
-        """Sort what came to a section, and what was in order before, into the places they came from."""
-        before = section.nbytes
-        records = self._rows_of(section)
+        """Finish and sort the points of a section into one part; it is in the file then where some of them were."""
+        before, spilled = section.nbytes, [part for part in section.parts if not isinstance(part, Columns)]
+        records = self._all_of(section)
+        for part in spilled:
+            for stored in part.values():
+                self._file.give_back(stored)
         stay = None if self.finish is None else self.finish(road, records)
-        if stay is not None:
-            records = records.take(np.flatnonzero(stay))
-        columns = in_columns(records, canonical_order(records))
-        first, places = 0, []
-        # where columns were left out there is no room for them now
-        for place, count in section.row_places + [(place, count) for place, count, alike in section.places if not alike]:
-            count = min(count, len(columns) - first)
-            self._write_columns(place, columns[first:first + count])
-            places.append((place, count, {}))
-            first += count
-        section.rows, section.row_places, section.places = [], [], places
-        section.columns = [columns[first:].copy() if first else columns] if first < len(columns) or not places else []
+        if stay is None:
+            order = canonical_order(records)
+        else:
+            order = np.flatnonzero(stay)
+            order = order.take(canonical_order(records.take(order)))
+        section.parts, section.in_order = [], True
+        if len(order) and spilled:
+            section.parts = [{name: self._file.put(np.take(records[name], order, out=_room(self.dtype[name], len(order)), mode="clip"))
+                              for name in self.dtype.names}]
+        elif len(order):
+            section.parts = [Columns({name: records[name].take(order) for name in self.dtype.names}, self.dtype)]
         with self._lock:
             self._waiting_bytes += section.nbytes - before
 
-    def _rows_of(self, section):
-        """All records of a section, as an array of their own."""
-        parts = section.rows + [np.asarray(self._in_order(section))] * bool(section.places or section.columns)
-        records = np.empty(sum(map(len, parts)) + sum(count for _, count in section.row_places), self.dtype)
-        whole = np.dtype((np.void, self.dtype.itemsize))  # or rows would be copied field by field
-        first = 0
-        for place, count in section.row_places:
-            self._file.read(place, records[first:first + count])
-            first += count
-        for part in parts:
-            records.view(whole)[first:first + len(part)] = part.view(whole)
-            first += len(part)
-        return records
+    def _all_of(self, section):
+        """Columns of all parts of a section, for this thread alone and till it asks for others."""
+        counts = [len(part) if isinstance(part, Columns) else part[self.dtype.names[0]].packing.count for part in section.parts]
+        columns = buffers(self.dtype, sum(counts))
+        for name, column in columns.items():
+            first = 0
+            for part, count in zip(section.parts, counts):
+                out = column[first:first + count]
+                if isinstance(part, Columns):
+                    out[:] = part[name]
+                else:
+                    self._file.get(part[name], out)
+                first += count
+        return Columns(columns, self.dtype)
 
     def _keep(self, key, records):
         with self._lock:
@@ -209,25 +203,6 @@ class SectionStore:
         with self._lock:
             records = self._kept.pop(key, None)
             self._kept_bytes -= 0 if records is None else records.nbytes
-
-    def _read_columns(self, place, count, alike):
-        """Columns of a piece of the file, each read when it is asked for."""
-        written = [name for name in self.dtype.names if name not in alike]
-        places = dict(zip(written, np.cumsum([place] + [count * self.dtype[name].itemsize for name in written]).tolist()))
-
-        def read(name):
-            if name in alike:
-                return np.broadcast_to(alike[name], count)
-            column = np.empty(count, self.dtype[name])
-            self._file.read(places[name], column)
-            return column
-
-        return Columns({}, self.dtype, count, read)
-
-    def _write_columns(self, place, columns):
-        for name in self.dtype.names:
-            self._file.write(place, columns[name])
-            place += columns[name].nbytes
 
     def window(self, road, start, end):
         """Points of a road with start <= station < end (metres), in canonical order."""
@@ -304,10 +279,13 @@ class _WithColumn(SectionStore):
         self._points.close()
 
 
-def _all_alike(column):
-    """Whether all of one or more values are the same, bit by bit (so that NaN is NaN)."""
-    bits = np.ascontiguousarray(column).view(f"u{column.dtype.itemsize}")
-    return bool(bits[0] == bits[-1] == bits[len(bits) // 2] and (bits == bits[0]).all())
+def _end_to_end(columns):
+    """Arrays of a column one after the other, for this thread alone and till it asks for others."""
+    return np.concatenate(columns, out=_room(columns[0].dtype, sum(map(len, columns))))
+
+
+def _room(dtype, count):
+    return buffer(count * dtype.itemsize, "column").view(dtype)
 
 
 class _Metres:

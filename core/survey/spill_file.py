@@ -1,24 +1,88 @@
-"""A temporary file in which arrays are put down and picked up again, by several threads at once."""
+"""A temporary file in which columns are put down and picked up again, by several threads at once."""
 
 import os
 import tempfile
 import threading
+from bisect import insort
+from typing import NamedTuple
 
 import numpy as np
 
+from .packing import Packing, buffer, packed
+
+MOST_GAPS = 64   # places given back that are remembered; of more the largest
+
+
+class Stored(NamedTuple):
+    """Where the packed bytes of a column lie, and how they are packed."""
+
+    place: int
+    packing: Packing
+
 
 class SpillFile:
-    """Bytes at places of a file without a name (on Windows it is deleted when it is closed): a killed run leaves nothing."""
+    """Columns at places of a file without a name (on Windows it is deleted when it is closed): a killed run leaves nothing.
+
+    A column takes the place of others that were given back, where there is room.
+    """
 
     def __init__(self):
         self._file = tempfile.TemporaryFile(prefix="lanewright-", buffering=0)
         self._lock = threading.Lock()
+        self._gaps = []       # (place, bytes) given back, by place
         self.end = 0
 
-    def append(self, array):
-        """Put an array down behind all others."""
-        self.write(self.end, array)
-        self.end += array.nbytes
+    def put(self, column):
+        """Put a column of one or more numbers down; returns a Stored."""
+        packing, data = packed(column)
+        place = self._room(packing.nbytes)
+        self.write(place, data)
+        return Stored(place, packing)
+
+    def get(self, stored, out=None):
+        """The (N,) column of a Stored, put into `out` where one is given; else read-only where all values are alike."""
+        place, packing = stored
+        if not packing.widths and out is None:
+            return packing.alike
+        column = np.empty(packing.count, packing.dtype) if out is None else out
+        if not packing.widths:
+            column[:] = packing.alike
+        elif packing.widths == (packing.dtype.itemsize,):
+            self.read(place, column)
+        else:
+            data = buffer(packing.nbytes)
+            self.read(place, data)
+            packing.unpack(data, column)
+        return column
+
+    def give_back(self, stored):
+        """The place of a column may be taken by others."""
+        if not stored.packing.nbytes:
+            return
+        with self._lock:
+            insort(self._gaps, (stored.place, stored.packing.nbytes))
+            joined = [self._gaps[0]]
+            for place, size in self._gaps[1:]:
+                before, room = joined[-1]
+                if before + room == place:
+                    joined[-1] = before, room + size
+                else:
+                    joined.append((place, size))
+            if len(joined) > MOST_GAPS:
+                joined.remove(min(joined, key=lambda gap: gap[1]))
+            self._gaps = joined
+
+    def _room(self, nbytes):
+        """The first place that is large enough."""
+        if not nbytes:
+            return 0
+        with self._lock:
+            for k, (place, size) in enumerate(self._gaps):
+                if size >= nbytes:
+                    self._gaps[k:k + 1] = [(place + nbytes, size - nbytes)] * (size > nbytes)
+                    return place
+            self.end += nbytes
+            return self.end - nbytes
 
     # pread and pwrite leave the file's position alone, so threads may use it together; Windows has neither
     def write(self, place, array):

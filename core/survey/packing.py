@@ -1,0 +1,95 @@
+"""Columns in as few bytes as hold them, to the bit: what is put into a temporary file costs by the byte."""
+
+import threading
+from typing import NamedTuple
+
+import numpy as np
+
+AT_ONCE = 1 << 15      # values worked at a time: what fits the processor's cache
+PARTS = {0: (), 1: (1,), 2: (2,), 3: (2, 1), 4: (4,), 5: (4, 1), 6: (4, 2)}  # bytes of a value, and widths of its parts, lowest first
+
+
+_thread = threading.local()
+
+
+class Packing(NamedTuple):
+    """How a column of `count` values was packed: its bits less `least`, in parts of so many bytes, all lowest parts first."""
+
+    dtype: np.dtype
+    count: int
+    least: int
+    widths: tuple
+
+    @property
+    def nbytes(self):
+        return self.count * sum(self.widths)
+
+    @property
+    def alike(self):
+        """A read-only view of the one value that all have; None where they differ."""
+        if self.widths:
+            return None
+        size = self.dtype.itemsize
+        return np.broadcast_to(np.array(self.least % 2**(8 * size), f"u{size}").view(self.dtype), self.count)
+
+    def unpack(self, data, column):
+        """Fill a column, (N,), from its packed bytes."""
+        bits = np.dtype(f"u{self.dtype.itemsize}")
+        least, column = bits.type(self.least % 2**(8 * bits.itemsize)), column.view(bits)
+        low, *high = _parts(data, self)
+        for first in range(0, self.count, AT_ONCE):
+            piece = slice(first, first + AT_ONCE)
+            if high:
+                np.left_shift(high[0][piece], 8 * self.widths[0], out=column[piece], dtype=bits)
+                column[piece] |= low[piece]
+                column[piece] += least
+            else:
+                np.add(low[piece], least, out=column[piece], dtype=bits)
+
+
+def packed(column):
+    """Packing and packed bytes, (B,) uint8, of a column of one or more numbers.
+
+    The bytes are overwritten by the next column that the same thread packs.
+    """
+    column = np.ascontiguousarray(column)
+    size = column.dtype.itemsize
+    values = column.view(f"i{size}") if column.dtype.kind == "f" else column   # so that NaN is NaN
+    least, most = int(values.min()), int(values.max())
+    widths = PARTS.get(((most - least).bit_length() + 7) // 8, (size,))
+    if sum(widths) >= size:
+        return Packing(column.dtype, len(column), 0, (size,)), column.view(np.uint8)
+    packing = Packing(column.dtype, len(column), least, widths)
+    bits = column.view(f"u{size}")
+    least = bits.dtype.type(least % 2**(8 * size))
+    data = buffer(packing.nbytes)
+    parts = _parts(data, packing)
+    over = np.empty(min(len(bits), AT_ONCE), bits.dtype)
+    for first in range(0, len(bits) if parts else 0, AT_ONCE):
+        here = bits[first:first + AT_ONCE]
+        rest = np.subtract(here, least, out=over[:len(here)])
+        parts[0][first:first + AT_ONCE] = rest
+        if len(parts) > 1:
+            parts[1][first:first + AT_ONCE] = np.right_shift(rest, 8 * widths[0], out=rest)
+    return packing, data
+
+
+def _parts(data, packing):
+    """Views of the packed bytes, one for each part of the values."""
+    ends = np.cumsum([0, *packing.widths]) * packing.count
+    return [data[first:end].view(f"u{width}") for first, end, width in zip(ends[:-1].tolist(), ends[1:].tolist(), packing.widths)]
+
+
+def buffer(nbytes, use="packed"):
+    """(nbytes,) uint8 that this thread uses again and again: memory touched for the first time is dear."""
+    found = _thread.__dict__.get(use)
+    if found is None or len(found) < nbytes:
+        found = _thread.__dict__[use] = np.empty(nbytes + nbytes // 8, np.uint8)
+    return found[:nbytes]
+
+
+def buffers(dtype, count):
+    """An array for every field of a dtype, (count,) each, that this thread uses again and again."""
+    places = np.cumsum([0] + [-(-count * dtype[name].itemsize // 8) * 8 for name in dtype.names]).tolist()
+    data = buffer(places[-1], "columns")
+    return {name: data[place:place + count * dtype[name].itemsize].view(dtype[name]) for name, place in zip(dtype.names, places)}
