@@ -107,16 +107,21 @@ def _on_grid(road, lines):
         longest = max(pieces, key=lambda p: (p["seen"], p["s"][-1] - p["s"][0]))
         kinds.append(longest["kind"])
         patterns.append(longest["pattern"])
-    found = _joined(Boundaries(s, d, z, seen, [key[1] for key in order], kinds, patterns))
-    _even_doubles(found)
+    found, gaps = _joined(Boundaries(s, d, z, seen, [key[1] for key in order], kinds, patterns))
+    _even_doubles(found, _lead_over(found, gaps))
     _lengthen_dashed(found)
     return found
 
 
 def _joined(lines):
-    """Lines that go on as another line after at most a dash gap, in one row: a dashed line turns solid at a junction."""
-    rows = list(range(len(lines.d)))
+    """Lines that go on as another line after at most a dash gap, in one row: a dashed line turns solid at a junction.
+
+    Returns the Boundaries, and of each gap that was closed the row, the stations (as columns) on both its sides and
+    whether the line is double there.
+    """
+    rows, gaps = list(range(len(lines.d))), []
     ends = {k: np.flatnonzero(np.isfinite(lines.d[k])) for k in rows}
+    owner = dict(enumerate(rows))  # the line that a row ends as
     rows = [k for k in rows if len(ends[k])]
     for k in sorted(rows, key=lambda k: (ends[k][0], k)):
         behind = [j for j in rows if j != k and 0 < (ends[k][0] - ends[j][-1]) * STEP <= DASH_GAP
@@ -125,6 +130,8 @@ def _joined(lines):
             continue
         j = min(behind, key=lambda j: (abs(lines.d[k, ends[k][0]] - lines.d[j, ends[j][-1]]), j))
         first, last = ends[j][-1], ends[k][0]
+        gaps.append((j, first, last, *("double" in lines.patterns[owner[i]] for i in (j, k))))
+        owner[j] = owner[k]
         gap = np.arange(first + 1, last)
         for values in (lines.d, lines.z):
             values[j, last:] = np.where(np.isfinite(values[k, last:]), values[k, last:], values[j, last:])
@@ -134,11 +141,41 @@ def _joined(lines):
         lines.seen[j, gap] = any(lines.patterns[i].startswith("dash") for i in (j, k))
         ends[j] = np.r_[ends[j], gap, ends[k]]
         rows.remove(k)
-    return Boundaries(lines.s, lines.d[rows], lines.z[rows], lines.seen[rows], [lines.numbers[k] for k in rows],
-                      [lines.kinds[k] for k in rows], [lines.patterns[k] for k in rows])
+    found = Boundaries(lines.s, lines.d[rows], lines.z[rows], lines.seen[rows], [lines.numbers[k] for k in rows],
+                       [lines.kinds[k] for k in rows], [lines.patterns[k] for k in rows])
+    return found, [(rows.index(j), *gap) for j, *gap in gaps]
 
 
-def _even_doubles(lines):
+def _lead_over(lines, gaps):
+    """Where a double line goes on as a single one, both of its lines lead over to it: lanes on either side end at that one.
+
+    Returns the ends of lines that were led on, as (row, 1 where it ended or -1 where it began).
+    """
+    reach, led = int(DASH_GAP / STEP), set()
+    for j, last, first, before, after in gaps:
+        if before == after:
+            continue
+        # from the double line's own end to where the single one begins, in whichever direction
+        own, other, step = (last, first, 1) if before else (first, last, -1)
+        for k in np.flatnonzero(["double" in pattern for pattern in lines.patterns]):
+            columns = np.flatnonzero(np.isfinite(lines.d[k]))
+            if k == j or not len(columns):
+                continue
+            end = columns[-1 if step > 0 else 0]
+            if not 0 <= (own - end) * step <= reach or abs(lines.d[k, end] - lines.d[j, end]) >= DOUBLE:
+                continue
+            beside, gap = np.arange(end + step, own + step, step), np.arange(own + step, other, step)
+            for values in (lines.d, lines.z):
+                apart = values[k, end] - values[j, end]
+                values[k, beside] = values[j, beside] + apart
+                values[k, gap] = values[j, gap] + apart * (other - gap) / (other - own)
+            for columns in (beside, gap):
+                lines.seen[k, columns] = lines.seen[j, columns]
+            led.add((int(k), step))
+    return led
+
+
+def _even_doubles(lines, led):
     """The two lines of a double line begin and end together: the shorter goes on beside the longer, a dash gap at most.
 
     Else a lane would reach for the farther of the two where the nearer is worn away.
@@ -150,6 +187,8 @@ def _even_doubles(lines):
         if not len(columns):
             continue
         for end, step in ((columns[-1], 1), (columns[0], -1)):
+            if (k, step) in led:
+                continue
             beside = np.abs(np.where(present[:, end], lines.d[:, end], np.nan) - lines.d[k, end])
             beside[k] = np.nan
             twin = _nearest(beside < DOUBLE, beside)
