@@ -17,6 +17,7 @@ __all__ = ["ImageSettings", "IntensityImage", "write_intensity_image", "write_di
 WINDOW = 20.0          # m of station over which intensities are ranked for the second rule
 LARGEST = 2_000_000    # px, side of an image: beyond it a coordinate is wrong
 PIECES = 4             # pieces of a window, each interpolated at a time
+MOST = 3               # points of a cell: where there are more, an evenly spread share of them makes the image
 AHEAD = 16             # tiles for which a piece is kept
 
 
@@ -54,7 +55,8 @@ def write_intensity_image(road_points, path, settings=ImageSettings(), progress=
         G = sum(w I) / sum(w),  w = (1 - beta + beta * b) / (distance + 1 mm)**power
         b = clip((I - P1) / (P99 - P1), 0, 1)
 
-    with P1 and P99 of 20 m of road. The corrected intensity is used where there
+    with P1 and P99 of 20 m of road. Where points crowd, with six or more to a cell, an evenly
+    strewn share of them makes the image: three or more a cell. The corrected intensity is used where there
     is one. Cells are multiples of the cell size in map coordinates, so images
     of one place lie cell on cell; a cell with no point in the radius is no data.
 
@@ -122,30 +124,49 @@ def _window_numbers(road_points, road):
 def _survey_window(road_points, window, settings):
     """(P1, P99) of a window's points, and the extent (first and last column, first and last row) of each of its pieces."""
     road, number = window
-    points = road_points.window(road, number * WINDOW, (number + 1) * WINDOW)
-    if not len(points):
-        return (0.0, 1.0), {}
-    reach, extents = reach_of(settings), {}
-    bounds = np.searchsorted(points.records["s"] * UNIT, (number * PIECES + np.arange(PIECES + 1)) * (WINDOW / PIECES))
-    for k, (first, last) in enumerate(zip(bounds[:-1], bounds[1:])):
-        if last > first:
+    reach, extents, values = reach_of(settings), {}, []
+    for piece in range(number * PIECES, (number + 1) * PIECES):
+        points, _ = _points_of(road_points, (road, piece), settings)
+        if len(points):
             (c0, c1), (r0, r1) = ([int(lattice_cell(int(end), o, settings.cell_size)) for end in (c.min(), c.max())]
-                                  for c, o in ((points.records[name][first:last], o) for name, o in zip("xy", road_points.origin)))
-            extents[road, number * PIECES + k] = c0 - reach, c1 + reach, r0 - reach, r1 + reach
-    return tuple(quantiles(points.value, [0.01, 0.99])), extents
+                                  for c, o in ((points.records[name], o) for name, o in zip("xy", road_points.origin)))
+            extents[road, piece] = c0 - reach, c1 + reach, r0 - reach, r1 + reach
+            values.append(points.value)
+    return tuple(quantiles(np.concatenate(values), [0.01, 0.99])) if values else (0.0, 1.0), extents
+
+
+def _points_of(road_points, piece, settings):
+    """The points of one piece, 5 m of road, that make the image, and how many each stands for.
+
+    Where they crowd these are evenly strewn: one of so many in the order of station and offset that a cell has MOST of them.
+    """
+    road, number = piece
+    length = WINDOW / PIECES
+    points = road_points.window(road, number * length, (number + 1) * length)
+    if not len(points):
+        return points, 1
+    d = points.records["d"]
+    width = max((int(d.max()) - int(d.min())) * UNIT, settings.cell_size)
+    step = max(int(len(points) * settings.cell_size**2 / (length * width) / MOST), 1)
+    return points[::step] if step > 1 else points, step
 
 
 def _piece_sums(road_points, piece, limits, settings):
     """Sums of one piece, 5 m of road."""
-    road, number = piece
     low, high = limits
+    points, step = _points_of(road_points, piece, settings)
 
     def weigh(points):
         value = points.value
-        brightness = np.clip((value - np.float32(low)) / np.float32(max(high - low, 1e-9)), 0.0, 1.0)
-        return value, np.float32(1.0 - settings.beta) + np.float32(settings.beta) * brightness
+        brightness = value - np.float32(low)
+        brightness /= np.float32(max(high - low, 1e-9))
+        np.maximum(brightness, np.float32(0.0), out=brightness)
+        np.minimum(brightness, np.float32(1.0), out=brightness)
+        brightness *= np.float32(settings.beta)
+        brightness += np.float32(1.0 - settings.beta)
+        brightness *= np.float32(step)  # each stands for so many
+        return value, brightness
 
-    points = road_points.window(road, number * (WINDOW / PIECES), (number + 1) * (WINDOW / PIECES))
     return interpolation_sums(points, weigh, road_points.origin, settings)
 
 

@@ -9,7 +9,8 @@ from ..parallel import in_order
 from ..progress import Progress
 from ..survey.points import Points
 from .beams import Beams
-from .intensity_table import AWAY, BIN, REACH, AsphaltTable, asphalt_of, count_levels, distances_from_vehicle
+from .intensity_table import BIN, HALF, REACH, ROW, SHIFT, AsphaltTable, LevelCounts, asphalt_of
+from .vehicle_places import ACROSS, UNKNOWN, Tracks
 
 ENOUGH = 16_000   # points of a metre of road: more tell nothing new of asphalt
 STRIPE = 100    # units of 0.1 mm along the road: where there are more, stripes of it are looked at
@@ -112,23 +113,26 @@ def correct_intensity(road_points, frame, settings=IntensitySettings(), progress
         progress.warn(reason)
         return road_points, IntensityReport(reason=reason)
     sections = road_points.all_sections()
-    by_scanner = sum(in_order(lambda key: np.bincount(road_points.section(*key).scanner, minlength=256), sections))
+    by_scanner = sum(in_order(lambda key: _by_scanner(road_points.section(*key)), sections))
     scanners = int(np.flatnonzero(by_scanner)[-1]) + 1
     beams = Beams.of(road_points, frame, scanners, progress.part(0.0, 0.2))
     even = beams.even if beams else (lambda points: points.intensity)
     step = _step(road_points)
+    before, after = LevelCounts(scanners), LevelCounts(scanners)
+    evened = LevelCounts(scanners) if beams else before
 
     def count(key):
         points = _stripes(road_points.section(*key), step)
-        distance = distances_from_vehicle(points, frame.passes)
-        raw = count_levels(points.scanner, distance, points.intensity, scanners)
-        evened = count_levels(points.scanner, distance, even(points), scanners) if beams else raw
-        return step * raw, step * evened, np.array([np.count_nonzero(np.isnan(distance[0])), len(points)])
+        places = Tracks(frame.passes, points.time).places(points)
+        raw = before.of(points.scanner, places, points.intensity)
+        return raw, evened.of(points.scanner, places, even(points)) if beams else (), np.count_nonzero(places[0] == UNKNOWN), len(points)
 
-    before, evened, placeless = 0, 0, 0
-    for counts, even_counts, lost in in_order(count, sections, progress.part(0.2, 0.5)):
-        before, evened, placeless = before + counts, evened + even_counts, placeless + lost
-    table = AsphaltTable.of(evened)
+    placeless = np.zeros(2, np.int64)
+    for raw, even_ones, *lost in in_order(count, sections, progress.part(0.2, 0.5)):
+        before.add(raw, step)
+        evened.add(even_ones, step)
+        placeless += lost
+    table = AsphaltTable.of(evened.counts)
     if placeless[0] > WITHOUT_VEHICLE * placeless[1]:
         reason = ("Intensity was left as it is: the trajectory does not say where the vehicle was when "
                   f"{placeless[0]:,} of {placeless[1]:,} points were measured.")
@@ -140,23 +144,26 @@ def correct_intensity(road_points, frame, settings=IntensitySettings(), progress
     if settings.scale != "automatic":
         table.logarithmic = settings.scale == "logarithmic"
 
-    away = bool((table.told_by == AWAY).any())
+    ways, lookup = np.unique(table.told_by[by_scanner[:scanners] > 0]).tolist(), table.lookup()
 
     def correct(key):
         points = road_points.section(*key)
-        corrected = np.empty(len(points), np.float32)
+        corrected, tracks = np.empty(len(points), np.float32), Tracks(frame.passes, points.time)
         for first in range(0, len(points), AT_ONCE):
             here = points[first:first + AT_ONCE]
-            corrected[first:first + AT_ONCE] = table.correct(even(here), here.scanner, distances_from_vehicle(here, frame.passes, away))
+            places = tracks.places(here, ways)
+            place = places[0] if len(places) == 1 else np.where(table.told_by[here.scanner] == ACROSS, *places)
+            found = _looked_up(lookup, here.scanner, place)
+            np.add(even(here), found, out=found) if table.logarithmic else np.multiply(even(here), found, out=found)
+            corrected[first:first + AT_ONCE] = found
         some = _stripes(Points(points.records.with_columns(corrected=corrected)), step)
-        return key, corrected, step * count_levels(some.scanner, distances_from_vehicle(some, frame.passes), some.corrected, scanners)
+        return key, corrected, after.of(some.scanner, tracks.places(some, ways), some.corrected, ways)
 
     result = replace(road_points, store=road_points.store.with_column("corrected"), has_corrected=True)
-    after = 0
     for key, corrected, counts in in_order(correct, sections, progress.part(0.5, 1.0)):
         result.store.put(*key, corrected)
-        after = after + counts
-    report = _report(before, after, table, by_scanner)
+        after.add(counts, step)
+    report = _report(before.counts, after.counts, table, by_scanner)
     report.beams = beams.count if beams else 0
     for line in report.lines()[:1]:
         progress.say(line)
@@ -178,6 +185,23 @@ def _stripes(points, step):
     begins, ends = np.searchsorted(s, first), np.searchsorted(s, first + STRIPE)
     count = ends - begins
     return points[np.repeat(begins - (np.cumsum(count) - count), count) + np.arange(count.sum())]
+
+
+def _by_scanner(points):
+    """(256,) how many points each scanner has."""
+    scanner = points.scanner
+    return sum((np.bincount(scanner[k:k + AT_ONCE], minlength=256) for k in range(0, len(scanner), AT_ONCE)), np.zeros(256, np.int64))
+
+
+def _looked_up(lookup, scanner, place):
+    """(N,) float32 of the lookup table of an AsphaltTable."""
+    index = place + np.int32(HALF)
+    index >>= SHIFT
+    np.minimum(index, ROW - 1, out=index)
+    np.maximum(index, 0, out=index)
+    if len(lookup) > 1:
+        index += scanner.astype(np.int32) * np.int32(ROW)
+    return lookup.ravel().take(index)
 
 
 def _why_not(road_points, frame):

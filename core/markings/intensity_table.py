@@ -5,6 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..survey.points import UNIT
+from .vehicle_places import ACROSS, AWAY, UNKNOWN
+
 BIN = 0.5           # m of distance
 REACH = 30.0        # m; farther road counts with the last bin
 LEVELS = 1024       # of intensity, 64 to a doubling: 1.1 % each
@@ -13,57 +16,16 @@ FEWEST = 200        # points that make a bin's asphalt known
 BINS = int(2 * REACH / BIN)
 MIXED = 1.5         # times the spread of its neighbours: a bin of paint and asphalt, left out
 PAINT_SIGMA = 3.0   # brighter than asphalt by this many of its lower spread is not asphalt
-ACROSS, AWAY = 0, 1  # how distance is told
+SHIFT, ROW = 4, 2**16   # corrections are looked up every 2**4 units of 0.1 mm, so that many to either side as fit
+HALF = ROW << SHIFT >> 1
 LEVEL_OF = np.clip(np.rint(np.log2(np.arange(2**16) + 1.0) * PER_DOUBLING), 0, LEVELS - 1).astype(np.int32)  # of whole numbers
 
 
-def distances_from_vehicle(points, passes, away=True):
-    """Where each point lies as seen from the vehicle at the time it was measured.
-
-    On a road the place relative to the vehicle stands for range and incidence
-    together: the height of the sensor ties one to the other. A mirror scanner,
-    even one yawed by 45 degrees, meets each distance across the road once per
-    turn, at one range; a spinning one with many beams meets it at many, but
-    there the distance away from it tells the range.
-
-    Parameters
-    ----------
-    points : (N) road points
-    passes : the passes of the frame
-    away : whether the second distance is asked for
-
-    Returns
-    -------
-    (2, N) metres, left of travel positive: across the track, and horizontally
-    away with the sign of the side; NaN where no pass drove at the point's time, or where it is not asked for
-    """
-    distance = np.full((2, len(points)), np.nan)
-    time, number = points.time, points.pass_number
-    for p in passes:
-        rows = (number == p.number) & (time >= p.time[0] - 1.0) & (time <= p.time[-1] + 1.0)
-        whole = rows.all()
-        if not whole and not rows.any():
-            continue
-        rows = slice(None) if whole else np.flatnonzero(rows)
-        here = points[rows]
-        across = here.d
-        across -= p.at(time[rows], "d")[0]
-        across *= p.direction
-        distance[ACROSS, rows] = across
-        if away:
-            px, py = p.at(time[rows], "x", "y")
-            px -= here.x
-            py -= here.y
-            px *= px
-            py *= py
-            px += py
-            distance[AWAY, rows] = np.copysign(np.sqrt(px, out=px), across)
-    return distance
-
-
-def distance_bin(distance):
-    """(N,) int32 bin of a signed distance."""
-    return np.clip((distance + REACH) * (1.0 / BIN), 0, BINS - 1).astype(np.int32)
+def distance_bin(places):
+    """(N,) int32 bin of signed distances, units of 0.1 mm."""
+    number = places + np.int32(REACH / UNIT)
+    number //= np.int32(BIN / UNIT)
+    return np.clip(number, 0, BINS - 1, out=number)
 
 
 def to_level(intensity):
@@ -77,14 +39,45 @@ def to_intensity(level):
     return 2.0 ** (np.asarray(level, float) / PER_DOUBLING) - 1.0
 
 
-def count_levels(scanner, distances, intensity, scanners):
-    """(2, scanners, BINS, LEVELS) int64: how many points have each level, by each way of telling the distance."""
-    known = np.isfinite(distances[ACROSS])
-    if not known.all():
-        distances, intensity, scanner = distances[:, known], intensity[known], scanner[known]
-    place = scanner.astype(np.int32) * (BINS * LEVELS) + to_level(intensity)
-    return np.stack([np.bincount(distance_bin(row) * np.int32(LEVELS) + place,
-                                 minlength=scanners * BINS * LEVELS).reshape(scanners, BINS, LEVELS) for row in distances])
+class LevelCounts:
+    """How many points have each level, by scanner and distance, by each way of telling the distance.
+
+    counts : (2, scanners, BINS, LEVELS) int64
+    """
+
+    def __init__(self, scanners):
+        self.counts = np.zeros((2, scanners, BINS, LEVELS), np.int64)
+
+    def of(self, scanner, places, intensity, ways=(ACROSS, AWAY)):
+        """What some points count, to be added: (way, first bin, (scanners, bins, LEVELS)) for each way.
+
+        Parameters
+        ----------
+        scanner, intensity : (N,)
+        places : for each of `ways` (N,) of `Tracks.places`
+        """
+        known = places[0] != UNKNOWN
+        if not known.all():
+            places, intensity, scanner = [row[known] for row in places], intensity[known], scanner[known]
+        if not len(intensity):
+            return []
+        level, scanners = to_level(intensity), self.counts.shape[1]
+        found = []
+        for way, row in zip(ways, places):
+            number = distance_bin(row)
+            first, bins = int(number.min()), int(np.ptp(number)) + 1
+            number -= first
+            if scanners > 1:
+                number += scanner.astype(np.int32) * bins
+            number *= LEVELS
+            number += level
+            found.append((way, first, np.bincount(number, minlength=scanners * bins * LEVELS).reshape(scanners, bins, LEVELS)))
+        return found
+
+    def add(self, found, times=1):
+        """Add what `of` found, so many times."""
+        for way, first, counts in found:
+            self.counts[way, :, first:first + counts.shape[1]] += counts if times == 1 else times * counts
 
 
 def asphalt_of(histograms):
@@ -97,17 +90,21 @@ def asphalt_of(histograms):
     -------
     median, lower sigma : (...) intensity; NaN where there are fewer than 200 points
     """
-    counts = histograms.astype(float)
-    total = counts.sum(axis=-1)
-    limit = np.full(total.shape, LEVELS)
+    total = histograms.sum(axis=-1)
+    known = total >= FEWEST
+    median, sigma = np.full(total.shape, np.nan), np.full(total.shape, np.nan)
+    counts = histograms[known].astype(float)
+    if not len(counts):
+        return median, sigma
+    limit = np.full(len(counts), LEVELS)
     for _ in range(4):
         kept = np.where(np.arange(LEVELS) <= limit[..., None], counts, 0.0)
         low, middle = _quantile(kept, 0.1587), _quantile(kept, 0.5)
         # a level is 1.1 %: narrower than that no spread can be seen
         limit = middle + PAINT_SIGMA * np.maximum(middle - low, 1.0)
-    known = total >= FEWEST
-    median, lower = to_intensity(middle), to_intensity(low)
-    return np.where(known, median, np.nan), np.where(known, median - lower, np.nan)
+    median[known] = to_intensity(middle)
+    sigma[known] = median[known] - to_intensity(low)
+    return median, sigma
 
 
 def _quantile(counts, q):
@@ -139,7 +136,7 @@ class AsphaltTable:
 
     @classmethod
     def of(cls, histograms):
-        """The table of `count_levels`; None where no scanner saw enough road."""
+        """The table of `LevelCounts`; None where no scanner saw enough road."""
         median, sigma = asphalt_of(histograms)
         weight = histograms.sum(axis=-1)
         if not np.isfinite(median).any():
@@ -156,22 +153,14 @@ class AsphaltTable:
         asphalt = np.stack([_smooth(row, count) for row, count in zip(median, weight)])
         return cls(asphalt, known, told_by, reference, is_logarithmic(median, sigma, weight))
 
-    def correct(self, intensity, scanner, distances):
-        """Corrected intensities, (N,) float32; NaN where asphalt is unknown."""
-        told_by = self.told_by[np.flatnonzero(np.bincount(scanner))]
-        alike = len(told_by) and (told_by == told_by[0]).all()
-        distance = distances[told_by[0]] if alike else np.where(self.told_by[scanner] == ACROSS, *distances)
-        position = np.clip((distance + REACH) * (1.0 / BIN) - 0.5, 0, BINS - 1)
-        k = np.nan_to_num(position).astype(np.intp)
-        position -= k
-        k += scanner.astype(np.intp) * BINS
-        asphalt = self.asphalt.ravel().take(k)
-        after = np.append(self.asphalt, self.asphalt[:, -1:], axis=1)[:, 1:].ravel().take(k)
-        after -= asphalt
-        asphalt += after * position
-        if self.logarithmic:
-            return (intensity + (self.reference - asphalt)).astype(np.float32)
-        return (intensity * (self.reference / np.maximum(asphalt, 1e-6))).astype(np.float32)
+    def lookup(self):
+        """What corrects an intensity at each place: (scanners, ROW) float32 factors, or what is added; NaN where asphalt is unknown."""
+        distance = (((np.arange(ROW) << SHIFT) - HALF) + (1 << SHIFT) / 2) * UNIT
+        position = np.clip((distance + REACH) / BIN - 0.5, 0, BINS - 1)
+        asphalt = np.stack([np.interp(position, np.arange(BINS), row) for row in self.asphalt])
+        found = self.reference - asphalt if self.logarithmic else self.reference / np.maximum(asphalt, 1e-6)
+        found[:, -1] = np.nan  # where UNKNOWN leads to
+        return found.astype(np.float32)
 
 
 def is_logarithmic(median, sigma, weight):

@@ -112,6 +112,20 @@ def test_the_image_does_not_depend_on_the_length_of_sections(tmp_path, section_l
     np.testing.assert_array_equal(usual, other)
 
 
+def test_where_points_crowd_a_share_of_them_makes_the_same_image(tmp_path):
+    """Ten points to a cell, of which each third is taken, whatever the length of sections."""
+    crowded = painted_street(length=12.0, density=6300)
+    share = all_pixels(image_of(crowded, tmp_path / "a.tif"))
+    other = all_pixels(image_of(crowded[::-1], tmp_path / "b.tif", section_length=7.3))
+    np.testing.assert_array_equal(share, other)
+    usual = all_pixels(image_of(painted_street(length=12.0, density=2100), tmp_path / "c.tif"))
+    for values in (share, usual):
+        assert np.isfinite(values).mean() > 0.98
+        assert abs(np.nanmedian(values) - ASPHALT) < 10
+    middle = (PAINT + ASPHALT) / 2
+    assert abs(np.mean(share > middle) - np.mean(usual > middle)) * 6.0 < 0.005
+
+
 def test_what_is_interpolated_again_for_a_later_tile_is_the_same(tmp_path, monkeypatch):
     """A diagonal street, whose pieces touch several tiles, and none is kept for the next one."""
     from lanewright.core.markings import image

@@ -5,7 +5,8 @@ import pytest
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.markings import intensity
 from lanewright.core.markings.intensity import IntensitySettings, correct_intensity
-from lanewright.core.survey.points import ROAD_POINT, to_units
+from lanewright.core.markings.vehicle_places import UNKNOWN, Tracks
+from lanewright.core.survey.points import ROAD_POINT, Points, to_units
 from lanewright.core.survey.road_frame import build_frame
 from lanewright.core.survey.road_points import RoadPoints
 from lanewright.core.survey.section_store import SectionStore
@@ -145,6 +146,22 @@ def test_where_points_crowd_stripes_of_road_tell_the_same_asphalt(monkeypatch):
     assert np.median(np.abs(striped.corrected / usual.corrected - 1)) < 0.01
     assert sum(row["points"] for row in report.scanners) == len(usual)
     np.testing.assert_array_equal(striped.corrected, other.corrected)
+
+
+@pytest.mark.parametrize("reverse", [False, True])
+def test_points_are_left_or_right_of_the_vehicle_as_it_drove_and_as_far_away_as_measured(reverse):
+    records, across, _ = street(count=5_000)
+    frame = straight_drive(reverse=reverse)
+    driven = frame.passes[0]
+    found, away = Tracks(frame.passes, records["time"]).places(Points(records))
+    mine = records["d"] * 1e-4 - np.interp(records["time"], driven.time, driven.d)
+    np.testing.assert_allclose(found * 1e-4, driven.direction * mine, atol=2e-4)
+    there = [np.interp(records["time"], driven.time, row) for row in (driven.x, driven.y)]
+    distance = np.hypot(records["x"] * 1e-4 - there[0], records["y"] * 1e-4 - there[1])
+    np.testing.assert_allclose(np.abs(away) * 1e-4, distance, atol=0.006)
+    late = records.copy()
+    late["time"] += 100.0
+    assert all((row == UNKNOWN).all() for row in Tracks(frame.passes, late["time"]).places(Points(late)))
 
 
 def test_without_time_the_intensity_is_left_raw_and_the_report_says_why():
