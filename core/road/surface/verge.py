@@ -19,6 +19,8 @@ BLIND = 12                 # unless no more are empty and road lies behind: wher
 STRIP = 8                  # cells before the verge in which a strip of gravel is looked for
 INSIDE = 3                 # cells of road that such a strip is compared with
 DIFFERS, PAINTED = 0.4, 2.0  # times the points' scatter by which its brightness differs at least; at most, or it is paint
+TREND = 12                 # cells of road that tell how brightness falls with the distance
+LINE = 3                   # cells that a line painted along the road is wide at most
 INSET = 0.05               # m kept off a limit: too wide a road takes verge for paint, too narrow a one loses nothing
 AROUND, RANK = 2, 1        # profiles either side, the second nearest of which counts: a missed verge is no wider road
 WIDER = 3.0                # m by which two profiles side by side say the road is wider: a junction or a square, no missed verge
@@ -205,13 +207,29 @@ class Profile:
         best, at = 0.0, k
         scatter = self.scatter[max(k - 20, 0):k]
         scatter = np.median(scatter[np.isfinite(scatter)]) if np.isfinite(scatter).any() else np.nan
+        painted = self._painted(k, scatter)
         for first in range(max(k - STRIP, INSIDE), k - 1):
             inside, strip = self.brightness[first - INSIDE:first], self.brightness[first:k]
-            if not (np.isfinite(inside).all() and np.isfinite(strip).all()):
+            if painted[first:k].any() or not (np.isfinite(inside).all() and np.isfinite(strip).all()):
                 continue
             differs = (strip - np.median(inside)) / max(scatter, 1e-6)
             contrast = abs(np.median(differs))
             one_way = (np.sign(differs) == np.sign(np.median(differs))).all()
-            if one_way and DIFFERS < contrast < PAINTED and contrast > best:
+            if one_way and DIFFERS < contrast < PAINTED and contrast > best and self._breaks(np.flatnonzero(~painted[:first])[-TREND:], first, k, scatter):
                 best, at = contrast, first
         return self.u[at] - ACROSS / 2
+
+    def _breaks(self, before, first, k, scatter):
+        """Whether cells first to k differ, all one way, from what cells `before` promise: brightness falls with the distance, too."""
+        values = self.brightness[before]
+        before, values = before[np.isfinite(values)], values[np.isfinite(values)]
+        i, j = np.triu_indices(len(before), 1)
+        slope = np.median((values[j] - values[i]) / (before[j] - before[i])) if len(i) else 0.0
+        off = self.brightness[first:k] - slope * np.arange(first, k) - np.median(values - slope * before)
+        return abs(np.median(off)) > DIFFERS * scatter and (np.sign(off) == np.sign(np.median(off))).all()
+
+    def _painted(self, k, scatter):
+        """Cells before cell k in or beside a painted line, brighter than what is on either side: none of a strip of gravel, and no place to cut the road."""
+        at = np.arange(k)
+        beside = np.maximum(self.brightness[np.maximum(at - LINE, 0)], self.brightness[np.minimum(at + LINE, k - 1)])
+        return np.convolve(self.brightness[:k] - beside > PAINTED * scatter, np.ones(3), "same") > 0

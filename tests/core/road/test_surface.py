@@ -221,6 +221,16 @@ def test_an_edge_line_painted_along_the_verge_stays_on_the_road():
     assert left > 3.38 and right < -3.38
 
 
+@pytest.mark.parametrize("beyond", [0.25, 0.4])
+def test_asphalt_beyond_an_edge_line_is_no_strip_of_gravel_that_takes_the_line_along(beyond):
+    rough = lambda d: np.where(np.abs(d) > 3.4 + beyond, 0.02, 0.0)
+    # what returns from farther is a little weaker
+    seen = lambda d: np.select([(np.abs(d) > 3.28) & (np.abs(d) < 3.4), np.abs(d) > 3.4], [4000.0, 920.0], 1000.0)
+    points, _ = taken(survey(curbs(20.0), roughness=rough, intensity=seen))
+    right, left = width_seen(points, 5, 55)
+    assert left > 3.44 and right < -3.44
+
+
 @pytest.mark.parametrize("max_width", [3.0, 8.0])
 def test_an_open_square_is_taken_no_farther_than_the_width_asked_for(max_width):
     points, _ = taken(survey(curbs(50.0)), settings=SurfaceSettings(max_width=max_width))
