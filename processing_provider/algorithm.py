@@ -106,7 +106,8 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
 
     def tags(self):
         # In the user's language and in English, which the field speaks everywhere
-        return list(dict.fromkeys([tr(tag) for tag in self.TAGS] + list(self.TAGS))) + ["mls", "mobile mapping", "lidar", "point cloud", "las", "laz", "road"]
+        tags = *(tr(tag) for tag in self.TAGS), *self.TAGS, "mls", "mobile mapping", "lidar", "point cloud", "las", "laz", "road"
+        return list(dict.fromkeys(tags))
 
     def shortHelpString(self):
         """The summary and every parameter's own help: written once, on the parameter."""
