@@ -243,16 +243,18 @@ def usual_width(tracks, painted=True):
     return float(np.median(widths)) if len(widths) else USUAL
 
 
-def lone_lanes(lines, kept, tracks, driven, half, shortest, room):
+def lone_lanes(lines, kept, tracks, driven, half_lane, shortest, room):
     """Lanes beside a line without partner: where the vehicle drove, and on both sides of a centre line that is alone.
 
-    half : distance of the driving line from the painted one
+    half_lane : a function of offsets (K,) of a painted line and a side, 1 or -1, that gives the (K,) distance of the
+        driving line from it
     shortest : metres; less is a gap between lanes that are known, left open for a reason
     """
     alone = (kept.sum(0) == 1)
     found = []
     for k in range(len(lines.d)):
         for side in (1, -1):
+            half = half_lane(lines.d[k], side)
             d = lines.d[k] + side * half
             free = kept[k] & lines.seen[k]
             others = kept.copy()
@@ -263,17 +265,17 @@ def lone_lanes(lines, kept, tracks, driven, half, shortest, room):
                 free &= ~(others[other] & (beyond > 0) & (beyond < 2 * WIDEST))
             for track in tracks + found:
                 window = slice(track.first, track.last + 1)
-                free[window] &= np.abs(track.d - d[window]) > 0.8 * half + 0.4 * track.width
+                free[window] &= np.abs(track.d - d[window]) > 0.8 * half[window] + 0.4 * track.width
             for a, b in true_runs(free):
                 if b - a + 1 < shortest / STEP:
                     continue
                 window = slice(a, b + 1)
-                there = np.abs(driven[:, window] - d[window]) < half if len(driven) else np.zeros((1, 1), bool)
+                there = np.abs(driven[:, window] - d[window]) < half[window] if len(driven) else np.zeros((1, 1), bool)
                 if there.any(0).mean() < 0.5 and not (lines.kinds[k] == "centre" and alone[window].mean() > 0.5):
                     continue
                 size = b - a + 1
                 near = np.full(size, k)
-                track = Track(a, d[window].copy(), np.full(size, 2 * half), np.full(size, INFERRED), np.ones(size, bool),
+                track = Track(a, d[window].copy(), 2 * half[window], np.full(size, INFERRED), np.ones(size, bool),
                               near if side < 0 else np.full(size, -1), near if side > 0 else np.full(size, -1))
                 if room(track):
                     found.append(track)

@@ -56,7 +56,7 @@ def driving_lines(marking_lines, frame, settings=DrivingSettings(), progress=Pro
     for count, (number, road_lines) in enumerate(boundaries.items()):
         driven, directions = driven_offsets(frame, number, road_lines.s)
         room = Room(road_lines, frame, number, curbs.get(number), markings)
-        tracks = road_lanes(road_lines, driven, settings, room.clear)
+        tracks = road_lanes(road_lines, driven, settings, room)
         found[number] = road_lines, tracks, driven, directions, divide(road_lines, tracks, driven, directions)
         progress.at(0.4 * (count + 1) / len(boundaries))
     side = _traffic_side(found, settings, progress)
@@ -75,15 +75,16 @@ def driving_lines(marking_lines, frame, settings=DrivingSettings(), progress=Pro
     return lines, elements
 
 
-def road_lanes(lines, driven, settings, room=lambda track: True):
+def road_lanes(lines, driven, settings, where):
     """The lanes of one road as a list of Track, by first station, then from right to left.
 
     Parameters
     ----------
     lines : Boundaries
     driven : (P, K) offset of the passes on the grid, NaN where they were not
-    room : a function that says whether a Track is where a lane can be
+    where : Room
     """
+    room = where.clear
     kept = chosen_lines(lines, driven)
     all_strips = strips(lines, kept)
     tracks = paired_lanes(lines, all_strips, driven, room)
@@ -96,8 +97,12 @@ def road_lanes(lines, driven, settings, room=lambda track: True):
     tracks += divided_strips(lines, all_strips, tracks, driven, lane_width, room)
     tracks = connect(tracks, lines, *gaps)
     tracks = connect(extend(tracks, lines, kept, room, settings.max_bridge), lines, *gaps)
-    half = settings.line_distance or (usual_width(tracks, painted=False) if tracks else lane_width) / 2
-    tracks = connect(tracks + lone_lanes(lines, kept, tracks, driven, half, settings.max_bridge, room), lines, *gaps)
+    half = (usual_width(tracks, painted=False) if tracks else lane_width) / 2
+
+    def half_lane(d, side):
+        return np.full(len(d), settings.line_distance) if settings.line_distance else where.half_lane(d, side, half)
+
+    tracks = connect(tracks + lone_lanes(lines, kept, tracks, driven, half_lane, settings.max_bridge, room), lines, *gaps)
     tracks = [track.without_bridged_ends() for track in tracks]
     tracks = [track for track in tracks if track is not None and len(track) * STEP >= settings.shortest]
     return sorted(tracks, key=lambda track: (track.first, float(track.d[0])))

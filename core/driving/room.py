@@ -3,6 +3,8 @@
 import numpy as np
 import shapely
 
+from .settings import NARROWEST
+
 ON_CURB = 0.3       # share of a lane's width: a curb this near its middle runs along the lane
 MOSTLY = 0.5        # of its length beside such a curb, and it is no lane
 HATCHED = 0.25      # of its middle on the stripes of a hatched area (they cover less than half of it)
@@ -43,3 +45,16 @@ class Room:
             x, y = self.road.to_map(self.s[window], track.d)
             return shapely.contains_xy(self.hatched, x + self.origin[0], y + self.origin[1]).mean() < HATCHED
         return True
+
+    def half_lane(self, d, side, half):
+        """(K,) metres from a line at offsets d (K,) to the middle of a lane on one side of it: `half`, or less where a curb leaves less.
+
+        A curb counts that is known along most of the line; over its gaps it goes on from end to end.
+        """
+        beyond = side * (self.curbs - d)
+        with np.errstate(invalid="ignore"):
+            nearest = np.where(beyond > NARROWEST, beyond, np.inf).min(axis=0, initial=np.inf)
+        known = np.flatnonzero(np.isfinite(nearest))
+        if len(known) <= MOSTLY * np.isfinite(d).sum():
+            return np.full(len(d), half)
+        return np.minimum(half, np.interp(np.arange(len(d)), known, nearest[known]) / 2)

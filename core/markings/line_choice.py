@@ -5,16 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from .centre_lines import SAME_OFFSET, lone_centre, one_centre, outer_lines_alone
 from .classes import LANE
 from .linking import TWIN
 from .patterns import LONGEST_DASH, Piece, merged, pieces, stretches
 
 SHARED = 0.6         # of a line's paint that must have its twin beside it in a double line
 SLIVER = 0.35        # of a line's length: less paint beside a line than this is no second line but its frayed edge
-SAME_OFFSET = 0.25   # m: a lone dash this near the course of a dashed line is one of its dashes
 LONE_DASH = 1.5      # m
 LONG = 15.0          # m of paint: enough to bound a road by
-TWO_LANES = 5.0      # m between the outer lines of a road of two lanes
 NEIGHBOUR = 8.0      # m across: a line this near starts and ends where this one does
 WIDE_LANE = 2.6      # m: a solid line with less room than this to the road edge bounds the road
 BAR = 4.0            # m along the road: what is called hatching and is longer is no single bar of it
@@ -33,6 +32,7 @@ class Chosen:
     pieces: list
     width: float
     level: float   # offset less the drift common to the road's lines, metres
+    room: float    # metres between the line and the road edge on its side
 
     @property
     def span(self):
@@ -62,7 +62,7 @@ def _extents(markings, road, frame, classes):
     return np.array(found).reshape(-1, 4)
 
 
-def choose(lines, drift, crossed, min_paint, hatched=np.empty((0, 4))):
+def choose(lines, drift, crossed, min_paint, hatched=np.empty((0, 4)), passes=()):
     """The lines worth drawing.
 
     A line needs paint: `min_paint` metres of it, or two dashes of a rhythm, or one dash
@@ -77,6 +77,7 @@ def choose(lines, drift, crossed, min_paint, hatched=np.empty((0, 4))):
     crossed : (K, 4) as `crossings` gives it
     min_paint : metres
     hatched : (K, 4) as `bars` gives it
+    passes : the drives over the road
 
     Returns
     -------
@@ -105,9 +106,10 @@ def choose(lines, drift, crossed, min_paint, hatched=np.empty((0, 4))):
         neighbours = _painted_beside(k, lines, level)
         drawn = _extended(drawn, parts[k], lone, (painted_from, painted_to), crossed, neighbours, line)
         width = float(np.average([s.width for s in line.strands], weights=[s.length for s in line.strands]))
-        found.append(Chosen(line, kind, bool(double[k]), drawn, width, level[k]))
-    _outer_lines_alone(found)
-    _one_centre(found)
+        found.append(Chosen(line, kind, bool(double[k]), drawn, width, level[k], _room(line)))
+    outer_lines_alone(found)
+    one_centre(found)
+    lone_centre(found, passes)
     return found
 
 
@@ -208,62 +210,16 @@ def _votes(line):
     return votes
 
 
+def _room(line):
+    return float(np.average([s.room for s in line.strands], weights=[s.length for s in line.strands]))
+
+
 def _kind(line, double, dashed):
-    room = float(np.average([s.room for s in line.strands], weights=[s.length for s in line.strands]))
     if double:
         return "centre"
-    if _votes(line).get("edge", 0.0) > 0.5 * line.painted or room < (LANE if dashed else WIDE_LANE):
+    if _votes(line).get("edge", 0.0) > 0.5 * line.painted or _room(line) < (LANE if dashed else WIDE_LANE):
         return "edge"
     return "lane" if dashed else "centre"
-
-
-def _outer_lines_alone(chosen):
-    """Two solid lines with room for two lanes and no line between them are the road's edge lines.
-
-    The road's own edge is no help there: where there is no curb, a smooth verge may pass for carriageway.
-    """
-    solid = [one for one in chosen if not one.double and all(piece.pattern == "solid" for piece in one.pieces)]
-    pairs = [(one, other) for one in solid for other in solid
-             if TWO_LANES <= other.level - one.level and max(_shared(one, [other]), _shared(other, [one])) > 0.5]
-    for one, other in pairs:
-        between = [inner for inner in chosen if one.level + TWIN[1] < inner.level < other.level - TWIN[1]]
-        if not _shared(one, between) and not _shared(other, between):
-            one.kind = other.kind = "edge"
-
-
-def _one_centre(chosen):
-    """A road has one centre line at a place.
-
-    Where it is double, solid lines beside it are lane lines; of two solid lines the
-    one nearer the middle of what is painted is the centre line. A dashed line on the
-    course of a centre line is that line's dashed part.
-    """
-    inner = [one for one in chosen if one.kind == "centre" and not one.double]
-    for one in inner:
-        if _shared(one, [other for other in chosen if other.double]) > 0.5:
-            one.kind = "lane"
-    rest = [one for one in inner if one.kind == "centre"]
-    for one in sorted(rest, key=lambda one: -_off_centre(one, chosen)):
-        if _shared(one, [other for other in rest if other is not one and other.kind == "centre"]) > 0.5:
-            one.kind = "lane"
-    central = [one for one in chosen if one.kind == "centre"]
-    for one in chosen:
-        on_course = any(abs(other.level - one.level) <= SAME_OFFSET for other in central if not other.double)
-        if one.kind == "lane" and on_course and not _shared(one, central):
-            one.kind = "centre"
-
-
-def _shared(one, others):
-    """Share of a line's stations beside any of the others."""
-    first, last = one.span
-    together = max((min(last, other.span[1]) - max(first, other.span[0]) for other in others), default=0.0)
-    return max(together, 0.0) / max(last - first, 1e-6)
-
-
-def _off_centre(one, chosen):
-    """Metres between a line and the middle of the outermost lines beside it."""
-    beside = [other.level for other in chosen if _shared(one, [other]) > 0.3]
-    return abs(one.level - (max(beside) + min(beside)) / 2) if beside else 0.0
 
 
 def _extended(drawn, parts, lone, painted, crossed, neighbours, line):

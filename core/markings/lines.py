@@ -85,7 +85,7 @@ def fit_marking_lines(clustered_points, markings, frame, settings=LineSettings()
         lines = [without_strays(line, drift) for line in lines]
         part.at(0.5)
         chosen = line_choice.choose(lines, drift, line_choice.crossings(markings, road, frame), settings.min_paint,
-                                    line_choice.bars(markings, road, frame))
+                                    line_choice.bars(markings, road, frame), frame.passes_of(road))
         dropped += len(lines) - len(chosen)
         for j, one in enumerate(chosen):
             shape, as_wanted = shape_of(one.line, frame.road(road), drift,

@@ -189,6 +189,22 @@ def test_beside_a_centre_line_alone_there_is_a_lane_each_way_at_the_distance_ask
     assert [row["direction"] for row in lines.rows] == [1, -1]
 
 
+def test_beside_a_centre_line_between_curbs_one_drives_in_the_middle_of_what_the_curb_leaves():
+    street = Street(vehicle=-1.5).paint(0.0, kind="centre", pattern="dashed")
+    edges = Features("LineStringZ", ROAD_EDGES)
+    for side, offset in (("left", 3.0), ("right", -4.4)):
+        # a driveway parts the curb
+        for s in (np.arange(0.0, 50.0), np.arange(60.0, 120.0)):
+            edges.add(LineString(np.c_[street.places(s, offset), np.full(len(s), HEIGHT)]), road=0, side=side)
+    lines, _ = street.lanes(edges=edges)
+    # a lane is no broader for the parking places beside it
+    assert middle(street, lines) == [pytest.approx(-1.75, abs=0.01), pytest.approx(1.5, abs=0.01)]
+    assert np.ptp(street.offsets(lines.geometries[1])) < 0.01
+    assert [(row["status"], row["direction"]) for row in lines.rows] == [("inferred", 1), ("inferred", -1)]
+    asked, _ = street.lanes(edges=edges, line_distance=1.6)
+    assert middle(street, asked) == [pytest.approx(-1.6, abs=0.01), pytest.approx(1.6, abs=0.01)]
+
+
 def test_beyond_the_edge_line_nobody_drives():
     street = Street(vehicle=-1.75).paint(0.0, kind="edge").paint(-3.5, kind="edge")
     lines, _ = street.lanes()

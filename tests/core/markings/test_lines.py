@@ -35,6 +35,13 @@ class Street:
         self.frame = build_frame(Trajectory(time, driven[:, 0], driven[:, 1], np.full(len(s), UP + 2.0), angle, angle, angle))
         self.points, self.rows = [], []
 
+    def drive_again(self, offset, way):
+        """One more pass along the street, at an offset of the axis; `way` is -1 against the first."""
+        s = np.arange(0.0, self.length + 0.05, 0.1)[::way]
+        places = np.concatenate([self.place(s[::way], -1.6), self.place(s, offset)])
+        time = np.concatenate([0.01 * np.arange(len(s)), 1000.0 + 0.01 * np.arange(len(s))])
+        self.frame = build_frame(Trajectory(time, places[:, 0], places[:, 1], np.full(len(places), UP + 2.0)))
+
     def place(self, s, d):
         """(N, 2) map coordinates of stations and offsets of the axis."""
         s, d = np.broadcast_arrays(np.asarray(s, float), np.asarray(d, float))
@@ -114,7 +121,7 @@ def test_a_solid_line_in_a_bend_is_one_circle_on_the_paint():
 def test_dashes_of_2_m_with_gaps_of_4_m_are_one_dashed_line_without_bridges():
     street = Street().dashes(2.0, 4.0, 0.0)
     lines = street.lines()
-    assert told(lines, "line", "kind", "pattern", "status") == [(1, "lane", "dashed", "measured")]
+    assert told(lines, "line", "pattern", "status") == [(1, "dashed", "measured")]
     assert street.distance(lines.geometries[0], 0.0).max() < 0.02
 
 
@@ -236,6 +243,27 @@ def test_the_dashed_part_of_a_centre_line_is_centre_line_too():
     """Beyond a junction, 35 m on, the only line between the edges goes on solid."""
     street = Street(length=200.0).dashes(5.0, 5.0, 0.0, last=90.0).paint(125, 200, 0.0, kind="centre")
     assert set(told(street.lines(), "line", "kind", "pattern")) == {(1, "centre", "dashed"), (2, "centre", "solid")}
+
+
+def test_dashes_alone_between_two_curbs_are_the_centre_line():
+    assert told(Street().dashes(3.0, 6.0, 0.2).lines(), "kind") == [("centre",)]
+
+
+@pytest.mark.parametrize("offset", [-0.9, 2.6], ids=["under the vehicle", "with no room for a lane beyond"])
+def test_dashes_alone_that_leave_no_lane_on_one_side_are_no_centre_line(offset):
+    assert "centre" not in told(Street().dashes(3.0, 6.0, offset).lines(), "kind")[0]
+
+
+def test_dashes_between_edge_lines_may_part_lanes_of_one_direction():
+    street = Street().dashes(3.0, 6.0, 0.0).paint(0, 120, 3.5, kind="edge").paint(0, 120, -3.5, kind="edge")
+    assert sorted(told(street.lines(), "kind")) == [("edge",), ("edge",), ("lane",)]
+
+
+@pytest.mark.parametrize("way, kind", [(1, "lane"), (-1, "centre")])
+def test_dashes_alone_part_the_directions_unless_one_of_them_was_driven_on_both_sides(way, kind):
+    street = Street().dashes(3.0, 6.0, 0.0)
+    street.drive_again(1.8, way)
+    assert told(street.lines(), "kind") == [(kind,)]
 
 
 def test_two_solid_lines_with_two_lanes_between_are_edge_lines_however_wide_the_verge(monkeypatch):
