@@ -4,8 +4,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .columns import Columns
+from .kept_arrays import KeptArrays
+from .las_axis import LasAxis
 from .placing import AT_ONCE, Placing
-from .points import SURVEY_POINT, UNIT
+from .points import SURVEY_POINT, in_units
 from .scanners import times_by_value
 from .time_systems import WEEK
 
@@ -19,18 +22,28 @@ SCANNER_FIELDS = ("point_source_id", "scanner_channel")
 
 @dataclass
 class BlockPoints:
-    """What a block holds: [(road, records, indices of those in the road's corridor)], and what it says of the whole cloud.
+    """What a block says of the whole cloud.
 
     scanners : {LAS field: {value: (first time, last time, count)}}
     darkest, brightest : intensity
     without_time : points whose time no pass has
     """
 
-    parts: list = field(default_factory=list)
     scanners: dict = field(default_factory=dict)
     darkest: int = 65535
     brightest: int = 0
     without_time: int = 0
+
+    def add(self, columns, names):
+        """Take note of some points of the block."""
+        self.darkest = min(self.darkest, int(columns["intensity"].min()))
+        self.brightest = max(self.brightest, int(columns["intensity"].max()))
+        for name, key in zip(SCANNER_FIELDS, ("source", "scanner")):
+            if name in names:
+                seen = self.scanners.setdefault(name, {})
+                for value, (start, end, number) in times_by_value(columns[key], columns["time"]).items():
+                    first, last, count = seen.get(value, (start, end, 0))
+                    seen[value] = min(first, start), max(last, end), count + number
 
 
 class Ground:
@@ -47,15 +60,15 @@ class Ground:
             stations = np.arange(road.start, road.end + GROUND_STEP, GROUND_STEP)
             self._roads[road.number] = road.start, frame.track_height(road.number, stations) - drop
 
-    def near(self, road, s, z):
-        """(N,) bool: which places of a road are near its height; any answer where s is NaN."""
+    def near(self, road, s, z, kept):
+        """(N,) bool: which places of a road are near its height; any answer where s is NaN. `kept` as of KeptArrays."""
         first, ground = self._roads[int(road)]
-        at = s - first
+        at, k = np.subtract(s, first, out=kept("at")), kept("k", np.intp)
         at *= 1.0 / GROUND_STEP
         at += 0.5
         with np.errstate(invalid="ignore"):
-            at = at.astype(np.intp)
-        h = z - ground.take(at, mode="clip")
+            np.copyto(k, at, casting="unsafe")
+        h = np.subtract(z, ground.take(k, out=at, mode="clip"), out=at)
         near = h > -BELOW - MARGIN
         near &= h < ABOVE + MARGIN
         return near
@@ -76,76 +89,88 @@ class BlockReading:
         self.frame, self.corridor, self.has_time, self.week_ends = frame, corridor, has_time, week_ends
         self.placing = Placing(frame, corridor) if has_time else None
         self.roads = np.array([p.road for p in frame.passes] + [-1])
+        self._kept = KeptArrays()
 
-    def read(self, block, ground=None):
-        """BlockPoints of a laspy point record; those near the road's height, where a Ground is given."""
-        found, raw, names = BlockPoints(), block.array, set(block.point_format.dimension_names)
-        if not len(raw):
-            return found
-        time = self._time(raw)
-        columns = dict(time=time, intensity=np.ascontiguousarray(raw["intensity"]), source=np.ascontiguousarray(raw["point_source_id"]),
-                       returns=_returns(block, names))
-        if "scanner_channel" in names:
-            columns["scanner"] = np.asarray(block["scanner_channel"])
-        found.darkest, found.brightest = int(columns["intensity"].min()), int(columns["intensity"].max())
-        found.scanners = {name: times_by_value(columns[key], time) for name, key in zip(SCANNER_FIELDS, ("source", "scanner")) if key in columns}
-        withheld = np.asarray(block["withheld"]) if "withheld" in names else None
-        withheld = withheld if withheld is not None and withheld.any() else None
+    def read(self, block, found, ground=None):
+        """Yield the points of a laspy point record near a road, those near its height where a Ground is given.
+
+        Each time a road's number, the Columns of a piece of the block, and (N,) bool which of them are meant. The
+        next piece is written over these Columns; what is said of the whole cloud is added to `found`, BlockPoints.
+        """
+        names = set(block.point_format.dimension_names)
+        axes = [LasAxis(*axis) for axis in zip("XYZ", block.scales, block.offsets, self.frame.origin)]
         # piece by piece, so that what is worked on stays in the processor's cache
-        for first in range(0, len(raw), AT_ONCE):
-            rows = slice(first, first + AT_ONCE)
-            place = [raw[name][rows] * scale + (offset - origin)
-                     for name, scale, offset, origin in zip("XYZ", block.scales, block.offsets, self.frame.origin)]
-            self._piece(found, place, {name: values[rows] for name, values in columns.items()},
-                        None if withheld is None else withheld[rows], ground)
-        return found
+        for first in range(0, len(block), AT_ONCE):
+            yield from self._piece(block[first:first + AT_ONCE], names, axes, found, ground)
 
-    def _time(self, raw):
-        if "gps_time" not in raw.dtype.names:
-            return np.zeros(len(raw))
-        time = np.array(raw["gps_time"], float)
-        return carried_on(time) if self.week_ends else time
-
-    def _piece(self, found, place, columns, withheld, ground):
-        """Add the records of a piece of a block."""
-        x, y, z = place
-        pass_number, s, d, lost = self._placed(x, y, columns["time"], _usable(x, y, z, withheld))
+    def _piece(self, piece, names, axes, found, ground):
+        kept = self._kept.of(len(piece))
+        columns = self._columns(piece, names, kept)
+        found.add(columns, names)
+        withheld = np.asarray(piece["withheld"]) if "withheld" in names else None
+        x, y, z = (axis.metres(piece.array, kept) for axis in axes)
+        good = _usable(x, y, z, withheld if withheld is not None and withheld.any() else None)
+        s, d = kept("station"), kept("offset")
+        pass_number, lost = self._placed(x, y, columns["time"], good, s, d)
         found.without_time += lost
         inside = np.isfinite(d)
+        if not inside.any():
+            return
         single = len(self.frame.roads) == 1
         road = None if single else np.where(inside, self.roads[pass_number], -1)
-        records = np.zeros(len(x), SURVEY_POINT)
-        for name, values in dict(x=x, y=y, z=z, s=s, d=d).items():
-            with np.errstate(invalid="ignore"):
-                records[name] = np.rint(values / UNIT)
-        for name, values in dict(columns, pass_number=pass_number).items():
-            records[name] = values
+        parts = []
         for number in [0] if single else np.unique(road[inside]).tolist():
             own = inside if single else road == number
             if ground is not None:
-                own &= ground.near(number, s, z)
-            rows = np.flatnonzero(own)
-            if len(rows):
-                found.parts.append((number, records, rows))
+                own = own & ground.near(number, s, z, kept)
+            parts.append((number, own))
+        for name, metres in (("s", s), ("d", d)):
+            if not inside.all():
+                metres[~inside] = metres[inside.argmax()]  # so that they are numbers at all
+            columns[name] = in_units(metres, kept(name, np.int32))
+        for axis, name, metres in zip(axes, "xyz", (x, y, z)):
+            columns[name] = axis.units(metres, kept)
+        columns["pass_number"] = kept("pass_number", np.uint16)
+        np.copyto(columns["pass_number"], pass_number, casting="unsafe")
+        points = Columns(columns, SURVEY_POINT, len(piece))
+        for number, own in parts:
+            if own.any():
+                yield number, points, own
 
-    def _placed(self, x, y, time, good):
-        """Pass, station and offset of local places (NaN where there is none), and how many have a time of no pass."""
-        if good is not None:
-            x, y, time = x[good], y[good], time[good]
-        if self.has_time:
-            pass_number, s, d = self.placing.place(x, y, time)
-            lost = int(np.count_nonzero(pass_number < 0))
-        else:
-            road, s, d = self.frame.locate_nearest(x, y, self.corridor)
-            pass_number, lost = np.full(len(x), -1, np.int16), 0
-            for p in self.frame.passes[::-1]:
-                pass_number[road == p.road] = p.number
+    def _columns(self, piece, names, kept):
+        """What is kept of a piece as it is: time, intensity, source, returns, scanner."""
+        raw = piece.array
+        columns = {name: kept(name, SURVEY_POINT[name]) for name in ("time", "intensity", "source", "returns", "scanner")}
+        columns["time"][:] = raw["gps_time"] if "gps_time" in raw.dtype.names else 0.0
+        if self.week_ends:
+            columns["time"][:] = carried_on(columns["time"])
+        columns["intensity"][:] = raw["intensity"]
+        columns["source"][:] = raw["point_source_id"]
+        columns["scanner"][:] = piece["scanner_channel"] if "scanner_channel" in names else 0
+        columns["returns"][:] = _returns(piece, names)
+        return columns
+
+    def _placed(self, x, y, time, good, s, d):
+        """Put station and offset of local places into s and d (NaN where there is none); pass, and how many have a time of no pass."""
         if good is None:
-            return pass_number, s, d, lost
-        found = np.full(len(good), -1, np.int16), np.full(len(good), np.nan), np.full(len(good), np.nan)
-        for whole, part in zip(found, (pass_number, s, d)):
-            whole[good] = part
-        return *found, lost
+            return self._located(x, y, time, s, d)
+        count = int(np.count_nonzero(good))
+        some_s, some_d = np.empty((2, count))
+        pass_number = np.full(len(good), -1, np.int16)
+        s[:] = d[:] = np.nan
+        pass_number[good], lost = self._located(x[good], y[good], time[good], some_s, some_d)
+        s[good], d[good] = some_s, some_d
+        return pass_number, lost
+
+    def _located(self, x, y, time, s, d):
+        if self.has_time:
+            pass_number = self.placing.put(x, y, time, s, d)
+            return pass_number, int(np.count_nonzero(pass_number < 0))
+        road, s[:], d[:] = self.frame.locate_nearest(x, y, self.corridor)
+        pass_number = np.full(len(x), -1, np.int16)
+        for p in self.frame.passes[::-1]:
+            pass_number[road == p.road] = p.number
+        return pass_number, 0
 
 
 def carried_on(time):

@@ -13,7 +13,7 @@ from .driven_pass import MOST_TICKS, TICK
 from .kept_arrays import KeptArrays
 from .reference_line import NODE
 
-AT_ONCE = 1 << 15     # points worked at a time: what fits the processor's cache
+AT_ONCE = 100_000     # points worked at a time: in fewer more time goes into waiting for Python's lock, in more into waiting for memory
 MOST_STEPS = 3        # from node to node for the few points that one step from the vehicle's node leaves beside their own
 BESIDE = 1e-3         # of a node beyond its ends: the direction there is that of the next one to 1e-6
 CLOCK_SLACK = 1.0     # s that a cloud may begin before or end after the trajectory
@@ -49,6 +49,10 @@ class Placing:
         s, d : (N,) float64; NaN beyond the corridor or the road's ends, as `Road.locate` tells them
         """
         s, d = np.empty(len(x)), np.empty(len(x))
+        return self.put(x, y, time, s, d), s, d
+
+    def put(self, x, y, time, s, d):
+        """The same: put stations and offsets into s and d, and return the passes."""
         passes = self._owner(time)
         for first in range(0, len(x), AT_ONCE):
             part = slice(first, first + AT_ONCE)
@@ -66,7 +70,7 @@ class Placing:
                     own_s, own_d = np.empty((2, len(rows)))
                     self._feet(int(number), x[part][rows], y[part][rows], time[part][rows], own_s, own_d)
                     ps[rows], pd[rows] = own_s, own_d
-        return passes, s, d
+        return passes
 
     def _owner(self, time):
         """Pass that drove at each time: within it, or within a second of its ends; -1 where none did."""

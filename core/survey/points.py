@@ -25,6 +25,14 @@ def to_units(metres):
     return np.rint(np.asarray(metres) / UNIT).astype(np.int32)
 
 
+def in_units(metres, units):
+    """Fill (N,) int32 with metres in units of 0.1 mm; the metres are overwritten."""
+    metres /= UNIT
+    with np.errstate(invalid="ignore"):
+        np.copyto(units, np.rint(metres, out=metres), casting="unsafe")
+    return units
+
+
 class Points:
     """A metric view over Columns (or a structured array) of points; metres are computed on access.
 

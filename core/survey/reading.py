@@ -7,8 +7,9 @@ from concurrent.futures import ThreadPoolExecutor, wait
 import numpy as np
 
 from ..parallel import PATIENCE
-from .block_points import BlockReading, Ground
+from .block_points import BlockPoints, BlockReading, Ground
 from .cloud_blocks import CloudReaders
+from .kept_arrays import KeptArrays
 from .points import UNIT
 from .scanners import ScannerCensus
 from .sensor_height import DEFAULT_HEIGHT, HeightTally, Tracks, first_estimate
@@ -68,37 +69,33 @@ class SurveyReader:
         self.heights = self._tally.heights()
 
     def _read_block(self, load):
-        """BlockPoints, the same points by section where the road's height is known, and the number of points in the block."""
-        block, ground = load(), self._ground
-        found, count = self._blocks.read(block, ground), len(block)
-        if ground is None:
-            return found, None, count
-        parted, found.parts = [self._parted(*part) for part in found.parts], []
-        return found, parted, count
+        """What the block says of the whole cloud, its points, whether these were chosen by height and parted, and their number in the block."""
+        block, ground, found, parts = load(), self._ground, BlockPoints(), []
+        for road, points, own in self._blocks.read(block, found, ground):
+            parts.append((road, points.take(own).whole()) if ground is None else self._parted(road, points, own))
+        return found, parts, ground is not None, len(block)
 
-    def _parted(self, road, records, rows):
+    def _parted(self, road, points, own):
         """Points by section, for the store; those on the track are counted."""
-        parted = self.store.parted(road, records, rows)
-        for number, drops in self.tracks.drops(road, parted.records):
+        for number, drops in self.tracks.drops(road, points, own):
             self._tally.add(number, drops)
-        return parted
+        return self.store.parted(road, points, own)
 
-    def _take(self, found, parted, count):
+    def _take(self, found, parts, parted, count):
         """One block, in the order of the files."""
         self.darkest, self.brightest = min(self.darkest, found.darkest), max(self.brightest, found.brightest)
         self.unplaced_time += found.without_time
         for name, times in found.scanners.items():
             self.census.take(name, times)
-        if parted is not None:
-            for part in parted:
+        if parted:
+            for part in parts:
                 self.store.add(part)
         elif self._ground is not None:
-            self._choose(found.parts)
+            self._choose(parts)
         else:
-            found.parts = [(road, records.take(rows), None) for road, records, rows in found.parts]
-            self._waiting += found.parts
-            self._samples += [drops[::7] for road, records, _ in found.parts for _, drops in self.tracks.drops(road, records)]
-            if sum(map(len, self._samples)) > SAMPLES or sum(len(records) for _, records, _ in self._waiting) > WAITING:
+            self._waiting += parts
+            self._samples += [drops[::7] for road, points in parts for _, drops in self.tracks.drops(road, points)]
+            if sum(map(len, self._samples)) > SAMPLES or sum(len(points) for _, points in self._waiting) > WAITING:
                 self._settle()
         return count
 
@@ -115,8 +112,8 @@ class SurveyReader:
 
     def _choose(self, parts):
         """Choose by height what was placed before that was known, and store it."""
-        for road, records, rows in parts:
-            records = records if rows is None else records.take(rows)
-            near = np.flatnonzero(self._ground.near(road, records["s"] * UNIT, records["z"] * UNIT))
-            if len(near):
-                self.store.add(self._parted(road, records, near))
+        for road, points in parts:
+            kept = KeptArrays().of(len(points))
+            near = self._ground.near(road, points["s"] * UNIT, points["z"] * UNIT, kept)
+            if near.any():
+                self.store.add(self._parted(road, points, near))

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..parallel import go_on
 from .columns import Columns, in_columns
+from .kept_arrays import KeptArrays
 from .packing import buffer, buffers
 from .points import UNIT, Points, canonical_order
 from .spill_file import SpillFile
@@ -16,6 +17,7 @@ from .spill_file import SpillFile
 SECTION_LENGTH = 5.0   # m of station; results must not depend on it
 MEMORY_LIMIT = 64 * 2**20  # bytes of records kept before they are spilled
 KEPT = 64 * 2**20      # bytes of spilled sections kept as last read: neighbours ask for them again
+FEW = 24               # sections of some points that are looked through one by one: faster than to sort
 TURNS = 16             # locks that sections share while they are put in order
 
 
@@ -61,6 +63,7 @@ class SectionStore:
         self.section_length = section_length
         self.memory_limit = memory_limit
         self.finish = finish
+        self._arrays = KeptArrays()
         self._sections = {}                 # (road, section) -> _Section
         self._kept = OrderedDict()          # a few spilled sections as last read
         self._kept_bytes = 0
@@ -75,19 +78,31 @@ class SectionStore:
         if len(records):
             self.add(self.parted(road, records))
 
-    def parted(self, road, records, rows=None):
+    def parted(self, road, records, own=None):
         """Points sorted by section: the work of `append` that any thread may do.
 
-        `rows` are the indices of those that are meant, all by default.
+        `own` is a mask of those that are meant, all by default.
         """
-        station = records["s"] if rows is None else records["s"].take(rows)
-        section = np.floor(station * UNIT / self.section_length).astype(np.int64)
-        low, high = int(section.min()), int(section.max())
-        section -= low
-        order = np.argsort(section.astype(np.uint16) if high - low < 2**16 else section, kind="stable")
-        order = order if rows is None else rows.take(order)
+        kept = self._arrays.of(len(records))
+        at = np.multiply(records["s"], UNIT, out=kept("at"))
+        at /= self.section_length
+        np.floor(at, out=at)
+        low, high = int(at.min()), int(at.max())
+        at -= low
+        if high - low < FEW:
+            section = kept("section", np.uint8)
+            np.copyto(section, at, casting="unsafe")
+            if own is not None:
+                section[~own] = FEW
+            rows = [np.flatnonzero(section == k) for k in range(high - low + 1)]
+            order, ends = np.concatenate(rows), np.cumsum([len(some) for some in rows])
+        else:
+            rows = np.arange(len(at)) if own is None else np.flatnonzero(own)
+            section = at.take(rows).astype(np.int64)
+            order = rows.take(np.argsort(section.astype(np.uint16) if high - low < 2**16 else section, kind="stable"))
+            ends = np.cumsum(np.bincount(section))
         records = records.take(order).whole() if isinstance(records, Columns) else in_columns(records, order)
-        return Parted(int(road), records, low, np.cumsum(np.bincount(section)).tolist())
+        return Parted(int(road), records, low, ends.tolist())
 
     def add(self, parted):
         """Add what `parted` made."""

@@ -27,11 +27,17 @@ class Tracks:
             stations = np.arange(first, last + LOOKUP, LOOKUP)
             self._rough[p.number] = first, p.at_station(stations)[0]
 
-    def drops(self, road, records):
-        """Per pass over a road: (pass number, (N,) metres from the trajectory down to the points on its own track)."""
-        if not len(records):
+    def drops(self, road, points, own=None):
+        """Per pass over a road: (pass number, (N,) metres from the trajectory down to the points on its own track).
+
+        Parameters
+        ----------
+        points : Columns
+        own : (N,) bool, which of them are meant; all by default
+        """
+        if not len(points):
             return
-        number, along, across = records["pass_number"], records["s"], records["d"]
+        number, along, across = points["pass_number"], points["s"], points["d"]
         ends = np.array([along.min(), along.max()]) * UNIT
         only = number.min() == number.max()
         for p in self.frame.passes_of(road):
@@ -39,17 +45,25 @@ class Tracks:
                 continue
             first, track = self._rough[p.number]
             low, high = np.clip(((ends - first) * (1.0 / LOOKUP) + 0.5).astype(np.intp), 0, len(track) - 1)
-            reach, stretch = NEAR_TRACK + WINDING, track[low:high + 1]
+            left, right = track[low:high + 1].max(), track[low:high + 1].min()
+            reach = NEAR_TRACK + WINDING
             # a look at whole numbers leaves out most of what lies beside the track
-            beside = (across > (stretch.min() - reach) / UNIT) & (across < (stretch.max() + reach) / UNIT)
-            rows = np.flatnonzero(beside if only else beside & (number == p.number))
-            s, d = along[rows] * UNIT, across[rows] * UNIT
-            k = ((s - first) * (1.0 / LOOKUP) + 0.5).astype(np.intp)
-            near = np.flatnonzero(np.abs(d - track.take(k, mode="clip")) < reach)
-            track_d, track_z = p.at_station(s[near])
-            on = np.abs(d[near] - track_d) < NEAR_TRACK
-            if on.any():
-                yield p.number, track_z[on] - records["z"][rows[near[on]]] * UNIT
+            beside = across > int((right - reach) / UNIT)
+            beside &= across < int((left + reach) / UNIT)
+            if own is not None:
+                beside &= own
+            if not only:
+                beside &= number == p.number
+            rows = np.flatnonzero(beside)
+            s, d = along.take(rows) * UNIT, across.take(rows) * UNIT
+            if left - right > WINDING:
+                k = ((s - first) * (1.0 / LOOKUP) + 0.5).astype(np.intp)
+                near = np.flatnonzero(np.abs(d - track.take(k, mode="clip")) < reach)
+                rows, s, d = rows.take(near), s.take(near), d.take(near)
+            track_d, track_z = p.at_station(s)
+            on = np.flatnonzero(np.abs(d - track_d) < NEAR_TRACK)
+            if len(on):
+                yield p.number, track_z.take(on) - points["z"].take(rows.take(on)) * UNIT
 
 
 def first_estimate(drops):
@@ -75,9 +89,11 @@ class HeightTally:
         """Count (N,) metres below the trajectory of points on the track of one pass."""
         size = int(2 * RANGE / STEP)
         k = np.rint((drops - self.origin) / STEP).astype(np.int64)
-        found = np.bincount(k[(k >= 0) & (k < size)], minlength=size)
+        k = k[(k >= 0) & (k < size)]
+        least = int(k.min(initial=size))
+        found = np.bincount(k - least)
         with self._lock:
-            self.counts[number] += found
+            self.counts[number][least:least + len(found)] += found
 
     def heights(self):
         """Height of the trajectory above the road, one per pass.
