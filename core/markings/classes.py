@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import RoadExtractionError
+from .dash_rows import in_rows
 
 NOT_PAINT = ""
 LINES = ("edge", "lane", "centre")
@@ -28,6 +29,8 @@ THIN = 0.10           # m: at the very rim a narrower strip is the top or the fa
 THIN_ON_EDGE = 0.14   # m: likewise where it reaches the edge itself
 TOUCHING_EDGE = 0.02  # m between a strip and the road's edge: paint keeps more
 LONGER = 2.0          # times as long as them is the line that says so
+DASH = (0.75, 1.5)    # m: dashes of cycle lanes and bus bays, told from signs and specks by the row they stand in
+DASH_ELONGATED = 3.0  # times as long as wide they are at least
 SPECK = 0.30          # m: what is not longer than this and has no companion is no marking
 SPECK_AREA = 0.03     # m2
 ROW = 2.0             # m: points in a row of this length are no speck, however few scan lines met it
@@ -72,6 +75,7 @@ def classify(shapes, half_widths, settings=ClassSettings()):
     room = np.asarray(half_widths) - np.abs(column["offset"])
     line = _is_line(column, settings)
     zebra = _zebra_stripes(column)
+    line |= _dashes_in_rows(shapes, column, room, settings)
     line &= ~zebra
     scrap = _beyond_the_edge_line(column, line, room)
     found = []
@@ -96,6 +100,16 @@ def _is_line(column, settings):
     width = column["width"]
     return column["along"] & (width >= settings.min_width) & (width <= settings.max_width) \
         & (column["length"] >= settings.min_length) & (column["elongation"] >= settings.min_elongation)
+
+
+def _dashes_in_rows(shapes, column, room, settings):
+    """Short dashes one after the other along the road, away from its rim, where the stones of a curb stand in rows, too."""
+    short = column["along"] & (column["length"] >= DASH[0]) & (column["length"] <= DASH[1]) & (room > RIM) \
+        & (column["width"] >= settings.min_width) & (column["width"] <= settings.max_width) & (column["elongation"] >= DASH_ELONGATED)
+    result, rows = np.zeros(len(shapes), bool), np.flatnonzero(short)
+    for row in in_rows([shapes[k] for k in rows]):
+        result[rows[row]] = True
+    return result
 
 
 def _zebra_stripes(column):

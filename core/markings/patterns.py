@@ -9,6 +9,7 @@ LONGEST_DASH = 10.5  # m: longer paint is solid line
 LEAST_GAP = 0.4      # of the dash: road markings leave gaps of half a dash (6 m and 3 m) or more
 PAIR = (1.5, 8.0)    # m: dashes of which two alone are taken for a dashed line
 ALIKE = 0.16         # of the period: how evenly dashes must follow each other
+FEWEST_SHORT, SHORT_ALIKE, UNEVEN = 4, 0.25, 0.25  # dashes, m, share: dashes a metre long with gaps as long must be so many and so even
 SOLID_GAP = 2.5      # m: a longer hole in a solid line is bridged, not measured
 
 
@@ -40,7 +41,7 @@ class Stretch:
 
 def intervals(line):
     """(K, 2) stations between which a line is painted, holes of wear closed."""
-    spans = [(strand.first, strand.last) for strand in line.strands]
+    spans = [span for strand in line.strands for span in _painted(strand)]
     found = [list(spans[0])]
     for first, last in spans[1:]:
         if first - found[-1][1] < WEAR:
@@ -48,6 +49,17 @@ def intervals(line):
         else:
             found.append([first, last])
     return np.array(found)
+
+
+def _painted(strand):
+    """(first, last) of the parts of a strand: a strand leaps the gaps of short dashes. Where they are uneven they are wear."""
+    holes = np.flatnonzero(np.diff(strand.s) > WEAR)
+    parts = np.column_stack([np.r_[strand.first, strand.s[holes + 1]], np.r_[strand.s[holes], strand.last]])
+    length, steps = np.diff(parts, axis=1)[:, 0], np.diff(parts.mean(axis=1))
+    if len(parts) < FEWEST_SHORT or (np.abs(steps - np.median(steps)) > ALIKE * np.median(steps)).mean() > UNEVEN \
+            or (np.abs(length - np.median(length)) > SHORT_ALIKE).mean() > UNEVEN:
+        return [(strand.first, strand.last)]
+    return list(map(tuple, parts.tolist()))
 
 
 def stretches(line):

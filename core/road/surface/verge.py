@@ -215,7 +215,8 @@ class Profile:
             differs = (strip - np.median(inside)) / max(scatter, 1e-6)
             contrast = abs(np.median(differs))
             one_way = (np.sign(differs) == np.sign(np.median(differs))).all()
-            if one_way and DIFFERS < contrast < PAINTED and contrast > best and self._breaks(np.flatnonzero(~painted[:first])[-TREND:], first, k, scatter):
+            before = np.flatnonzero(~painted[:first])[-TREND:]
+            if one_way and DIFFERS < contrast < PAINTED and contrast > best and self._breaks(before, first, k, scatter):
                 best, at = contrast, first
         return self.u[at] - ACROSS / 2
 
@@ -229,7 +230,7 @@ class Profile:
         return abs(np.median(off)) > DIFFERS * scatter and (np.sign(off) == np.sign(np.median(off))).all()
 
     def _painted(self, k, scatter):
-        """Cells before cell k in or beside a painted line, brighter than what is on either side: none of a strip of gravel, and no place to cut the road."""
+        """Cells before cell k in or beside a painted line, brighter than what is on either side: no gravel, and no place to cut the road."""
         at = np.arange(k)
         beside = np.maximum(self.brightness[np.maximum(at - LINE, 0)], self.brightness[np.minimum(at + LINE, k - 1)])
         return np.convolve(self.brightness[:k] - beside > PAINTED * scatter, np.ones(3), "same") > 0

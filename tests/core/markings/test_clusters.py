@@ -66,6 +66,17 @@ def test_dashes_stay_apart_and_a_worn_line_holds_together():
     assert markings.rows[0]["length_m"] == pytest.approx(29.3, abs=0.1)
 
 
+def test_dashes_shorter_than_a_line_must_be_are_a_line_where_they_stand_in_a_row():
+    row = markings_of([strip(s, s + 0.95, 0.5, 0.62) for s in np.arange(10, 30, 1.95)])
+    assert classes(row) == ["lane"] * 11 and set(row.column("use")) == {"keep"}
+    alone = markings_of([strip(s, s + 0.95, d, d + 0.12) for s, d in ((10, 0.5), (14, -1.0), (19, 2.0), (25, -2.5))])
+    assert set(alone.column("use")) == {"other"}
+
+
+def test_the_stones_of_a_curb_in_a_row_are_no_line():
+    assert "keep" not in markings_of([strip(s, s + 0.95, 5.7, 5.82) for s in np.arange(10, 30, 1.95)]).column("use")
+
+
 def test_a_zebra_crossing_keeps_its_stripes():
     stripes = [strip(20, 24, d, d + 0.45) for d in np.arange(-4.0, 4.0, 1.0)]
     markings = markings_of(stripes)

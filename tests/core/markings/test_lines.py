@@ -130,6 +130,13 @@ def test_dashes_as_the_countries_paint_them_are_dashed_lines(dash, gap):
     assert told(Street().dashes(dash, gap, 0.0).lines(), "pattern", "status") == [("dashed", "measured")]
 
 
+def test_the_dashes_of_a_cycle_lane_are_one_dashed_line():
+    """A metre of paint, a metre of none."""
+    lines = Street().dashes(1.0, 1.0, -2.0, width=0.12).lines()
+    assert told(lines, "line", "kind", "pattern", "status") == [(1, "lane", "dashed", "measured")]
+    assert lines.rows[0]["length_m"] == pytest.approx(120 * (RADIUS + 2.0) / RADIUS, abs=2.5)
+
+
 def test_worn_away_dashes_are_bridged_and_flagged():
     lines = Street().dashes(3.0, 6.0, 0.0, missing=(4, 5)).lines()
     assert told(lines, "line", "status") == [(1, "measured"), (1, "bridged"), (1, "measured")]
