@@ -1,5 +1,6 @@
 """Road boundaries by either method or by both: the one door that the road map and its dialogs use."""
 
+from contextlib import closing
 from dataclasses import dataclass, field
 
 from ..errors import RoadExtractionError
@@ -12,6 +13,7 @@ from .nearest_pass import name_passes
 from .scanlines.boundaries import ScanlineBoundarySettings, curbs_from_scanlines
 from .scanlines.section_planes import ScanlineSettings
 from .scanlines.source import SurveyScanlines
+from .profiles.crowds import Crowds
 from .turned.curbs import add_turned_curbs
 
 METHODS = ("profiles", "scanlines", "both")
@@ -58,10 +60,16 @@ def find_curb_points(survey, settings=BoundarySettings(), progress=Progress()):
     curbs and "both" those of the two that measure better (`chosen_points`). Corners, side streets and
     islands are found in plan, once, from the curbs that are drawn.
     """
-    both = settings.method == "both"
-    found = {}
+    with closing(Crowds(survey, settings.curbs.profile_width, settings.curbs.point_spacing)) as crowds:
+        return _curb_points_from(crowds, settings, progress)
+
+
+def _curb_points_from(crowds, settings, progress):
+    """`find_curb_points`, points taken from Crowds."""
+    survey, both, found = crowds.survey, settings.method == "both", {}
     if settings.method != "scanlines":
-        found["profiles"] = detect_curbs(survey, settings.curbs, progress.part(0.0, PROFILES) if both else progress, turned=not both)
+        part = progress.part(0.0, PROFILES) if both else progress
+        found["profiles"] = detect_curbs(survey, settings.curbs, part, turned=not both, crowds=crowds)
     if settings.method != "profiles":
         part = progress.part(PROFILES if both else 0.0, 1.0)
         source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, progress=part.part(0.0, LATTICE))
@@ -69,7 +77,7 @@ def find_curb_points(survey, settings=BoundarySettings(), progress=Progress()):
         drawn = found["scanlines"]
         if both:
             drawn = found["both"] = _better_points(found, survey.frame)
-        add_turned_curbs(drawn, survey, settings.curbs, part.part(TURNED, 1.0))
+        add_turned_curbs(drawn, crowds, settings.curbs, part.part(TURNED, 1.0))
         name_passes(drawn, survey.frame)
     return found
 

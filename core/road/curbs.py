@@ -1,5 +1,6 @@
 """Curb points: where the road ends against a raised edge, nearest the driven track on each side."""
 
+from contextlib import closing
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,7 @@ from .nearest_pass import name_passes
 from .profiles.averaged_steps import AVERAGE, find_averaged_steps
 from .profiles.chains import NOISY, choose_along, curb_chains, link_chains, long_enough
 from .profiles.corners import Steps
-from .profiles.crowds import FEW, mostly_uneven
+from .profiles.crowds import FEW, Crowds
 from .profiles.profiles import SPREAD_ROWS
 from .profiles.shadows import Sight
 from .profiles.sides import REACH, SECTION, SIDES, Track, expected_height, profiles_beside, sections_of
@@ -70,13 +71,14 @@ class CurbSettings:
                                       "must be at least 0.01 m, the maximum above it and at most 1 m.")
 
 
-def detect_curbs(survey, settings=CurbSettings(), progress=Progress(), turned=True):
+def detect_curbs(survey, settings=CurbSettings(), progress=Progress(), turned=True, crowds=None):
     """Bottom corners of the curb on each side of every road, one per block.
 
     Parameters
     ----------
     survey : Survey
     turned : whether corners, side streets and islands are looked for too
+    crowds : Crowds of the survey, where it is used again
 
     Returns
     -------
@@ -84,24 +86,27 @@ def detect_curbs(survey, settings=CurbSettings(), progress=Progress(), turned=Tr
     vertices of the road edge; rows of status `occluded` say where something hides
     it, at the place where it is expected.
     """
+    if crowds is None:
+        with closing(Crowds(survey, settings.profile_width, settings.point_spacing)) as own:
+            return detect_curbs(survey, settings, progress, turned, own)
     found = Features("PointZ", list(CURB_POINTS), crs=survey.crs)
     roads = survey.store.roads()
     for i, road in enumerate(roads):
         part = progress.part(MAIN_SHARE * i / len(roads), MAIN_SHARE * (i + 1) / len(roads))
-        steps, sight = _steps_of_road(survey, road, settings, part)
+        steps, sight = _steps_of_road(crowds, road, settings, part)
         for side in SIDES:
             _report_side(found, survey, road, side, steps[side], sight[side], settings)
     measured = sum(row["status"] == "measured" for row in found.rows)
     if turned:
-        add_turned_curbs(found, survey, settings, progress.part(MAIN_SHARE, 1.0))
+        add_turned_curbs(found, crowds, settings, progress.part(MAIN_SHARE, 1.0))
     name_passes(found, survey.frame)
     progress.say(f"Curb points: {measured:,} measured, {len(found) - measured:,} hidden by something in front.")
     return found
 
 
-def _steps_of_road(survey, road, settings, progress):
+def _steps_of_road(crowds, road, settings, progress):
     """Steps of each side, passes merged, and what was seen beside the road."""
-    width = settings.profile_width
+    survey, width = crowds.survey, crowds.width
     sections = sections_of(survey, road, width)
     first, last = sections[0][0], sections[-1][1]
     around = max(SPREAD_ROWS, int(np.ceil(AVERAGE / width)))
@@ -111,11 +116,11 @@ def _steps_of_road(survey, road, settings, progress):
     def work(section):
         found = {side: [] for side in SIDES}
         wide = section[0] - around, section[1] + around
-        most = None if mostly_uneven(survey, road, sum(section) // 2, width, settings.point_spacing) else FEW
-        seen = list(profiles_beside(survey, road, wide, tracks, settings, most))
+        most = None if crowds.mostly_uneven(road, sum(section) // 2) else FEW
+        seen = list(profiles_beside(crowds, road, wide, tracks, settings, most))
         # where averages are wanted every point counts
         if most and any((lines.part(*section).spread > NOISY * settings.min_height).any() for *_, lines in seen):
-            seen = profiles_beside(survey, road, wide, tracks, settings, most=None)
+            seen = profiles_beside(crowds, road, wide, tracks, settings, most=None)
         for side, _, beside, lines in seen:
             sight[side].look(*beside, section, lines.part(*section))
             steps = _steps_by_noise(lines, section, settings)

@@ -1,11 +1,14 @@
 """The principal points of every profile as a layer: what the curbs were looked for on."""
 
+from contextlib import closing
+
 import numpy as np
 
 from ...features import Features
 from ...parallel import in_order
 from ...progress import Progress
 from ...schemas import HEIGHT, OFFSET, PASS, ROAD, SIDE, STATION
+from .crowds import Crowds
 from .sides import SIDES, Track, expected_height, profiles_beside, sections_of
 
 PRINCIPAL_POINTS = [ROAD, PASS, SIDE, STATION, OFFSET, HEIGHT]
@@ -47,11 +50,12 @@ def _points_of_road(survey, road, settings, progress):
 
     def work(section):
         found = []
-        for side, number, _, lines in profiles_beside(survey, road, section, tracks, settings):
+        for side, number, _, lines in profiles_beside(crowds, road, section, tracks, settings):
             profile, cell = np.nonzero(np.isfinite(lines.high))
             stations = (lines.first + profile + 0.5) * lines.width
             found.append((number, side, stations, lines.offset(cell), lines.high[profile, cell]))
         return found
 
-    for results in in_order(work, sections_of(survey, road, settings.profile_width), progress):
-        yield from results
+    with closing(Crowds(survey, settings.profile_width, settings.point_spacing)) as crowds:
+        for results in in_order(work, sections_of(survey, road, settings.profile_width), progress):
+            yield from results

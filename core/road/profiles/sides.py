@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .crowds import FEW, few_of_every_cell
+from .crowds import FEW
 from .profiles import crowds_thinned, joined_runs, places, run_of_profiles
 from .shadows import TALL
 
@@ -39,25 +39,26 @@ def sections_of(survey, road, width):
     return [(int(a), int(b)) for a, b in zip(bounds[:-1], bounds[1:])]
 
 
-def profiles_beside(survey, road, section, tracks, settings, most=FEW):
+def profiles_beside(crowds, road, section, tracks, settings, most=FEW):
     """Profiles of one section, for each side and pass apart.
 
     Parameters
     ----------
+    crowds : Crowds of the survey
     section : (first, last + 1) profile numbers
     tracks : dict of side to Track
     settings : CurbSettings
-    most : points of a cell that are looked at (see `few_of_every_cell`); None for all, as far as they tell its layers better
+    most : points of a cell that are looked at (see `Crowds`); None for all, as far as they tell its layers better
 
     Yields
     ------
     side, pass number, (u, s, h) of the tall points, PseudoScanLines
     """
-    width, spacing = settings.profile_width, settings.point_spacing
+    survey, width, spacing = crowds.survey, crowds.width, crowds.spacing
     stations = (np.arange(*section) + 0.5) * width
     origins = {side: np.floor(tracks[side](stations).min()) for side in SIDES}
     runs, tall = {}, {}
-    for part in few_of_every_cell(survey, road, section, width, spacing, most):
+    for part in crowds.few_of_every_cell(road, section, most):
         s, d = part.s, part.d
         if not len(s):
             continue

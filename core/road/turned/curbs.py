@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from ...parallel import in_order
 from ...progress import Progress
 from ...survey.road_frame import CORRIDOR
-from ..profiles.crowds import few_of_every_cell, mostly_uneven
+from ..profiles.crowds import FEW_IN_PLAN
 from ..profiles.sides import BESIDE, SIDES, ahead_of_vehicle, expected_height, sections_of
 from .kinds import like_a_curb, named_curbs
 from .plan_chains import joined_chains, trace_chains
@@ -25,7 +25,6 @@ OPENING = 6.0        # m without main curb that are an opening and no driveway
 AT_OPENING = 6.0     # m of main curb beside an opening behind which corners are sought
 BEHIND_CURB = 0.6    # m behind a main curb that are looked at elsewhere
 INNER, INNER_HEIGHT = 0.5, 0.3  # m from a main curb, and about the expected road, where ground inside is road for certain
-FEW_IN_PLAN = 6      # points of a profile's cell on level ground: there are four such cells and more in one of the raster
 NODE = 0.05          # m along the road between the stations at which that is decided
 MARGIN = 2.0         # m of road either side of a section that its own steps need
 NOISY, DENSE = 0.12, 6  # share of the least curb that heights in a cell scatter, and points in one, above which they are averaged
@@ -35,21 +34,22 @@ RUN_ACROSS = 0.5     # m across between such points
 ISLAND_WIDTH = 8.0   # m within which the ground behind an island's curb comes down again
 
 
-def add_turned_curbs(curb_points, survey, settings, progress=Progress()):
+def add_turned_curbs(curb_points, crowds, settings, progress=Progress()):
     """Add the points of corners, side streets and islands to those of the main curbs.
 
     Parameters
     ----------
     curb_points : Features CURB_POINTS of every road, kind main; more are added at the end
-    survey : Survey
+    crowds : Crowds of the survey
     settings : CurbSettings
     """
+    survey = crowds.survey
     length = dict.fromkeys(KINDS, 0.0)
     roads = survey.store.roads()
     for i, road in enumerate(roads):
         part = progress.part(i / len(roads), (i + 1) / len(roads))
         main, chain = _main_curbs(curb_points, survey, road)
-        for number, curb in enumerate(find_turned_curbs(survey, road, main, settings, part), chain):
+        for number, curb in enumerate(find_turned_curbs(crowds, road, main, settings, part), chain):
             length[curb.kind] += _add_points(curb_points, survey, road, curb, number)
     found = ", ".join(f"{length[kind]:.0f} m {title}" for kind, title in KINDS.items() if length[kind])
     progress.say(f"Curbs away from the road's direction: {found or 'none'}.")
@@ -85,12 +85,12 @@ def _add_points(curb_points, survey, road, curb, chain):
     return float(along[-1])
 
 
-def find_turned_curbs(survey, road, main, settings, progress=Progress()):
+def find_turned_curbs(crowds, road, main, settings, progress=Progress()):
     """Corners, side streets and islands of one road.
 
     Parameters
     ----------
-    survey : Survey
+    crowds : Crowds of the survey
     main : dict side -> (N, 4) of the main curb's points, ascending: station, offset, height above the
         expected road, 1 where it was measured and 0 where it is hidden
     settings : CurbSettings
@@ -99,12 +99,13 @@ def find_turned_curbs(survey, road, main, settings, progress=Progress()):
     -------
     list of TurnedCurb
     """
+    survey = crowds.survey
     limits = {side: _Limit(points, SIDES[side]) for side, points in main.items()}
     line = survey.frame.road(road)
     known, barrier = cKDTree(_places_along(line, main, RUN_GAP)), _places_along(line, main, OPENING).T
 
     def work(section):
-        return _steps_of_section(survey, road, section, limits, known, barrier, settings)
+        return _steps_of_section(crowds, road, section, limits, known, barrier, settings)
 
     found = [part for part in in_order(work, sections_of(survey, road, settings.profile_width), progress) if part is not None]
     if not found:
@@ -166,16 +167,15 @@ def _runs(main, line):
     return found
 
 
-def _steps_of_section(survey, road, section, limits, known, barrier, settings, few=FEW_IN_PLAN):
+def _steps_of_section(crowds, road, section, limits, known, barrier, settings, few=FEW_IN_PLAN):
     """(PlanSteps of a section, where the ground behind each falls again, the scanner's noise); None where there are none."""
-    width = settings.profile_width
+    survey, width = crowds.survey, crowds.width
     margin = int(np.ceil(MARGIN / width))
     profiles = section[0] - margin, section[1] + margin
     start, end, first, last = (k * width for k in (*section, *profiles))
     reach = _Reach(limits, first, last)
-    most = None if few is None or mostly_uneven(survey, road, sum(section) // 2, width, settings.point_spacing) else few
-    seen = [_beside_vehicle(survey, road, part, reach)
-            for part in few_of_every_cell(survey, road, profiles, width, settings.point_spacing, most)]
+    most = None if few is None or crowds.mostly_uneven(road, sum(section) // 2) else few
+    seen = [_beside_vehicle(survey, road, part, reach) for part in crowds.few_of_every_cell(road, profiles, most)]
     if not seen:
         return None
     *place, along, inner = (np.concatenate(column) for column in zip(*seen))
@@ -186,7 +186,7 @@ def _steps_of_section(survey, road, section, limits, known, barrier, settings, f
     noisy = dense and raster.noise > NOISY * settings.min_height
     if noisy and most is not None:
         # where averages are wanted every point counts
-        return _steps_of_section(survey, road, section, limits, known, barrier, settings, few=None)
+        return _steps_of_section(crowds, road, section, limits, known, barrier, settings, few=None)
     line = survey.frame.road(road)
     slopes = ground_slopes(raster.low)
     driven, stepped = driven_ground(raster, slopes, *_track(survey, road, first, last), [v[inner] for v in place[:2]], *barrier,

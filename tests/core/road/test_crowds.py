@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from curbed_streets import driven, survey_of
-from lanewright.core.road.profiles.crowds import FEW, LEVEL, few_of_every_cell, mostly_uneven
+from lanewright.core.road.profiles.crowds import FEW, LEVEL, Crowds
 from lanewright.core.survey.points import UNIT
 
 WIDTH, SPACING = 0.25, 0.025
@@ -22,7 +22,7 @@ def crowded(noise=0.003, seed=5):
 
 def taken(survey, profiles=(36, 60), **most):
     """(N, 3) station, offset and height of the points taken, in units."""
-    parts = [few_of_every_cell(survey, 0, profiles, WIDTH, SPACING, **most)]
+    parts = [Crowds(survey, WIDTH, SPACING).few_of_every_cell(0, profiles, **most)]
     return np.concatenate([np.c_[part.records["s"], part.records["d"], part.records["z"]] for runs in parts for part in runs])
 
 
@@ -80,8 +80,8 @@ def test_a_second_pass_takes_nothing_from_the_first():
 
 @pytest.mark.parametrize("noise, uneven", [(0.003, False), (0.02, True)])
 def test_only_to_a_noisy_scanner_level_ground_looks_uneven(noise, uneven):
-    assert mostly_uneven(survey_of(crowded(noise), driven(20.0)), 0, 48, WIDTH, SPACING) == uneven
+    assert Crowds(survey_of(crowded(noise), driven(20.0)), WIDTH, SPACING).mostly_uneven(0, 48) == uneven
 
 
 def test_where_nothing_was_scanned_nothing_is_uneven():
-    assert not mostly_uneven(survey_of(crowded(), driven(20.0)), 0, 400, WIDTH, SPACING)
+    assert not Crowds(survey_of(crowded(), driven(20.0)), WIDTH, SPACING).mostly_uneven(0, 400)
