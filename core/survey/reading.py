@@ -66,7 +66,7 @@ class SurveyReader:
                 for coming in waiting:
                     coming.cancel()
         self._settle()
-        self.heights = self._tally.heights()
+        self.heights, self.uneven = self._tally.heights(), self._tally.uneven()
 
     def _read_block(self, load):
         """What the block says of the whole cloud, its points, whether these were chosen by height and parted, and their number in the block."""

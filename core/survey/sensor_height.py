@@ -12,6 +12,7 @@ FEWEST = 50            # points that make a height
 STEP = 0.001           # m to which a height is told
 RANGE = 20.0           # m either side of the first estimate that is counted
 PEAK = 0.1             # m: width of the bins in which the road stands out
+EVEN = 0.15            # m: no springs let a vehicle rise and sink more than this for half of its way
 LOOKUP, WINDING = 0.5, 0.3  # m between looked-up places of a track, and how far it may stray between them
 AROUND = 0.5           # m either side of the peak that belong to the road
 
@@ -111,6 +112,31 @@ class HeightTally:
         known = [height for height in found.values() if height is not None]
         usual = float(np.median(known)) if known else DEFAULT_HEIGHT
         return {number: usual if height is None else height for number, height in found.items()}
+
+
+    def uneven(self):
+        """How far the trajectory strays from its height above the road, where that is more than a vehicle can.
+
+        Points and trajectory share the errors of navigation, so half of the points on a vehicle's own track lie
+        within a few centimetres of one height below it, whatever is parked or grows on the rest.
+
+        Returns
+        -------
+        (metres off the height that half of the points stay within, that height) of the pass where it is most;
+        None where every pass keeps to EVEN.
+        """
+        found = [(_half_within(counts, self.origin, height), height)
+                 for counts, height in zip(self.counts.values(), map(self.heights().get, self.counts)) if counts.sum() > FEWEST]
+        off, height = max(found, default=(0.0, 0.0))
+        return (off, height) if off > EVEN else None
+
+
+def _half_within(counts, origin, height):
+    """Metres from `height` within which half of (M,) counts per millimetre lie."""
+    off = np.abs(origin + np.arange(len(counts)) * STEP - height)
+    order = np.argsort(off, kind="stable")
+    near = np.cumsum(counts[order])
+    return float(off[order[np.searchsorted(near, (near[-1] + 1) // 2)]])
 
 
 def height_above(drops):

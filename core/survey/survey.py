@@ -140,6 +140,10 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
     if reader.unplaced_time:
         progress.warn(f"{reader.unplaced_time:,} of {total:,} points were left out: their gps_time is missing or lies outside the "
                       "trajectory's.")
+    if reader.uneven:
+        progress.warn("The trajectory does not keep to one height above the road: half of the points under the vehicle lie more than "
+                      f"{reader.uneven[0]:.2f} m off {reader.uneven[1]:.2f} m below it, and curbs are missed for that. Its heights may be in feet "
+                      "where the cloud's are in metres, or not be those that the cloud was made with: export both anew from one solution.")
     scanner_field, scanners = reader.census.choose(settings.scanner_field)
     survey = Survey(files, frame, store, crs, reader.heights, scanner_field, scanners,
                     reader.brightest > reader.darkest, has_time,

@@ -1,6 +1,7 @@
 """A survey read into the road frame: every point once, on its road, whatever way the files come."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -266,6 +267,19 @@ class Heard(Progress):
 
     def warn(self, text):
         self.warnings.append(text)
+
+
+@pytest.mark.parametrize("unit, warned", [(1.0, False), (0.3048, True)])
+def test_heights_of_a_trajectory_in_feet_are_warned_of_where_the_road_climbs(tmp_path, unit, warned):
+    """A level road in another datum would hide it and do no harm: the sensor's height above the road is found out."""
+    driven = drive(PATH)
+    hill = 3.0 * np.sin(np.linspace(0.0, np.pi, len(driven)))
+    driven = replace(driven, z=driven.z + hill)
+    x, y, z, time = surveyed_points(driven)
+    points = x, y, z + np.interp(time, driven.time, hill), time
+    heard = Heard()
+    open_survey([write_cloud(tmp_path / "hill.laz", *points, crs=CRS)], replace(driven, z=driven.z / unit), progress=heard)
+    assert [bool(re.search("does not keep to one height above the road.*may be in feet", text)) for text in heard.warnings] == [True] * warned
 
 
 @pytest.mark.parametrize("own, given, says", [
