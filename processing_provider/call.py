@@ -14,6 +14,7 @@ from qgis.core import (
 from ..core.errors import RoadExtractionError
 from .destinations import ReplacedFiles, UnfinishedFiles, check_suffix, check_writable, destination_path
 from .embedded_style import embed_style
+from .input_files import input_files, written_over
 from .knobs import settings_class
 from .layers import WKB_TYPES, crs_text, keeps_aliases, qgis_fields, read_features, write_features
 from .styling import group_of, style_on_load
@@ -144,13 +145,19 @@ class Call:
 
     def check_destinations(self):
         """Prove every output writable before the work, so that a read-only disk is told now."""
-        taken = {}
+        taken, inputs = {}, input_files(self.algorithm, self.parameters, self.context)
         for definition in self.algorithm.destinationParameterDefinitions():
             value = self._destination(definition.name())
             path = destination_path(value)
             if path is None:
                 continue
             check_suffix(path, definition)
+            read = written_over(value, path, inputs)
+            if read:
+                raise RoadExtractionError(
+                    tr("{label} would be written over {path}, which is read as {input}: inputs are never changed. Give it another name.").format(
+                        label=definition.description(), path=path, input=read)
+                )
             # Layers of one GeoPackage are told apart by the rest of the value
             place = str(path.absolute()) if value == str(path) else value
             if place in taken:

@@ -785,6 +785,11 @@
         </message>
         <message>
             <location filename="../../processing_provider/call.py" />
+            <source>{label} would be written over {path}, which is read as {input}: inputs are never changed. Give it another name.</source>
+            <translation>„{label}“ würde {path} überschreiben, das als „{input}“ gelesen wird: Eingaben werden nie verändert. Bitte einen anderen Namen wählen.</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/call.py" />
             <source>{first} and {second} would both be written to {path}, and one would be lost. Give each a file of its own, or name the layers in one GeoPackage: ogr:dbname='map.gpkg' table="road_edges" (geom).</source>
             <translation>{first} und {second} würden beide nach {path} geschrieben, und eines ginge verloren. Jedem eine eigene Datei geben oder die Layer in einem GeoPackage benennen: ogr:dbname='map.gpkg' table="road_edges" (geom).</translation>
         </message>

@@ -1,0 +1,65 @@
+"""Which files a run reads, so that none of them is written over."""
+
+import os
+from pathlib import Path
+
+from qgis.core import (
+    QgsDataSourceUri,
+    QgsMapLayer,
+    QgsProcessingFeatureSourceDefinition,
+    QgsProcessingUtils,
+    QgsProviderRegistry,
+)
+
+READ = ("source", "vector", "raster", "layer", "multilayer", "file", "pointcloud")
+
+
+def input_files(algorithm, parameters, context):
+    """[(path, table or "", label)] of every file that the inputs name and that is there."""
+    found = []
+    for definition in algorithm.parameterDefinitions():
+        if definition.type() in READ and not definition.isDestination():
+            for source in _sources(parameters.get(definition.name()), context):
+                path, table = _file_of(source)
+                if path is not None:
+                    found.append((path, table, definition.description()))
+    return found
+
+
+def written_over(destination, path, inputs):
+    """The label of the input whose file or table the destination value would replace, or ""."""
+    table = QgsDataSourceUri(destination.removeprefix("ogr:")).table() if destination.startswith("ogr:") else ""
+    for source, read, label in inputs:
+        if path.exists() and os.path.samefile(path, source) and (not table or table == (read or _first_table(source))):
+            return label
+    return ""
+
+
+def _sources(value, context):
+    """The sources of the layers and files that a parameter's value names."""
+    if isinstance(value, (list, tuple)):
+        return [source for one in value for source in _sources(one, context)]
+    if isinstance(value, QgsProcessingFeatureSourceDefinition):
+        value = value.source.valueAsString(context.expressionContext())[0]
+    if isinstance(value, QgsMapLayer):
+        return [value.source()]
+    if not isinstance(value, str) or not value:
+        return []
+    layer = None if os.path.exists(value) else QgsProcessingUtils.mapLayerFromString(value, context, False)
+    return [value if layer is None else layer.source()]
+
+
+def _file_of(source):
+    """(Path, table) of a source that is a file, or (None, "")."""
+    parts = QgsProviderRegistry.instance().decodeUri("ogr", source)
+    path = Path(parts.get("path") or source)
+    try:
+        return (path, parts.get("layerName") or "") if path.is_file() else (None, "")
+    except OSError:  # a name too long to be one
+        return None, ""
+
+
+def _first_table(path):
+    """The table that is read where a database is named alone."""
+    tables = QgsProviderRegistry.instance().querySublayers(str(path))
+    return tables[0].name() if tables else ""
