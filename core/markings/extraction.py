@@ -4,6 +4,7 @@ The image is looked at in the road's own frame, station along and offset across,
 so that "along the road" is an axis of the array and a bend is straight.
 """
 
+import threading
 from contextlib import nullcontext
 from dataclasses import dataclass, field
 
@@ -12,7 +13,7 @@ import numpy as np
 from ..errors import RoadExtractionError
 from ..parallel import in_order
 from ..progress import Progress
-from ..survey.points import UNIT, Points, chosen
+from ..survey.points import UNIT, Points, chosen, joined
 from ..survey.road_points import RoadPoints
 from .averages import Averages
 from .gutters import edge_distance, rim_distance
@@ -21,6 +22,7 @@ from .levels import Levels, asphalt_profile, flatten
 from .mask import burn_points, marking_mask, painted_pixels
 from .morphology import morphology
 from .point_segments import SegmentSettings, points_in_segments
+from .road_cells import RoadCells, cell_numbers, pieces
 from .road_grid import CELL, RoadGrid
 from .strokes import Witnesses, stroke_cells, views
 from .thresholds import FEWEST, asphalt_bins, bin_edges, scatter_of, split_bins
@@ -29,7 +31,7 @@ RIM = 0.60        # m from the rim of the road where gutters end and asphalt is 
 NOISY = 0.40      # of asphalt's level: single points that scatter more are averaged (multi-beam scanners)
 METHODS = ("multi-threshold", "intensity-peaks", "point-segments")
 WINDOW = 500      # cells: thresholds are taken from 20 m of road
-AT_ONCE = 1 << 15 # points put into cells at a time: what fits the processor's cache
+MOST = 300_000    # points of a window: where there are twice as many, evenly strewn ones tell how they lie and scatter
 HALO = 100        # cells: 4 m about a window in which rims and runs are still looked at
 
 
@@ -125,26 +127,56 @@ def _extract(road_points, image, frame, settings, progress, burn):
                          "over a decimetre, as strokes and rows of dashes; other markings are not seen.")
             painted = in_order(look.strokes, windows, part.part(0.1, 1.0))
         else:
-            bins = dict(zip(windows, in_order(look.bins, windows, part.part(0.1, 0.5))))
-            levels = Levels({w: found for w, found in bins.items() if found}, WINDOW * CELL * UNIT, settings)
-            painted = in_order(lambda w, levels=levels: look.paint(w, levels), windows, part.part(0.5, 1.0))
+            painted = in_order(look.paint, windows, part.part(0.1, 1.0))
+        sections = _Sections(kept.store, road)
         for records, x, y in painted:
-            kept.store.append(road, records)
+            sections.add(records)
             if burn is not None:
                 burn(x, y)
+        sections.finish()
     return kept
 
 
+class _Sections:
+    """Puts the points of a road, which come in the order of the road, into the sections of a store."""
+
+    def __init__(self, store, road):
+        self.store, self.road = store, road
+        self.number, self.parts = None, []
+
+    def add(self, records):
+        """Add Columns that lie behind all that came before."""
+        section = np.floor(records["s"] * UNIT / self.store.section_length).astype(np.int64)
+        cuts = np.flatnonzero(np.diff(section)) + 1
+        for first, end in zip([0, *cuts], [*cuts, len(section)]):
+            if end > first:
+                if section[first] != self.number:
+                    self.finish()
+                    self.number = int(section[first])
+                self.parts.append(records[first:end])
+
+    def finish(self):
+        """Put what waits for more of its section."""
+        if self.parts:
+            self.store.put(self.road, self.number, joined(self.parts, self.store.dtype))
+        self.parts = []
+
+
 class _Look:
-    """One road's windows, looked at twice: for the level of asphalt, and for what is brighter."""
+    """One road's windows, looked at twice: for the level of asphalt, and for what is brighter.
+
+    A window is painted when the level of those beside it is known; till then what was seen of it is kept.
+    """
 
     def __init__(self, road_points, image, frame, road, settings, masked=False):
         self.road_points, self.image, self.frame, self.road, self.settings = road_points, image, frame, road, settings
         self.masked = masked
+        start, end = road_points.store.span(road)
+        self.first, self.last = int(np.floor(start / UNIT / CELL / WINDOW)), int(np.floor(end / UNIT / CELL / WINDOW))
+        self._bins, self._seen, self._turns = {}, {}, {}  # by window; what several threads ask for is looked at by one
 
     def windows(self):
-        start, end = self.road_points.store.span(self.road)
-        return list(range(int(np.floor(start / UNIT / CELL / WINDOW)), int(np.floor(end / UNIT / CELL / WINDOW)) + 1))
+        return list(range(self.first, self.last + 1))
 
     def scatter(self, window):
         """Spread of the intensity of single points about asphalt in a window, as a share of its level; None without asphalt.
@@ -152,116 +184,129 @@ class _Look:
         It is taken of the intensities as measured, scanner by scanner, in squares
         that each scanner sees from one distance.
         """
-        points = self.road_points.window(self.road, window * WINDOW * CELL * UNIT, (window + 1) * WINDOW * CELL * UNIT)
+        points = self._points(window * WINDOW, (window + 1) * WINDOW)
         if len(points) < FEWEST:
             return None
-        return scatter_of(points)
+        return scatter_of(points[::max(len(points) // MOST, 1)])
 
-    def _grid(self, window):
-        """_Cells of a window with its halo; None where it has no points of its own."""
-        first, last = window * WINDOW - HALO, (window + 1) * WINDOW + HALO
-        records = self.road_points.window(self.road, (first - 1) * CELL * UNIT, (last + 1) * CELL * UNIT).records
-        # they come in order of station
-        begin, own, behind, end = np.searchsorted(records["s"], np.array([first, first + HALO, last - HALO, last]) * CELL)
-        if own == behind:
+    def _points(self, first, last):
+        return self.road_points.window(self.road, first * CELL * UNIT, last * CELL * UNIT)
+
+    def _look(self, window):
+        """_Seen of a window with its halo; None where it has no points of its own."""
+        first, last = window * WINDOW, (window + 1) * WINDOW
+        if not len(self._points(first, last)):
             return None
-        records = records[begin:end]
-        low, high = int(records["d"].min()) // CELL - 1, int(records["d"].max()) // CELL + 2
-        grid = RoadGrid(first, last, low, high)
-        occupied, cells = np.zeros(grid.shape, bool), np.empty(len(records), np.int32)
-        for k in range(0, len(records), AT_ONCE):
-            cell = cells[k:k + AT_ONCE]
-            np.floor_divide(records["s"][k:k + AT_ONCE], CELL, out=cell)
-            cell -= first
-            cell *= high - low
-            cell += records["d"][k:k + AT_ONCE] // CELL
-            cell -= low
-            occupied.ravel()[cell] = True
-        rows = np.searchsorted(records["s"], np.arange(first, last + 1) * CELL)
-        edge = edge_distance(records["half_width"], records["d"], rows, grid.offsets())
-        return _Cells(grid, records, cells, slice(own - begin, behind - begin), rim_distance(occupied), edge)
+        cells = RoadCells.of(self.road_points, self.road, first - HALO, last + HALO)
+        rims = rim_distance(cells.occupied), edge_distance(cells.half_width, cells.grid.offsets())
+        return _Seen(cells.grid, cells.grid.read(self.image, self.frame, self.road), rims)
 
     def bins(self, window):
         """Bins of asphalt and Otsu's splits of one window; an empty list where there is nothing to see."""
-        found = self._grid(window)
-        if found is None:
-            return []
-        grid, rim = found.grid, found.rim
-        brightness = grid.read(self.image, self.frame, self.road)
-        rows = slice(HALO, HALO + WINDOW)
-        offsets = np.broadcast_to(grid.offsets(), grid.shape)
-        seen = np.isfinite(brightness)
-        interior = seen & (rim > RIM)
-        interior[:HALO] = interior[HALO + WINDOW:] = False
+        with self._turns.setdefault(window, threading.Lock()):
+            if window not in self._bins:
+                seen = self._look(window)
+                self._bins[window] = [] if seen is None else self._bins_of(window, seen)
+                self._seen[window] = seen
+            return self._bins[window]
+
+    def _bins_of(self, window, seen):
+        brightness, offsets, rows = seen.brightness, seen.grid.offsets(), slice(HALO, HALO + WINDOW)
+        scanned = np.isfinite(brightness)
+        interior = scanned[rows] & (seen.rims[0][rows] > np.float32(RIM))
         if np.count_nonzero(interior) < FEWEST:
-            interior = seen.copy()
-            interior[:HALO] = interior[HALO + WINDOW:] = False
+            interior = scanned[rows]
         if not interior.any():
             return []
-        edges = bin_edges(found.records["d"][found.own], offsets[interior].min(), offsets[interior].max())
-        bins = asphalt_bins(brightness[interior], offsets[interior], edges)
-        z, gutter = flatten(brightness, *asphalt_profile(bins, grid.offsets()), (rim, found.edge))
-        counted = (seen & ~gutter)[rows]
-        return list(zip(bins, split_bins(z[rows][counted], offsets[rows][counted], bins, self.settings.separation)))
+        columns = np.flatnonzero(interior.any(axis=0))
+        edges = bin_edges(self._offsets(window), offsets[columns[0]], offsets[columns[-1]])
+        across = np.broadcast_to(offsets, interior.shape)
+        bins = asphalt_bins(brightness[rows][interior], across[interior], edges)
+        z, gutter = flatten(brightness, *asphalt_profile(bins, offsets), seen.rims)
+        counted = (scanned & ~gutter)[rows]
+        return list(zip(bins, split_bins(z[rows][counted], across[counted], bins, self.settings.separation)))
+
+    def _offsets(self, window):
+        """(N,) int32 offsets of points of a window, where they crowd of evenly strewn ones."""
+        parts = [points for _, _, points in pieces(self.road_points, self.road, window * WINDOW, (window + 1) * WINDOW)]
+        step = max(sum(map(len, parts)) // MOST, 1)
+        return np.concatenate([points.records["d"][::step] for points in parts])
+
+    def _levels(self, window):
+        """Levels between the windows about one, which are looked at if they were not yet."""
+        self.bins(min(window + 2, self.last))  # its own share of the work, while other threads look at those between
+        known = {window: self.bins(window)} if self.bins(window) else {}
+        for step, end in ((-1, self.first), (1, self.last)):
+            beside = next((w for w in range(window + step, end + step, step) if self.bins(w)), None)
+            if beside is not None:
+                # the thresholds of a window look at those beside it
+                known.update((w, self.bins(w)) for w in (beside, beside + step) if self.first <= w <= self.last and self.bins(w))
+        return Levels(known, WINDOW * CELL * UNIT, self.settings)
 
     def _pixels(self, mask, grid):
         """Local x, y of the centres of the image's pixels that lie in painted cells of the window itself."""
         own = mask[HALO:HALO + WINDOW]
         return painted_pixels(own, (grid.first + HALO, grid.low), self.image, self.frame.origin, self.frame.road(self.road))
 
-    def paint(self, window, levels):
+    def paint(self, window):
         """Records of one window that lie on paint; local x, y of the mask's pixels where one is asked for."""
-        found = self._grid(window)
-        if found is None or not len(levels.numbers):
+        levels = self._levels(window)
+        seen = self._seen.pop(window)
+        if seen is None or not len(levels.numbers):
             return self._nothing()
-        grid = found.grid
-        brightness = grid.read(self.image, self.frame, self.road)
+        grid, brightness = seen.grid, seen.brightness
         median, spread, scale, threshold = levels.at(grid)
-        z, gutter = flatten(brightness, median, spread, (found.rim, found.edge))
+        z, gutter = flatten(brightness, median, spread, seen.rims)
         with np.errstate(invalid="ignore"):
             mask = morphology((z > threshold * scale) & ~gutter, self.settings)
         # what was taken from the cell as background is taken from the point as well
         least = (brightness - z * spread) + (threshold - 0.5) * (spread * scale)
-        return self._handed_out(found, mask, least)
+        return self._handed_out(window, grid, mask, least)
 
     def strokes(self, window):
         """The same where single points are noisy: what is as bright as paint must have its shape too."""
-        found = self._grid(window)
-        if found is None:
+        first, last = window * WINDOW, (window + 1) * WINDOW
+        if not len(self._points(first, last)):
             return self._nothing()
-        cell, points = found.cell, Points(found.records)
-        averages = Averages.of(cell, points.value, found.records["z"], found.grid.shape)
+        cells = RoadCells.of(self.road_points, self.road, first - HALO, last + HALO)
+        points = self._points(first - HALO, last + HALO)
+        cell = np.concatenate([cell for _, cell in cell_numbers(points.records, cells.grid)])
+        averages = Averages.of(cell, points.value, points.records["z"], cells.grid.shape)
         witnesses = Witnesses(cell, points.value, points.covered > 0, views(points, self.frame))
-        return self._handed_out(found, stroke_cells(averages, found.rim, witnesses, self.settings.faint))
+        return self._handed_out(window, cells.grid, stroke_cells(averages, rim_distance(cells.occupied), witnesses, self.settings.faint))
 
     def _nothing(self):
         return self.road_points.window(self.road, 0, 0).records, np.empty(0), np.empty(0)
 
-    def _handed_out(self, found, mask, least=None):
+    def _handed_out(self, window, grid, mask, least=None):
         """Records of the window itself in painted cells, brighter than `least` of their cell, and the mask's pixels."""
-        records, cell = found.records[found.own], found.cell[found.own]
-        kept = np.flatnonzero(mask.ravel().take(cell))
-        if least is not None:
-            kept = kept[Points(chosen(records, kept)).value > least.ravel().take(cell.take(kept))]
+        parts, on = [], np.zeros(grid.shape, bool)
+        for _, _, points in pieces(self.road_points, self.road, window * WINDOW, (window + 1) * WINDOW):
+            rows, cells = [], []
+            for some, cell in cell_numbers(points.records, grid):
+                painted = np.flatnonzero(mask.ravel().take(cell))
+                rows.append(painted + some.start)
+                cells.append(cell.take(painted))
+            records, cell = chosen(points.records, np.concatenate(rows)), np.concatenate(cells)
+            if least is not None:
+                bright = np.flatnonzero(Points(records).value > least.ravel().take(cell))
+                records, cell = chosen(records, bright), cell.take(bright)
+            parts.append(records)
+            on.ravel()[cell] = True
+        records = joined(parts, self.road_points.store.dtype)
         if not self.masked:
-            return chosen(records, kept), np.empty(0), np.empty(0)
+            return records, np.empty(0), np.empty(0)
         # the image spreads a point over its neighbours: a cell whose own points are dark is no marking
-        mask.ravel()[cell] = False
-        mask.ravel()[cell[kept]] = True
-        return chosen(records, kept), *self._pixels(mask, found.grid)
+        for _, _, points in pieces(self.road_points, self.road, window * WINDOW, (window + 1) * WINDOW):
+            for _, cell in cell_numbers(points.records, grid):
+                mask.ravel()[cell] = on.ravel().take(cell)
+        return records, *self._pixels(mask, grid)
 
 
 @dataclass(frozen=True)
-class _Cells:
-    """A window with its halo in cells.
-
-    grid : RoadGrid; records : of the points in it; cell : (N,) flat number of each point's cell
-    own : slice, the records of the window itself; rim, edge : (rows, columns) m inwards from the rim of what was scanned, and from the road's edge
-    """
+class _Seen:
+    """A window with its halo: RoadGrid, (rows, columns) brightness, and m inwards from the rim of what was scanned and from the road's edge."""
 
     grid: RoadGrid
-    records: object
-    cell: np.ndarray
-    own: slice
-    rim: np.ndarray
-    edge: np.ndarray
+    brightness: np.ndarray
+    rims: tuple

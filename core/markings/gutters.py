@@ -7,6 +7,7 @@ little of its length. Where an edge line is painted right beside the gutter, it 
 the brighter of the two.
 """
 
+import cv2
 import numpy as np
 from scipy import ndimage
 
@@ -25,7 +26,7 @@ GAP_ALONG, GAP_ACROSS = 15, 10   # cells: smaller gaps between points are road a
 
 
 def rim_distance(occupied):
-    """(rows, columns) metres from each cell of road inwards from its rim; 0 outside the road.
+    """(rows, columns) float32 metres from each cell of road inwards from its rim; 0 outside the road.
 
     `occupied` are the cells that road points lie in. Where the points end along the road, the road goes on.
     """
@@ -35,34 +36,26 @@ def rim_distance(occupied):
         occupied[:rows[0]] = occupied[rows[0]:rows[0] + GAP_ALONG].any(axis=0)
         occupied[rows[-1] + 1:] = occupied[max(rows[-1] + 1 - GAP_ALONG, 0):rows[-1] + 1].any(axis=0)
     road = fill_gaps(fill_gaps(occupied, GAP_ACROSS, 1), GAP_ALONG, 0)
-    return ndimage.distance_transform_edt(road) * CELL
+    return cv2.distanceTransform(road.view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE) * np.float32(CELL)
 
 
-def edge_distance(half_width, offset, starts, offsets):
-    """(rows, columns) metres from each cell inwards from the road's edge on its side, past whatever hides road.
+def edge_distance(half_width, offsets):
+    """(rows, columns) float32 metres from each cell inwards from the road's edge on its side, past whatever hides road.
 
     The rim of a shadow is no rim of the road: beside it nothing tells a gutter, and it
     outnumbers what is seen of the gutter between parked vehicles.
 
     Parameters
     ----------
-    half_width : (N,) mm from the reference to the road's edge on each road point's side
-    offset : (N,) of the points, left positive, in any unit
-    starts : (rows + 1,) the first point of each row of the grid, and the end
+    half_width : (2, rows) mm from the reference to the road's edge on the left and on the right, 0 where it is not known
     offsets : (columns,) m
     """
-    filled = np.flatnonzero(np.diff(starts))
-    distance = np.full((len(starts) - 1, len(offsets)), np.inf, np.float32)
-    for side in (1, -1):
-        columns = np.flatnonzero(offsets * side > 0)
-        if not len(columns) or not len(filled):
-            continue
-        beside = np.where(offset > 0 if side > 0 else offset < 0, half_width, 0)
-        widest = np.maximum.reduceat(beside[:starts[-1]], starts[filled]) * 1e-3
-        known = widest > 0
-        if known.any():
-            edge = np.interp(np.arange(len(distance)), filled[known], widest[known])
-            distance[:, columns] = np.maximum(edge[:, None] - np.abs(offsets[columns]) + CELL / 2, CELL)
+    distance = np.full((half_width.shape[1], len(offsets)), np.inf, np.float32)
+    for side, widest in zip((1, -1), half_width):
+        columns, known = np.flatnonzero(offsets * side > 0), np.flatnonzero(widest)
+        if len(columns) and len(known):
+            edge = np.interp(np.arange(len(distance)), known, widest[known] * 1e-3)
+            distance[:, columns[0]:columns[-1] + 1] = np.maximum(edge[:, None] - np.abs(offsets[columns]) + CELL / 2, CELL)
     return distance
 
 
@@ -78,17 +71,19 @@ def gutter_cells(z, distance):
     -------
     (rows, columns) bool
     """
-    band = np.floor(np.minimum(distance / CELL - 0.5, BANDS * BAND) / BAND).astype(np.int64)
-    near = (distance > 0) & (band < BANDS) & np.isfinite(z)
+    near = (distance > 0) & (distance < np.float32((BANDS * BAND + 0.5) * CELL)) & np.isfinite(z)
     row, column = np.nonzero(near)
     if not len(row):
         return np.zeros(z.shape, bool)
+    value = z[row, column]
+    band = np.minimum(((distance[row, column] / np.float32(CELL) - np.float32(0.5)) / np.float32(BAND)).astype(np.int32), BANDS - 1)
     coarse = tuple(-(-n // COARSE) for n in z.shape)
-    place = (band[row, column] * coarse[0] + row // COARSE) * coarse[1] + column // COARSE
+    coarse_row, coarse_column = row.astype(np.int32) // np.int32(COARSE), column.astype(np.int32) // np.int32(COARSE)
+    place = (band * np.int32(coarse[0]) + coarse_row) * np.int32(coarse[1]) + coarse_column
     size = BANDS * coarse[0] * coarse[1]
-    bright = z[row, column] > BRIGHT
+    bright = value > BRIGHT
     # in whole 64ths, which sum exactly in any order
-    height = np.rint(64 * np.clip(z[row, column], 0.0, 100.0))
+    height = np.rint(64 * np.clip(value, 0.0, 100.0))
     box = 2 * int(round(REACH / CELL / COARSE)) + 1
 
     def around(counts):
@@ -108,5 +103,5 @@ def gutter_cells(z, distance):
     ends = np.take_along_axis(painted, np.minimum(width, BANDS - 1)[None], axis=0)[0]
     width = np.where(width >= NARROWEST, width + ~ends, 0)
     found = np.zeros(z.shape, bool)
-    found[row, column] = band[row, column] < width[row // COARSE, column // COARSE]
+    found[row, column] = band < width[coarse_row, coarse_column]
     return found

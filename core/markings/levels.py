@@ -15,7 +15,7 @@ def flatten(brightness, median, spread, rims):
     rims : distances inwards, from the rim of what was scanned and from the road's edges
     """
     z = (brightness - median) / spread
-    gutter = np.any([gutter_cells(z, rim) for rim in rims], axis=0)
+    gutter = np.logical_or.reduce([gutter_cells(z, rim) for rim in rims])
     with np.errstate(invalid="ignore"):
         even = (z < BRIGHT) & (z > -2 * BRIGHT) & ~gutter
     z = z - background(z, even)

@@ -1,5 +1,6 @@
 """What is bright and has the length of paint, along the road or across it."""
 
+import cv2
 import numpy as np
 
 from ..survey.points import UNIT
@@ -14,13 +15,15 @@ def morphology(mask, settings):
     """
     length = int(round(settings.shortest / (CELL * UNIT)))
     closed = fill_gaps(mask, int(round(settings.close / (CELL * UNIT))), 0)
-    return mask & (runs(closed, 0) >= length) | mask & (runs(closed, 1) >= length)
+    return mask & (long_runs(closed, length, 0) | long_runs(closed, length, 1))
 
 
-def runs(mask, axis):
-    """Length of the run of on cells through each cell along one axis, in cells; 0 where off."""
-    on = np.moveaxis(mask, axis, 0)
-    index = np.arange(len(on), dtype=np.int32).reshape(-1, 1)
-    before = np.maximum.accumulate(np.where(on, -1, index), axis=0)
-    after = np.minimum.accumulate(np.where(on, len(on), index)[::-1], axis=0)[::-1]
-    return np.moveaxis(np.where(on, after - before - 1, 0), 0, axis)
+def long_runs(mask, length, axis):
+    """The on cells in runs of at least `length` cells along one axis."""
+    if length < 2:
+        return mask.copy()
+    size, behind = ((1, length), (0, length - 1)) if axis == 0 else ((length, 1), (length - 1, 0))
+    along = np.ones(size[::-1], np.uint8)
+    # off beyond the rim
+    begun = cv2.erode(mask.astype(np.uint8), along, anchor=(0, 0), borderType=cv2.BORDER_CONSTANT, borderValue=0)
+    return cv2.dilate(begun, along, anchor=behind, borderType=cv2.BORDER_CONSTANT, borderValue=0).astype(bool)

@@ -172,7 +172,7 @@ def asphalt_bins(values, d, edges):
     -------
     list of Bin from right to left; a bin with fewer than 500 cells is joined to its neighbour
     """
-    number = np.clip(np.searchsorted(edges, d, side="right") - 1, 0, len(edges) - 2)
+    number = np.clip(np.searchsorted(edges, d, side="right") - 1, 0, len(edges) - 2).astype(np.uint16)
     order = np.argsort(number, kind="stable")
     bounds = np.searchsorted(number[order], np.arange(len(edges)))
     bins = []
@@ -211,7 +211,7 @@ def split_bins(z, d, bins, separation):
     list of Split, one per bin
     """
     middles = np.array([b.middle for b in bins])
-    number = np.searchsorted((middles[:-1] + middles[1:]) / 2, d)
+    number = np.searchsorted((middles[:-1] + middles[1:]) / 2, d).astype(np.uint16)
     order = np.argsort(number, kind="stable")
     bounds = np.searchsorted(number[order], np.arange(len(bins) + 1))
     return [_split(z[order[first:last]], b.middle, separation) for b, first, last in zip(bins, bounds[:-1], bounds[1:])]
@@ -239,12 +239,13 @@ def background(z, counted):
     -------
     (rows, columns) float32; 0 where hardly any asphalt is about
     """
-    coarse = tuple(-(-n // COARSE) for n in z.shape)
-    row, column = np.nonzero(counted)
-    place = row // COARSE * coarse[1] + column // COARSE
-    size = coarse[0] * coarse[1]
-    count = np.bincount(place, minlength=size).reshape(coarse).astype(float)
-    total = np.bincount(place, z[row, column], size).reshape(coarse)
+    count, total = (_coarse_sums(a) for a in (counted, np.where(counted, z, 0.0)))
     count, total = (ndimage.uniform_filter(a, AROUND, mode="constant") for a in (count, total))
     level = np.where(count > 0.1 * COARSE**2, total / np.maximum(count, 1e-9), 0.0).astype(np.float32)
     return np.repeat(np.repeat(level, COARSE, axis=0), COARSE, axis=1)[:z.shape[0], :z.shape[1]]
+
+
+def _coarse_sums(values):
+    """(K, L) float64 sums over squares of 20 cm; those at the end may be smaller."""
+    rows, columns = (np.arange(0, n, COARSE) for n in values.shape)
+    return np.add.reduceat(np.add.reduceat(values, rows, axis=0, dtype=float), columns, axis=1)
