@@ -25,6 +25,7 @@ from .road.scanlines.boundaries import ScanlineBoundarySettings
 from .road.scanlines.section_planes import ScanlineSettings
 from .road.surface.extraction import SurfaceSettings, extract_road_surface
 from .survey.cube_density import cube_density
+from .survey.points import Points, joined
 from .survey.survey import SurveySettings, open_survey
 
 
@@ -166,6 +167,11 @@ def _density(points, store, progress, done):
     return cube_density(sections, lambda key: points.section(*key), progress.part(done, done))
 
 
+def _places(points):
+    """All points, of which only the columns are joined that are asked for."""
+    return Points(joined([points.store.section(*key) for key in points.all_sections()], points.store.dtype))
+
+
 def _paint(result, image_path, settings, stages):
     """Intensity, markings and lines, added to the result."""
     frame = result.frame
@@ -185,7 +191,7 @@ def _paint(result, image_path, settings, stages):
                                             points, frame, settings.clusters)
     result.marking_lines = stages.run("lines", "Fitting marking lines …", fit_marking_lines,
                                       clustered, result.markings, frame, settings.lines)
-    result.marking_curvature = marking_curvature(clustered.all_points(), result.marking_lines.geometries, frame.origin)
+    result.marking_curvature = marking_curvature(_places(clustered), result.marking_lines.geometries, frame.origin)
     result.driving_lines, result.curve_elements = stages.run(
         "driving", "Making driving lines …", driving_lines, result.marking_lines, frame, settings.driving,
         markings=result.markings, edges=result.edges, road_points=result.road_points)

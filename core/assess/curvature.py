@@ -17,6 +17,7 @@ FLAT = 0.03          # least share of the second principal direction: below, the
 STEADY = 1e3         # largest condition of the equations for the quadric
 BESIDE = 0.25        # m from a fitted line within which a point is its paint
 BLOCK = 100          # neighbourhoods solved at a time
+CELLS = 2**20        # numbers of cells of the kernel's size
 DIAGRAM_STEP = 1.0   # m between the values of a curvature diagram
 DIAGRAM_BASE = 5.0   # m to either side over which a heading changes
 
@@ -53,15 +54,17 @@ def marking_curvature(points, lines, origin):
         return None
     shift = np.asarray(origin, float)
     local = shapely.transform(np.asarray(lines, object), lambda xyz: xyz - shift, include_z=True)
-    xyz = np.c_[points.x, points.y, points.z]
+    x, y, z = points.x, points.y, points.z
     segments = Segments(local)
-    which = _spread(len(xyz), TRIED)
-    feet = segments.nearest(xyz[which, :2])
+    which = _spread(len(x), TRIED)
+    feet = segments.nearest(np.c_[x[which], y[which]])
     beside = np.flatnonzero((feet.distance <= BESIDE) & np.isfinite(feet.z))
     if len(beside) < LEAST:
         return None
     beside = beside[_spread(len(beside), SAMPLE)]
-    before, after = _before_and_after(xyz, which[beside], feet.only(beside), segments)
+    near = _near(x, y, which[beside])
+    xyz = np.c_[x[near], y[near], z[near]]
+    before, after = _before_and_after(xyz, np.searchsorted(near, which[beside]), feet.only(beside), segments)
     known = np.isfinite(before) & np.isfinite(after)
     if not known.any():
         return None
@@ -71,6 +74,21 @@ def marking_curvature(points, lines, origin):
 def _spread(count, most):
     """At most so many of `count` rows, evenly spread."""
     return np.unique(np.linspace(0, count - 1, min(count, most)).astype(int))
+
+
+def _near(x, y, which):
+    """Rows of all points within the kernel of those at the rows `which`, and of some more, ascending."""
+    column, row = (np.floor(axis * (1.0 / KERNEL)).astype(np.int32) for axis in (x, y))
+    marked = np.zeros(CELLS, bool)
+    for right in (-1, 0, 1):
+        for up in (-1, 0, 1):
+            marked[_cell(column[which] + np.int32(right), row[which] + np.int32(up))] = True
+    return np.flatnonzero(marked.take(_cell(column, row)))
+
+
+def _cell(column, row):
+    """Number of a cell of the map, the same for some that are far apart."""
+    return (column * np.int32(1031) + row) & np.int32(CELLS - 1)
 
 
 def _before_and_after(xyz, which, feet, segments):

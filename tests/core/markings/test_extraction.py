@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
+from lanewright.core import parallel
 from lanewright.core.errors import RoadExtractionError
+from lanewright.core.markings import extraction
 from lanewright.core.markings.extraction import MarkingSettings, extract_markings
 from lanewright.core.markings.image import IntensityImage, write_intensity_image
 from painted_streets import ASPHALT, assert_same_points, drive, records_at, road_points, shuffled, street, strewn, strip
@@ -125,10 +127,36 @@ def test_neither_the_order_of_points_nor_the_length_of_sections_matters(tmp_path
     assert_same_points(plain, other)
 
 
+def test_where_points_crowd_some_of_them_tell_how_all_lie(tmp_path, monkeypatch):
+    """Of 12 000 points a metre every fourth tells how wide the bins are."""
+    line = strip(5, 75, 1.0, 1.15)
+    records = street(FRAME, [line], density=1500)
+    usual = found_on(records, tmp_path)
+    monkeypatch.setattr(extraction, "MOST", 60_000)
+    some = found_on(records, tmp_path)
+    assert_same_points(some.records, found_on(shuffled(records), tmp_path, section_length=7.3).records)
+    assert abs(len(some) - len(usual)) < 0.01 * len(usual)
+    assert line(some.s, some.d).mean() > 0.97
+
+
+@pytest.mark.parametrize("threads", [1, 7])
+def test_paint_before_and_after_a_stretch_without_points_is_found_by_any_number_of_threads(tmp_path, monkeypatch, threads):
+    line = strip(0, 150, 1.0, 1.15)
+    frame = drive(160)
+    records = street(frame, [line], length=160.0)
+    s = records["s"] * 1e-4
+    records = records[(s < 25) | ((s > 85) & (s < 95)) | (s > 130)]
+    usual = found_on(records, tmp_path, frame)
+    monkeypatch.setattr(parallel.os, "cpu_count", lambda: threads)
+    assert_same_points(usual.records, found_on(records, tmp_path, frame).records)
+    on_line = line(records["s"] * 1e-4, records["d"] * 1e-4).sum()
+    assert line(usual.s, usual.d).mean() > 0.97 and line(usual.s, usual.d).sum() > 0.9 * on_line
+
+
 def test_the_mask_lies_on_the_image_and_covers_the_paint(tmp_path):
     line = strip(10, 70, 1.0, 1.15)
     frame = drive(radius=80.0)
-    records = street(frame, [line])
+    records = street(frame, [line], length=160.0)
     found_on(records, tmp_path, frame, mask=tmp_path / "mask.tif")
     image, mask = IntensityImage.open(tmp_path / "image.tif"), IntensityImage.open(tmp_path / "mask.tif")
     assert (mask.geotransform, mask.width, mask.height) == (image.geotransform, image.width, image.height)

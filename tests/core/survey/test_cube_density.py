@@ -1,19 +1,16 @@
 """Points per cubic metre."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from lanewright.core.survey.cube_density import cube_density
-
-
-class Cloud(SimpleNamespace):
-    def __len__(self):
-        return len(self.x)
+from lanewright.core.survey.points import SURVEY_POINT, Points, to_units
 
 
 def cloud(x, y, z):
-    return Cloud(x=np.asarray(x, float), y=np.asarray(y, float), z=np.asarray(z, float))
+    records = np.zeros(len(x), SURVEY_POINT)
+    for name, axis in zip("xyz", (x, y, z)):
+        records[name] = to_units(axis)
+    return Points(records)
 
 
 def test_a_cube_of_three_points_and_one_of_one():
