@@ -60,9 +60,9 @@ def least_bic(count, parameters):
 
 
 def robust_weights(residuals):
-    """(N,) weights of soft L1: 1 for small residuals, falling as 1/|r| for large ones."""
+    """(..., N) weights of soft L1: 1 for small residuals, falling as 1/|r| for large ones; each row has its own scale."""
     residuals = np.asarray(residuals)
-    scale = max(F_SCALE, 1.4826 * median(np.abs(residuals)))
+    scale = np.maximum(F_SCALE, 1.4826 * medians(np.abs(residuals)))
     return 1.0 / np.sqrt(1.0 + (residuals / scale) ** 2)
 
 
@@ -71,6 +71,13 @@ def median(values):
     middle = (len(values) - 1) // 2, len(values) // 2
     ordered = np.partition(values, middle)
     return float(ordered[middle[0]] + ordered[middle[1]]) / 2
+
+
+def medians(values):
+    """(..., 1) median of every row of (..., N) float, N >= 1, without NaN."""
+    low, high = (values.shape[-1] - 1) // 2, values.shape[-1] // 2
+    ordered = np.partition(values, (low, high), axis=-1)
+    return (ordered[..., low:low + 1] + ordered[..., high:high + 1]) / 2
 
 
 def minimise(residuals, jacobian, start, scale):

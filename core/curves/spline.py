@@ -12,6 +12,7 @@ from .fit import Fit, checked, least_bic, robust_weights
 
 BANDWIDTHS = (2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0, 40.0, 60.0)  # m; waves shorter than 6 of them are smoothed away
 DEGREE = 3
+TOGETHER = 4096  # places of a line times bandwidths that are fitted at a time: what fits the processor's cache
 SETTLED = 1e-6  # of a weight: its next change moves the curve by less than a micrometre
 
 
@@ -85,13 +86,19 @@ def fit_spline(x, y, along=None, bandwidth=None):
     t = _chord_lengths(x, y) if along is None else np.asarray(along, float) - along[0]
     length = float(t[-1])
     best, best_score = None, np.inf
-    for b in [bandwidth] if bandwidth else [b for b in BANDWIDTHS[::-1] if b < max(length, 2.5)]:
-        # the larger bandwidth wins unless the smaller one earns its freedom, which it may be too dear for however well it fits
-        if best is None or least_bic(len(t), _freedom(length, b)) < best_score:
-            fit = _penalised(x, y, t, length, b)
+    waiting = [bandwidth] if bandwidth else [b for b in BANDWIDTHS[::-1] if b < max(length, 2.5)]
+    while waiting:
+        some = waiting[:max(TOGETHER // len(t), 1)]
+        for b, fitted in zip(some, _penalised(x, y, t, length, some)):
+            fit = Fit(fitted, fitted[2], _freedom(length, b))
+            # the larger bandwidth wins unless the smaller one earns its freedom
             if fit.bic < best_score:
                 best, best_score = fit, fit.bic
-    return best
+        # for which it may be too dear however well it fits
+        waiting = [b for b in waiting[len(some):] if least_bic(len(t), _freedom(length, b)) < best_score]
+    knots, control, across = best.curve
+    curve = Spline(tuple(knots.tolist()), tuple(control[:, 0].tolist()), tuple(control[:, 1].tolist()))
+    return Fit(curve, across, best.parameters)
 
 
 def _freedom(length, bandwidth):
@@ -120,63 +127,81 @@ def _smoothed(values, reach=4):
     return np.convolve(padded, np.full(2 * reach + 1, 1 / (2 * reach + 1)), "valid")
 
 
-class _Basis:
-    """The cubic B-splines on even knots that places t in [0, length] lie in, four a place, with their penalty."""
+class _Bases:
+    """The cubic B-splines on even knots that places t in [0, length] lie in, four a place, with their penalty, for B bandwidths.
 
-    def __init__(self, t, length, bandwidth):
-        pieces = _pieces(length, bandwidth)
-        step = length / pieces
-        self.knots = step * np.arange(-DEGREE, pieces + DEGREE + 1)
-        self.count = pieces + DEGREE
+    The equations of the bandwidths are solved as one system in which they do not touch: most
+    lines have a few hundred places, and numpy takes longer to be called than to compute.
+    """
+
+    def __init__(self, t, length, bandwidths):
+        pieces = np.array([_pieces(length, b) for b in bandwidths])
+        steps = length / pieces
+        self.knots = [step * np.arange(-DEGREE, count + DEGREE + 1) for step, count in zip(steps, pieces.tolist())]
+        self.counts = pieces + DEGREE
+        self.starts = np.cumsum(self.counts) - self.counts
+        whole, shape = int(self.counts.sum()), (len(pieces) * len(t), 4)
+        step, pieces = steps[:, None], pieces[:, None]
         inside = np.clip(t / step, 0.0, pieces)
         piece = np.minimum(inside.astype(np.int64), pieces - 1)
         f = inside - piece
-        self.values = np.stack([(1 - f) ** 3, (3 * f - 6) * f * f + 4, ((3 - 3 * f) * f + 3) * f + 1, f**3], axis=1) / 6
-        self.slopes = np.stack([-(1 - f) ** 2, (3 * f - 4) * f, (2 - 3 * f) * f + 1, f * f], axis=1) / (2 * step)
-        self.at = piece[:, None] + np.arange(4)
+        self.values = np.stack([(1 - f) ** 3, (3 * f - 6) * f * f + 4, ((3 - 3 * f) * f + 3) * f + 1, f**3], axis=2).reshape(shape) / 6
+        self.slopes = (np.stack([-(1 - f) ** 2, (3 * f - 4) * f, (2 - 3 * f) * f + 1, f * f], axis=2) / (2 * step[:, :, None])).reshape(shape)
+        self.at = ((piece + self.starts[:, None])[:, :, None] + np.arange(4)).reshape(shape)
         # what each place adds to the upper banded form of the normal matrix, wherever two of its four meet
         first, second = np.triu_indices(4)
         self._products = self.values[:, first] * self.values[:, second]
-        self._band = ((DEGREE - (second - first)) * self.count + self.at[:, second]).ravel()
-        self._penalty = _roughness(self.count) * (len(t) / max(length, 1e-6)) * bandwidth**6 / step**5
+        self._band = ((DEGREE - (second - first)) * whole + self.at[:, second]).ravel()
+        self._penalty = np.concatenate([_roughness(count) * (len(t) / max(length, 1e-6)) * b**6 / step**5
+                                        for count, b, step in zip(self.counts.tolist(), bandwidths, steps)], axis=1)
 
     def solve(self, weight, values):
-        """(K, C) control points that follow (N, C) values with (N,) weights, smoothly."""
-        bands = np.bincount(self._band, (self._products * weight[:, None]).ravel(), 4 * self.count).reshape(4, -1)
+        """(K, C) control points of all bandwidths, one after the other, that follow (N, C) values with (B, N) weights, smoothly."""
+        weight = weight.reshape(-1, 1)
+        whole = int(self.counts.sum())
+        bands = np.bincount(self._band, (self._products * weight).ravel(), 4 * whole).reshape(4, -1)
         bands += self._penalty
         # a breath of ridge keeps control points in a gap from being undetermined
-        bands[DEGREE] += 1e-9 * bands[DEGREE].max()
-        weighted, at = self.values * weight[:, None], self.at.ravel()
-        right = np.stack([np.bincount(at, (weighted * column[:, None]).ravel(), self.count) for column in values.T], axis=1)
+        bands[DEGREE] += np.repeat(1e-9 * np.maximum.reduceat(bands[DEGREE], self.starts), self.counts)
+        weighted, at = (self.values * weight).reshape(len(self.counts), -1, 4), self.at.ravel()
+        right = np.stack([np.bincount(at, (weighted * column[:, None]).ravel(), whole) for column in values.T], axis=1)
         # solveh_banded checks more than it computes
         _, control, trouble = dpbsv(bands, right)
         if trouble:
             raise LinAlgError(f"The spline's equations cannot be solved ({trouble}).")
         return control
 
-    def of(self, control, slope=False):
-        """(N, C) what control points (K, C) give at the places, or the slope there."""
-        return np.einsum("na,nac->nc", self.slopes if slope else self.values, control[self.at])
+    def of(self, control):
+        """(B, N, C) what control points (K, C) give at the places, and the slopes there."""
+        around = control[self.at]
+        return tuple(np.einsum("na,nac->nc", by, around).reshape(len(self.counts), -1, control.shape[1]) for by in (self.values, self.slopes))
+
+    def part(self, control, k):
+        """The control points of one bandwidth."""
+        return control[self.starts[k]:self.starts[k] + self.counts[k]]
 
 
-def _penalised(x, y, t, length, bandwidth):
-    basis = _Basis(t, length, bandwidth)
-    weight = np.ones(len(t))
+def _penalised(x, y, t, length, bandwidths):
+    """[(knots, control points (K, 2), distances (N,) across the curve)], one for each bandwidth."""
+    bases = _Bases(t, length, bandwidths)
+    weight = np.ones((len(bandwidths), len(t)))
     middle = np.array([x.mean(), y.mean()])
     places = np.stack([x, y], axis=1) - middle
-    for _ in range(8):
-        control = basis.solve(weight, places)
-        gap = places - basis.of(control)
-        slope = basis.of(control, slope=True)
-        size = np.maximum(np.hypot(slope[:, 0], slope[:, 1]), 1e-12)
-        across = (gap[:, 1] * slope[:, 0] - gap[:, 0] * slope[:, 1]) / size
+    found = [None] * len(bandwidths)
+    for turn in range(8):
+        control = bases.solve(weight, places)
+        at, slope = bases.of(control)
+        gap = places - at
+        size = np.maximum(np.hypot(slope[..., 0], slope[..., 1]), 1e-12)
+        across = (gap[..., 1] * slope[..., 0] - gap[..., 0] * slope[..., 1]) / size
         before, weight = weight, robust_weights(across)
-        if np.abs(weight - before).max() < SETTLED:
+        settled = np.abs(weight - before).max(axis=1) < SETTLED
+        for k in range(len(found)):
+            if found[k] is None and (settled[k] or turn == 7):
+                found[k] = bases.knots[k], bases.part(control, k) + middle, across[k]
+        if None not in found:
             break
-    control = control + middle
-    knots = basis.knots
-    curve = Spline(tuple(knots.tolist()), tuple(control[:, 0].tolist()), tuple(control[:, 1].tolist()))
-    return Fit(curve, across, _freedom(length, bandwidth))
+    return found
 
 
 def _roughness(count):
@@ -199,13 +224,14 @@ def smooth_profile(t, values, bandwidth):
     if len(t) < 4 or length < 1.0:
         level = float(np.median(values))
         return lambda at: np.full(np.shape(at), level)
-    basis = _Basis(t - t[0], length, bandwidth)
+    bases = _Bases(t - t[0], length, [bandwidth])
     level = float(np.median(values))
-    weight = np.ones(len(t))
+    weight = np.ones((1, len(t)))
     for _ in range(6):
-        control = basis.solve(weight, values[:, None] - level)
-        before, weight = weight, robust_weights(values - level - basis.of(control)[:, 0])
+        control = bases.solve(weight, values[:, None] - level)
+        before, weight = weight, robust_weights(values - level - bases.of(control)[0][..., 0])
         if np.abs(weight - before).max() < SETTLED:
             break
-    spline = BSpline(basis.knots, control[:, 0], DEGREE)
-    return lambda at: level + spline(np.clip(np.asarray(at, float) - t[0], 0.0, basis.knots[-DEGREE - 1]))
+    knots = bases.knots[0]
+    spline = BSpline(knots, control[:, 0], DEGREE)
+    return lambda at: level + spline(np.clip(np.asarray(at, float) - t[0], 0.0, knots[-DEGREE - 1]))

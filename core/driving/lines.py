@@ -124,6 +124,7 @@ def _write_lane(lines, lane, track, way, elements, road_lines, z, frame, number)
     course = lane_course(track, s, frame.roads[number], elements)
     grid = s[track.first:track.last + 1]
     status = settled(track.status)
+    functions = {}   # of curves by identity: those of long splines are long, and many pieces share one
     for code, start, end in pieces(status, track.first, s):
         rows = slice(np.searchsorted(grid, start), np.searchsorted(grid, end) + 1)
         x, y, at = _between(course, start, end, code_first=start == grid[0], code_last=end == grid[-1])
@@ -140,7 +141,7 @@ def _write_lane(lines, lane, track, way, elements, road_lines, z, frame, number)
                   source="offset" if track.offset[rows].mean() > 0.5 else "pair", status=STATUS[code], curve=curve.kind,
                   radius_m=float(curve.radius) if np.isfinite(curve.radius) else None, rmse_m=float(course.rmse),
                   station_m=start, end_m=end, offset_m=float(np.median(track.d[rows])), length_m=length,
-                  width_m=float(np.median(track.width[rows])), params=_function(curve.moved(*origin[:2])))
+                  width_m=float(np.median(track.width[rows])), params=functions.get(id(curve)) or functions.setdefault(id(curve), _function(curve.moved(*origin[:2]))))
 
 
 def _patterns(track, rows, way, patterns):

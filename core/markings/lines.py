@@ -108,7 +108,7 @@ def _records_of(points, road):
 
 def _add(found, one, shape, number, road, origin):
     curve = shape.fit.curve.moved(*origin[:2])
-    numbers = _rounded(curve.params())
+    numbers = json.dumps(_rounded(curve.params()))[:-1]  # once for all pieces: those of long splines are long
     s, d, *_ = one.line.places()
     for piece in one.pieces:
         places = shape.draw(piece.first, piece.last) + origin
@@ -128,7 +128,7 @@ def _add(found, one, shape, number, road, origin):
             station_m=float(piece.first), end_m=float(piece.last),
             offset_m=float(np.median(d[near])) if near.any() else None,
             length_m=float(geometry.length), width_m=float(one.width),
-            params=json.dumps({**numbers, "from": round(float(start), 4), "to": round(float(end), 4)}))
+            params=f'{numbers}, {json.dumps({"from": round(float(start), 4), "to": round(float(end), 4)})[1:]}')
 
 
 def _rounded(numbers):
