@@ -107,9 +107,8 @@ class BlockReading:
         kept = self._kept.of(len(piece))
         columns = self._columns(piece, names, kept)
         found.add(columns, names)
-        withheld = np.asarray(piece["withheld"]) if "withheld" in names else None
         x, y, z = (axis.metres(piece.array, kept) for axis in axes)
-        good = _usable(x, y, z, withheld if withheld is not None and withheld.any() else None)
+        good = _usable(x, y, z, _withheld(piece, names))
         s, d = kept("station"), kept("offset")
         pass_number, lost = self._placed(x, y, columns["time"], good, s, d)
         found.without_time += lost
@@ -130,8 +129,7 @@ class BlockReading:
             columns[name] = in_units(metres, kept(name, np.int32))
         for axis, name, metres in zip(axes, "xyz", (x, y, z)):
             columns[name] = axis.units(metres, kept)
-        columns["pass_number"] = kept("pass_number", np.uint16)
-        np.copyto(columns["pass_number"], pass_number, casting="unsafe")
+        columns["pass_number"] = pass_number.view(np.uint16)
         points = Columns(columns, SURVEY_POINT, len(piece))
         for number, own in parts:
             if own.any():
@@ -140,13 +138,15 @@ class BlockReading:
     def _columns(self, piece, names, kept):
         """What is kept of a piece as it is: time, intensity, source, returns, scanner."""
         raw = piece.array
-        columns = {name: kept(name, SURVEY_POINT[name]) for name in ("time", "intensity", "source", "returns", "scanner")}
+        columns = {name: kept(name, SURVEY_POINT[name]) for name in ("time", "intensity", "source", "returns")}
         columns["time"][:] = raw["gps_time"] if "gps_time" in raw.dtype.names else 0.0
         if self.week_ends:
             columns["time"][:] = carried_on(columns["time"])
         columns["intensity"][:] = raw["intensity"]
         columns["source"][:] = raw["point_source_id"]
-        columns["scanner"][:] = piece["scanner_channel"] if "scanner_channel" in names else 0
+        columns["scanner"] = np.broadcast_to(np.uint8(0), len(raw))
+        if "scanner_channel" in names and _flagged(piece):
+            columns["scanner"] = np.asarray(piece["scanner_channel"])
         columns["returns"][:] = _returns(piece, names)
         return columns
 
@@ -183,6 +183,20 @@ def _returns(block, names):
     if "scanner_channel" in names:  # LAS 1.4 keeps them so
         return np.ascontiguousarray(block.array["bit_fields"])
     return np.asarray(block["return_number"]) | (np.asarray(block["number_of_returns"]) << 4)
+
+
+def _flagged(piece):
+    """Whether any point has a flag or a scanner channel: LAS 1.4 keeps them in one byte, and most clouds have none."""
+    raw = piece.array
+    return "classification_flags" not in raw.dtype.names or bool(raw["classification_flags"].max())
+
+
+def _withheld(piece, names):
+    """(N,) of the points that are withheld, None where none is."""
+    if "withheld" not in names or not _flagged(piece):
+        return None
+    withheld = np.asarray(piece["withheld"])
+    return withheld if withheld.any() else None
 
 
 def _usable(x, y, z, withheld):

@@ -89,7 +89,9 @@ class Columns:
         # taken apart only where rows ascend within bounds
         if self._parts is None or name in self._arrays or not len(rows) or rows[0] < 0 or rows[-1] >= self._length \
                 or (rows[1:] < rows[:-1]).any():
-            return self[name].take(rows)
+            column = self[name]
+            # of what all have the same nothing need be fetched
+            return column.take(rows) if column.strides[0] or not len(rows) else np.broadcast_to(column[0], len(rows))
         ends = np.cumsum([len(part) for part in self._parts])
         bounds = [0, *np.searchsorted(rows, ends).tolist()]
         found = [part[name].take(rows[a:b] - (end - len(part)))

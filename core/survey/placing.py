@@ -13,7 +13,7 @@ from .driven_pass import MOST_TICKS, TICK
 from .kept_arrays import KeptArrays
 from .reference_line import NODE
 
-AT_ONCE = 100_000     # points worked at a time: in fewer more time goes into waiting for Python's lock, in more into waiting for memory
+AT_ONCE = 50_000      # points worked at a time: fewer wait longer for Python's lock, more for memory
 MOST_STEPS = 3        # from node to node for the few points that one step from the vehicle's node leaves beside their own
 BESIDE = 1e-3         # of a node beyond its ends: the direction there is that of the next one to 1e-6
 CLOCK_SLACK = 1.0     # s that a cloud may begin before or end after the trajectory
@@ -57,8 +57,8 @@ class Placing:
         for first in range(0, len(x), AT_ONCE):
             part = slice(first, first + AT_ONCE)
             owner = passes[part]
-            lowest = int(owner.min())
-            if lowest == owner.max() and lowest >= 0:
+            lowest = int(owner[0]) if owner.strides[0] == 0 else int(owner.min())
+            if lowest >= 0 and (owner.strides[0] == 0 or lowest == owner.max()):
                 self._feet(lowest, x[part], y[part], time[part], s[part], d[part])
                 continue
             ps, pd = s[part], d[part]
@@ -79,7 +79,7 @@ class Placing:
         low, high = time.min(), time.max()
         k = int(np.searchsorted(self.starts, low, side="right")) - 1
         if k >= 0 and high <= self.ends[k] and (k + 1 == len(self.starts) or high < self.starts[k + 1] - CLOCK_SLACK):
-            return np.full(len(time), k, np.int16)
+            return np.broadcast_to(np.int16(k), len(time))
         k = np.clip(np.searchsorted(self.starts, time + CLOCK_SLACK, side="right") - 1, 0, None)
         # between two passes that follow on each other the earlier one ends where the later begins
         k = np.where((k > 0) & (time < self.starts[k]) & (time <= self.ends[np.maximum(k - 1, 0)]), k - 1, k)

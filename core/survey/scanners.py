@@ -63,7 +63,7 @@ def times_by_value(values, time):
     if not len(values):
         return {}
     low, high = int(values.min()), int(values.max())
-    present = [low] if low == high else np.flatnonzero(np.bincount(values))[: 4 * MOST_SCANNERS + 1].tolist()
+    present = [low, high][:high - low + 1] if high - low < 2 else np.flatnonzero(np.bincount(values))[: 4 * MOST_SCANNERS + 1].tolist()
     found = {}
     for value in present:
         times = time if low == high else time[values == value]
