@@ -14,7 +14,7 @@ from qgis.core import (
 from ..core.errors import RoadExtractionError
 from .destinations import ReplacedFiles, UnfinishedFiles, check_suffix, check_writable, destination_path
 from .embedded_style import embed_style
-from .input_files import input_files, written_over
+from .input_files import close_database, input_files, written_over
 from .knobs import settings_class
 from .layers import WKB_TYPES, crs_text, keeps_aliases, qgis_fields, read_features, write_features
 from .styling import group_of, style_on_load
@@ -214,6 +214,7 @@ class Call:
         replaced = ReplacedFiles()
         try:
             for name, features in self._layers:
+                close_database(self._destination(name), self.context)
                 replaced.set_aside(self._destination(name))
                 self._results[name] = self._write(name, features)
         except BaseException:

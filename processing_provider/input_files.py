@@ -11,6 +11,8 @@ from qgis.core import (
     QgsProviderRegistry,
 )
 
+from .destinations import destination_path
+
 READ = ("source", "vector", "raster", "layer", "multilayer", "file", "pointcloud")
 
 
@@ -33,6 +35,21 @@ def written_over(destination, path, inputs):
         if path.exists() and os.path.samefile(path, source) and (not table or table == (read or _first_table(source))):
             return label
     return ""
+
+
+def close_database(destination, context):
+    """Let go of the layers that were read, for this run alone, from the database that a table is about to be added to.
+
+    QGIS would look for the new table in the connection it has open, and not find it there.
+    """
+    path = destination_path(destination)
+    if path is None or not destination.startswith("ogr:") or not path.exists():
+        return
+    store = context.temporaryLayerStore()
+    for layer in list(store.mapLayers().values()):
+        read, _ = _file_of(layer.source())
+        if read is not None and os.path.samefile(read, path):
+            store.removeMapLayer(layer.id())
 
 
 def _sources(value, context):

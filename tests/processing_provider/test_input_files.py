@@ -64,6 +64,16 @@ def test_a_link_to_an_input_is_that_input(survey):
         import_trajectory(str(survey / "drive.gpkg"), str(survey / "other.gpkg"))
 
 
+@pytest.mark.parametrize("called", [str, lambda path: loaded(str(path))], ids=["path", "layer"])
+def test_another_table_of_the_database_that_is_read_may_be_written(survey, called):
+    path = survey / "drive.gpkg"
+    for _ in range(2):
+        import_trajectory(called(path), f"ogr:dbname='{path}' table=\"imported\" (geom)")
+    QgsProject.instance().clear()
+    counts = [QgsVectorLayer(f"{path}|layername={table}", "x", "ogr").featureCount() for table in ("drive", "imported")]
+    assert counts[0] == counts[1] > 100
+
+
 def test_a_point_cloud_that_is_read_is_not_written_over(survey):
     import processing
 
