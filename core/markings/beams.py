@@ -13,6 +13,8 @@ from scipy.ndimage import gaussian_filter1d
 
 from ..parallel import in_order
 from ..progress import Progress
+from ..survey.columns import Columns
+from ..survey.points import Points
 from .intensity_table import FEWEST, LEVELS, asphalt_of, is_logarithmic, to_level, weighted_median
 
 LOWEST, STEP, STEPS = -45.0, 0.05, 900   # degrees: elevations of road from -45 to 0 in steps of 0.05
@@ -22,7 +24,7 @@ BESIDE = 3           # beams either side
 WINDOWS, WINDOW = 12, 5.0   # how many windows of a road are looked at to tell whether there are beams; m
 MOST = 8_000         # points of a window that are looked at
 LONGEST_FRAME = 1.0  # s that a turn of a spinning scanner may last
-FEW, FEW_IN = 4, 100   # numbers that a section's points share: these are no turns, and found in every hundredth point
+SIGHTED = "time", "x", "y", "z", "source", "pass_number"   # columns by which points are seen from the vehicle
 TILTS = ((0, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))  # signs in which roll and pitch are told
 
 
@@ -42,12 +44,6 @@ class Frames:
             points = road_points.section(*key)
             source, time = points.source, points.time
             if not len(source):
-                continue
-            few = np.unique(source[::FEW_IN])
-            if len(few) <= FEW and (here := [source == one for one in few]) and np.logical_or.reduce(here).all():
-                for one, rows in zip(few, here):
-                    some = time[rows]
-                    first[one], last[one] = min(first[one], some.min()), max(last[one], some.max())
                 continue
             order = np.argsort(source, kind="stable")
             source, time = source[order], time[order]
@@ -72,9 +68,22 @@ class Frames:
         middle[number[turn]] = (begin[turn] + end[turn]) / 2
         return cls(middle)
 
+    @classmethod
+    def none(cls):
+        return cls(np.full(65536, np.nan))
+
     @property
     def known(self):
         return bool(np.isfinite(self.middle).any())
+
+
+def _may_be_turns(samples):
+    """Whether any point_source_id of some points from all over the road was there for no longer than a turn."""
+    source, time = (np.concatenate([getattr(points, name) for points in samples]) for name in ("source", "time"))
+    order = np.argsort(source, kind="stable")
+    source, time = source[order], time[order]
+    begins = np.flatnonzero(np.r_[True, source[1:] != source[:-1]])
+    return bool((np.maximum.reduceat(time, begins) - np.minimum.reduceat(time, begins) < LONGEST_FRAME).any())
 
 
 @dataclass
@@ -153,9 +162,11 @@ class Beams:
     @classmethod
     def of(cls, road_points, frame, scanners, progress=Progress()):
         """Beams of a survey's scanners; None where every scanner has one, or all of one brightness."""
-        frames = Frames.of(road_points)
-        views = {scanner: view for scanner in range(scanners)
-                 if (view := _sharpest(_samples(road_points, frame, scanner), frame.passes, frames)) is not None}
+        samples = {scanner: found for scanner in range(scanners) if (found := list(_samples(road_points, frame, scanner)))}
+        if not samples:
+            return None
+        frames = Frames.of(road_points) if _may_be_turns([points for found in samples.values() for points in found]) else Frames.none()
+        views = {scanner: view for scanner, found in samples.items() if (view := _sharpest(found, frame.passes, frames)) is not None}
         if not views:
             return None
         found = cls(views, {}, {}, {})
@@ -223,12 +234,13 @@ def _samples(road_points, frame, scanner):
             points = road_points.window(road, s, s + WINDOW)
             rows = np.flatnonzero(points.scanner == scanner)
             if len(rows) >= FEWEST:
-                yield points[rows[::-(-len(rows) // MOST)]]
+                some = points[rows[::-(-len(rows) // MOST)]].records
+                # on their own, so that the sections they come from are let go
+                yield Points(Columns({name: some[name] for name in SIGHTED}, np.dtype([(name, some.dtype[name]) for name in SIGHTED])))
 
 
 def _sharpest(samples, passes, frames):
     """The view in which points gather most clearly in rings; None where they do in no view."""
-    samples = list(samples)
     tilts = TILTS if any(p.attitude is not None for p in passes) else TILTS[:1]
     best, sharpest = RINGS, None
     for by_frame in (False, True) if frames.known else (False,):
