@@ -10,6 +10,8 @@ doubt, and risen within the width of a blurred face, so that ramps and banks are
 taken for curbs.
 """
 
+from functools import partial
+
 import numpy as np
 
 from .corners import SIGMAS, STEEPEST_ROAD, Steps
@@ -102,12 +104,12 @@ def _steps_in(lines, least, highest):
 def _averaged(lines, skew):
     """(P, C) median heights of AVERAGE metres of road about every profile, along one direction."""
     half = max(int(round(0.5 * AVERAGE / lines.width)), 1)
-    stack = np.full((2 * half + 1, *lines.shape), np.inf)
     low = np.where(np.isnan(lines.low), np.inf, lines.low)
-    for k in range(-half, half + 1):
-        _shifted(low, k, int(round(skew * k * lines.width / lines.spacing)), stack[k + half])
-    count = np.isfinite(stack).sum(0)
-    return np.where(count >= max(LEAST_ROWS * len(stack), 2), _median_of_rows(stack, count), np.nan)
+    stack = [_shifted(low, k, int(round(skew * k * lines.width / lines.spacing))) for k in range(-half, half + 1)]
+    count = np.zeros(low.shape, np.int8)
+    for row in stack:
+        count += row < np.inf
+    return _median(stack, count, max(LEAST_ROWS * len(stack), 2))
 
 
 def _rises(sums, least):
@@ -152,7 +154,7 @@ class _Sums:
         there = np.isfinite(value)
         h, u = np.where(there, value, 0.0), there * self.u
         own = slice(self.pad, self.pad + self.cells)
-        for total, v in zip(self.totals, (there, h, h * h, u, u * u, u * h)):
+        for total, v in zip(self.totals, (there * 1.0, h, h * h, u, u * u, u * h)):
             np.cumsum(v, axis=1, out=total[:, own])
             total[:, own.stop:] = total[:, own.stop - 1:own.stop]
 
@@ -160,6 +162,12 @@ class _Sums:
         """Sum of the cells from `first` to `last` beside every cell."""
         total, start, end = self.totals[which], self.pad - 1 + first, self.pad + last
         return total[:, end:end + self.cells] - total[:, start:start + self.cells]
+
+    def window_at(self, which, first, last, cells):
+        """The same at some cells."""
+        row, cell = np.divmod(cells, self.cells)
+        total = self.totals[which]
+        return total[row, cell + self.pad + last] - total[row, cell + self.pad - 1 + first]
 
     def mean(self, first, last):
         """Mean of the occupied cells from `first` to `last` beside every cell."""
@@ -181,29 +189,35 @@ class _Line:
             vuu, self.vuz = suu / self.n - mu * mu, suz / self.n - mu * self.mz
             self.slope = np.where(vuu > 1e-4, self.vuz / vuu, 0.0)
             self.level = self.mz + self.slope * (sums.u - mu)
-        self.squares = sums.window(2, first, last)
+        self._squares = partial(sums.window_at, 2, first, last)
 
     def scatter(self, cells):
         """(M,) scatter of heights about the line at some cells."""
         n, mz = self.n.take(cells), self.mz.take(cells)
-        vzz = self.squares.take(cells) / n - mz * mz
+        vzz = self._squares(cells) / n - mz * mz
         return np.sqrt(np.maximum(vzz - self.slope.take(cells) * self.vuz.take(cells), 0.0) * n / np.maximum(n - 2, 1))
 
 
-def _median_of_rows(stack, count):
-    """Median over the first axis of values, which are infinite where there is none: `count` of them are not (0 gives what it may)."""
-    if len(stack) > FEW_ROWS:
-        stack.sort(axis=0)
+def _median(rows, count, least):
+    """Median of heights at every cell, (P, C), where `least` or more of them are there; NaN elsewhere.
+
+    rows : list of (P, C), infinite where there is none; they are overwritten
+    count : (P, C) of those that are not
+    """
+    if len(rows) > FEW_ROWS:
+        rows = np.sort(rows, axis=0)
     else:
         # neighbours change places till all are in order
-        low = np.empty_like(stack[0])
-        for turn in range(len(stack)):
-            for k in range(turn % 2, len(stack) - 1, 2):
-                np.minimum(stack[k], stack[k + 1], out=low)
-                np.maximum(stack[k], stack[k + 1], out=stack[k + 1])
-                stack[k] = low
-    low, high = np.maximum(count - 1, 0) // 2, np.minimum(count // 2, len(stack) - 1)
-    return 0.5 * (np.take_along_axis(stack, low[None], 0)[0] + np.take_along_axis(stack, high[None], 0)[0])
+        spare = np.empty_like(rows[0])
+        for turn in range(len(rows)):
+            for k in range(turn % 2, len(rows) - 1, 2):
+                np.minimum(rows[k], rows[k + 1], out=spare)
+                np.maximum(rows[k], rows[k + 1], out=rows[k + 1])
+                rows[k], spare = spare, rows[k]
+    middle = np.full(count.shape, np.nan)
+    for n in range(int(np.ceil(least)), len(rows) + 1):
+        np.copyto(middle, 0.5 * (rows[(n - 1) // 2] + rows[n // 2]), where=count == n)
+    return middle
 
 
 def _moved(values, k, empty=np.nan):
@@ -218,13 +232,18 @@ def _moved(values, k, empty=np.nan):
     return out
 
 
-def _shifted(values, rows, cells, out):
-    """values[p + rows, c + cells] into out, which is infinite where there is none."""
-    moved = _moved(values, cells, np.inf)
-    if rows >= 0:
-        out[:len(values) - rows] = moved[rows:]
-    else:
-        out[-rows:] = moved[:rows]
+def _shifted(values, rows, cells):
+    """values[p + rows, c + cells] at every profile and cell, infinite where there is none."""
+    out = np.full(values.shape, np.inf)
+    to, of = zip(*(_overlap(size, by) for size, by in zip(values.shape, (rows, cells))))
+    out[to] = values[of]
+    return out
+
+
+def _overlap(size, by):
+    """Slices of what is moved `by` places: where it comes to lie, and where it lay."""
+    by = max(-size, min(by, size))
+    return slice(max(-by, 0), size - max(by, 0)), slice(max(by, 0), size - max(-by, 0))
 
 
 def _largest_near(values, span):
