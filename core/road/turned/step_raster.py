@@ -282,7 +282,7 @@ def _rises_at(raster, ground, slopes, row, column, least, highest):
     before, after, at = (_mean(around, strip & m) for m in ((u < -OUTER), (u > OUTER), (np.abs(u) < OUTER)))
     rise = after - before
     rough = np.sqrt(_mean((around - before[:, None]) ** 2, strip & (u < -OUTER)))
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore", divide="ignore"):
         part = (at - before) / rise
         good = (part > 0.15) & (part < 0.85) & (rise >= FAINTEST * least) & (rise <= highest + 0.05) & (rough <= ROUGH * rise)
     # the middle of the step, not of the cell
