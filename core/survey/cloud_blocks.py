@@ -117,7 +117,7 @@ class CloudReaders:
         if at != path:
             if reader is not None:
                 reader.close()
-            reader = open_cloud(path, self._wanted, again=True)
+            reader = open_cloud(path, self._wanted, again=True, few=True)
             self._readers[thread] = path, reader
         return reader
 

@@ -40,12 +40,13 @@ class CloudFile:
     chunk: int = 0
 
 
-def open_cloud(path, wanted=None, again=False):
+def open_cloud(path, wanted=None, again=False, few=False):
     """Open a LAS/LAZ/COPC file for reading with laspy, or say in one sentence why it cannot be read.
 
     `wanted` names the layers of a LAZ 1.4 file that are decoded beside place and
     return numbers ("z", "intensity" ...), all by default. A file that is opened `again`
-    is not looked over for damage once more.
+    is not looked over for damage once more. Where `few` points are read here and there a
+    chunk of a LAZ file is decoded no further than they lie in it, by one thread.
     """
     import laspy
 
@@ -57,7 +58,7 @@ def open_cloud(path, wanted=None, again=False):
     if not again and (wrong := damage(path)):
         raise RoadExtractionError(f"{path} is damaged or cut off: {wrong}. Copy or export the file again.")
     try:
-        return laspy.open(path, decompression_selection=layers(wanted))
+        return laspy.open(path, decompression_selection=layers(wanted), laz_backend=laspy.LazBackend.Lazrs if few else None)
     except BaseException as problem:  # laspy and its backends raise many kinds for a damaged file, no Exceptions among them
         if isinstance(problem, NOT_THE_FILE):
             raise
