@@ -58,6 +58,8 @@ class RoadMapSettings:
 class RoadMap:
     """Every result of the chain; `seconds` and `counts` tell of each stage.
 
+    `road_points` keep the survey's store; `road_points.close()` gives its disk space back.
+
     `boundary_differences` tells where the two boundary methods lie apart, None where one was asked for.
     `without_paint` is the sentence that says why there are no markings, "" where
     there are.
@@ -137,27 +139,33 @@ def make_road_map(paths, trajectory, image_path, settings=RoadMapSettings(), pro
     stages = _Stages(progress, settings)
     survey = stages.run("survey", "Reading the survey …", open_survey, paths, trajectory, settings.survey)
     try:
-        found = stages.run("curbs", "Detecting curbs …", find_curb_points, survey, settings.boundaries)
-        boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, found, survey.frame, settings.edges)
-        curb_points, edges = boundaries.curb_points, boundaries.edges
-        road_points, surface = stages.run("surface", "Extracting the road surface …", extract_road_surface,
-                                          survey, edges, settings.surface)
-        facts = dict(files=len(survey.files), scanners=len(survey.scanners), passes=len(survey.frame.passes),
-                     roads=len(survey.frame.roads), sensor_height=survey.sensor_height, **survey.counts)
-        has_intensity = survey.has_intensity
-        density = tuple(_density(points, store, progress, stages.done) for points, store in ((survey, survey.store), (road_points, road_points)))
-    finally:
+        return _map_of(survey, image_path, settings, stages)
+    except BaseException:
         survey.store.close()
-    result = RoadMap(survey.frame, survey.crs, curb_points, edges, surface, road_points,
+        raise
+
+
+def _map_of(survey, image_path, settings, stages):
+    """The map of an open survey, whose store the road points keep."""
+    found = stages.run("curbs", "Detecting curbs …", find_curb_points, survey, settings.boundaries)
+    boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, found, survey.frame, settings.edges)
+    road_points, surface = stages.run("surface", "Extracting the road surface …", extract_road_surface,
+                                      survey, boundaries.edges, settings.surface)
+    facts = dict(files=len(survey.files), scanners=len(survey.scanners), passes=len(survey.frame.passes),
+                 roads=len(survey.frame.roads), sensor_height=survey.sensor_height, **survey.counts)
+    density = tuple(_density(points, store, stages.progress, stages.done)
+                    for points, store in ((survey, survey.store), (road_points, road_points)))
+    survey.store.let_go()
+    result = RoadMap(survey.frame, survey.crs, boundaries.curb_points, boundaries.edges, surface, road_points,
                      boundaries.differences, boundaries.length_by_method, seconds=stages.seconds, survey_facts=facts,
                      density=density)
-    result.counts.update(curb_points=len(curb_points), road_points=len(road_points))
-    if not has_intensity:
+    result.counts.update(curb_points=len(boundaries.curb_points), road_points=len(road_points))
+    if survey.has_intensity:
+        _paint(result, image_path, settings, stages)
+    else:
         result.without_paint = ("The point cloud has no intensity (all values are the same), so paint cannot be told from "
                                 "asphalt: no markings, marking lines or driving lines were made.")
-        progress.warn(result.without_paint)
-        return result
-    _paint(result, image_path, settings, stages)
+        stages.progress.warn(result.without_paint)
     return result
 
 

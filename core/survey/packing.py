@@ -32,19 +32,20 @@ class Packing(NamedTuple):
         size = self.dtype.itemsize
         return np.broadcast_to(np.array(self.least % 2**(8 * size), f"u{size}").view(self.dtype), self.count)
 
-    def unpack(self, data, column):
-        """Fill a column, (N,), from its packed bytes."""
+    def unpack(self, data, column, rows=None):
+        """Fill a column, (N,), from its packed bytes; with some rows of it, (M,), where they are given."""
         bits = np.dtype(f"u{self.dtype.itemsize}")
         least, column = bits.type(self.least % 2**(8 * bits.itemsize)), column.view(bits)
         low, *high = _parts(data, self)
-        for first in range(0, self.count, AT_ONCE):
-            piece = slice(first, first + AT_ONCE)
+        for first in range(0, len(column), AT_ONCE):
+            piece = column[first:first + AT_ONCE]
+            some = slice(first, first + AT_ONCE) if rows is None else rows[first:first + AT_ONCE]
             if high:
-                np.left_shift(high[0][piece], 8 * self.widths[0], out=column[piece], dtype=bits)
-                column[piece] |= low[piece]
-                column[piece] += least
+                np.left_shift(_some(high[0], some), 8 * self.widths[0], out=piece, dtype=bits)
+                piece |= _some(low, some)
+                piece += least
             else:
-                np.add(low[piece], least, out=column[piece], dtype=bits)
+                np.add(_some(low, some), least, out=piece, dtype=bits)
 
 
 def packed(column):
@@ -78,6 +79,10 @@ def _parts(data, packing):
     """Views of the packed bytes, one for each part of the values."""
     ends = np.cumsum([0, *packing.widths]) * packing.count
     return [data[first:end].view(f"u{width}") for first, end, width in zip(ends[:-1].tolist(), ends[1:].tolist(), packing.widths)]
+
+
+def _some(part, rows):
+    return part[rows] if isinstance(rows, slice) else part.take(rows, mode="clip")
 
 
 def buffer(nbytes, use="packed"):

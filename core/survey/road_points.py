@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .chosen_points import ChosenPoints
 from .points import ROAD_POINT, Points, joined
 from .section_store import SectionStore
 
@@ -34,9 +35,17 @@ class RoadPoints:
         return cls(SectionStore(ROAD_POINT), np.asarray(origin, float), crs)
 
     @classmethod
-    def empty_of(cls, survey):
-        """A new, empty set with the sections, origin and CRS of a survey."""
-        return cls(_store_like(survey.store), np.asarray(survey.frame.origin, float), survey.crs)
+    def none_of(cls, survey):
+        """An empty set into which rows of a survey's sections are put, with `half_width` and `covered`.
+
+        The points stay in the survey's store, which lives as long as the road points and is closed with them.
+        """
+        store = ChosenPoints(survey.store, ROAD_POINT, ("half_width", "covered"), dict(corrected=np.nan, cluster=0))
+        return cls(store, np.asarray(survey.frame.origin, float), survey.crs)
+
+    def close(self):
+        """Forget the points, and give back the disk space they took."""
+        self.store.close()
 
     def __len__(self):
         return self.store.count

@@ -58,7 +58,7 @@ class SectionStore:
     returns which of them stay, a mask or None for all.
     """
 
-    def __init__(self, dtype, section_length=SECTION_LENGTH, memory_limit=MEMORY_LIMIT, finish=None):
+    def __init__(self, dtype, section_length=SECTION_LENGTH, memory_limit=MEMORY_LIMIT, finish=None, kept=KEPT):
         self.dtype = np.dtype(dtype)
         self.section_length = section_length
         self.memory_limit = memory_limit
@@ -66,12 +66,17 @@ class SectionStore:
         self._arrays = KeptArrays()
         self._sections = {}                 # (road, section) -> _Section
         self._kept = OrderedDict()          # a few spilled sections as last read
-        self._kept_bytes = 0
+        self._kept_bytes, self._kept_limit = 0, kept
         self._lock = threading.Lock()       # sections are read by several threads
         self._turns = [threading.Lock() for _ in range(TURNS)]
         self._waiting_bytes = 0
         self._file = None
-        self.count = 0
+        self._count = 0
+
+    @property
+    def count(self):
+        """Points added."""
+        return self._count
 
     def append(self, road, records):
         """Add (N,) records of one road (a structured array or Columns); each goes to the section of its station."""
@@ -122,7 +127,7 @@ class SectionStore:
         section.in_order = in_order and not section.parts
         section.parts.append(records)
         self._forget(key)
-        self.count += len(records)
+        self._count += len(records)
         self._waiting_bytes += records.nbytes
 
     def _spill_beyond_limit(self):
@@ -155,16 +160,34 @@ class SectionStore:
                 if records is not None:
                     self._kept.move_to_end(key)
                     return records
-            section = self._sections.get(key)
-            if section is not None and not section.in_order:
-                self._put_in_order(road, section)
-            if section is None or not section.parts:
-                return Columns.joined([], self.dtype).locked()
-            records = section.parts[0]
-            if not isinstance(records, Columns):
-                records = self._in_file(records)
+            records, keep = self._read(road, section)
+            if keep:
                 self._keep(key, records)
             return records.locked()
+
+    def _read(self, road, section):
+        """The Columns of one section, and whether they are worth keeping as read."""
+        section = self._sections.get((road, section))
+        if section is not None and not section.in_order:
+            self._put_in_order(road, section)
+        if section is None or not section.parts:
+            return Columns.joined([], self.dtype), False
+        records = section.parts[0]
+        return (records, False) if isinstance(records, Columns) else (self._in_file(records), True)
+
+    def column(self, road, section, name, rows):
+        """Some rows of one column of a section that was read before, (M,); nothing else is read, and nothing kept."""
+        part = self._sections[road, section].parts[0]
+        return part[name].take(rows, mode="clip") if isinstance(part, Columns) else self._file.get(part[name], rows=rows)
+
+    def first_unit(self, section):
+        """The least station, in units of 0.1 mm, that lies in a section."""
+        unit = int(round(section * self.section_length / UNIT))
+        while np.floor((unit - 1) * UNIT / self.section_length) >= section:
+            unit -= 1
+        while np.floor(unit * UNIT / self.section_length) < section:
+            unit += 1
+        return unit
 
     def _in_file(self, stored):
         """Columns that are read one by one when they are asked for."""
@@ -211,7 +234,7 @@ class SectionStore:
         with self._lock:
             self._kept[key] = records
             self._kept_bytes += records.nbytes
-            while self._kept_bytes > KEPT and len(self._kept) > 1:
+            while self._kept_bytes > self._kept_limit and len(self._kept) > 1:
                 self._kept_bytes -= self._kept.popitem(last=False)[1].nbytes
 
     def _forget(self, key):
@@ -250,11 +273,17 @@ class SectionStore:
         """A store of the same points in which one column is put anew, section by section; it shares all others with this one."""
         return _WithColumn(self, name)
 
+    def let_go(self):
+        """Give the memory back of what was kept as last read."""
+        with self._lock:
+            self._kept.clear()
+            self._kept_bytes = 0
+
     def close(self):
         """Forget everything and give the disk space back."""
+        self.let_go()
         self._sections.clear()
-        self._kept.clear()
-        self._kept_bytes = self._waiting_bytes = 0
+        self._waiting_bytes = 0
         if self._file is not None:
             self._file.close()
             self._file = None

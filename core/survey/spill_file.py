@@ -39,20 +39,21 @@ class SpillFile:
         self.write(place, data)
         return Stored(place, packing)
 
-    def get(self, stored, out=None):
-        """The (N,) column of a Stored, put into `out` where one is given; else read-only where all values are alike."""
+    def get(self, stored, out=None, rows=None):
+        """The (N,) column of a Stored, or (M,) some rows of it; put into `out` where one is given, else read-only where all are alike."""
         place, packing = stored
+        count = packing.count if rows is None else len(rows)
         if not packing.widths and out is None:
-            return packing.alike
-        column = np.empty(packing.count, packing.dtype) if out is None else out
+            return packing.alike[:count]
+        column = np.empty(count, packing.dtype) if out is None else out
         if not packing.widths:
-            column[:] = packing.alike
-        elif packing.widths == (packing.dtype.itemsize,):
+            column[:] = packing.alike[:count]
+        elif packing.widths == (packing.dtype.itemsize,) and rows is None:
             self.read(place, column)
         else:
             data = buffer(packing.nbytes)
             self.read(place, data)
-            packing.unpack(data, column)
+            packing.unpack(data, column, rows)
         return column
 
     def give_back(self, stored):

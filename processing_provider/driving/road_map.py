@@ -96,6 +96,7 @@ class RoadMap(LanewrightAlgorithm):
         road_map = make_road_map(paths, trajectory, image_path, settings, progress.part(0.0, 0.95))
         if call.wants("ROAD_POINTS"):
             write_road_points(road_map.road_points, call.new_file("ROAD_POINTS"), progress.part(0.95, 1.0))
+        road_map.road_points.close()
         if road_map.image is None:
             call.drop_file("INTENSITY_IMAGE")
         for name, attribute, geometry, fields, _ in LAYERS:

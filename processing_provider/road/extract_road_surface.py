@@ -54,4 +54,5 @@ class ExtractRoadSurface(LanewrightAlgorithm):
             check_features_on_roads(edges, survey.frame, call.label("ROAD_EDGES"))
         road_points, surface = extract_road_surface(survey, edges, call.settings(SURFACE_KNOBS), progress.part(0.5, 0.9))
         write_road_points(road_points, call.new_file("ROAD_POINTS"), progress.part(0.9, 1.0))
+        road_points.close()
         call.layer("ROAD_SURFACE", surface)

@@ -7,11 +7,13 @@ import laspy
 import numpy as np
 import pytest
 import shapely
+from lanewright.core import road_map as chain
 from lanewright.core.assess.lines import compare_lines
 from lanewright.core.assess.polygons import compare_polygons
+from lanewright.core.errors import Cancelled
 from lanewright.core.road_map import RoadMapSettings, make_road_map
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey
-from lanewright.core.survey.survey import SurveySettings
+from lanewright.core.survey.survey import SurveySettings, open_survey
 
 LAYERS = ("edges", "surface", "markings", "marking_lines", "driving_lines")
 
@@ -116,3 +118,18 @@ def test_without_intensity_there_are_edges_and_a_reason(sample, cloud, tmp_path)
     found = make_road_map([tmp_path / "dark.laz"], sample.trajectory, tmp_path / "intensity.tif")
     assert len(found.edges) and len(found.surface)
     assert "intensity" in found.without_paint and found.markings is None
+
+
+@pytest.mark.parametrize("stage", ["draw_boundaries", "write_intensity_image"])
+def test_a_run_that_is_broken_off_gives_back_the_disk_of_its_points(sample, cloud, tmp_path, monkeypatch, stage):
+    opened = []
+
+    def broken_off(*_, **__):
+        raise Cancelled
+
+    monkeypatch.setattr(chain, "open_survey", lambda *given, **named: opened.append(open_survey(*given, **named)) or opened[0])
+    monkeypatch.setattr(chain, stage, broken_off)
+    with pytest.raises(Cancelled):
+        make_road_map([cloud], sample.trajectory, tmp_path / "intensity.tif", RoadMapSettings(survey=SurveySettings(memory_limit=2**20)))
+    assert not opened[0].store.roads()
+    assert opened[0].counts["kept"] > 0

@@ -82,15 +82,16 @@ def extract_road_surface(survey, edges=None, settings=SurfaceSettings(), progres
 
     Returns
     -------
-    RoadPoints with `half_width`, and Features ROAD_SURFACE: PolygonZ, `status`
-    measured where both sides have an edge (measured or bridged), grown elsewhere.
+    RoadPoints with `half_width`, which stay in the survey's store, and Features
+    ROAD_SURFACE: PolygonZ, `status` measured where both sides have an edge
+    (measured or bridged), grown elsewhere.
 
     Raises
     ------
     RoadExtractionError
         If no road surface is found.
     """
-    road_points = RoadPoints.empty_of(survey)
+    road_points = RoadPoints.none_of(survey)
     surface = Features("PolygonZ", list(ROAD_SURFACE), crs=survey.crs)
     roads = survey.store.roads()
     for k, road in enumerate(roads):
@@ -158,27 +159,26 @@ def _has_road(ground, offsets):
 
 
 def _take_points(survey, road, carriageway, road_points, progress):
-    """Append one road's points; returns how many lie in each row of cells."""
+    """Choose one road's points; returns how many lie in each row of cells."""
     per_row = np.zeros(len(carriageway.height), np.int64)
-    sections = survey.store.sections(road)
+    store = survey.store
 
     def take(number):
-        start, end = (np.array([number, number + 1]) * survey.store.section_length).tolist()
+        start, end = (np.array([number, number + 1]) * store.section_length).tolist()
         # what stands beside a point may stand in the next section
         points = survey.window(road, np.floor(start / SQUARE - 1.01) * SQUARE, np.ceil(end / SQUARE + 1.01) * SQUARE)
         found = points_on_road(points, carriageway)
-        on_road = points[found.surface]
-        beneath = covered(on_road, points[found.above])
-        own = np.flatnonzero(np.floor(on_road.s / survey.store.section_length) == number)
-        own = slice(own[0], own[-1] + 1) if len(own) else slice(0, 0)   # points come in order of station
-        count = own.stop - own.start
-        records = on_road.records[own].with_columns(
-            corrected=np.full(count, np.nan, np.float32), cluster=np.zeros(count, np.int32),
-            covered=beneath[own].astype(np.uint8), half_width=found.half_width[own])
-        return number, records.whole()
+        beneath = covered(points[found.surface], points[found.above])
+        # points come in order of station
+        stations = points.records["s"]
+        first, last = np.searchsorted(stations, np.array([store.first_unit(number), store.first_unit(number + 1)], stations.dtype))
+        own = slice(*np.searchsorted(found.surface, [first, last]))
+        rows = found.surface[own]
+        row = np.floor(stations.take(rows) * UNIT / ROW).astype(np.int64) - carriageway.cells.first_row
+        counts = np.bincount(np.clip(row, 0, len(per_row) - 1), minlength=len(per_row))
+        return number, rows - first, dict(half_width=found.half_width[own], covered=beneath[own].astype(np.uint8)), counts
 
-    for number, records in in_order(take, sections, progress):
-        road_points.store.put(road, number, records)
-        row = np.floor(records["s"] * UNIT / ROW).astype(np.int64) - carriageway.cells.first_row
-        per_row += np.bincount(np.clip(row, 0, len(per_row) - 1), minlength=len(per_row))
+    for number, rows, columns, counts in in_order(take, store.sections(road), progress):
+        road_points.store.put(road, number, rows, **columns)
+        per_row += counts
     return per_row

@@ -156,3 +156,10 @@ def test_a_section_that_was_handed_out_cannot_be_spoilt_for_the_next_reader():
         section = filled([records()], memory_limit=limit).section(0, 2)
         with pytest.raises(ValueError, match="read-only"):
             section["time"] = 0.0
+
+
+@pytest.mark.parametrize("length", [5.0, 7.0, 0.3])
+def test_the_first_unit_of_a_section_is_the_least_that_lies_in_it(length):
+    for number in (-4, 0, 1, 3, 1000):
+        unit = SectionStore(SURVEY_POINT, section_length=length).first_unit(number)
+        assert [int(np.floor(u * 1e-4 / length)) for u in (unit - 1, unit)] == [number - 1, number]

@@ -1,0 +1,72 @@
+"""Some of the points of a store, told by their rows."""
+
+import numpy as np
+import pytest
+from lanewright.core.survey.chosen_points import ChosenPoints
+from lanewright.core.survey.points import ROAD_POINT, SURVEY_POINT, to_units
+from lanewright.core.survey.section_store import SectionStore
+
+
+def survey_store(limit, count=6000):
+    rng = np.random.default_rng(8)
+    made = np.zeros(count, SURVEY_POINT)
+    made["s"], made["d"] = to_units(rng.uniform(0, 40, count)), to_units(rng.uniform(-8, 8, count))
+    for name in ("time", "x", "y", "z", "intensity"):
+        made[name] = rng.integers(0, 60_000, count)
+    store = SectionStore(SURVEY_POINT, memory_limit=limit)
+    for part in np.array_split(made, 5):
+        store.append(0, part)
+    return store
+
+
+def road_of(store):
+    """The points within 3 m of the reference line; none of section 2."""
+    road = ChosenPoints(store, ROAD_POINT, ("half_width", "covered"), dict(corrected=np.nan, cluster=0))
+    for number in store.sections(0):
+        records = store.section(0, number)
+        rows = np.flatnonzero((np.abs(records["d"]) < to_units(3.0)) & (number != 2))
+        road.put(0, number, rows, half_width=np.full(len(rows), 3000 + number, np.uint16), covered=(rows % 2).astype(np.uint8))
+    return road
+
+
+@pytest.mark.parametrize("limit", [0, 60_000, 10**9])
+def test_chosen_points_are_those_of_the_store_with_columns_of_their_own(limit):
+    store = survey_store(limit)
+    road = road_of(store)
+    assert road.sections(0) == [0, 1, 3, 4, 5, 6, 7] and road.roads() == [0] and not len(road.section(0, 2))
+    total = 0
+    for number in road.sections(0):
+        whole, found = store.section(0, number), road.section(0, number)
+        rows = np.flatnonzero(np.abs(whole["d"]) < to_units(3.0))
+        for name in SURVEY_POINT.names:
+            np.testing.assert_array_equal(found[name], whole[name][rows])
+        assert (found["half_width"] == 3000 + number).all() and (found["covered"] == rows % 2).all()
+        assert np.isnan(found["corrected"]).all() and (found["cluster"] == 0).all()
+        total += len(found)
+    assert road.count == total == len(road.window(0, 0.0, 40.0))
+
+
+def test_a_window_of_chosen_points_is_a_run_of_stations():
+    road = road_of(survey_store(0))
+    window = road.window(0, 3.3, 21.7)
+    assert window.s.min() >= 3.3 and window.s.max() < 21.7 and (np.diff(window.records["s"]) >= 0).all()
+
+
+def test_a_column_put_anew_leaves_the_other_columns_of_chosen_points_as_they_are():
+    road = road_of(survey_store(0))
+    bright = road.with_column("corrected")
+    for number in road.sections(0):
+        bright.put(0, number, road.section(0, number)["intensity"].astype(np.float32) / 2)
+    for number in road.sections(0):
+        found = bright.section(0, number)
+        np.testing.assert_array_equal(found["corrected"], found["intensity"] / 2)
+        np.testing.assert_array_equal(found["x"], road.section(0, number)["x"])
+
+
+def test_chosen_points_take_no_others_and_close_the_store_with_them():
+    store = survey_store(0)
+    road = road_of(store)
+    with pytest.raises(TypeError, match="points cannot be added"):
+        road.append(0, np.zeros(1, ROAD_POINT))
+    road.close()
+    assert road.sections(0) == store.sections(0) == []
