@@ -100,7 +100,7 @@ def _divide(curve, u, e, sigma, length):
     begin[-1] = len(u)
     best = np.full(count + 1, np.inf)
     best[0] = 0.0
-    came = [None] * (count + 1)
+    came_from, came_by = np.zeros((2, count + 1), int)
     price = PRICE * np.log(max(len(u), 2))
     for i in range(count):
         if not np.isfinite(best[i]):
@@ -109,23 +109,20 @@ def _divide(curve, u, e, sigma, length):
         t = u[window] - nodes[i]
         bend = 0.5 * curvature(nodes[i]) * t * t
         value = e[window] + shape(u[window]) - shape(nodes[i]) - heading(nodes[i]) * t
-        # less its own bend, which arc and clothoid can take up and a straight cannot, the
-        # shape stays small and sums keep their digits
-        values = {kind: value if ORDER[kind] < 2 else value - bend for kind in ORDER}
-        ends = [j for j in range(i + shortest, count + 1) if nodes[j] <= nodes[i] + LONGEST + 1e-9
-                and (j == count or count - j >= shortest)]
-        if not ends:
+        ends = np.arange(i + shortest, count + 1)
+        ends = ends[(nodes[ends] <= nodes[i] + LONGEST + 1e-9) & ((ends == count) | (count - ends >= shortest))]
+        if not len(ends):
             continue
-        cost = _costs(t, values, begin[ends] - begin[i], nodes[ends] - nodes[i], sigma)
-        for kind, costs in cost.items():
-            total = best[i] + costs + price * (ORDER[kind] + 2)
-            for j, value_j in zip(ends, total):
-                if value_j < best[j]:
-                    best[j], came[j] = value_j, (i, kind)
-    cuts, j = [], count
+        costs = _costs(t, value, bend, begin[ends] - begin[i], nodes[ends] - nodes[i], sigma)
+        for kind, (name, degree) in enumerate(ORDER.items()):
+            total = best[i] + costs[name] + price * (degree + 2)
+            better = total < best[ends]
+            best[ends[better]] = total[better]
+            came_from[ends[better]], came_by[ends[better]] = i, kind
+    cuts, j, names = [], count, list(ORDER)
     while j:
-        i, kind = came[j]
-        cuts.append((float(nodes[i]), float(nodes[j]), kind))
+        i = came_from[j]
+        cuts.append((float(nodes[i]), float(nodes[j]), names[came_by[j]]))
         j = i
     return cuts[::-1]
 
@@ -140,21 +137,27 @@ def _integrated(curve, u, nodes):
     return tuple((lambda v: lambda at: np.interp(at, fine, v))(v) for v in (k, turn, area))
 
 
-def _costs(t, values, counts, spans, sigma):
-    """Residual sums over sigma^2 of polynomials of degree 1 to 3 through the first `counts` points, per kind."""
-    powers = np.cumsum(np.vander(t, 7, increasing=True), axis=0)
+def _costs(t, value, bend, counts, spans, sigma):
+    """Residual sums over sigma^2 of polynomials of degree 1 to 3 through the first `counts` points, per kind.
+
+    Less the line's own bend, which arc and clothoid can take up and a straight cannot, the
+    shape stays small and sums keep their digits.
+    """
+    powers = np.vander(t, 7, increasing=True)
+    sums = np.cumsum(powers, axis=0)
     rows = np.maximum(counts - 1, 0)
     out = {}
-    for kind, degree in ORDER.items():
-        value = values[kind]
-        mixed = np.cumsum(np.vander(t, 4, increasing=True) * value[:, None], axis=0)
-        squares = np.cumsum(value**2)
-        grid = np.add.outer(np.arange(degree + 1), np.arange(degree + 1))
-        scale = spans[:, None] ** -np.arange(degree + 1.0)
-        normal = powers[rows][:, grid] * scale[:, :, None] * scale[:, None, :]
-        right = mixed[rows][:, :degree + 1] * scale
-        normal = normal + 1e-10 * np.eye(degree + 1) * np.maximum(counts, 1)[:, None, None]
-        found = np.linalg.solve(normal, right[:, :, None])[:, :, 0]
-        rest = np.maximum(squares[rows] - (found * right).sum(1), 0.0)
-        out[kind] = rest / sigma**2
+    for shape, kinds in ((value, ("line",)), (value - bend, ("circle", "clothoid"))):
+        most = max(ORDER[kind] for kind in kinds) + 1
+        mixed = np.cumsum(powers[:, :most] * shape[:, None], axis=0)[rows]
+        squares = np.cumsum(shape**2)[rows]
+        for kind in kinds:
+            size = ORDER[kind] + 1
+            grid = np.add.outer(np.arange(size), np.arange(size))
+            scale = spans[:, None] ** -np.arange(float(size))
+            normal = sums[rows][:, grid] * scale[:, :, None] * scale[:, None, :]
+            right = mixed[:, :size] * scale
+            normal = normal + 1e-10 * np.eye(size) * np.maximum(counts, 1)[:, None, None]
+            found = np.linalg.solve(normal, right[:, :, None])[:, :, 0]
+            out[kind] = np.maximum(squares - (found * right).sum(1), 0.0) / sigma**2
     return out

@@ -135,13 +135,15 @@ def _write_lane(lines, lane, track, way, elements, road_lines, z, frame, number)
             places = places[::-1]
         element = element_of(elements, start, end)
         curve = element.arc if element is not None else course.curve
+        if id(curve) not in functions:
+            functions[id(curve)] = _function(curve.moved(*origin[:2]))
         length = float(np.hypot(*np.diff(places[:, :2], axis=0).T).sum())
         lines.add(shapely.linestrings(places), road=number, lane=lane, kind="lane",
                   pattern=_patterns(track, rows, way, road_lines.patterns), direction=way,
                   source="offset" if track.offset[rows].mean() > 0.5 else "pair", status=STATUS[code], curve=curve.kind,
                   radius_m=float(curve.radius) if np.isfinite(curve.radius) else None, rmse_m=float(course.rmse),
                   station_m=start, end_m=end, offset_m=float(np.median(track.d[rows])), length_m=length,
-                  width_m=float(np.median(track.width[rows])), params=functions.get(id(curve)) or functions.setdefault(id(curve), _function(curve.moved(*origin[:2]))))
+                  width_m=float(np.median(track.width[rows])), params=functions[id(curve)])
 
 
 def _patterns(track, rows, way, patterns):
