@@ -31,6 +31,7 @@ TOUCHING_EDGE = 0.02  # m between a strip and the road's edge: paint keeps more
 LONGER = 2.0          # times as long as them is the line that says so
 DASH = (0.75, 1.5)    # m: dashes of cycle lanes and bus bays, told from signs and specks by the row they stand in
 DASH_ELONGATED = 3.0  # times as long as wide they are at least
+BENEATH, CAR = 0.8, 6.0  # share of a marking's points, m: what lies so far beneath something and is no longer is the foot of a parked car
 SPECK = 0.30          # m: what is not longer than this and has no companion is no marking
 SPECK_AREA = 0.03     # m2
 ROW = 2.0             # m: points in a row of this length are no speck, however few scan lines met it
@@ -56,13 +57,14 @@ class ClassSettings:
                 f"A marking line is {self.min_width} to {self.max_width} m wide; the first must be above 0 m and below the second.")
 
 
-def classify(shapes, half_widths, settings=ClassSettings()):
+def classify(shapes, half_widths, settings=ClassSettings(), covered=0.0):
     """Class of every cluster of one road.
 
     Parameters
     ----------
     shapes : list of Shape
     half_widths : (N,) m from the reference line to the road edge on each cluster's side
+    covered : (N,) share of each cluster's points that lie beneath or right beside something standing on the road
 
     Returns
     -------
@@ -80,8 +82,9 @@ def classify(shapes, half_widths, settings=ClassSettings()):
     scrap = _beyond_the_edge_line(column, line, room)
     found = []
     doubles = _has_partner(column, line)
+    foot = (np.broadcast_to(covered, len(shapes)) > BENEATH) & ~(line & (column["length"] > CAR))
     for k, shape in enumerate(shapes):
-        no_paint = _speck(shape) and not (line[k] and shape.length >= ROW) or scrap[k] or _curb(shape, room[k]) or _round_cover(shape)
+        no_paint = _speck(shape) and not (line[k] and shape.length >= ROW) or scrap[k] or foot[k] or _curb(shape, room[k]) or _round_cover(shape)
         if room[k] < -settings.margin or no_paint or _gutter(shape, room[k], line[k], zebra[k]):
             kind = NOT_PAINT
         elif zebra[k]:

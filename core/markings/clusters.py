@@ -84,7 +84,8 @@ def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress
         alone = _alone(pieces, joins)
         shapes = [alone.get(label) or measure(records["s"][a:b], records["d"][a:b]) for label, (a, b) in zip(labels.tolist(), rows)]
         half_widths = [float(np.median(records["half_width"][a:b])) * 1e-3 for a, b in rows]
-        kinds = classify(shapes, half_widths, settings.classes)
+        covered = [float(np.count_nonzero(records["covered"][a:b])) / (b - a) for a, b in rows]
+        kinds = classify(shapes, half_widths, settings.classes, covered)
         cluster = np.zeros(len(records), np.int32)
         for i in sorted(range(len(rows)), key=lambda i: (shapes[i].s0, shapes[i].d0, shapes[i].s1)):
             if kinds[i][0] == NOT_PAINT:
@@ -96,7 +97,7 @@ def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress
             _add(markings, records[a:b], shapes[i], kinds[i], number, road, frame)
             part.at(0.4 + 0.6 * number / max(len(rows), 1))
         _put(clustered.store, road, cluster, marking_points)
-    progress.say(f"Markings: {number} found; {refused} clusters were left out as gutters, covers or specks.")
+    progress.say(f"Markings: {number} found; {refused} clusters were left out as gutters, covers, specks or the feet of what stands on the road.")
     return markings, clustered
 
 

@@ -10,10 +10,10 @@ from .boundary_agreement import chosen_points, note_agreement
 from .curbs import CurbSettings, detect_curbs
 from .edges import EdgeSettings, fit_road_edges
 from .nearest_pass import name_passes
+from .profiles.crowds import Crowds
 from .scanlines.boundaries import ScanlineBoundarySettings, curbs_from_scanlines
 from .scanlines.section_planes import ScanlineSettings
 from .scanlines.source import SurveyScanlines
-from .profiles.crowds import Crowds
 from .turned.curbs import add_turned_curbs
 
 METHODS = ("profiles", "scanlines", "both")

@@ -13,7 +13,7 @@ from .driven_pass import MOST_TICKS, TICK
 from .kept_arrays import KeptArrays
 from .reference_line import NODE
 
-AT_ONCE = 50_000      # points worked at a time: fewer wait longer for Python's lock, more for memory
+AT_ONCE = 100_000     # points worked at a time: of fewer more time goes into waiting for Python's lock, of many more into waiting for memory
 MOST_STEPS = 3        # from node to node for the few points that one step from the vehicle's node leaves beside their own
 BESIDE = 1e-3         # of a node beyond its ends: the direction there is that of the next one to 1e-6
 CLOCK_SLACK = 1.0     # s that a cloud may begin before or end after the trajectory

@@ -10,6 +10,8 @@ doubt, and risen within the width of a blurred face, so that ramps and banks are
 taken for curbs.
 """
 
+from functools import partial
+
 import numpy as np
 
 from .corners import SIGMAS, STEEPEST_ROAD, Steps
@@ -29,6 +31,7 @@ LEAST_FILLED = 0.6   # share of the cells of a level that must hold ground
 ALONE = 0.12         # m across within which one step is reported
 ALL_SIGMAS, RING_SIGMAS = 2.0, 2.5  # times the spread of single heights that a step must rise: in all views, in one
 SAME = 0.25          # m across within which a step seen from one side only is the one already found
+FEW_ROWS = 9         # profiles that are put in order one against the other: of more numpy's own way is faster
 ROUGH = 0.008        # m, scatter of averaged heights about their level: verges and banks have more
 
 
@@ -73,15 +76,15 @@ def _beside(steps, others):
 
 def _steps_in(lines, least, highest):
     """Steps of averaged profiles; `least` is (P, 1)."""
-    best = None
+    best = {name: np.zeros(lines.shape) for name in ("height", "doubt", "scatter", "before", "behind", "shift", "bottom", "skew")}
+    best["rise"] = np.full(lines.shape, -np.inf)
+    sums = _Sums(lines.shape, lines.spacing)
     for skew in sorted(np.arange(-STEEPEST_SKEW, STEEPEST_SKEW + 1) * SKEW_STEP, key=abs):
-        seen = _rises(_averaged(lines, skew), lines.spacing, skew)
-        if best is None:
-            best = seen
-            continue
-        better = seen["rise"] > SURER * best["rise"]
+        sums.of(_averaged(lines, skew))
+        cells, seen = _rises(sums, SURER * best["rise"])
         for name, values in seen.items():
-            np.copyto(best[name], values, where=better)
+            best[name].flat[cells] = values
+        best["skew"].flat[cells] = skew
     good = ((best["height"] >= least) & (best["height"] <= highest) & (best["height"] >= SIGMAS * best["doubt"])
             & (best["rise"] >= STEEP_SHARE * best["height"]) & (best["scatter"] <= ROUGH)
             & (np.abs(best["before"]) <= STEEPEST_ROAD) & (np.abs(best["behind"]) <= STEEPEST_ROAD))
@@ -101,71 +104,120 @@ def _steps_in(lines, least, highest):
 def _averaged(lines, skew):
     """(P, C) median heights of AVERAGE metres of road about every profile, along one direction."""
     half = max(int(round(0.5 * AVERAGE / lines.width)), 1)
-    stack = np.full((2 * half + 1, *lines.shape), np.nan)
-    for k in range(-half, half + 1):
-        _shifted(lines.low, k, int(round(skew * k * lines.width / lines.spacing)), stack[k + half])
-    enough = np.isfinite(stack).sum(0) >= max(LEAST_ROWS * len(stack), 2)
-    return np.where(enough, _median_of_rows(stack), np.nan)
+    low = np.where(np.isnan(lines.low), np.inf, lines.low)
+    stack = [_shifted(low, k, int(round(skew * k * lines.width / lines.spacing))) for k in range(-half, half + 1)]
+    count = np.zeros(low.shape, np.int8)
+    for row in stack:
+        count += row < np.inf
+    return _median(stack, count, max(LEAST_ROWS * len(stack), 2))
 
 
-def _rises(value, spacing, skew):
-    """For a step at every cell: its height, what of it lies within the face, what remains in doubt; dict of (P, C)."""
+def _rises(sums, least):
+    """Where a step would rise more than `least`, (P, C): its height, what of it lies within the face, what remains in doubt.
+
+    Returns
+    -------
+    (M,) indices of cells, and a dict of (M,)
+    """
+    spacing = sums.spacing
     gap, fit, short = (int(round(v / spacing)) for v in (FACE, ROAD_FIT, BEHIND_FIT))
     near = int(round(STEEP_HALF / spacing))
-    sums = _Sums(value, spacing)
-    road, slope, rough, n = sums.line(-gap - fit, -gap)
-    top, climb, uneven, m = sums.line(gap, gap + short)
-    smooth, face = sums.mean(-1, 1), sums.mean(-gap, gap)
+    before, behind = sums.line(-gap - fit, -gap), sums.line(gap, gap + short)
+    smooth = sums.mean(-1, 1)
     with np.errstate(invalid="ignore", divide="ignore"):
-        height = top - road
-        rise = _moved(smooth, near) - _moved(smooth, -near) - near * spacing * (slope + climb)
-        doubt = 2.0 * np.sqrt(rough**2 / n + uneven**2 / m)
-        filled = (n >= LEAST_FILLED * (fit + 1)) & (m >= LEAST_FILLED * (short + 1)) & (sums.mean(gap, gap + fit) - road > 0.5 * height)
-        rise = np.where(filled & np.isfinite(rise), rise, -np.inf)
+        height = behind.level - before.level
+        rise = _moved(smooth, near) - _moved(smooth, -near) - near * spacing * (before.slope + behind.slope)
+        cells = np.flatnonzero((rise > least) & (before.n >= LEAST_FILLED * (fit + 1)) & (behind.n >= LEAST_FILLED * (short + 1))
+                               & (sums.mean(gap, gap + fit) - before.level > 0.5 * height) & np.isfinite(rise))
+        height = height.take(cells)
+        rough, uneven = before.scatter(cells), behind.scatter(cells)
+        doubt = 2.0 * np.sqrt(rough**2 / before.n.take(cells) + uneven**2 / behind.n.take(cells))
+        bottom = before.level.take(cells)
         # where the profile crosses half the height: mean height of the face tells how far from this cell
-        shift = np.clip((0.5 - (face - road) / height) * (2 * gap + 1) * spacing, -FACE, FACE)
-    return dict(rise=rise, height=height, doubt=doubt, scatter=np.maximum(rough, uneven), before=slope, behind=climb,
-                shift=np.nan_to_num(shift), bottom=road, skew=np.full(value.shape, skew))
+        shift = (0.5 - (sums.mean(-gap, gap).take(cells) - bottom) / height) * (2 * gap + 1) * spacing
+        shift = np.nan_to_num(np.clip(shift, -FACE, FACE))
+    return cells, dict(rise=rise.take(cells), height=height, doubt=doubt, scatter=np.maximum(rough, uneven), shift=shift, bottom=bottom,
+                       before=before.slope.take(cells), behind=behind.slope.take(cells))
 
 
 class _Sums:
     """Running sums over the cells of every profile, from which levels beside any cell follow at once."""
 
-    def __init__(self, value, spacing):
-        there = np.isfinite(value)
-        h, self.u = np.where(there, value, 0.0), np.arange(value.shape[1]) * spacing
-        u = np.where(there, self.u, 0.0)
-        self.totals = [np.concatenate([np.zeros((len(value), 1)), np.cumsum(v, axis=1)], axis=1)
-                       for v in (there.astype(float), h, h * h, u, u * u, u * h)]
+    def __init__(self, shape, spacing):
+        self.cells, self.spacing, self.u = shape[1], spacing, np.arange(shape[1]) * spacing
+        # a window may reach beyond the first and the last cell
+        self.pad = int(round((FACE + ROAD_FIT) / spacing)) + 2
+        self.totals = np.zeros((6, shape[0], self.cells + 2 * self.pad))
 
-    def _window(self, which, first, last):
-        cells = len(self.u)
-        c = np.arange(cells)
+    def of(self, value):
+        """Sum the heights of cells, (P, C), NaN where there is none."""
+        there = np.isfinite(value)
+        h, u = np.where(there, value, 0.0), there * self.u
+        own = slice(self.pad, self.pad + self.cells)
+        for total, v in zip(self.totals, (there * 1.0, h, h * h, u, u * u, u * h)):
+            np.cumsum(v, axis=1, out=total[:, own])
+            total[:, own.stop:] = total[:, own.stop - 1:own.stop]
+
+    def window(self, which, first, last):
+        """Sum of the cells from `first` to `last` beside every cell."""
+        total, start, end = self.totals[which], self.pad - 1 + first, self.pad + last
+        return total[:, end:end + self.cells] - total[:, start:start + self.cells]
+
+    def window_at(self, which, first, last, cells):
+        """The same at some cells."""
+        row, cell = np.divmod(cells, self.cells)
         total = self.totals[which]
-        return total[:, np.clip(c + last + 1, 0, cells)] - total[:, np.clip(c + first, 0, cells)]
+        return total[row, cell + self.pad + last] - total[row, cell + self.pad - 1 + first]
 
     def mean(self, first, last):
         """Mean of the occupied cells from `first` to `last` beside every cell."""
         with np.errstate(invalid="ignore", divide="ignore"):
-            return self._window(1, first, last) / self._window(0, first, last)
+            return self.window(1, first, last) / self.window(0, first, last)
 
     def line(self, first, last):
-        """Line through those cells: its height at the cell, slope, scatter, cells used."""
-        n, sz, szz, su, suu, suz = (self._window(k, first, last) for k in range(6))
+        """_Line through those cells."""
+        return _Line(self, first, last)
+
+
+class _Line:
+    """Lines through the cells beside every cell: height at the cell, slope, cells used; (P, C)."""
+
+    def __init__(self, sums, first, last):
+        self.n, sz, su, suu, suz = (sums.window(k, first, last) for k in (0, 1, 3, 4, 5))
         with np.errstate(invalid="ignore", divide="ignore"):
-            mu, mz = su / n, sz / n
-            vuu, vuz, vzz = suu / n - mu * mu, suz / n - mu * mz, szz / n - mz * mz
-            slope = np.where(vuu > 1e-4, vuz / vuu, 0.0)
-            scatter = np.sqrt(np.maximum(vzz - slope * vuz, 0.0) * n / np.maximum(n - 2, 1))
-            return mz + slope * (self.u - mu), slope, scatter, n
+            mu, self.mz = su / self.n, sz / self.n
+            vuu, self.vuz = suu / self.n - mu * mu, suz / self.n - mu * self.mz
+            self.slope = np.where(vuu > 1e-4, self.vuz / vuu, 0.0)
+            self.level = self.mz + self.slope * (sums.u - mu)
+        self._squares = partial(sums.window_at, 2, first, last)
+
+    def scatter(self, cells):
+        """(M,) scatter of heights about the line at some cells."""
+        n, mz = self.n.take(cells), self.mz.take(cells)
+        vzz = self._squares(cells) / n - mz * mz
+        return np.sqrt(np.maximum(vzz - self.slope.take(cells) * self.vuz.take(cells), 0.0) * n / np.maximum(n - 2, 1))
 
 
-def _median_of_rows(stack):
-    """Median over the first axis without NaN (NaN where there is nothing else)."""
-    count = np.isfinite(stack).sum(0)
-    stack.sort(axis=0)
-    low, high = np.maximum(count - 1, 0) // 2, np.minimum(count // 2, len(stack) - 1)
-    return 0.5 * (np.take_along_axis(stack, low[None], 0)[0] + np.take_along_axis(stack, high[None], 0)[0])
+def _median(rows, count, least):
+    """Median of heights at every cell, (P, C), where `least` or more of them are there; NaN elsewhere.
+
+    rows : list of (P, C), infinite where there is none; they are overwritten
+    count : (P, C) of those that are not
+    """
+    if len(rows) > FEW_ROWS:
+        rows = np.sort(rows, axis=0)
+    else:
+        # neighbours change places till all are in order
+        spare = np.empty_like(rows[0])
+        for turn in range(len(rows)):
+            for k in range(turn % 2, len(rows) - 1, 2):
+                np.minimum(rows[k], rows[k + 1], out=spare)
+                np.maximum(rows[k], rows[k + 1], out=rows[k + 1])
+                rows[k], spare = spare, rows[k]
+    middle = np.full(count.shape, np.nan)
+    for n in range(int(np.ceil(least)), len(rows) + 1):
+        np.copyto(middle, 0.5 * (rows[(n - 1) // 2] + rows[n // 2]), where=count == n)
+    return middle
 
 
 def _moved(values, k, empty=np.nan):
@@ -180,13 +232,18 @@ def _moved(values, k, empty=np.nan):
     return out
 
 
-def _shifted(values, rows, cells, out):
-    """values[p + rows, c + cells] into out, which holds NaN where there is none."""
-    moved = _moved(values, cells)
-    if rows >= 0:
-        out[:len(values) - rows] = moved[rows:]
-    else:
-        out[-rows:] = moved[:rows]
+def _shifted(values, rows, cells):
+    """values[p + rows, c + cells] at every profile and cell, infinite where there is none."""
+    out = np.full(values.shape, np.inf)
+    to, of = zip(*(_overlap(size, by) for size, by in zip(values.shape, (rows, cells))))
+    out[to] = values[of]
+    return out
+
+
+def _overlap(size, by):
+    """Slices of what is moved `by` places: where it comes to lie, and where it lay."""
+    by = max(-size, min(by, size))
+    return slice(max(-by, 0), size - max(by, 0)), slice(max(by, 0), size - max(-by, 0))
 
 
 def _largest_near(values, span):

@@ -86,11 +86,13 @@ def profiles_beside(crowds, road, section, tracks, settings, most=FEW):
 
 def _by_pass(numbers, chosen):
     """[(pass number, indices)] of the chosen points."""
-    if len(numbers) and numbers.min() == numbers.max():
-        own = np.flatnonzero(chosen)
-        return [(int(numbers[0]), own)] if len(own) else []
-    found = np.flatnonzero(np.bincount(numbers[chosen]))
-    return [(int(number), np.flatnonzero(chosen & (numbers == number))) for number in found]
+    own = np.flatnonzero(chosen)
+    if not len(own):
+        return []
+    numbers = numbers.take(own)
+    if numbers.min() == numbers.max():
+        return [(int(numbers[0]), own)]
+    return [(int(number), own[numbers == number]) for number in np.flatnonzero(np.bincount(numbers))]
 
 
 def expected_height(survey, road, s):
@@ -115,11 +117,13 @@ def ahead_of_vehicle(survey, points, s):
     What is seen from far behind or ahead lies at a flat angle and carries the drift
     of the positions since; a spinning scanner sees every place from both.
     """
-    along = np.zeros(len(points))
-    if survey.has_time:
-        for number, own in _by_pass(points.pass_number, np.ones(len(points), bool)):
-            driven = survey.frame.passes[number]
-            if len(own) == len(s):
-                return s - driven.station_at(points.time)
-            along[own] = s[own] - driven.station_at(points.time[own])
+    if not survey.has_time or not len(points):
+        return np.zeros(len(points))
+    numbers = points.pass_number
+    if numbers.min() == numbers.max():
+        return s - survey.frame.passes[int(numbers[0])].station_at(points.time)
+    along, time = np.empty(len(points)), points.time
+    for number in np.flatnonzero(np.bincount(numbers)):
+        own = np.flatnonzero(numbers == number)
+        along[own] = s[own] - survey.frame.passes[number].station_at(time.take(own))
     return along

@@ -16,6 +16,7 @@ LINE_WIDTH = 0.12    # m, scatter across it
 FACE_REACH = 0.10    # m that a step may lie from the place where it is looked for
 ACROSS = max(ROAD_SIDE + CLEARANCE, BEHIND) + FACE_REACH  # m either way across of the points that tell one step
 REACH = 2.0          # m from where steps are looked for within which they are measured, however they turn
+EDGE = 1e-3          # cells: rounding leaves no point out
 ROUNDS = 3           # measurements of a step, each turned by what the one before saw
 TURNED = 0.1         # m outward per m along beyond which it is measured again
 ASIDE = 0.04         # m from where it was looked for beyond which it is
@@ -132,11 +133,16 @@ def _points_about(raster, points, x, y, nx, ny, half):
     row = np.floor(y / CELL - np.rint(raster.y0 / CELL)).astype(np.int64)
     column = np.floor(x / CELL - np.rint(raster.x0 / CELL)).astype(np.int64)
     line = row[:, None] + np.arange(-reach, reach + 1)
-    first, last = np.clip(column - reach, 0, columns), np.clip(column + reach + 1, 0, columns)
+    # of every row of cells those between which the oblong about the place lies
+    low = raster.y0 + line * CELL - y[:, None]
+    left, right = _between(nx[:, None], ny[:, None], low, low + CELL, half)
+    first = np.clip(np.floor((x[:, None] + left - raster.x0) / CELL - EDGE), column[:, None] - reach, column[:, None] + reach + 1)
+    last = np.clip(np.floor((x[:, None] + right - raster.x0) / CELL + EDGE) + 1, column[:, None] - reach, column[:, None] + reach + 1)
+    first, last = np.clip(first, 0, columns).astype(np.int64), np.clip(last, 0, columns).astype(np.int64)
     on = (line >= 0) & (line < rows)
     line = np.clip(line, 0, rows - 1) * columns
-    start = starts[line + first[:, None]]
-    end = np.where(on, starts[line + np.maximum(first, last)[:, None]], start)
+    start = starts[line + first]
+    end = np.where(on, starts[line + np.maximum(first, last)], start)
     owner, index = expand(start.ravel(), end.ravel())
     owner //= 2 * reach + 1
     dx, dy = px.take(index) - x.take(owner), py.take(index) - y.take(owner)
@@ -144,3 +150,13 @@ def _points_about(raster, points, x, y, nx, ny, half):
     u, v = ex * dx + ey * dy, ex * dy - ey * dx
     near = np.flatnonzero((np.abs(v) <= half) & (np.abs(u) <= ACROSS))
     return owner.take(near), u.take(near), v.take(near), ph.take(index.take(near))
+
+
+def _between(nx, ny, low, high, half):
+    """Metres along x between which |u| <= ACROSS and |v| <= half somewhere between `low` and `high` along y."""
+    left, right = -np.inf, np.inf
+    for along_x, along_y, most in ((nx, ny, ACROSS), (-ny, nx, half)):
+        along_x = np.where(np.abs(along_x) < 1e-9, 1e-9, along_x)
+        middles, width = (-along_y * low / along_x, -along_y * high / along_x), most / np.abs(along_x)
+        left, right = np.maximum(left, np.minimum(*middles) - width), np.minimum(right, np.maximum(*middles) + width)
+    return left, right

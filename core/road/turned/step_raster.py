@@ -147,9 +147,11 @@ def averaged(raster, layer_jump):
     if raster is None:
         return None
     column, row = np.floor(raster.x / FINE_CELL).astype(np.int64), np.floor(raster.y / FINE_CELL).astype(np.int64)
-    _, member = np.unique((row - row.min()) * (column.max() - column.min() + 1) + column - column.min(), return_inverse=True)
-    count = np.bincount(member)
-    mean = ground_raster(*(np.bincount(member, v) / count for v in (raster.x, raster.y, raster.h)), layer_jump)
+    cell = (row - row.min()) * (column.max() - column.min() + 1) + column - column.min()
+    count = np.bincount(cell)
+    held = np.flatnonzero(count)
+    count = count[held]
+    mean = ground_raster(*(np.bincount(cell, v)[held] / count for v in (raster.x, raster.y, raster.h)), layer_jump)
     mean.noise = max(raster.noise / np.sqrt(np.median(count)), LEAST_NOISE)
     return mean
 
@@ -280,7 +282,7 @@ def _rises_at(raster, ground, slopes, row, column, least, highest):
     before, after, at = (_mean(around, strip & m) for m in ((u < -OUTER), (u > OUTER), (np.abs(u) < OUTER)))
     rise = after - before
     rough = np.sqrt(_mean((around - before[:, None]) ** 2, strip & (u < -OUTER)))
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore", divide="ignore"):
         part = (at - before) / rise
         good = (part > 0.15) & (part < 0.85) & (rise >= FAINTEST * least) & (rise <= highest + 0.05) & (rough <= ROUGH * rise)
     # the middle of the step, not of the cell

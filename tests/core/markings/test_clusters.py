@@ -77,6 +77,14 @@ def test_the_stones_of_a_curb_in_a_row_are_no_line():
     assert "keep" not in markings_of([strip(s, s + 0.95, 5.7, 5.82) for s in np.arange(10, 30, 1.95)]).column("use")
 
 
+def test_what_shines_at_the_foot_of_a_parked_car_is_no_marking_and_a_long_line_beside_a_wall_is_one():
+    sides = [strip(20, 24.4, 2.0, 2.1), strip(20, 20.1, 2.0, 3.8), strip(24.3, 24.4, 2.0, 3.8)]
+    records = paint(FRAME, [*sides, strip(10, 50, -3.0, -2.85), strip(20, 24.4, 0.0, 0.15)], density=4000)
+    records["covered"] = (records["d"] > 15000) | (records["d"] < -20000)
+    markings, _ = cluster_markings(road_points(records, FRAME), FRAME)
+    assert sorted(markings.column("offset_m")) == pytest.approx([-2.92, 0.07], abs=0.03)
+
+
 def test_a_zebra_crossing_keeps_its_stripes():
     stripes = [strip(20, 24, d, d + 0.45) for d in np.arange(-4.0, 4.0, 1.0)]
     markings = markings_of(stripes)
