@@ -9,7 +9,6 @@ the brighter of the two.
 
 import cv2
 import numpy as np
-from scipy import ndimage
 
 from .shapes import fill_gaps
 
@@ -79,7 +78,7 @@ def gutter_cells(z, distance):
     band = np.minimum(((distance[row, column] / np.float32(CELL) - np.float32(0.5)) / np.float32(BAND)).astype(np.int32), BANDS - 1)
     coarse = tuple(-(-n // COARSE) for n in z.shape)
     coarse_row, coarse_column = row.astype(np.int32) // np.int32(COARSE), column.astype(np.int32) // np.int32(COARSE)
-    place = (band * np.int32(coarse[0]) + coarse_row) * np.int32(coarse[1]) + coarse_column
+    place = (coarse_row * np.int32(coarse[1]) + coarse_column) * np.int32(BANDS) + band
     size = BANDS * coarse[0] * coarse[1]
     bright = value > BRIGHT
     # in whole 64ths, which sum exactly in any order
@@ -87,7 +86,8 @@ def gutter_cells(z, distance):
     box = 2 * int(round(REACH / CELL / COARSE)) + 1
 
     def around(counts):
-        return ndimage.uniform_filter(counts.reshape(BANDS, *coarse), (0, box, box), mode="constant") * box * box
+        sums = cv2.boxFilter(counts.reshape(*coarse, BANDS), -1, (box, box), normalize=False, borderType=cv2.BORDER_CONSTANT)
+        return np.ascontiguousarray(np.moveaxis(sums, 2, 0))
 
     seen = around(np.bincount(place, minlength=size).astype(float))
     share = around(np.bincount(place, bright, size)) / np.maximum(seen, 1e-9)

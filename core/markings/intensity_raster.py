@@ -13,6 +13,7 @@ from ..progress import Progress
 TILE = 512          # px, side of a tile of the file and of the work
 NODATA = -9999.0
 AT_ONCE = 4 * TILE**2   # px that are read in one piece to be sampled
+KEPT = 32 * TILE**2     # px that GDAL may keep of what a thread has read
 COMPRESSING = 2     # threads
 DISPLAY_LONGEST = 2000  # px of the reduced image from which the stretch is taken
 
@@ -72,7 +73,7 @@ class IntensityImage:
         r0, r1 = max(row, 0), min(row + height, self.height)
         if c0 >= c1 or r0 >= r1:
             return values
-        band = self._dataset().GetRasterBand(1)
+        band = self._dataset((c1 - c0) * (r1 - r0)).GetRasterBand(1)
         data = np.frombuffer(band.ReadRaster(c0, r0, c1 - c0, r1 - r0, buf_type=_float32()), np.float32).reshape(r1 - r0, c1 - c0)
         nodata = band.GetNoDataValue()
         known = np.isfinite(data) if nodata is None else np.isfinite(data) & (data != np.float32(nodata))
@@ -153,9 +154,12 @@ class IntensityImage:
                 values[rows] = pixels[r, c]
         return values
 
-    def _dataset(self):
-        if not hasattr(self._own, "dataset"):
-            self._own.dataset = _open_raster(self.path)
+    def _dataset(self, pixels):
+        """This thread's dataset, of which so many pixels are to be read; opened anew now and then, as GDAL keeps what was read."""
+        self._own.read = getattr(self._own, "read", 0) + pixels
+        if self._own.read > KEPT or not hasattr(self._own, "dataset"):
+            self._own.dataset = None  # or the old one's tiles would still be there while the new one is opened
+            self._own.dataset, self._own.read = _open_raster(self.path), pixels
         return self._own.dataset
 
 

@@ -1,5 +1,6 @@
 """Inverse distance sums on the map's lattice of cells: every point weighs on all cells within its reach."""
 
+import threading
 from dataclasses import dataclass
 
 import cv2
@@ -12,6 +13,9 @@ from ..survey.sorting import order_by
 NEAREST = 1e-3      # m added to a distance, so that a point on a cell's centre has a finite weight
 AT_ONCE = 1 << 19   # distances worked at a time: what fits the processor's cache
 ROUNDING = 2e-6     # of the weight at the radius: a point right on it counts, whatever rounding makes of it
+
+
+_own = threading.local()   # what a thread keeps
 
 
 @dataclass
@@ -76,7 +80,7 @@ def interpolation_sums(points, weigh, origin, settings):
     left, top = left - reach, top + reach
     width, height = right + reach + 1 - left, top - (bottom - reach) + 1
     sums = np.zeros(width * height, np.complex64)   # weights and weighted values, which go the same ways
-    kernel = _Kernel(settings)
+    kernel = _kernel(settings)
     for first in range(0, len(x), kernel.at_once):
         run = slice(first, first + kernel.at_once)
         (column, east), (row, north) = _in_cell(x[run], origin[0], cell), _in_cell(y[run], origin[1], cell)
@@ -88,7 +92,7 @@ def interpolation_sums(points, weigh, origin, settings):
         runs = sparse.csr_matrix((weight, np.arange(len(number), dtype=np.int32), np.append(starts, len(number)).astype(np.int32)),
                                  shape=(len(starts), len(number)))
         shares = kernel.shares(east.take(order), north.take(order))
-        added = np.empty((len(starts), len(kernel.offsets)), np.complex64)
+        added = kernel.added[:len(starts)]
         added.real = runs @ shares
         runs.data = weight * value
         added.imag = runs @ shares
@@ -109,11 +113,19 @@ def _in_cell(units, origin, cell_size):
     return cell, place.astype(np.float32)
 
 
+def _kernel(settings):
+    """The thread's own _Kernel."""
+    if getattr(_own, "settings", None) != settings:
+        _own.settings, _own.kernel = settings, _Kernel(settings)
+    return _own.kernel
+
+
 class _Kernel:
     """What points weigh on the cells about their own.
 
     offsets : (K) (right, up) of the cells that a point may reach
     at_once : points that are worked at a time
+    added : (at_once, K) complex64, room for what they add, used again and again: memory is dear when it is new
     """
 
     def __init__(self, settings):
@@ -122,16 +134,18 @@ class _Kernel:
         self.offsets = [(right, up) for up in range(-reach, reach + 1) for right in range(-reach, reach + 1)
                         if np.hypot(max(abs(right) - 0.5, 0), max(abs(up) - 0.5, 0)) < radius]
         self.at_once = max(AT_ONCE // len(self.offsets), 1)
+        self.added = np.empty((self.at_once, len(self.offsets)), np.complex64)
+        self._own, self._found = np.empty((self.at_once, 4), np.float32), np.empty((self.at_once, len(self.offsets)), np.float32)
         right, up = np.array(self.offsets, np.float32).T
         # squared distances as a product: (e - r)^2 + (n - u)^2 = (e^2 + n^2) 1 - 2 e r - 2 n u + 1 (r^2 + u^2)
         self._squares = np.stack([np.ones_like(right), -2 * right, -2 * up, right**2 + up**2])
 
     def shares(self, east, north):
-        """(N, K) float32: weights of points on cells by distance alone, from the points' places in their own cells."""
-        own = np.empty((len(east), 4), np.float32)
+        """(N, K) float32, till it is called again: weights of points on cells by distance alone, from the points' places in their own cells."""
+        own = self._own[:len(east)]
         own[:, 0] = east * east + north * north
         own[:, 1], own[:, 2], own[:, 3] = east, north, 1.0
-        found = cv2.gemm(own, self._squares, 1.0, None, 0.0)
+        found = cv2.gemm(own, self._squares, 1.0, None, 0.0, self._found[:len(east)])
         cv2.sqrt(found, found)
         found *= np.float32(self.settings.cell_size)
         found += np.float32(NEAREST)

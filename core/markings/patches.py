@@ -5,6 +5,7 @@ a metre of every place. Where a whole square metre is brighter than the road abo
 it, that is what the road is made of there, and paint on it is brighter still.
 """
 
+import cv2
 import numpy as np
 from scipy import ndimage
 
@@ -34,12 +35,13 @@ def patch_level(z, bright):
         above = z > bright
     if np.count_nonzero(above) < SQUARE**2 // 2:
         return level
-    share, known = (ndimage.uniform_filter(a.astype(np.float32), ABOUT, mode="constant") for a in (above, seen))
-    filled = (share > 0.5 * known) & (known > 0.1)
-    core = ndimage.minimum_filter(filled, SQUARE, mode="constant")
+    share, known = (cv2.boxFilter(a.astype(np.float32), -1, (ABOUT, ABOUT), normalize=False, borderType=cv2.BORDER_CONSTANT)
+                    for a in (above, seen))
+    filled = (share > 0.5 * known) & (known > 0.1 * ABOUT**2)
+    core = _morphed(cv2.erode, filled, SQUARE)
     if not core.any():
         return level
-    whole = ndimage.maximum_filter(core, SQUARE + 2 * RAGGED, mode="constant") & (filled | above)
+    whole = _morphed(cv2.dilate, core, SQUARE + 2 * RAGGED) & (filled | above)
     labels, count = ndimage.label(whole)
     for number, box in enumerate(ndimage.find_objects(labels), start=1):
         piece = labels[box] == number
@@ -48,3 +50,9 @@ def patch_level(z, bright):
             median, spread = asphalt(values)
             level[box][piece] = median + TAIL * max(spread - 1.0, 0.0)
     return level
+
+
+def _morphed(operation, mask, side):
+    """A mask worn off or grown by squares; off beyond its rim."""
+    square = np.ones((side, side), np.uint8)
+    return operation(mask.astype(np.uint8), square, borderType=cv2.BORDER_CONSTANT, borderValue=0).astype(bool)

@@ -8,11 +8,11 @@ spread below the median, which paint can never inflate.
 
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
-from scipy import ndimage
 
 from ..survey.points import UNIT
-from ..survey.sorting import ascending, order_by, quantiles, quantiles_in_order
+from ..survey.sorting import ascending, order_by, quantile_in_order, quantiles
 
 NARROWEST, WIDEST = 0.75, 3.0  # m, limits of the bin width
 FEWEST = 500          # cells of a bin, below which it joins its neighbour
@@ -98,7 +98,7 @@ def asphalt(values):
     values = ascending(values)
     count = len(values)
     for _ in range(4):
-        low, median = quantiles_in_order(values[:count], [LOWER, 0.5]).tolist()
+        low, median = quantile_in_order(values, count, LOWER), quantile_in_order(values, count, 0.5)
         spread = max(median - low, 1e-6 * max(abs(median), 1.0))
         kept = int(np.searchsorted(values, median + 3.0 * spread, side="right"))
         if kept == count:
@@ -240,7 +240,7 @@ def background(z, counted):
     (rows, columns) float32; 0 where hardly any asphalt is about
     """
     count, total = (_coarse_sums(a) for a in (counted, np.where(counted, z, 0.0)))
-    count, total = (ndimage.uniform_filter(a, AROUND, mode="constant") for a in (count, total))
+    count, total = (cv2.boxFilter(a, -1, (AROUND, AROUND), borderType=cv2.BORDER_CONSTANT) for a in (count, total))
     level = np.where(count > 0.1 * COARSE**2, total / np.maximum(count, 1e-9), 0.0).astype(np.float32)
     return np.repeat(np.repeat(level, COARSE, axis=0), COARSE, axis=1)[:z.shape[0], :z.shape[1]]
 

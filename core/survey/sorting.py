@@ -84,9 +84,13 @@ def quantiles(values, shares):
     return _between(shares, len(values), lambda ranks: ranked(values, ranks))
 
 
-def quantiles_in_order(values, shares):
-    """The same of values that are sorted."""
-    return _between(shares, len(values), values.take)
+def quantile_in_order(values, count, share):
+    """The same of the first `count` of values that are sorted, for one share: a float."""
+    place = share * (count - 1)
+    k = int(place)
+    a, b = float(values[k]), float(values[min(k + 1, count - 1)])
+    share = place - k
+    return a + (b - a) * share if share < 0.5 else b - (b - a) * (1.0 - share)
 
 
 def _between(shares, count, at_ranks):
