@@ -178,7 +178,7 @@ def told(read, path, promised, first):
         if isinstance(problem, NOT_THE_FILE):
             raise
         raise RoadExtractionError(
-            f"{path} is damaged: its header promises {promised} points, {first} could be read ({problem}). "
+            f"{path} is damaged: its header promises {promised} points, and from number {first + 1} on they cannot be read ({problem}). "
             "Copy or export the file again.") from problem
 
 
