@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from ..curves.fit import median
 from .centre_lines import SAME_OFFSET, lone_centre, one_centre, outer_lines_alone
 from .classes import LANE
 from .linking import TWIN
@@ -121,7 +122,7 @@ def _painted_beside(k, lines, level):
 
 def _level(line, drift):
     s, d, *_ = line.places()
-    return float(np.median(d - drift.at(s)))
+    return median(d - drift.at(s))
 
 
 def _beats(parts):
@@ -157,7 +158,7 @@ def _beside(lines, drift):
             _, a, b = np.intersect1d(tracks[k][0], tracks[j][0], assume_unique=True, return_indices=True)
             if len(a) < 3:
                 continue
-            away = float(np.median(np.abs(tracks[k][1][a] - tracks[j][1][b])))
+            away = median(np.abs(tracks[k][1][a] - tracks[j][1][b]))
             share = len(a) / len(tracks[k][0])
             if away <= TWIN[1] and share > SHARED:
                 if lines[k].painted < SLIVER * lines[j].painted and lines[k].painted < LONGEST_DASH:
@@ -180,7 +181,7 @@ def _beyond_the_edge(lines, level):
     for k, line in enumerate(lines):
         for j in bounds:
             # the vehicle drove between the edge lines
-            farther = np.sign(np.median(lines[j].places()[1])) * (level[k] - level[j])
+            farther = np.sign(median(lines[j].places()[1])) * (level[k] - level[j])
             shared = min(lines[j].last, line.last) - max(lines[j].first, line.first)
             least = SLIVER * lines[j].painted if farther < LANE else 0.0
             if j != k and farther > TWIN[0] and shared > 0.5 * (line.last - line.first) and line.painted < max(least, LONG):
@@ -230,7 +231,7 @@ def _extended(drawn, parts, lone, painted, crossed, neighbours, line):
     """
     drawn = list(drawn)
     before, after = lone or parts[0].rhythm, lone or parts[-1].rhythm
-    d = float(np.median(line.places()[1]))
+    d = median(line.places()[1])
     beside = crossed[(crossed[:, 2] <= d + 0.5) & (crossed[:, 3] >= d - 0.5)]
     if before:
         limit = line.first - before.gap

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..curves.choice import fit_curve
-from ..curves.fit import Fit
+from ..curves.fit import Fit, median
 from ..curves.spline import fit_spline, smooth_profile
 from ..errors import RoadExtractionError
 
@@ -102,15 +102,15 @@ def _guides(s, level, drift, span):
     for a, b in gaps:
         at = np.linspace(a, b, int(np.ceil((b - a) / GUIDE)) + 1)[1:-1]
         start, stop = np.searchsorted(s, a, "right"), np.searchsorted(s, b)
-        before = np.median(level[np.searchsorted(s, a - LEVEL):start])
-        after = np.median(level[stop:np.searchsorted(s, b + LEVEL, "right")])
+        before = median(level[np.searchsorted(s, a - LEVEL):start])
+        after = median(level[stop:np.searchsorted(s, b + LEVEL, "right")])
         stations.append(at)
         offsets.append(np.interp(at, [a, b], [before, after]) + drift.at(at))
     for tip, end in ((s[0], span[0]), (s[-1], span[1])):
         if abs(end - tip) > GUIDE / 4:
             at = np.linspace(tip, end, int(np.ceil(abs(end - tip) / GUIDE)) + 1)[1:]
             stations.append(at)
-            offsets.append(np.median(level[np.abs(s - tip) <= LEVEL]) + drift.at(at))
+            offsets.append(median(level[np.abs(s - tip) <= LEVEL]) + drift.at(at))
     if not stations:
         return np.empty(0), np.empty(0)
     return np.concatenate(stations), np.concatenate(offsets)

@@ -11,6 +11,8 @@ from functools import cached_property
 
 import numpy as np
 
+from ..curves.fit import median
+
 BIN = 0.5            # m, nodes of the drift
 MEMORY = 5.0         # m that slopes are averaged over
 END = 6.0            # m of a strand's end that say where it goes
@@ -211,7 +213,7 @@ def twins(lines, drift, at_start):
             s, d, *_ = lines[j].places()
             near = np.abs(s - inner) <= 2.0
             if near.any():
-                away = float(np.median(d[near] - drift.at(s[near]))) - tip.d
+                away = median(d[near] - drift.at(s[near])) - tip.d
                 if TWIN[0] <= abs(away) <= TWIN[1]:
                     result[k] = away
     return result
@@ -295,7 +297,7 @@ def without_strays(line, drift):
             kept.append(strand)
             continue
         expected = _robust_level(s[others] - middle, level[others], np.minimum(weight[others], 10.0))
-        if abs(np.median(level[own]) - expected) <= STRAY:
+        if abs(median(level[own]) - expected) <= STRAY:
             kept.append(strand)
     return Line(kept)
 
@@ -318,7 +320,7 @@ def _runs_beside(lines, pair, before, after, drift):
             continue
         s, d, *_ = other.places()
         there = (s > before.s - 5) & (s < after.s + 5)
-        if not there.any() or np.abs(np.median(d[there]) - drift.at(before.s) - before.d) > 8.0:
+        if not there.any() or np.abs(median(d[there]) - drift.at(before.s) - before.d) > 8.0:
             continue
         covered = np.r_[before.s, np.sort(s[(s > before.s) & (s < after.s)]), after.s]
         if np.diff(covered).max() <= 5.0:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from ..curves.fit import median
 from ..survey.points import UNIT
 from ..survey.sorting import order_by
 from .cells import occupied
@@ -85,10 +86,10 @@ def measure(s, d):
         along = s * c + d * n
         length = np.ptp(along) * UNIT
         across = d * c - s * n
-        begin = finish = float(np.median(d)) * UNIT
+        begin = finish = median(d) * UNIT
     closed = _closed(cells) if abs(direction) > ACROSS else len(cells)
     area, closed_area = (count * (CELL * UNIT) ** 2 for count in (len(cells), closed))
-    return Shape(s0 * UNIT, s1 * UNIT, d0 * UNIT, d1 * UNIT, float(np.median(d)) * UNIT, float(length),
+    return Shape(s0 * UNIT, s1 * UNIT, d0 * UNIT, d1 * UNIT, median(d) * UNIT, float(length),
                  spread(across) * UNIT, direction, area, len(s), float(begin), float(finish), closed_area)
 
 

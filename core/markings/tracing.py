@@ -6,6 +6,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from ..curves.fit import median
 from ..survey.points import UNIT
 from ..survey.sorting import order_by
 from .classes import LINES
@@ -259,7 +260,7 @@ def _strand(part, rank, place, first, last):
     count = np.diff(np.r_[starts, len(place)])
     middle, outer = _middle_and_width(part["d"], starts)
     # where a line runs into other paint it is wider than itself, and its middle is not its own
-    own = outer <= 1.5 * np.median(outer) + 400
+    own = outer <= 1.5 * median(outer) + 400
     if not own.all():
         inside = np.repeat(own, count)
         return _strand(part[inside], rank[inside], place[inside], *_ends(part[inside]))
@@ -268,7 +269,7 @@ def _strand(part, rank, place, first, last):
     d = middle * UNIT
     across = part["d"] * UNIT - np.repeat(d, count)
     low, high = np.percentile(across, [2.5, 97.5])
-    room = float(np.median(part["half_width"] * 1e-3 - np.abs(part["d"] * UNIT)))
+    room = median(part["half_width"] * 1e-3 - np.abs(part["d"] * UNIT))
     share = np.bincount(rank, minlength=len(LINES) + 1) / len(rank) * (last - first)
     classes = {name: float(share[k]) for k, name in enumerate(LINES + ("mixed",)) if share[k] > 0}
     return Strand(first, last, s, d, z, count.astype(float), float(high - low) / 0.95, room, classes)
