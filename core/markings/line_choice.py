@@ -12,6 +12,7 @@ from .linking import TWIN
 from .patterns import LONGEST_DASH, Piece, merged, pieces, stretches
 
 SHARED = 0.6         # of a line's paint that must have its twin beside it in a double line
+TWIN_PAINT = 6.0     # m of paint: a shorter line beside another is its frayed edge, however short the other is there
 SLIVER = 0.35        # of a line's length: less paint beside a line than this is no second line but its frayed edge
 LONE_DASH = 1.5      # m
 LONG = 15.0          # m of paint: enough to bound a road by
@@ -161,12 +162,19 @@ def _beside(lines, drift):
             away = median(np.abs(tracks[k][1][a] - tracks[j][1][b]))
             share = len(a) / len(tracks[k][0])
             if away <= TWIN[1] and share > SHARED:
-                if lines[k].painted < SLIVER * lines[j].painted and lines[k].painted < LONGEST_DASH:
+                # between two junctions both lines of a double are short, and one of them may go on farther beyond
+                twin = away >= TWIN[0] and lines[k].painted >= max(TWIN_PAINT, SHARED * _painted_there(lines[j], lines[k]))
+                if not twin and lines[k].painted < SLIVER * lines[j].painted and lines[k].painted < LONGEST_DASH:
                     frayed[k] = True
                 elif away >= TWIN[0]:
                     double[k] = True
                     double[j] |= len(a) / len(tracks[j][0]) > SLIVER
     return frayed, double
+
+
+def _painted_there(line, other):
+    """Metres of paint of those strands of a line that run beside another."""
+    return sum(strand.length for strand in line.strands if strand.last > other.first and strand.first < other.last)
 
 
 def _beyond_the_edge(lines, level):
