@@ -3,6 +3,7 @@
 import os
 import tempfile
 import threading
+import weakref
 from bisect import insort
 from typing import NamedTuple
 
@@ -28,6 +29,8 @@ class SpillFile:
 
     def __init__(self):
         self._file = tempfile.TemporaryFile(prefix="lanewright-", buffering=0)
+        # it goes with the survey that it was made for; left to Python, the log would be warned of an unclosed file
+        weakref.finalize(self, self._file.close)
         self._lock = threading.Lock()
         self._gaps = []       # (place, bytes) given back, by place
         self.end = 0

@@ -1,6 +1,8 @@
 """Points kept by section of road, in memory or beyond it."""
 
+import gc
 import threading
+import warnings
 
 import numpy as np
 import pytest
@@ -163,3 +165,14 @@ def test_the_first_unit_of_a_section_is_the_least_that_lies_in_it(length):
     for number in (-4, 0, 1, 3, 1000):
         unit = SectionStore(SURVEY_POINT, section_length=length).first_unit(number)
         assert [int(np.floor(u * 1e-4 / length)) for u in (unit - 1, unit)] == [number - 1, number]
+
+
+def test_the_temporary_file_goes_with_the_store_and_nobody_is_warned():
+    """Python would write of an unclosed file into the log that the user reads."""
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        store = filled([records()], memory_limit=0)
+        store.section(0, 3)
+        del store
+        gc.collect()
+    assert not [one for one in said if issubclass(one.category, ResourceWarning)]
