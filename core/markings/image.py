@@ -86,7 +86,8 @@ def write_intensity_image(road_points, path, settings=ImageSettings(), progress=
     # The grid is fixed in the map: pixel column = column of the map's lattice minus the first one
     windows = [(road, k) for road in road_points.roads() for k in _window_numbers(road_points, road)]
     found = list(in_order(lambda window: _survey_window(road_points, window, settings), windows, progress.part(0.0, 0.3)))
-    pieces = {piece: extent for _, extents in found for piece, extent in extents.items()}
+    pieces = {piece: extent for _, extents, _ in found for piece, extent in extents.items()}
+    steps = {piece: step for *_, steps in found for piece, step in steps.items()}
     c0, c1 = min(e[0] for e in pieces.values()), max(e[1] for e in pieces.values()) + 1
     r0, r1 = min(e[2] for e in pieces.values()), max(e[3] for e in pieces.values()) + 1
     if max(c1 - c0, r1 - r0) > LARGEST:
@@ -94,7 +95,7 @@ def write_intensity_image(road_points, path, settings=ImageSettings(), progress=
             f"The road points span {(c1 - c0) * settings.cell_size / 1000:.1f} by {(r1 - r0) * settings.cell_size / 1000:.1f} km, "
             f"too far for an image with {settings.cell_size} m cells. Use a larger cell size, or split the survey.")
     grid = _Grid(settings, c0, r1 - 1, c1 - c0, r1 - r0)
-    limits = {window: limits for window, (limits, _) in zip(windows, found)}
+    limits = {window: limits for window, (limits, *_) in zip(windows, found)}
     tiles = {}
     for piece, extent in sorted(pieces.items()):
         for tile in grid.tiles_of(extent):
@@ -103,7 +104,7 @@ def write_intensity_image(road_points, path, settings=ImageSettings(), progress=
     work = sorted(tiles.items(), key=lambda item: (item[1][0], item[0]))
 
     def sums(piece):
-        return _piece_sums(road_points, piece, limits[piece[0], piece[1] // PIECES], settings)
+        return _piece_sums(road_points, piece, steps[piece], limits[piece[0], piece[1] // PIECES], settings)
 
     with new_geotiff(path, grid.width, grid.height, grid.transform, road_points.crs) as dataset:
         band = dataset.GetRasterBand(1)
@@ -122,39 +123,42 @@ def _window_numbers(road_points, road):
 
 
 def _survey_window(road_points, window, settings):
-    """(P1, P99) of a window's points, and the extent (first and last column, first and last row) of each of its pieces."""
+    """(P1, P99) of a window's points; of each of its pieces the extent (first and last column, first and last row), and `_step`."""
     road, number = window
-    reach, extents, values = reach_of(settings), {}, []
+    reach, extents, steps, values = reach_of(settings), {}, {}, []
     for piece in range(number * PIECES, (number + 1) * PIECES):
-        points, _ = _points_of(road_points, (road, piece), settings)
+        points = _points_of(road_points, (road, piece))
         if len(points):
+            steps[road, piece] = _step(points, settings)
+            points = points[::steps[road, piece]]
             (c0, c1), (r0, r1) = ([int(lattice_cell(int(end), o, settings.cell_size)) for end in (c.min(), c.max())]
                                   for c, o in ((points.records[name], o) for name, o in zip("xy", road_points.origin)))
             extents[road, piece] = c0 - reach, c1 + reach, r0 - reach, r1 + reach
             values.append(points.value)
-    return tuple(quantiles(np.concatenate(values), [0.01, 0.99])) if values else (0.0, 1.0), extents
+    return tuple(quantiles(np.concatenate(values), [0.01, 0.99])) if values else (0.0, 1.0), extents, steps
 
 
-def _points_of(road_points, piece, settings):
-    """The points of one piece, 5 m of road, that make the image, and how many each stands for.
+def _points_of(road_points, piece):
+    """The points of one piece, 5 m of road."""
+    road, number = piece
+    length = WINDOW / PIECES
+    return road_points.window(road, number * length, (number + 1) * length)
+
+
+def _step(points, settings):
+    """Of how many points of a piece one makes the image, and stands for the others.
 
     Where they crowd these are evenly strewn: one of so many in the order of station and offset that a cell has MOST of them.
     """
-    road, number = piece
-    length = WINDOW / PIECES
-    points = road_points.window(road, number * length, (number + 1) * length)
-    if not len(points):
-        return points, 1
     d = points.records["d"]
     width = max((int(d.max()) - int(d.min())) * UNIT, settings.cell_size)
-    step = max(int(len(points) * settings.cell_size**2 / (length * width) / MOST), 1)
-    return points[::step] if step > 1 else points, step
+    return max(int(len(points) * settings.cell_size**2 / (WINDOW / PIECES * width) / MOST), 1)
 
 
-def _piece_sums(road_points, piece, limits, settings):
-    """Sums of one piece, 5 m of road."""
+def _piece_sums(road_points, piece, step, limits, settings):
+    """Sums of one piece, of which one point in `step` is taken."""
     low, high = limits
-    points, step = _points_of(road_points, piece, settings)
+    points = _points_of(road_points, piece)[::step]
 
     def weigh(points):
         value = points.value

@@ -59,7 +59,12 @@ class ChosenPoints(SectionStore):
                 return np.broadcast_to(self._alike[name], len(rows))
             return own[name] if name in self._own.dtype.names else self._points.column(road, section, name, rows)
 
-        return Columns({}, self.dtype, len(rows), read), True
+        def pick(name, some):
+            if name in self._alike:
+                return np.broadcast_to(self._alike[name], len(some))
+            return own[name].take(some) if name in self._own.dtype.names else self._points.column(road, section, name, rows.take(some))
+
+        return Columns({}, self.dtype, len(rows), read, pick=pick), True
 
     def close(self):
         super().close()

@@ -11,12 +11,16 @@ class Columns:
     `columns["z"]` is one column, `columns[mask]`, `columns[indices]` and
     `columns[2:5]` are Columns of those rows. Rows are chosen, and parts joined,
     only when a column of the result is asked for: most steps look at few.
+
+    `make` is a function of a name that fetches a column, and `pick` one of a name
+    and rows, (M,) within bounds, that fetches those rows alone.
     """
 
-    __slots__ = ("_arrays", "_make", "_chosen", "_parts", "_locked", "_length", "dtype")
+    __slots__ = ("_arrays", "_make", "_pick", "_picked", "_chosen", "_parts", "_locked", "_length", "dtype")
 
-    def __init__(self, arrays, dtype, length=None, make=None, chosen=None, parts=None):
-        self._arrays, self._make = arrays, make
+    def __init__(self, arrays, dtype, length=None, make=None, chosen=None, parts=None, pick=None):
+        self._arrays, self._make, self._pick = arrays, make, pick
+        self._picked = set()   # columns of which some rows were fetched already: who asks again gets the whole column
         self._chosen = chosen  # (Columns, rows) that these were chosen from
         self._parts = parts    # Columns that these are joined of
         self._locked = False
@@ -66,6 +70,8 @@ class Columns:
         if isinstance(which, slice):
             if self._parts is not None and not self._arrays and which.step in (None, 1):
                 return self._joined_slice(*which.indices(self._length)[:2])
+            if which.step not in (None, 1) and (self._pick or self._parts or self._chosen):
+                return self.take(np.arange(*which.indices(self._length)))
             length = len(range(*which.indices(self._length)))
             if self._make is None:
                 return Columns({name: array[which] for name, array in self._arrays.items()}, self.dtype, length)
@@ -85,7 +91,11 @@ class Columns:
         return Columns({}, self.dtype, len(rows), lambda name: source._rows(name, rows), (source, rows))
 
     def _rows(self, name, rows):
-        """Rows of one column; of joined parts only those are asked that the rows lie in."""
+        """Rows of one column; of joined parts only those are asked that the rows lie in, and few rows are fetched alone."""
+        if self._pick is not None and name not in self._arrays and name not in self._picked and 2 * len(rows) <= self._length \
+                and (not len(rows) or rows.min() >= 0 and rows.max() < self._length):
+            self._picked.add(name)
+            return self._pick(name, rows)
         # taken apart only where rows ascend within bounds
         if self._parts is None or name in self._arrays or not len(rows) or rows[0] < 0 or rows[-1] >= self._length \
                 or (rows[1:] < rows[:-1]).any():
@@ -94,9 +104,13 @@ class Columns:
             return column.take(rows) if column.strides[0] or not len(rows) else np.broadcast_to(column[0], len(rows))
         ends = np.cumsum([len(part) for part in self._parts])
         bounds = [0, *np.searchsorted(rows, ends).tolist()]
-        found = [part[name].take(rows[a:b] - (end - len(part)))
+        found = [part._rows(name, rows[a:b] - (end - len(part)))
                  for part, end, a, b in zip(self._parts, ends, bounds[:-1], bounds[1:]) if b > a]
         return found[0] if len(found) == 1 else np.concatenate(found)
+
+    def run(self, first, end):
+        """The rows from first to end; few of them are fetched alone, of many the column."""
+        return self[first:end] if 2 * (end - first) > self._length else self.take(np.arange(first, end))
 
     def _joined_slice(self, first, end):
         """The rows from first to end, joined of what of the parts lies there."""
@@ -119,7 +133,7 @@ class Columns:
         """These columns, every one of them made, and what they were made of let go."""
         for name in self.dtype.names:
             self[name]
-        self._make = self._chosen = self._parts = None  # arrays are there for every name, so it is not missed
+        self._make = self._pick = self._chosen = self._parts = None  # arrays are there for every name, so it is not missed
         return self
 
     def locked(self):
@@ -137,7 +151,7 @@ class Columns:
         """The same points with further columns, or others in their place."""
         kinds = {**{name: self.dtype[name] for name in self.dtype.names}, **{name: array.dtype for name, array in columns.items()}}
         dtype = np.dtype(list(kinds.items()))
-        return Columns(dict(columns), dtype, self._length, lambda name: self[name])
+        return Columns(dict(columns), dtype, self._length, lambda name: self[name], pick=self._rows)
 
     def __array__(self, dtype=None, copy=None):
         records = np.empty(self._length, self.dtype)

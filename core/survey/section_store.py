@@ -191,7 +191,8 @@ class SectionStore:
 
     def _in_file(self, stored):
         """Columns that are read one by one when they are asked for."""
-        return Columns({}, self.dtype, stored[self.dtype.names[0]].packing.count, lambda name: self._file.get(stored[name]))
+        return Columns({}, self.dtype, stored[self.dtype.names[0]].packing.count, lambda name: self._file.get(stored[name]),
+                       pick=lambda name, rows: self._file.get(stored[name], rows=rows))
 
     def _put_in_order(self, road, section):
         """Finish and sort the points of a section into one part; it is in the file then where some of them were."""
@@ -249,11 +250,12 @@ class SectionStore:
         parts = []
         for number in range(first, last + 1):
             records = self.section(road, number)
-            if number in (first, last) and len(records):
+            # of a section that lies inside, stations need not be looked at
+            low, high = self.first_unit(number) * UNIT, (self.first_unit(number + 1) - 1) * UNIT
+            if len(records) and (low < start or high >= end):
                 stations = _Metres(records["s"])
-                a = bisect_left(stations, start) if number == first else 0
-                b = bisect_left(stations, end) if number == last else len(records)
-                records = records if b - a == len(records) else records[a:b]
+                a, b = bisect_left(stations, start), bisect_left(stations, end)
+                records = records if b - a == len(records) else records.run(a, b)
             parts.append(records)
         return Points(Columns.joined(parts, self.dtype))
 
@@ -315,8 +317,12 @@ class _WithColumn(SectionStore):
         return self._points.sections(road)
 
     def section(self, road, section):
-        column = self._column.section(road, section)[self._name]
-        return self._points.section(road, section).with_columns(**{self._name: column}).locked()
+        column, points = self._column.section(road, section), self._points.section(road, section)
+
+        def of(name):
+            return column if name == self._name else points
+
+        return Columns({}, self.dtype, len(points), lambda name: of(name)[name], pick=lambda name, rows: of(name)._rows(name, rows)).locked()
 
     def close(self):
         self._column.close()

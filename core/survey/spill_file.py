@@ -53,10 +53,14 @@ class SpillFile:
             column[:] = packing.alike[:count]
         elif packing.widths == (packing.dtype.itemsize,) and rows is None:
             self.read(place, column)
-        else:
-            data = buffer(packing.nbytes)
-            self.read(place, data)
-            packing.unpack(data, column, rows)
+        elif count:
+            first, end = (0, packing.count) if rows is None else (int(rows.min()), int(rows.max()) + 1)
+            run = packing._replace(count=end - first)
+            data, begin = buffer(run.nbytes), 0
+            for width in packing.widths:
+                self.read(place + first * width, data[begin:begin + run.count * width])
+                place, begin = place + packing.count * width, begin + run.count * width
+            run.unpack(data, column, rows - first if first else rows)
         return column
 
     def give_back(self, stored):

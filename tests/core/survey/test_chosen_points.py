@@ -63,6 +63,32 @@ def test_a_column_put_anew_leaves_the_other_columns_of_chosen_points_as_they_are
         np.testing.assert_array_equal(found["x"], road.section(0, number)["x"])
 
 
+@pytest.mark.parametrize("limit", [0, 10**9])
+@pytest.mark.parametrize("rows", [[3], [200, 201, 204], range(-9, 0), range(90, 5, -7), []])
+def test_few_rows_of_a_section_are_those_of_the_whole_whatever_was_read_of_it_before(limit, rows):
+    road = road_of(survey_store(limit))
+    bright = road.with_column("corrected")
+    for number in road.sections(0):
+        bright.put(0, number, road.section(0, number)["intensity"].astype(np.float32) / 2)
+    whole = np.asarray(bright.section(0, 4))
+    road.let_go()
+    rows = np.array(rows, np.intp)
+    for _ in range(3):
+        few = bright.section(0, 4).take(rows)
+        for name in ROAD_POINT.names:
+            np.testing.assert_array_equal(few[name], whole[name][rows])
+
+
+def test_a_window_is_the_same_where_it_cuts_a_section_and_where_it_ends_with_one():
+    road = road_of(survey_store(0))
+    everything = np.asarray(road.window(0, 0.0, 40.0).records)
+    for start, end in ((4.9, 5.1), (5.0, 10.0), (14.999, 20.0), (15.0, 20.0001), (16.0, 16.2), (-3.0, 50.0)):
+        inside = (everything["s"] * 1e-4 >= start) & (everything["s"] * 1e-4 < end)
+        road.let_go()
+        found = np.asarray(road.window(0, start, end).records)
+        assert len(found) and found.tobytes() == everything[inside].tobytes()
+
+
 def test_chosen_points_take_no_others_and_close_the_store_with_them():
     store = survey_store(0)
     road = road_of(store)

@@ -67,6 +67,27 @@ def test_only_those_parts_are_read_that_chosen_rows_lie_in():
     assert joined[120:130][np.array([1])]["s"].tolist() == [21]
 
 
+def test_few_rows_are_fetched_alone_and_of_many_the_column_once():
+    records, fetched = some(), []
+
+    def whole(name):
+        fetched.append((name, len(records)))
+        return records[name].copy()
+
+    def few(name, rows):
+        fetched.append((name, len(rows)))
+        return records[name][rows]
+
+    columns = Columns({}, records.dtype, len(records), whole, pick=few)
+    np.testing.assert_array_equal(columns[::20]["time"], records["time"][::20])
+    assert fetched == [("time", 5)]
+    for rows in (np.arange(7), np.arange(3, 90), np.arange(4)):  # who asks again is given the column, which is kept then
+        np.testing.assert_array_equal(columns[rows]["time"], records["time"][rows])
+    assert fetched == [("time", 5), ("time", 100)]
+    with pytest.raises(IndexError):
+        columns[np.array([0, 100])]["s"]
+
+
 def test_parts_are_joined_in_order_and_none_are_none():
     records = some()
     np.testing.assert_array_equal(Columns.joined([Columns.of(records[:30]), Columns.of(records[30:])], records.dtype), records)
