@@ -9,6 +9,7 @@ LONGEST_DASH = 10.5  # m: longer paint is solid line
 LEAST_GAP = 0.4      # of the dash: road markings leave gaps of half a dash (6 m and 3 m) or more
 PAIR = (1.5, 8.0)    # m: dashes of which two alone are taken for a dashed line
 ALIKE = 0.16         # of the period: how evenly dashes must follow each other
+EVEN = 0.2           # m: by which the two steps between three pieces of unlike lengths may differ
 FEWEST_SHORT, SHORT_ALIKE, UNEVEN = 4, 0.25, 0.25  # dashes, m, share: dashes a metre long with gaps as long must be so many and so even
 SOLID_GAP = 2.5      # m: a longer hole in a solid line is bridged, not measured
 
@@ -85,6 +86,8 @@ def rhythm(spans):
 
     Dashes may be missing: steps between dashes are then whole multiples of the
     period. Some may be worn at their ends: three of five must have the common length.
+    Of three pieces alone all must have it, or their two steps must be equal: by chance
+    one step is soon a multiple of the other.
     """
     if len(spans) < 2:
         return None
@@ -101,6 +104,11 @@ def rhythm(spans):
     period = _period(steps)
     if period is None or period - dash < LEAST_GAP * dash or alike.mean() < 0.55:
         return None
+    if len(spans) == 3 and not alike.all():
+        # a worn dash keeps one of its ends, or its middle
+        steps = np.diff(np.column_stack([spans, spans.mean(axis=1)]), axis=0)
+        if np.ptp(steps, axis=0).min() > EVEN:
+            return None
     return Rhythm(dash, period)
 
 

@@ -303,6 +303,20 @@ def test_a_worn_solid_line_is_not_called_dashed():
     assert {row["pattern"] for row in street.lines().rows} == {"solid"}
 
 
+def test_three_pieces_of_unlike_lengths_are_no_dashed_line():
+    street = Street()
+    for first, length in ((20.0, 2.1), (29.0, 3.2), (40.0, 1.9)):
+        street.paint(first, first + length, 0.0)
+    assert set(told(street.lines(), "pattern")) == {("solid",)}
+
+
+def test_three_even_dashes_are_a_dashed_line_though_one_has_lost_its_end():
+    street = Street()
+    for first, last in ((20.0, 23.0), (29.0, 32.0), (38.0, 39.9)):
+        street.paint(first, last, 0.0)
+    assert told(street.lines(), "pattern", "status") == [("dashed", "measured")]
+
+
 def test_a_weaving_drive_does_not_bend_the_line():
     """The vehicle weaves by half a metre; the dashes are linked and lie on the axis all the same."""
     street = Street(weave=0.5).dashes(3.0, 9.0, 0.0).paint(0, 120, 4.5, kind="edge")
