@@ -15,6 +15,7 @@ from .vehicle_places import ACROSS, UNKNOWN, Tracks
 ENOUGH = 16_000   # points of a metre of road: more tell nothing new of asphalt
 STRIPE = 100    # units of 0.1 mm along the road: where there are more, stripes of it are looked at
 AT_ONCE = 1 << 15  # points corrected at a time: what fits the processor's cache
+CLIPPED = 0.05   # share of points at their scanner's highest intensity: more than paint covers of most roads
 WITHOUT_VEHICLE = 0.2   # share of points that may lack a vehicle's position before the correction is given up
 
 
@@ -45,6 +46,7 @@ class IntensityReport:
         asphalt over the distances, %)
     beams : how many beams of spinning scanners were evened, 0 where there are none
     between_before, between_after : highest over lowest scanner's asphalt
+    highest, at_highest : the highest intensity of the road, and the share of points within 1.1 % of their scanner's highest
     reason : why nothing was corrected, "" where it was
     """
 
@@ -56,7 +58,18 @@ class IntensityReport:
     spread_before: float = float("nan")
     spread_after: float = float("nan")
     beams: int = 0
+    highest: float = float("nan")
+    at_highest: float = 0.0
     reason: str = ""
+
+    @property
+    def clipped(self):
+        """What to say of intensities that were cut off at their highest value, "" where they were not."""
+        if self.at_highest < CLIPPED:
+            return ""
+        return (f"{100 * self.at_highest:.0f} % of the road's points have the highest intensity, {self.highest:.0f}: what was brighter has "
+                "been cut off, so that paint there may be no brighter than asphalt and be missed. Export the cloud with the "
+                "scanner's full intensities (16 bits, not stretched).")
 
     def lines(self):
         """Sentences for a log."""
@@ -66,6 +79,7 @@ class IntensityReport:
                  f"{self.spread_after:.1f} % over distances and scanners, {self.spread_before:.1f} % before."]
         if self.beams:
             texts[0] += f" {self.beams} beams of unequal brightness were made alike."
+        texts += [self.clipped] if self.clipped else []
         for row in self.scanners:
             texts.append(f"Scanner {row['scanner']}: asphalt varies by {row['spread_after']:.1f} % from {row['nearest']:.0f} to "
                          f"{row['farthest']:.0f} m, {row['spread_before']:.1f} % before.")
@@ -76,8 +90,9 @@ class IntensityReport:
         from ..report.page import Page
 
         page = Page("Intensity correction", "Asphalt's intensity by scanner, before and after. Distances are from the track of the vehicle.")
-        for line in self.lines()[:1]:
-            page.text(line)
+        for line in [*self.lines()[:1], self.clipped]:
+            if line:
+                page.text(line)
         if self.scanners:
             page.table(("Scanner", "Points", "From (m)", "To (m)", "Asphalt before", "Asphalt after", "Variation before (%)",
                         "Variation after (%)", "Highest/lowest before", "Highest/lowest after"),
@@ -125,13 +140,15 @@ def correct_intensity(road_points, frame, settings=IntensitySettings(), progress
         points = _stripes(road_points.section(*key), step)
         places = Tracks(frame.passes, points.time).places(points)
         raw = before.of(points.scanner, places, points.intensity)
-        return raw, evened.of(points.scanner, places, even(points)) if beams else (), np.count_nonzero(places[0] == UNKNOWN), len(points)
+        even_ones = evened.of(points.scanner, places, even(points)) if beams else ()
+        return raw, even_ones, points.intensity.max(initial=0), np.count_nonzero(places[0] == UNKNOWN), len(points)
 
-    placeless = np.zeros(2, np.int64)
-    for raw, even_ones, *lost in in_order(count, sections, progress.part(0.2, 0.5)):
+    placeless, highest = np.zeros(2, np.int64), 0
+    for raw, even_ones, brightest, *lost in in_order(count, sections, progress.part(0.2, 0.5)):
         before.add(raw, step)
         evened.add(even_ones, step)
         placeless += lost
+        highest = max(highest, brightest)
     table = AsphaltTable.of(evened.counts)
     if placeless[0] > WITHOUT_VEHICLE * placeless[1]:
         reason = ("Intensity was left as it is: the trajectory does not say where the vehicle was when "
@@ -165,6 +182,9 @@ def correct_intensity(road_points, frame, settings=IntensitySettings(), progress
         after.add(counts, step)
     report = _report(before.counts, after.counts, table, by_scanner)
     report.beams = beams.count if beams else 0
+    report.highest, report.at_highest = float(highest), _at_highest(before.counts[ACROSS].sum(axis=1))
+    if report.clipped:
+        progress.warn(report.clipped)
     for line in report.lines()[:1]:
         progress.say(line)
     return result, report
@@ -191,6 +211,15 @@ def _by_scanner(points):
     """(256,) how many points each scanner has."""
     scanner = points.scanner
     return sum((np.bincount(scanner[k:k + AT_ONCE], minlength=256) for k in range(0, len(scanner), AT_ONCE)), np.zeros(256, np.int64))
+
+
+def _at_highest(levels):
+    """Share of points (scanners, LEVELS) in their scanner's highest level, where it stands out from those below; else 0."""
+    top = levels.shape[1] - 1 - np.argmax(levels[:, ::-1] > 0, axis=1)
+    rows = np.arange(len(levels))
+    below = levels[rows, np.maximum(top - 1, 0)] + levels[rows, np.maximum(top - 2, 0)]
+    piled = np.where(levels[rows, top] > below, levels[rows, top], 0)
+    return float(piled.sum() / max(levels.sum(), 1))
 
 
 def _looked_up(lookup, scanner, place):

@@ -38,6 +38,7 @@ class CorrectIntensity(LanewrightAlgorithm):
         frame = frame_of(call, road_points.crs, progress, road_points)
         corrected, report = correct_intensity(road_points, frame, call.settings(INTENSITY_KNOBS), progress.part(0.2, 0.8))
         write_road_points(corrected, call.new_file("OUTPUT"), progress.part(0.8, 1.0))
-        for line in report.lines()[1:]:  # the first was said when it was found
-            progress.say(line)
+        for line in report.lines()[1:]:  # the first was said when it was found, as was a warning
+            if line != report.clipped:
+                progress.say(line)
         call.text("REPORT", report.to_html())

@@ -1,11 +1,14 @@
 """Intensity correction: asphalt of one brightness near and far, whichever scanner saw it."""
 
+import html
+
 import numpy as np
 import pytest
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.markings import intensity
 from lanewright.core.markings.intensity import IntensitySettings, correct_intensity
 from lanewright.core.markings.vehicle_places import UNKNOWN, Tracks
+from lanewright.core.progress import Progress
 from lanewright.core.survey.points import ROAD_POINT, Points, to_units
 from lanewright.core.survey.road_frame import build_frame
 from lanewright.core.survey.road_points import RoadPoints
@@ -191,3 +194,39 @@ def test_the_raw_intensity_is_kept():
 def test_an_unknown_scale_is_refused():
     with pytest.raises(RoadExtractionError, match="automatic, linear, logarithmic"):
         IntensitySettings(scale="decibel")
+
+
+class Listener(Progress):
+    """Keeps what a user is warned of."""
+
+    def __init__(self):
+        self.warnings = []
+
+    def warn(self, text):
+        self.warnings.append(text)
+
+
+def warned(records):
+    listener = Listener()
+    _, report = correct_intensity(road_points(records), straight_drive(), progress=listener)
+    return listener.warnings, report
+
+
+@pytest.mark.parametrize("scanners", [1, 2])
+def test_an_export_that_cuts_off_the_brightest_sixth_of_the_road_is_warned_of(scanners):
+    records, _, _ = street()
+    records["scanner"] %= scanners
+    top = np.percentile(records["intensity"], 84)
+    records["intensity"] = np.rint(np.minimum(records["intensity"] * (255 / top), 255))
+    warnings, report = warned(records)
+    assert len(warnings) == 1 and warnings[0].startswith("16 % of the road's points have the highest intensity, 255:")
+    assert warnings[0] in report.lines()
+    assert warnings[0] in html.unescape(report.to_html())
+
+
+def test_cut_off_paint_and_a_road_all_of_one_colour_are_not_warned_of():
+    records, _, paint = street(law=lambda across, scanner: np.full(len(across), 5000.0))
+    records["intensity"][paint] = 9000
+    records["intensity"] = np.minimum(records["intensity"], 9000)
+    assert warned(records)[0] == []
+    assert 0.01 < np.mean(paint)
