@@ -17,7 +17,11 @@ class KeptArrays(threading.local):
         return partial(self._array, count)
 
     def _array(self, count, name, dtype=np.float64):
-        array = self._arrays.get(name)
-        if array is None or len(array) < count:
-            array = self._arrays[name] = np.empty(count, dtype)
-        return array[:count]
+        nbytes = count * np.dtype(dtype).itemsize
+        data = self._arrays.get(name)
+        if data is None or len(data) < nbytes:
+            data = self._arrays[name] = np.empty(nbytes + nbytes // 8, np.uint8)
+        return data[:nbytes].view(dtype)
+
+
+columns_kept = KeptArrays()   # those in which columns are put down and picked up again

@@ -1,15 +1,13 @@
 """Columns in as few bytes as hold them, to the bit: what is put into a temporary file costs by the byte."""
 
-import threading
 from typing import NamedTuple
 
 import numpy as np
 
+from .kept_arrays import columns_kept
+
 AT_ONCE = 1 << 15      # values worked at a time: what fits the processor's cache
 PARTS = {0: (), 1: (1,), 2: (2,), 3: (2, 1), 4: (4,), 5: (4, 1), 6: (4, 2)}  # bytes of a value, and widths of its parts, lowest first
-
-
-_thread = threading.local()
 
 
 class Packing(NamedTuple):
@@ -63,7 +61,7 @@ def packed(column):
     packing = Packing(column.dtype, len(column), least, widths)
     bits = column.view(f"u{size}")
     least = bits.dtype.type(least % 2**(8 * size))
-    data = buffer(packing.nbytes)
+    data = columns_kept.of(packing.nbytes)("packed", np.uint8)
     parts = _parts(data, packing)
     over = np.empty(min(len(bits), AT_ONCE), bits.dtype)
     for first in range(0, len(bits) if parts else 0, AT_ONCE):
@@ -83,18 +81,3 @@ def _parts(data, packing):
 
 def _some(part, rows):
     return part[rows] if isinstance(rows, slice) else part.take(rows, mode="clip")
-
-
-def buffer(nbytes, use="packed"):
-    """(nbytes,) uint8 that this thread uses again and again: memory touched for the first time is dear."""
-    found = _thread.__dict__.get(use)
-    if found is None or len(found) < nbytes:
-        found = _thread.__dict__[use] = np.empty(nbytes + nbytes // 8, np.uint8)
-    return found[:nbytes]
-
-
-def buffers(dtype, count):
-    """An array for every field of a dtype, (count,) each, that this thread uses again and again."""
-    places = np.cumsum([0] + [-(-count * dtype[name].itemsize // 8) * 8 for name in dtype.names]).tolist()
-    data = buffer(places[-1], "columns")
-    return {name: data[place:place + count * dtype[name].itemsize].view(dtype[name]) for name, place in zip(dtype.names, places)}

@@ -9,8 +9,7 @@ import numpy as np
 
 from ..parallel import go_on
 from .columns import Columns, in_columns
-from .kept_arrays import KeptArrays
-from .packing import buffer, buffers
+from .kept_arrays import KeptArrays, columns_kept
 from .points import UNIT, Points, canonical_order
 from .spill_file import SpillFile
 
@@ -209,7 +208,8 @@ class SectionStore:
             order = order.take(canonical_order(records.take(order)))
         section.parts, section.in_order = [], True
         if len(order) and spilled:
-            section.parts = [{name: self._file.put(np.take(records[name], order, out=_room(self.dtype[name], len(order)), mode="clip"))
+            kept = columns_kept.of(len(order))
+            section.parts = [{name: self._file.put(np.take(records[name], order, out=kept("column", self.dtype[name]), mode="clip"))
                               for name in self.dtype.names}]
         elif len(order):
             section.parts = [Columns({name: records[name].take(order) for name in self.dtype.names}, self.dtype)]
@@ -219,7 +219,8 @@ class SectionStore:
     def _all_of(self, section):
         """Columns of all parts of a section, for this thread alone and till it asks for others."""
         counts = [len(part) if isinstance(part, Columns) else part[self.dtype.names[0]].packing.count for part in section.parts]
-        columns = buffers(self.dtype, sum(counts))
+        kept = columns_kept.of(sum(counts))
+        columns = {name: kept(name, self.dtype[name]) for name in self.dtype.names}
         for name, column in columns.items():
             first = 0
             for part, count in zip(section.parts, counts):
@@ -331,11 +332,7 @@ class _WithColumn(SectionStore):
 
 def _end_to_end(columns):
     """Arrays of a column one after the other, for this thread alone and till it asks for others."""
-    return np.concatenate(columns, out=_room(columns[0].dtype, sum(map(len, columns))))
-
-
-def _room(dtype, count):
-    return buffer(count * dtype.itemsize, "column").view(dtype)
+    return np.concatenate(columns, out=columns_kept.of(sum(map(len, columns)))("column", columns[0].dtype))
 
 
 class _Metres:

@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .packing import Packing, buffer, packed
+from .kept_arrays import columns_kept
+from .packing import Packing, packed
 
 MOST_GAPS = 64   # places given back that are remembered; of more the largest
 
@@ -56,7 +57,7 @@ class SpillFile:
         elif count:
             first, end = (0, packing.count) if rows is None else (int(rows.min()), int(rows.max()) + 1)
             run = packing._replace(count=end - first)
-            data, begin = buffer(run.nbytes), 0
+            data, begin = columns_kept.of(run.nbytes)("packed", np.uint8), 0
             for width in packing.widths:
                 self.read(place + first * width, data[begin:begin + run.count * width])
                 place, begin = place + packing.count * width, begin + run.count * width
