@@ -162,7 +162,7 @@ class Beams:
     @classmethod
     def of(cls, road_points, frame, scanners, progress=Progress()):
         """Beams of a survey's scanners; None where every scanner has one, or all of one brightness."""
-        samples = {scanner: found for scanner in range(scanners) if (found := list(_samples(road_points, frame, scanner)))}
+        samples = _samples(road_points, frame, scanners)
         if not samples:
             return None
         frames = Frames.of(road_points) if _may_be_turns([points for found in samples.values() for points in found]) else Frames.none()
@@ -226,17 +226,22 @@ class Beams:
         return sum(len(shift) for shift in self.shift.values())
 
 
-def _samples(road_points, frame, scanner):
-    """Points of one scanner in a few windows of each road, at the same stations however the sections are cut."""
+def _samples(road_points, frame, scanners):
+    """{scanner: [Points]} of a few windows of each road, at the same stations however the sections are cut; scanners without are left out."""
+    samples = {}
     for road in road_points.roads():
         start, end = frame.road(road).start, frame.road(road).end
         for s in np.linspace(start, max(end - WINDOW, start), WINDOWS):
             points = road_points.window(road, s, s + WINDOW)
-            rows = np.flatnonzero(points.scanner == scanner)
-            if len(rows) >= FEWEST:
-                some = points[rows[::-(-len(rows) // MOST)]].records
-                # on their own, so that the sections they come from are let go
-                yield Points(Columns({name: some[name] for name in SIGHTED}, np.dtype([(name, some.dtype[name]) for name in SIGHTED])))
+            of = points.scanner
+            for scanner in range(scanners):
+                rows = np.flatnonzero(of == scanner)
+                if len(rows) >= FEWEST:
+                    some = points[rows[::-(-len(rows) // MOST)]].records
+                    # on their own, so that the sections they come from are let go
+                    alone = Columns({name: some[name] for name in SIGHTED}, np.dtype([(name, some.dtype[name]) for name in SIGHTED]))
+                    samples.setdefault(scanner, []).append(Points(alone))
+    return {scanner: samples[scanner] for scanner in sorted(samples)}
 
 
 def _sharpest(samples, passes, frames):

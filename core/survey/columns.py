@@ -3,6 +3,7 @@
 import numpy as np
 
 AT_ONCE = 1 << 14      # rows turned into columns at a time: what fits the processor's cache
+FETCH = 8              # fetching rows of a column costs as much as this part of all of them, and then by the row
 
 
 class Columns:
@@ -20,7 +21,7 @@ class Columns:
 
     def __init__(self, arrays, dtype, length=None, make=None, chosen=None, parts=None, pick=None):
         self._arrays, self._make, self._pick = arrays, make, pick
-        self._picked = set()   # columns of which some rows were fetched already: who asks again gets the whole column
+        self._picked = {}   # what fetching rows has cost by name, in rows; beyond half of the column it is fetched whole
         self._chosen = chosen  # (Columns, rows) that these were chosen from
         self._parts = parts    # Columns that these are joined of
         self._locked = False
@@ -92,10 +93,11 @@ class Columns:
 
     def _rows(self, name, rows):
         """Rows of one column; of joined parts only those are asked that the rows lie in, and few rows are fetched alone."""
-        if self._pick is not None and name not in self._arrays and name not in self._picked and 2 * len(rows) <= self._length \
-                and (not len(rows) or rows.min() >= 0 and rows.max() < self._length):
-            self._picked.add(name)
-            return self._pick(name, rows)
+        if self._pick is not None and name not in self._arrays:
+            cost = self._picked.get(name, 0) + len(rows) + self._length // FETCH
+            if 2 * cost <= self._length and (not len(rows) or rows.min() >= 0 and rows.max() < self._length):
+                self._picked[name] = cost
+                return self._pick(name, rows)
         # taken apart only where rows ascend within bounds
         if self._parts is None or name in self._arrays or not len(rows) or rows[0] < 0 or rows[-1] >= self._length \
                 or (rows[1:] < rows[:-1]).any():

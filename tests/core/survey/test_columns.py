@@ -67,7 +67,7 @@ def test_only_those_parts_are_read_that_chosen_rows_lie_in():
     assert joined[120:130][np.array([1])]["s"].tolist() == [21]
 
 
-def test_few_rows_are_fetched_alone_and_of_many_the_column_once():
+def test_few_rows_are_fetched_alone_and_where_they_grow_many_the_column_once():
     records, fetched = some(), []
 
     def whole(name):
@@ -81,9 +81,9 @@ def test_few_rows_are_fetched_alone_and_of_many_the_column_once():
     columns = Columns({}, records.dtype, len(records), whole, pick=few)
     np.testing.assert_array_equal(columns[::20]["time"], records["time"][::20])
     assert fetched == [("time", 5)]
-    for rows in (np.arange(7), np.arange(3, 90), np.arange(4)):  # who asks again is given the column, which is kept then
+    for rows in (np.arange(7), np.arange(20), np.arange(3, 90), np.arange(4)):
         np.testing.assert_array_equal(columns[rows]["time"], records["time"][rows])
-    assert fetched == [("time", 5), ("time", 100)]
+    assert fetched == [("time", 5), ("time", 7), ("time", 100)]
     with pytest.raises(IndexError):
         columns[np.array([0, 100])]["s"]
 
