@@ -17,6 +17,7 @@ from .section_store import MEMORY_LIMIT, SECTION_LENGTH, SectionStore
 from .time_systems import align_time, wrapped_week
 
 HEIGHT_STEP = 0.25     # m between the stations at which the height of the road is taken to choose points by
+TALL = 5.0, 15.0       # m above the road: higher than survey vehicles carry a sensor, and what 1.5 to 4.5 m are in feet
 
 
 @dataclass(frozen=True)
@@ -144,13 +145,18 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
         progress.warn("The trajectory does not keep to one height above the road: half of the points under the vehicle lie more than "
                       f"{reader.uneven[0]:.2f} m off {reader.uneven[1]:.2f} m below it, and curbs are missed for that. Its heights may be in feet "
                       "where the cloud's are in metres, or not be those that the cloud was made with: export both anew from one solution.")
+    height = float(np.mean(list(reader.heights.values())))
+    if not crs and TALL[0] < height < TALL[1]:
+        progress.warn(f"The sensor seems to ride {height:.1f} m above the road, as if cloud and trajectory were in feet, and no CRS tells their "
+                      "unit: everything is measured in metres, so curbs and markings would be missed. If they are in feet, convert both to metres "
+                      "(in a metric CRS); if they are not, set CRS.")
     scanner_field, scanners = reader.census.choose(settings.scanner_field)
     survey = Survey(files, frame, store, crs, reader.heights, scanner_field, scanners,
                     reader.brightest > reader.darkest, has_time,
                     dict(read=total, kept=store.count, outside=total - store.count))
     progress.say(f"Points read: {total:,} from {len(files)} file(s), {store.count:,} near the road kept; "
                  f"{len(frame.roads)} road(s), {len(frame.passes)} pass(es), {len(scanners)} scanner(s); "
-                 f"sensor {np.mean(list(reader.heights.values())):.2f} m above the road.")
+                 f"sensor {height:.2f} m above the road.")
     return survey
 
 

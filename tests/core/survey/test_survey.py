@@ -282,6 +282,18 @@ def test_heights_of_a_trajectory_in_feet_are_warned_of_where_the_road_climbs(tmp
     assert [bool(re.search("does not keep to one height above the road.*may be in feet", text)) for text in heard.warnings] == [True] * warned
 
 
+@pytest.mark.parametrize("unit, crs, warned", [(0.3048, None, True), (0.3048, CRS, False), (1.0, None, False)])
+def test_a_street_all_in_feet_that_no_crs_tells_of_is_warned_of(street, tmp_path, unit, crs, warned):
+    trajectory, (x, y, z, time), _ = street
+    around = x[0], y[0]
+    feet = [(around[0] + (x - around[0]) / unit), (around[1] + (y - around[1]) / unit), z / unit, time]
+    driven = replace(trajectory, x=around[0] + (trajectory.x - around[0]) / unit, y=around[1] + (trajectory.y - around[1]) / unit,
+                     z=trajectory.z / unit)
+    heard = Heard()
+    open_survey([write_cloud(tmp_path / "feet.laz", *feet, crs=crs)], driven, progress=heard)
+    assert any(re.search("as if cloud and trajectory were in feet.*set CRS", text) for text in heard.warnings) == warned
+
+
 @pytest.mark.parametrize("own, given, says", [
     (None, "", "carries no CRS.*parameter CRS"), (None, CRS, None), (CRS, "", None), (CRS, CRS, None),
     (CRS, "EPSG:25833", "zone 32N.*zone 33N.*not used"),
