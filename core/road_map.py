@@ -87,11 +87,11 @@ class RoadMap:
     marking_curvature: object = None    # MarkingCurvature, None without lines
 
 
-# How long each stage takes by boundary method, in proportions, as `make bench` measures it
+# How long each stage takes by boundary method, in proportions: between those of a dense street and of a long road (`make bench`)
 SHARES = {
-    "profiles": dict(survey=29, curbs=22, edges=0.2, surface=10, intensity=6, image=7, markings=12, outliers=4, clusters=3, lines=3, driving=3),
-    "scanlines": dict(survey=24, curbs=34, edges=0.3, surface=9, intensity=6, image=6, markings=10, outliers=3, clusters=2, lines=3, driving=3),
-    "both": dict(survey=21, curbs=42, edges=0.3, surface=8, intensity=5, image=5, markings=9, outliers=3, clusters=2, lines=2, driving=3),
+    "profiles": dict(survey=26, curbs=24, edges=0.2, surface=8, intensity=5, image=7, markings=10, outliers=4, clusters=5, lines=5, driving=5),
+    "scanlines": dict(survey=22, curbs=33, edges=0.2, surface=7, intensity=5, image=6, markings=9, outliers=4, clusters=5, lines=4, driving=5),
+    "both": dict(survey=20, curbs=37, edges=0.2, surface=7, intensity=4, image=6, markings=9, outliers=4, clusters=4, lines=4, driving=5),
 }
 
 
