@@ -63,9 +63,9 @@ def asked(streets, tmp_path_factory):
 
 
 def test_no_stretch_without_a_question_grows_with_the_road(asked):
-    """Three times the road is asked about nearly three times as often, in every stage."""
+    """Three times the road is asked about far more often in every stage, though some look at as many samples of any road."""
     short, long = asked
-    few = {stage: (short[stage], long[stage]) for stage in long if stage != "survey" and long[stage] < 1.7 * short[stage]}
+    few = {stage: (short[stage], long[stage]) for stage in long if stage != "survey" and long[stage] < 1.5 * short[stage]}
     assert not few
     assert set(long) == set(chain.SHARES["both"])
 
