@@ -89,6 +89,8 @@ def test_a_release_carries_the_addresses_of_its_publisher(tmp_path, metadata):
 
 
 def test_an_address_that_is_none_makes_no_release(tmp_path):
+    if not (ROOT / ".git").exists():
+        pytest.skip("the release is made from the git history")
     call = subprocess.run([str(ROOT / "tools" / "package.sh"), str(tmp_path / "lanewright.zip")], capture_output=True, text=True,
                           env={**os.environ, "REPOSITORY": "git.roads.test", "EMAIL": "me@roads.test"})
     assert call.returncode and "repository is 'git.roads.test'" in call.stderr and not list(tmp_path.iterdir())
