@@ -94,7 +94,7 @@ def _stages(rounds):
     return (f"## Every stage ({READ} the dense LAZ)\n\n" + table(["stage", *runs.values()], rows)
             + f"\n\nlaspy's read itself: {_spread([r['wall'] for r in read])} s, {_spread([r['cpu'] for r in read])} CPU seconds. "
               "*survey* decodes, places and stores the points; *edges* are the lines through curb points; *lines* and *driving* are the fits; "
-              "*densities, roughness* are taken for the report.")
+              "*densities, roughness* are taken for the report. What the time is made of, and what would shorten it: [speed.md](speed.md).")
 
 
 def _seconds_of(stage, figures):
@@ -124,7 +124,8 @@ def _peers(results):
             "reading and writing left out; the image is plain inverse distance, from points in memory to a GeoTIFF: of gdal_grid's time that of "
             "filling a single cell, which is starting and reading the points, is taken off. Our "
             "clusters join points by cells of 4 cm, which a marking never tells and dense paint is quicker by; theirs link every pair of "
-            "points. In the chain, outliers are judged by windows and the image lets bright points count more.")
+            "points. Where six points and more crowd in a cell our image weighs an even share of them, theirs weighs all. In the chain, "
+            "outliers are judged by windows and the image lets bright points count more.")
     if rows:
         text += "\n\n" + table(["task", "beside", "s, ours", "theirs", "CPU s, ours", "theirs", "alike", "found"], rows, words=2)
     return text + "".join(f"\n\nLeft out: {line}" for line in missing)
