@@ -72,9 +72,3 @@ class RoadPoints:
         """Every point in one structured array, road by road and section by section (for sets known to be small: paint)."""
         parts = [self.store.section(road, number) for road, number in self.all_sections()]
         return Points(np.asarray(joined(parts, ROAD_POINT)))
-
-    def point_roads(self):
-        """(N,) road number of each of `all_points()`."""
-        counts = [(road, len(self.store.section(road, number))) for road, number in self.all_sections()]
-        return np.repeat([road for road, _ in counts], [count for _, count in counts]).astype(np.int64) \
-            if counts else np.empty(0, np.int64)
