@@ -4,13 +4,11 @@ The stages are the same functions that the single algorithms call, handed on in
 memory; nothing but the intensity image, which is one of the results, goes to disk.
 """
 
-import time
 from dataclasses import dataclass, field
 
 from .assess.curvature import marking_curvature
 from .driving.lines import DrivingSettings, driving_lines
 from .features import Features
-from .freed_memory import hand_back
 from .markings.clusters import ClusterSettings, cluster_markings
 from .markings.extraction import MarkingSettings, extract_markings
 from .markings.image import ImageSettings, IntensityImage, write_intensity_image
@@ -24,6 +22,7 @@ from .road.edges import EdgeSettings
 from .road.scanlines.boundaries import ScanlineBoundarySettings
 from .road.scanlines.section_planes import ScanlineSettings
 from .road.surface.extraction import SurfaceSettings, extract_road_surface
+from .stages import PAINT, Extent, Stages
 from .survey.cube_density import cube_density
 from .survey.points import Points, joined
 from .survey.survey import SurveySettings, open_survey
@@ -87,36 +86,6 @@ class RoadMap:
     marking_curvature: object = None    # MarkingCurvature, None without lines
 
 
-# How long each stage takes by boundary method, in proportions: between those of a dense street and of a long road (`make bench`)
-SHARES = {
-    "profiles": dict(survey=26, curbs=24, edges=0.2, surface=8, intensity=5, image=7, markings=10, outliers=4, clusters=5, lines=5, driving=5),
-    "scanlines": dict(survey=22, curbs=33, edges=0.2, surface=7, intensity=5, image=6, markings=9, outliers=4, clusters=5, lines=4, driving=5),
-    "both": dict(survey=20, curbs=37, edges=0.2, surface=7, intensity=4, image=6, markings=9, outliers=4, clusters=4, lines=4, driving=5),
-}
-
-
-class _Stages:
-    """Runs the stages one after the other, each with its share of the bar, and takes their times."""
-
-    def __init__(self, progress, settings):
-        self.progress, self.done, self.seconds = progress, 0.0, {}
-        shares = dict(SHARES[settings.boundary_method])
-        if not settings.correct:
-            del shares["intensity"]
-        self.shares = {name: share / sum(shares.values()) for name, share in shares.items()}
-
-    def run(self, name, title, function, *arguments, **options):
-        share = self.shares[name]
-        self.progress.say(title)
-        began = time.perf_counter()
-        result = function(*arguments, progress=self.progress.part(self.done, self.done + share), **options)
-        hand_back()
-        self.seconds[name] = time.perf_counter() - began
-        self.done += share
-        self.progress.at(self.done)
-        return result
-
-
 def make_road_map(paths, trajectory, image_path, settings=RoadMapSettings(), progress=Progress()):
     """Run the chain.
 
@@ -136,7 +105,8 @@ def make_road_map(paths, trajectory, image_path, settings=RoadMapSettings(), pro
         If a stage cannot work with what it is given. A cloud without intensity still
         yields edges and surface; `without_paint` then says why markings are missing.
     """
-    stages = _Stages(progress, settings)
+    stages = Stages(progress, Extent.expected(paths, trajectory, settings.survey.crs), settings.boundary_method,
+                    () if settings.correct else ("intensity",))
     survey = stages.run("survey", "Reading the survey …", open_survey, paths, trajectory, settings.survey)
     try:
         return _map_of(survey, image_path, settings, stages)
@@ -147,6 +117,8 @@ def make_road_map(paths, trajectory, image_path, settings=RoadMapSettings(), pro
 
 def _map_of(survey, image_path, settings, stages):
     """The map of an open survey, whose store the road points keep."""
+    extent = Extent(survey.store.count / 1e6, sum(road.length for road in survey.frame.roads) / 1e3)
+    stages.know(extent, () if survey.has_intensity else PAINT)
     found = stages.run("curbs", "Detecting curbs …", find_curb_points, survey, settings.boundaries)
     boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, found, survey.frame, settings.edges)
     road_points, surface = stages.run("surface", "Extracting the road surface …", extract_road_surface,

@@ -9,6 +9,7 @@ from lanewright.core.parallel import heard
 from lanewright.core.progress import Progress
 from lanewright.core.road_map import RoadMapSettings, make_road_map
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey
+from lanewright.core.stages import NAMES
 
 SHORT, LONG = 60.0, 180.0   # m
 
@@ -31,14 +32,14 @@ class Questions(Progress):
 def questions(monkeypatch, survey, folder, last=None):
     sample, cloud = survey
     found = Questions(last)
-    run = chain._Stages.run
+    run = chain.Stages.run
 
     def noted(self, name, *arguments, **options):
         found.stage = name
         return run(self, name, *arguments, **options)
 
     with monkeypatch.context() as patch, heard(found):
-        patch.setattr(chain._Stages, "run", noted)
+        patch.setattr(chain.Stages, "run", noted)
         patch.setattr("lanewright.core.parallel.PATIENCE", 60.0)  # no question depends on the machine's speed
         make_road_map([cloud], sample.trajectory, folder / "image.tif", RoadMapSettings(), found)
     return found.asked
@@ -67,7 +68,7 @@ def test_no_stretch_without_a_question_grows_with_the_road(asked):
     short, long = asked
     few = {stage: (short[stage], long[stage]) for stage in long if stage != "survey" and long[stage] < 1.5 * short[stage]}
     assert not few
-    assert set(long) == set(chain.SHARES["both"])
+    assert set(long) == set(NAMES)
 
 
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.75, 0.99])
