@@ -10,7 +10,7 @@ from ..survey.points import UNIT
 from ..survey.sorting import order_by
 
 PATCH = 11            # bits: points of one 0.2 m patch are asked for one after the other, in the processor's cache
-LEAF = 10             # points in a leaf of the tree
+LEAF = 20             # points in a leaf of the tree
 EXACT = 1 << 24       # units (1.6 km): up to here float32 holds every integer
 TILE = 18             # bits: 26 m of map worked at together
 MARGIN = 10_000       # units: 1 m about a tile where neighbours are looked for

@@ -16,12 +16,14 @@ from ..parallel import in_order
 from ..progress import Progress
 from ..survey.points import UNIT, chosen
 from ..survey.road_points import RoadPoints
+from .crowds import may_be_lonely
 from .neighbours import Neighbours, mean_distances
 
 SCOPES = ("all", "windows")
 WINDOW = 20.0   # m of station that one limit is taken from
 BAND = 3.0      # m of offset likewise
 HALO = 2.0      # m of station beyond a window where neighbours are still looked for
+MOST = 1500     # points of a band from which its limit is taken; where there are twice as many, of evenly strewn ones
 FEWEST = 30     # points of a window that still have a spread worth the name
 LONELIER = 3.0  # times the distance that is usual among a point's own neighbours
 
@@ -73,7 +75,9 @@ def remove_outliers(points, settings=OutlierSettings(), progress=Progress()):
     d_i is the mean distance to the k nearest neighbours besides the point
     itself; the point goes if d_i > mu + m * sigma [1]_. In windows with fewer
     than 30 points nothing is removed: their spread says nothing, and they are
-    the worn and the far paint.
+    the worn and the far paint. In windows with thousands of points mu and sigma are those of
+    an evenly strewn share, and neighbours are looked for only where cells do not tell
+    that a point has enough of them near by.
 
     References
     ----------
@@ -108,29 +112,51 @@ def _kept_of_window(points, road, number, settings):
     records = points.window(road, number * WINDOW - HALO, (number + 1) * WINDOW + HALO).records
     s = records["s"] * UNIT
     own = np.flatnonzero((s >= number * WINDOW) & (s < (number + 1) * WINDOW))
-    neighbours = Neighbours(_units(records), settings.neighbours)
-    distances, _, nearest = neighbours.of(own)
+    neighbours = _Known(Neighbours(_units(records), settings.neighbours))
     band = np.floor(records["d"].take(own) * UNIT / BAND)
-    lonely = np.zeros(len(own), bool)
+    lonely = [np.empty(0, np.intp)]
     for value in np.unique(band):
-        rows = np.flatnonzero(band == value)
+        rows = own[band == value]
         if len(rows) >= FEWEST:
-            lonely[rows] = ~within_spread(distances[rows], settings.std_ratio)
-    lonely = np.flatnonzero(lonely)
-    lonely = lonely[distances[lonely] > LONELIER * _usual(neighbours, own, distances, nearest[lonely])]
+            lonely.append(_lonely(records, rows, neighbours, settings))
+    lonely = np.concatenate(lonely)
+    lonely = lonely[neighbours.distances(lonely) > LONELIER * _usual(neighbours, lonely)]
     keep = np.ones(len(own), bool)
-    keep[lonely] = False
+    keep[np.searchsorted(own, lonely)] = False
     return keep
 
 
-def _usual(neighbours, own, distances, nearest):
-    """(M,) median of the distances of the neighbours of M points, (M, k) rows; `distances` are known of the rows `own`."""
-    known = np.full(len(neighbours), np.nan)
-    known[own] = distances
+def _lonely(records, rows, neighbours, settings):
+    """Those of some rows of a window, ascending, that lie beyond the spread of all of them."""
+    looked = np.arange(0, len(rows), max(len(rows) // MOST, 1))
+    distances = neighbours.distances(rows[looked])
+    limit = distances.mean() + settings.std_ratio * distances.std(ddof=1)
+    if len(looked) < len(rows):
+        rows = rows[may_be_lonely(records.take(rows), settings.neighbours, looked, distances, limit, LONELIER)]
+    return rows[neighbours.distances(rows) > limit]
+
+
+class _Known:
+    """Mean distances of rows to their neighbours, each asked for once."""
+
+    def __init__(self, neighbours):
+        self.neighbours = neighbours
+        self._distances = np.full(len(neighbours), np.nan)
+
+    def distances(self, rows):
+        """(M,) metres of (M,) rows."""
+        new = rows[np.isnan(self._distances[rows])]
+        if len(new):
+            self._distances[new] = self.neighbours.of(new)[0]
+        return self._distances[rows]
+
+
+def _usual(neighbours, rows):
+    """(M,) median of the distances of the neighbours of M rows."""
+    nearest = neighbours.neighbours.of(rows)[2]
     others = np.unique(nearest)
-    others = others[np.isnan(known[others])]
-    known[others] = neighbours.of(others)[0]
-    return np.median(known[nearest], axis=1)
+    neighbours.distances(others)
+    return np.median(neighbours.distances(nearest.ravel()).reshape(nearest.shape), axis=1)
 
 
 def _kept_of_all(points, settings, progress):

@@ -3,6 +3,9 @@
 import numpy as np
 import pytest
 from lanewright.core.errors import RoadExtractionError
+from lanewright.core.markings import outliers
+from lanewright.core.markings.crowds import may_be_lonely
+from lanewright.core.markings.neighbours import mean_distances
 from lanewright.core.markings.outliers import OutlierSettings, remove_outliers
 from painted_streets import assert_same_points, drive, paint, road_points, shuffled, strip
 from scipy.spatial.distance import cdist
@@ -54,6 +57,33 @@ def test_neither_the_order_of_points_nor_the_length_of_sections_matters():
     plain = remove_outliers(road_points(records, FRAME)).all_points().records
     other = remove_outliers(road_points(shuffled(records), FRAME, section_length=7.0)).all_points().records
     assert_same_points(plain, other)
+
+
+def test_where_paint_crowds_the_same_points_go_as_when_every_point_is_asked(monkeypatch):
+    records = paint(FRAME, [LINE, strip(20, 24, -1.0, 2.0)], density=4000)
+    for k in range(40):
+        records = with_stray(records, 6.0 + 1.3 * k, 1.25 + 0.01 * k)
+    points, asked = road_points(records, FRAME), []
+    of = outliers.Neighbours.of
+    monkeypatch.setattr(outliers.Neighbours, "of", lambda self, rows: asked.append(len(rows)) or of(self, rows))
+    few = remove_outliers(points)
+    assert sum(asked) < len(records) / 2
+    monkeypatch.setattr(outliers, "MOST", len(records))
+    every = remove_outliers(points)
+    assert_same_points(few.all_points().records, every.all_points().records)
+    assert 30 < len(records) - len(every) < 200
+
+
+@pytest.mark.parametrize("neighbours", [1, 20])
+def test_no_point_beyond_the_limit_is_taken_for_one_among_many(neighbours):
+    records = paint(FRAME, [LINE, strip(20, 60, 0.2, 0.25)], density=3000)
+    units = np.c_[records["x"], records["y"], records["z"]]
+    distances = mean_distances(units, neighbours)
+    looked = np.arange(0, len(records), 7)
+    limit = 2.5 * np.median(distances)
+    found = may_be_lonely(records, neighbours, looked, distances[looked], limit, 0.0)
+    assert set(np.flatnonzero(distances > limit)) <= set(found)
+    assert len(found) < len(records) / 2
 
 
 def test_a_handful_of_points_is_left_alone():
