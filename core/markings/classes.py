@@ -72,11 +72,10 @@ def classify(shapes, half_widths, settings=ClassSettings(), covered=0.0):
     """
     if not shapes:
         return []
-    column = {name: np.array([getattr(shape, name) for shape in shapes])
-              for name in ("s0", "s1", "d0", "d1", "offset", "length", "width", "elongation", "direction", "area", "along")}
+    column = columns_of(shapes)
     room = np.asarray(half_widths) - np.abs(column["offset"])
     line = _is_line(column, settings)
-    zebra = _zebra_stripes(column)
+    zebra = zebra_stripes(column)
     line |= _dashes_in_rows(shapes, column, room, settings)
     line &= ~zebra
     scrap = _beyond_the_edge_line(column, line, room)
@@ -99,6 +98,12 @@ def classify(shapes, half_widths, settings=ClassSettings(), covered=0.0):
     return found
 
 
+def columns_of(shapes):
+    """dict of (N,) arrays, what the Shapes have."""
+    return {name: np.array([getattr(shape, name) for shape in shapes])
+            for name in ("s0", "s1", "d0", "d1", "offset", "length", "width", "elongation", "direction", "area", "along")}
+
+
 def _is_line(column, settings):
     width = column["width"]
     return column["along"] & (width >= settings.min_width) & (width <= settings.max_width) \
@@ -115,10 +120,13 @@ def _dashes_in_rows(shapes, column, room, settings):
     return result
 
 
-def _zebra_stripes(column):
-    """Stripes along the road, side by side at an even pitch, at least three of them."""
+def zebra_stripes(column, shortest=STRIPE_LENGTH[0]):
+    """Stripes along the road, side by side at an even pitch, at least three of them.
+
+    column : dict of (N,) of the Shapes; shortest : m
+    """
     stripe = column["along"] & (column["width"] >= STRIPE_WIDTH[0]) & (column["width"] <= STRIPE_WIDTH[1]) \
-        & (column["length"] >= STRIPE_LENGTH[0]) & (column["length"] <= STRIPE_LENGTH[1])
+        & (column["length"] >= shortest) & (column["length"] <= STRIPE_LENGTH[1])
     rows = np.flatnonzero(stripe)
     result = np.zeros(len(stripe), bool)
     if len(rows) < STRIPES:
@@ -191,7 +199,7 @@ def _round_cover(shape):
     along, across = shape.s1 - shape.s0, shape.d1 - shape.d0
     longer, shorter = max(along, across), min(along, across)
     # a dash askew fills a square, too
-    return COVER[0] <= longer <= COVER[1] and shorter > 0.7 * longer and shape.area > 0.5 * along * across \
+    return COVER[0] <= longer <= COVER[1] and shorter > 0.7 * longer and shape.closed_area > 0.5 * along * across \
         and shape.elongation < ROUND
 
 

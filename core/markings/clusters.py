@@ -11,7 +11,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from ..errors import RoadExtractionError
 from ..features import Features
@@ -23,11 +22,11 @@ from . import polygons
 from .cells import components, occupied
 from .classes import LINES, NOT_PAINT, ClassSettings, classify
 from .compounds import split_compounds
+from .fragments import join_fragments
 from .shapes import CELL, measure
 
 WINDOW = 500     # cells of 4 cm: 20 m of station are linked at a time
-FRAGMENT = 3     # points: the smallest worn rest that a line may be joined from
-WORN_GAP, OVERLAP, SAME_LINE = 0.9, 0.2, 0.08  # m along, along, across
+FRAGMENT = 1     # points: the smallest worn rest that a line may be joined from
 STRIPS = LINES + ("zebra", "stop")  # drawn as even strips, the others cell by cell
 STRETCH = 2.5    # neighbours may be this times the distance apart along the road,
 SQUEEZE = 2.0    # and across it the distance over this
@@ -114,35 +113,6 @@ def _alone(pieces, joins):
     """The pieces that were joined to no other, by the number of their marking."""
     count = np.bincount(joins, minlength=1)
     return {number: piece for number, piece in zip(joins.tolist(), pieces) if count[number] == 1}
-
-
-def join_fragments(shapes, max_width):
-    """Which narrow pieces along the road continue each other over a worn spot.
-
-    Pieces are joined where one begins up to 0.9 m after the end of another, on
-    the same line: no painted gap is shorter, and paint wears through.
-
-    Returns
-    -------
-    (N,) int, the same number for pieces of one marking
-    """
-    number = np.arange(len(shapes))
-    narrow = np.array([k for k, shape in enumerate(shapes) if _narrow(shape, max_width)], np.int64)
-    if len(narrow) < 2:
-        return number
-    begins = np.array([(shapes[k].s0, shapes[k].begin) for k in narrow])
-    ends = np.array([(shapes[k].s1, shapes[k].finish) for k in narrow])
-    # a box of -0.2 to 0.9 m along and 8 cm either way across about each end
-    scale = np.array([(WORN_GAP + OVERLAP) / 2, SAME_LINE])
-    about = (ends + np.array([(WORN_GAP - OVERLAP) / 2, 0.0])) / scale
-    near = cKDTree(begins / scale).query_ball_point(about, 1.0, p=np.inf)
-    pairs = np.array([(a, b) for a, found in enumerate(near) for b in found if a != b], np.int64).reshape(-1, 2)
-    graph = coo_matrix((np.ones(len(pairs), bool), (narrow[pairs[:, 0]], narrow[pairs[:, 1]])), shape=(len(shapes),) * 2)
-    return connected_components(graph, directed=False)[1]
-
-
-def _narrow(shape, max_width):
-    return shape.width <= max_width and shape.along or shape.d1 - shape.d0 <= max_width
 
 
 def _relabelled(records, starts, number):

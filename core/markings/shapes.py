@@ -16,6 +16,7 @@ RANGE = 95.0        # % of the points that the width spans; divided out again
 ALONG = np.radians(20.0)   # closer to the road's direction than this is "along" it
 ACROSS = np.radians(60.0)  # farther from it is "across"
 BAR_GAPS = 10, 6    # cells along the road and across it: gaps between the scan lines on a bar
+SMALL, SMALL_GAPS = 1.2, (3, 1)  # m, and cells likewise of what is no longer than that: the strokes of a sign lie farther apart
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,7 @@ class Shape:
 
     direction is 0 along the road, pi/2 across it, within (-pi/2, pi/2].
     s0, s1, d0, d1 bound it; `offset` is the median offset, `area` that of its 4 cm cells;
-    `closed_area` is the area with the gaps between scan lines, of what runs across the road (`area` of what does not);
+    `closed_area` is the area with the gaps between scan lines, of what runs across the road or is small (`area` of the rest);
     `begin` and `finish` are the offsets of its middle line at s0 and s1 (the median for what is not along the road).
     """
 
@@ -87,7 +88,10 @@ def measure(s, d):
         length = np.ptp(along) * UNIT
         across = d * c - s * n
         begin = finish = median(d) * UNIT
-    closed = _closed(cells) if abs(direction) > ACROSS else len(cells)
+    if max(s1 - s0, d1 - d0) * UNIT <= SMALL:
+        closed = _closed(cells, SMALL_GAPS)
+    else:
+        closed = _closed(cells, BAR_GAPS) if abs(direction) > ACROSS else len(cells)
     area, closed_area = (count * (CELL * UNIT) ** 2 for count in (len(cells), closed))
     return Shape(s0 * UNIT, s1 * UNIT, d0 * UNIT, d1 * UNIT, median(d) * UNIT, float(length),
                  spread(across) * UNIT, direction, area, len(s), float(begin), float(finish), closed_area)
@@ -107,12 +111,12 @@ def fill_gaps(mask, limit, axis=0):
     return closed[margin[0]:margin[0] + mask.shape[0], margin[2]:margin[2] + mask.shape[1]].astype(bool)
 
 
-def _closed(cells):
+def _closed(cells, gaps):
     """How many cells there are when the gaps between scan lines are closed."""
     low = cells.min(axis=0)
     mask = np.zeros(cells.max(axis=0) - low + 1, bool)
     mask[tuple((cells - low).T)] = True
-    for axis, limit in enumerate(BAR_GAPS):
+    for axis, limit in enumerate(gaps):
         mask = fill_gaps(mask, limit, axis)
     return int(mask.sum())
 

@@ -66,6 +66,28 @@ def test_dashes_stay_apart_and_a_worn_line_holds_together():
     assert markings.rows[0]["length_m"] == pytest.approx(29.3, abs=0.1)
 
 
+def test_specks_that_wear_has_left_lead_a_line_over_and_a_bare_gap_does_not():
+    ends = [strip(10, 20, 3.0, 3.15), strip(23.5, 40, 3.0, 3.15)]
+    specks = [disc(s, 3.07, 0.04) for s in (20.6, 21.3, 22.0, 22.7)]
+    assert markings_of(ends + specks, density=2000).column("length_m") == pytest.approx([30.0], abs=0.05)
+    assert markings_of(ends).column("length_m") == pytest.approx([10.0, 16.5], abs=0.05)
+
+
+def test_a_stop_line_worn_through_is_one_and_the_blocks_of_a_give_way_line_are_not():
+    worn = markings_of([strip(20, 20.3, *across) for across in ((-3.4, -2.2), (-2.0, -1.1), (-0.95, -0.2))])
+    assert classes(worn) == ["stop"]
+    assert worn.rows[0]["length_m"] == pytest.approx(3.2, abs=0.05)
+    assert "stop" not in classes(markings_of([strip(20, 20.5, d, d + 0.5) for d in np.arange(-3.5, -0.5, 0.75)]))
+
+
+def test_a_stripe_of_a_crossing_that_is_worn_through_is_one_and_the_dash_behind_it_is_another_marking():
+    whole = [strip(20, 24, d, d + 0.45) for d in (-3.0, -2.0, 0.0, 1.0)]
+    worn = [strip(20, 21.2, -1.0, -0.55), strip(21.8, 21.9, -0.9, -0.7), strip(22.5, 24, -1.0, -0.55)]
+    markings = markings_of(whole + worn + [strip(24.8, 28, -0.85, -0.7)])
+    assert classes(markings) == ["lane"] + ["zebra"] * 5
+    assert [row["length_m"] for row in markings.rows if row["class"] == "zebra"] == pytest.approx([4.0] * 5, abs=0.05)
+
+
 def test_dashes_shorter_than_a_line_must_be_are_a_line_where_they_stand_in_a_row():
     row = markings_of([strip(s, s + 0.95, 0.5, 0.62) for s in np.arange(10, 30, 1.95)])
     assert classes(row) == ["lane"] * 11 and set(row.column("use")) == {"keep"}
@@ -120,6 +142,13 @@ def test_a_manhole_cover_is_no_marking(diameter):
     assert len(markings) == 1
     found = clustered.all_points()
     assert (found.cluster[found.s > 25] == 0).all() and (found.cluster[found.s < 25] == 1).all()
+
+
+def test_a_manhole_cover_is_none_where_scan_lines_lie_apart():
+    records = paint(FRAME, [disc(30, 1.5, 0.60), strip(10, 20, 0.0, 0.15)], density=6000)
+    records = records[records["s"] * 1e-4 / 0.125 % 1.0 < 0.2]
+    markings, _ = cluster_markings(road_points(records, FRAME), FRAME)
+    assert classes(markings) == ["lane"]
 
 
 def test_specks_are_no_markings():

@@ -43,6 +43,16 @@ def test_patches_seams_and_worn_tracks_are_not_paint(tmp_path):
     assert len(found_on(street(FRAME, level=level), tmp_path)) < 40
 
 
+def test_what_wear_has_left_between_two_runs_of_paint_is_paint_and_a_speck_on_its_own_is_not(tmp_path):
+    ends = [strip(10, 30, 1.0, 1.15), strip(33, 60, 1.0, 1.15)]
+    specks = [strip(s, s + 0.04, 1.05, 1.10) for s in (30.6, 31.2, 31.8, 32.4)]
+    alone = [strip(s, s + 0.04, -2.0, -1.95) for s in (30.6, 31.2, 31.8, 32.4)]
+    paint = found_on(street(FRAME, ends + specks + alone, density=3000), tmp_path)
+    for speck in specks:
+        assert speck(paint.s, paint.d).any()
+    assert not any(speck(paint.s, paint.d).any() for speck in alone)
+
+
 def test_brightness_that_falls_with_distance_hides_no_line(tmp_path):
     lines = [strip(10, 70, d, d + 0.15) for d in (-3.5, 0.0, 3.5)]
 
