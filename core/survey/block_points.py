@@ -8,7 +8,7 @@ from .columns import Columns
 from .kept_arrays import KeptArrays
 from .las_axis import LasAxis
 from .placing import AT_ONCE, Placing
-from .points import SURVEY_POINT, in_units
+from .points import SURVEY_POINT, UNIT, in_units, to_units
 from .scanners import times_by_value
 from .time_systems import WEEK
 
@@ -16,7 +16,7 @@ ABOVE, BELOW = 3.5, 4.0  # m about the road kept: vehicles that hide a curb abov
 # m more that are stored: the height of the road is rough while reading, and exact when points are handed out,
 # so that what is handed out does not depend on which file came first
 MARGIN = 1.5
-GROUND_STEP = 0.5      # m between the places at which the height of the road is looked up
+GROUND_BITS = 12       # of a station in units of 0.1 mm: the height of the road is looked up every 0.41 m
 SCANNER_FIELDS = ("point_source_id", "scanner_channel")
 
 
@@ -57,21 +57,19 @@ class Ground:
     def __init__(self, frame, drop):
         self._roads = {}
         for road in frame.roads:
-            stations = np.arange(road.start, road.end + GROUND_STEP, GROUND_STEP)
-            self._roads[road.number] = road.start, frame.track_height(road.number, stations) - drop
+            first, last = (int(station / UNIT) >> GROUND_BITS for station in (road.start, road.end))
+            stations = ((np.arange(first, last + 1) << GROUND_BITS) + (1 << GROUND_BITS) // 2) * UNIT
+            lowest = frame.track_height(road.number, stations) - drop - BELOW - MARGIN
+            self._roads[road.number] = first, to_units(lowest)
 
     def near(self, road, s, z, kept):
-        """(N,) bool: which places of a road are near its height; any answer where s is NaN. `kept` as of KeptArrays."""
-        first, ground = self._roads[int(road)]
-        at, k = np.subtract(s, first, out=kept("at")), kept("k", np.intp)
-        at *= 1.0 / GROUND_STEP
-        at += 0.5
-        with np.errstate(invalid="ignore"):
-            np.copyto(k, at, casting="unsafe")
-        h = np.subtract(z, ground.take(k, out=at, mode="clip"), out=at)
-        near = h > -BELOW - MARGIN
-        near &= h < ABOVE + MARGIN
-        return near
+        """(N,) bool: which places of a road, int32 units of 0.1 mm, are near its height. `kept` as of KeptArrays."""
+        first, lowest = self._roads[int(road)]
+        cell, k = np.right_shift(s, GROUND_BITS, out=kept("cell", np.int32)), kept("k", np.intp)
+        np.copyto(k, np.subtract(cell, first, out=cell))
+        above = np.subtract(z, lowest.take(k, out=cell, mode="clip"), out=cell)
+        # what is below becomes a large number
+        return above.view(np.uint32) < np.uint32((ABOVE + BELOW + 2 * MARGIN) / UNIT)
 
 
 class BlockReading:
@@ -94,8 +92,8 @@ class BlockReading:
     def read(self, block, found, ground=None):
         """Yield the points of a laspy point record near a road, those near its height where a Ground is given.
 
-        Each time a road's number, the Columns of a piece of the block, and (N,) bool which of them are meant. The
-        next piece is written over these Columns; what is said of the whole cloud is added to `found`, BlockPoints.
+        Each time a road's number, the Columns of a piece of the block, and (N,) bool which of them are meant, None for
+        all. The next piece is written over these Columns; what is said of the whole cloud is added to `found`, BlockPoints.
         """
         names = set(block.point_format.dimension_names)
         axes = [LasAxis(*axis) for axis in zip("XYZ", block.scales, block.offsets, self.frame.origin)]
@@ -105,37 +103,40 @@ class BlockReading:
 
     def _piece(self, piece, names, axes, found, ground):
         kept = self._kept.of(len(piece))
-        columns = self._columns(piece, names, kept)
+        flagged = _flagged(piece)
+        columns = self._columns(piece, names, flagged, kept)
         found.add(columns, names)
-        x, y, z = (axis.metres(piece.array, kept) for axis in axes)
-        good = _usable(x, y, z, _withheld(piece, names))
-        s, d = kept("station"), kept("offset")
-        pass_number, lost = self._placed(x, y, columns["time"], good, s, d)
+        usable = _not_withheld(piece, names) if flagged else None
+        for axis, name in zip(axes, "xyz"):
+            columns[name], there = axis.units(piece.array, kept)
+            usable = _both(usable, there)
+        columns["s"], columns["d"] = kept("s", np.int32), kept("d", np.int32)
+        columns["pass_number"], inside, lost = self._placed(columns, usable)
         found.without_time += lost
-        inside = np.isfinite(d)
-        if not inside.any():
-            return
-        single = len(self.frame.roads) == 1
-        road = None if single else np.where(inside, self.roads[pass_number], -1)
-        parts = []
-        for number in [0] if single else np.unique(road[inside]).tolist():
-            own = inside if single else road == number
-            if ground is not None:
-                own = own & ground.near(number, s, z, kept)
-            parts.append((number, own))
-        for name, metres in (("s", s), ("d", d)):
-            if not inside.all():
-                metres[~inside] = metres[inside.argmax()]  # so that they are numbers at all
-            columns[name] = in_units(metres, kept(name, np.int32))
-        for axis, name, metres in zip(axes, "xyz", (x, y, z)):
-            columns[name] = axis.units(metres, kept)
-        columns["pass_number"] = pass_number.view(np.uint16)
+        if inside is not None:
+            if not inside.any():
+                return
+            # so that they are stations of this piece at all
+            columns["s"][~inside] = columns["s"][inside.argmax()]
         points = Columns(columns, SURVEY_POINT, len(piece))
-        for number, own in parts:
-            if own.any():
+        for number, own in self._by_road(columns["pass_number"], inside):
+            if ground is not None:
+                near = ground.near(number, columns["s"], columns["z"], kept)
+                own = _both(own, None if near.all() else near)
+            if own is None or own.any():
                 yield number, points, own
 
-    def _columns(self, piece, names, kept):
+    def _by_road(self, pass_number, inside):
+        """Number of each road that points with a place are on, and which of them; None for all."""
+        if len(self.frame.roads) == 1:
+            return [(0, inside)]
+        road = self.roads[pass_number.view(np.int16)]
+        if inside is not None:
+            road = np.where(inside, road, -1)
+        found = np.unique(road)
+        return [(number, None if len(found) == 1 else road == number) for number in found.tolist() if number >= 0]
+
+    def _columns(self, piece, names, flagged, kept):
         """What is kept of a piece as it is: time, intensity, source, returns, scanner."""
         raw = piece.array
         columns = {name: kept(name, SURVEY_POINT[name]) for name in ("time", "intensity", "source", "returns")}
@@ -145,32 +146,43 @@ class BlockReading:
         columns["intensity"][:] = raw["intensity"]
         columns["source"][:] = raw["point_source_id"]
         columns["scanner"] = np.broadcast_to(np.uint8(0), len(raw))
-        if "scanner_channel" in names and _flagged(piece):
+        if "scanner_channel" in names and flagged:
             columns["scanner"] = np.asarray(piece["scanner_channel"])
-        columns["returns"][:] = _returns(piece, names)
+        # LAS 1.4 keeps them so
+        columns["returns"][:] = raw["bit_fields"] if "scanner_channel" in names else _returns(piece)
         return columns
 
-    def _placed(self, x, y, time, good, s, d):
-        """Put station and offset of local places into s and d (NaN where there is none); pass, and how many have a time of no pass."""
-        if good is None:
-            return self._located(x, y, time, s, d)
-        count = int(np.count_nonzero(good))
-        some_s, some_d = np.empty((2, count))
-        pass_number = np.full(len(good), -1, np.int16)
-        s[:] = d[:] = np.nan
-        pass_number[good], lost = self._located(x[good], y[good], time[good], some_s, some_d)
-        s[good], d[good] = some_s, some_d
-        return pass_number, lost
+    def _placed(self, columns, usable):
+        """Put stations and offsets into their columns; passes (uint16), which points have a place (None for all), how many a time of no pass."""
+        names = ("x", "y", "time", "s", "d")
+        if usable is None:
+            passes, inside = self._located(*map(columns.get, names))
+            return passes.view(np.uint16), inside, self._lost(passes)
+        rows = np.flatnonzero(usable)
+        some = [columns[name].take(rows) for name in names]
+        found, there = self._located(*some)
+        passes, inside = np.full(len(usable), -1, np.int16), np.zeros(len(usable), bool)
+        passes[rows], inside[rows] = found, True if there is None else there
+        for name, values in zip(names[3:], some[3:]):
+            columns[name][rows] = values
+        return passes.view(np.uint16), inside, self._lost(found)
+
+    def _lost(self, passes):
+        if not self.has_time or passes.strides[0] == 0 and passes[0] >= 0:
+            return 0
+        return int(np.count_nonzero(passes < 0))
 
     def _located(self, x, y, time, s, d):
+        """The same of points that may all be used, as `Placing.put` has it."""
         if self.has_time:
-            pass_number = self.placing.put(x, y, time, s, d)
-            return pass_number, int(np.count_nonzero(pass_number < 0))
-        road, s[:], d[:] = self.frame.locate_nearest(x, y, self.corridor)
-        pass_number = np.full(len(x), -1, np.int16)
+            return self.placing.put(x, y, time, s, d)
+        road, along, across = self.frame.locate_nearest(x * UNIT, y * UNIT, self.corridor)
+        in_units(along, s)
+        in_units(across, d)
+        passes = np.full(len(x), -1, np.int16)
         for p in self.frame.passes[::-1]:
-            pass_number[road == p.road] = p.number
-        return pass_number, 0
+            passes[road == p.road] = p.number
+        return passes, road >= 0
 
 
 def carried_on(time):
@@ -178,10 +190,8 @@ def carried_on(time):
     return np.where(time < WEEK / 2, time + WEEK, time)
 
 
-def _returns(block, names):
+def _returns(block):
     """(N,) return number + 16 * number of returns."""
-    if "scanner_channel" in names:  # LAS 1.4 keeps them so
-        return np.ascontiguousarray(block.array["bit_fields"])
     return np.asarray(block["return_number"]) | (np.asarray(block["number_of_returns"]) << 4)
 
 
@@ -191,21 +201,14 @@ def _flagged(piece):
     return "classification_flags" not in raw.dtype.names or bool(raw["classification_flags"].max())
 
 
-def _withheld(piece, names):
-    """(N,) of the points that are withheld, None where none is."""
-    if "withheld" not in names or not _flagged(piece):
-        return None
-    withheld = np.asarray(piece["withheld"])
-    return withheld if withheld.any() else None
+def _not_withheld(piece, names):
+    """(N,) bool of the points that are not withheld, None where none is."""
+    withheld = np.asarray(piece["withheld"]) if "withheld" in names else None
+    return withheld == 0 if withheld is not None and withheld.any() else None
 
 
-def _usable(x, y, z, withheld):
-    """(N,) bool of the points that may be used, None where all may."""
-    bounds = [(x, 2e5), (y, 2e5), (z, 2e4)]
-    # absurd coordinates would overflow the 0.1 mm integers
-    if withheld is None and all(v.min() > -most and v.max() < most for v, most in bounds):
-        return None
-    good = np.ones(len(x), bool)
-    for v, most in bounds:
-        good &= np.abs(v) < most  # False for NaN
-    return good if withheld is None else good & (withheld == 0)
+def _both(one, other):
+    """What two masks have in common, either of which may be None for all."""
+    if one is None or other is None:
+        return other if one is None else one
+    return one & other

@@ -1,8 +1,10 @@
-"""The whole numbers in which a LAS file keeps one coordinate: as local metres, and as the units of a record."""
+"""The whole numbers in which a LAS file keeps one coordinate, as the local units of a record."""
 
 import numpy as np
 
 from .points import UNIT, in_units
+
+FARTHEST = {"X": 2e5, "Y": 2e5, "Z": 2e4}  # m from the frame's origin: what lies beyond is absurd, and would overflow the units of a record
 
 
 class LasAxis:
@@ -22,20 +24,22 @@ class LasAxis:
         self._whole = abs(step - round(step)) <= 1e-13 * abs(step) and abs(start - round(start)) < 1e-3
         self._step, self._start = (np.array(round(value) % 2**32, np.uint32).view(np.int32) if self._whole else None for value in (step, start))
 
-    def metres(self, raw, kept):
-        """(N,) float64 local metres of raw points."""
+        # whole numbers of places within reach
+        reach = sorted((sign * FARTHEST[name] - self.shift) / scale for sign in (-1, 1))
+        self._least, self._most = np.ceil(reach[0]), np.floor(reach[1])
+
+    def units(self, raw, kept):
+        """(N,) int32 of 0.1 mm of raw points, and (N,) bool which of them have a place on earth; None where all have."""
         numbers = kept(self.name, np.int32)
         np.copyto(numbers, raw[self.name])
-        metres = np.multiply(numbers, self.scale, out=kept(self.name + " metres"))
-        metres += self.shift
-        return metres
-
-    def units(self, metres, kept):
-        """(N,) int32 of 0.1 mm: those of `metres` as it gave them last."""
-        numbers = kept(self.name, np.int32)
+        there = None
+        if len(numbers) and not (numbers.min() >= self._least and numbers.max() <= self._most):
+            there = (numbers >= self._least) & (numbers <= self._most)
         if not self._whole:
-            return in_units(metres, numbers)
+            metres = np.multiply(numbers, self.scale, out=kept("metres"))
+            metres += self.shift
+            return in_units(metres, numbers), there
         # what is beyond 32 bits on the way is so by a multiple of them
         numbers *= self._step
         numbers += self._start
-        return numbers
+        return numbers, there

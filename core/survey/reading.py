@@ -10,7 +10,6 @@ from ..parallel import PATIENCE
 from .block_points import BlockPoints, BlockReading, Ground
 from .cloud_blocks import CloudReaders
 from .kept_arrays import KeptArrays
-from .points import UNIT
 from .scanners import ScannerCensus
 from .sensor_height import DEFAULT_HEIGHT, HeightTally, Tracks, first_estimate
 
@@ -72,7 +71,7 @@ class SurveyReader:
         """What the block says of the whole cloud, its points, whether these were chosen by height and parted, and their number in the block."""
         block, ground, found, parts = load(), self._ground, BlockPoints(), []
         for road, points, own in self._blocks.read(block, found, ground):
-            parts.append((road, points.take(own).whole()) if ground is None else self._parted(road, points, own))
+            parts.append((road, _copied(points, own)) if ground is None else self._parted(road, points, own))
         return found, parts, ground is not None, len(block)
 
     def _parted(self, road, points, own):
@@ -114,6 +113,11 @@ class SurveyReader:
         """Choose by height what was placed before that was known, and store it."""
         for road, points in parts:
             kept = KeptArrays().of(len(points))
-            near = self._ground.near(road, points["s"] * UNIT, points["z"] * UNIT, kept)
+            near = self._ground.near(road, points["s"], points["z"], kept)
             if near.any():
                 self.store.add(self._parted(road, points, near))
+
+
+def _copied(points, own):
+    """Points that are meant (None for all) as Columns that stay."""
+    return points.copy() if own is None else points.take(own).whole()

@@ -4,16 +4,18 @@ import threading
 
 import numpy as np
 
-from .points import UNIT
+from .points import UNIT, to_units
 
 NEAR_TRACK = 1.5       # m either side of the vehicle's own track: road, not sidewalk
 DEFAULT_HEIGHT = 2.6   # m, where too few points lie on the track
 FEWEST = 50            # points that make a height
 STEP = 0.001           # m to which a height is told
+_STEP = round(STEP / UNIT)
 RANGE = 20.0           # m either side of the first estimate that is counted
 PEAK = 0.1             # m: width of the bins in which the road stands out
 EVEN = 0.15            # m: no springs let a vehicle rise and sink more than this for half of its way
-LOOKUP, WINDING = 0.5, 0.3  # m between looked-up places of a track, and how far it may stray between them
+CELL_BITS = 8          # of a station in units of 0.1 mm: a track is looked up every 26 mm
+REACH = round(NEAR_TRACK / UNIT)
 AROUND = 0.5           # m either side of the peak that belong to the road
 
 
@@ -22,14 +24,14 @@ class Tracks:
 
     def __init__(self, frame):
         self.frame = frame
-        self._rough = {}  # pass number -> first station, offsets of the track every LOOKUP metres
+        self._tracks = {}  # pass number -> first cell of station, offsets and heights of the track in the middle of each
         for p in frame.passes:
-            first, last = p.span
-            stations = np.arange(first, last + LOOKUP, LOOKUP)
-            self._rough[p.number] = first, p.at_station(stations)[0]
+            first, last = (int(station / UNIT) >> CELL_BITS for station in p.span)
+            middles = ((np.arange(first, last + 1) << CELL_BITS) + (1 << CELL_BITS) // 2) * UNIT
+            self._tracks[p.number] = first, *map(to_units, p.at_station(middles))
 
     def drops(self, road, points, own=None):
-        """Per pass over a road: (pass number, (N,) metres from the trajectory down to the points on its own track).
+        """Per pass over a road: (pass number, (N,) int32 units from the trajectory down to the points on its own track).
 
         Parameters
         ----------
@@ -39,37 +41,40 @@ class Tracks:
         if not len(points):
             return
         number, along, across = points["pass_number"], points["s"], points["d"]
-        ends = np.array([along.min(), along.max()]) * UNIT
+        ends = np.array([along.min(), along.max()]) >> CELL_BITS
         only = number.strides[0] == 0 or number.min() == number.max()
         for p in self.frame.passes_of(road):
             if only and p.number != number[0]:
                 continue
-            first, track = self._rough[p.number]
-            low, high = np.clip(((ends - first) * (1.0 / LOOKUP) + 0.5).astype(np.intp), 0, len(track) - 1)
-            left, right = track[low:high + 1].max(), track[low:high + 1].min()
-            reach = NEAR_TRACK + WINDING
-            # a look at whole numbers leaves out most of what lies beside the track
-            beside = across > int((right - reach) / UNIT)
-            beside &= across < int((left + reach) / UNIT)
+            first, offsets, heights = self._tracks[p.number]
+            low, high = np.clip(ends - first, 0, len(offsets) - 1)
+            track = offsets[low:high + 1]
+            # most lie beside all of the track
+            beside = _between(across, int(track.min()) - REACH, int(track.max()) + REACH)
             if own is not None:
                 beside &= own
             if not only:
                 beside &= number == p.number
             rows = np.flatnonzero(beside)
-            s, d = along.take(rows) * UNIT, across.take(rows) * UNIT
-            if left - right > WINDING:
-                k = ((s - first) * (1.0 / LOOKUP) + 0.5).astype(np.intp)
-                near = np.flatnonzero(np.abs(d - track.take(k, mode="clip")) < reach)
-                rows, s, d = rows.take(near), s.take(near), d.take(near)
-            track_d, track_z = p.at_station(s)
-            on = np.flatnonzero(np.abs(d - track_d) < NEAR_TRACK)
+            cell = (along.take(rows) >> CELL_BITS) - np.int32(first)
+            off = across.take(rows)
+            off -= offsets.take(cell, mode="clip")
+            on = np.flatnonzero(_between(off, -REACH, REACH))
             if len(on):
-                yield p.number, track_z.take(on) - points["z"].take(rows.take(on)) * UNIT
+                drops = heights.take(cell.take(on), mode="clip")
+                drops -= points["z"].take(rows.take(on))
+                yield p.number, drops
+
+
+def _between(values, least, most):
+    """(N,) bool: which of (N,) int32 lie between two others, both included."""
+    above = np.subtract(values, np.int32(least))
+    return above.view(np.uint32) <= np.uint32(most - least)
 
 
 def first_estimate(drops):
-    """Metres from the trajectory down to the road, good to a decimetre or two; None of too few points."""
-    return float(np.median(drops)) if len(drops) > FEWEST else None
+    """Metres from the trajectory down to the road, good to a decimetre or two, of (N,) units; None of too few points."""
+    return float(np.median(drops)) * UNIT if len(drops) > FEWEST else None
 
 
 class HeightTally:
@@ -87,12 +92,15 @@ class HeightTally:
         self._lock = threading.Lock()
 
     def add(self, number, drops):
-        """Count (N,) metres below the trajectory of points on the track of one pass."""
+        """Count (N,) int32 units below the trajectory of points on the track of one pass."""
         size = int(2 * RANGE / STEP)
-        k = np.rint((drops - self.origin) / STEP).astype(np.int64)
-        k = k[(k >= 0) & (k < size)]
+        k = drops - np.int32(round(self.origin / UNIT) - _STEP // 2)
+        k //= _STEP
+        if k.min() < 0 or k.max() >= size:
+            k = k[(k >= 0) & (k < size)]
         least = int(k.min(initial=size))
-        found = np.bincount(k - least)
+        k -= least
+        found = np.bincount(k)
         with self._lock:
             self.counts[number][least:least + len(found)] += found
 
