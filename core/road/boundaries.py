@@ -3,6 +3,8 @@
 from contextlib import closing
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from ..errors import RoadExtractionError
 from ..features import Features
 from ..progress import Progress
@@ -12,6 +14,7 @@ from .edges import EdgeSettings, fit_road_edges
 from .nearest_pass import name_passes
 from .profiles.crowds import Crowds
 from .scanlines.boundaries import ScanlineBoundarySettings, curbs_from_scanlines
+from .scanlines.candidates import FILLED
 from .scanlines.section_planes import ScanlineSettings
 from .scanlines.source import SurveyScanlines
 from .turned.curbs import add_turned_curbs
@@ -20,6 +23,7 @@ METHODS = ("profiles", "scanlines", "both")
 PROFILES = 0.3    # of the work with both methods; of the rest,
 LATTICE = 0.1     # the lattice ends here,
 TURNED = 0.85     # and what turns away begins here
+CLEAR = 0.20      # m about what corners are measured from in which scanlines still go on
 
 
 @dataclass(frozen=True)
@@ -60,7 +64,7 @@ def find_curb_points(survey, settings=BoundarySettings(), progress=Progress()):
     curbs and "both" those of the two that measure better (`chosen_points`). Corners, side streets and
     islands are found in plan, once, from the curbs that are drawn.
     """
-    with closing(Crowds(survey, settings.curbs.profile_width, settings.curbs.point_spacing)) as crowds:
+    with closing(Crowds(survey, settings.curbs.profile_width, settings.curbs.point_spacing, settings.scanlines.min_height)) as crowds:
         return _curb_points_from(crowds, settings, progress)
 
 
@@ -72,7 +76,8 @@ def _curb_points_from(crowds, settings, progress):
         found["profiles"] = detect_curbs(survey, settings.curbs, part, turned=not both, crowds=crowds)
     if settings.method != "profiles":
         part = progress.part(PROFILES if both else 0.0, 1.0)
-        source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, progress=part.part(0.0, LATTICE))
+        source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, progress=part.part(0.0, LATTICE),
+                                 level=_level_for(crowds, settings.scanlines))
         found["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length, part.part(LATTICE, TURNED))
         drawn = found["scanlines"]
         if both:
@@ -80,6 +85,17 @@ def _curb_points_from(crowds, settings, progress):
         add_turned_curbs(drawn, crowds, settings.curbs, part.part(TURNED, 1.0))
         name_passes(drawn, survey.frame)
     return found
+
+
+def _level_for(crowds, settings):
+    """The function by which SurveyScanlines leaves out where no corner can be."""
+    across, along = (distance + CLEAR for distance in (settings.distance_across, settings.distance_along + FILLED))
+
+    def level(road, number, start, end):
+        profiles = int(np.floor(start / crowds.width)), int(np.ceil(end / crowds.width))
+        return crowds.level_strip(road, number, profiles, across, along)
+
+    return level
 
 
 def _better_points(found, frame):

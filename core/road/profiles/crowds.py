@@ -10,10 +10,12 @@ import numpy as np
 
 from ...survey.points import UNIT
 from ...survey.spill_file import SpillFile
+from .level_strip import LevelStrip, strip_about
 
 FEW = 12          # points of a cell that tell level ground
 FEW_IN_PLAN = 6   # the same in plan: there are four such cells and more in one of the raster
 MOSTS = FEW, FEW_IN_PLAN
+LEAST = 0.03      # m, the least step that is sought anywhere
 LEVEL = 0.008     # m, standard deviation of heights in a cell that is level, on a road that climbs as on one that does not
 UNEVEN = 60       # points of any other cell: more hardly tell its layers better
 TOLD, MOSTLY = 4, 0.7  # points of a cell that tell whether it is level, and share of points in cells that are not
@@ -30,20 +32,23 @@ class Crowds:
     """Which points of a survey are looked at where they crowd: decided once, for curbs along the road and curbs in plan.
 
     width, spacing : m; a cell is a profile long and about `spacing` wide
+    least : m, a step that no level strip has (see `level_strip`)
 
     What is taken of a stretch is noted point by point, a bit each, in a temporary file: `close` it.
     """
 
-    def __init__(self, survey, width, spacing):
-        self.survey, self.width, self.spacing = survey, width, spacing
+    def __init__(self, survey, width, spacing, least=LEAST):
+        self.survey, self.width, self.spacing, self.least = survey, width, spacing, least
         self._together = max(int(round(TOGETHER / width)), 1)
         self._taken, self._uneven = {}, {}   # (road, first profile) -> {most: Stored bits}; (road, profile) -> bool
+        self._strips = {}   # (road, first profile) -> {pass number: LevelStrip}
         self._turns = [threading.Lock() for _ in range(TURNS)]
         self._file = None
 
     def close(self):
         """Forget what was decided and give the disk space back."""
         self._taken.clear()
+        self._strips.clear()
         if self._file is not None:
             self._file.close()
             self._file = None
@@ -78,30 +83,62 @@ class Crowds:
             self._uneven[key] = _mostly_uneven(self._window(road, profile - 2, profile + 2).records, self.width, self.spacing)
         return self._uneven[key]
 
+    def level_strip(self, road, number, profiles, across, along):
+        """The LevelStrip of profiles (first, last + 1) about the track of a pass, `across` and `along` metres from where it is not level."""
+        around = int(np.ceil(along / self.width))
+        wide = LevelStrip.none(profiles[0] - around, profiles[1] - profiles[0] + 2 * around, self.width)
+        end = wide.first + len(wide.low)
+        for first in range(wide.first // self._together * self._together, end, self._together):
+            self._look_at(road, first)
+            strip = self._strips[road, first].get(number)
+            if strip is not None:
+                a, b = max(first, wide.first), min(first + self._together, end)
+                for name in ("low", "high", "height"):
+                    getattr(wide, name)[a - wide.first:b - wide.first] = getattr(strip, name)[a - first:b - first]
+        return wide.within(across, along)
+
     def _window(self, road, first, last):
         return self.survey.window(road, first * self.width, last * self.width)
 
     def _rows(self, road, first, most):
         """Rows that are taken of the stretch which begins with profile `first`; None for all."""
-        key = road, first
-        with self._turns[hash(key) % (TURNS - 1)]:
-            if key not in self._taken:
-                self._taken[key] = self._decided(self._window(road, first, first + self._together), first * self.width)
-        count, noted = self._taken[key]
+        self._look_at(road, first)
+        count, noted = self._taken[road, first]
         if noted[most] is None:
             return None
         bits = self._file.get(noted[most])
         return np.flatnonzero(np.unpackbits(bits, count=count).view(bool))
 
-    def _decided(self, points, start):
-        """Number of points, and which of them are taken for every `most`: bits in the file, None for all."""
-        taken = {most: np.ones(len(points), bool) for most in MOSTS}
-        first = 0
-        for piece in in_pieces(points, start, self.width):
-            for most, chosen in _few_of(piece, self.width, self.spacing).items():
-                taken[most][first:first + len(piece)] = chosen
-            first += len(piece)
+    def _look_at(self, road, first):
+        """Decide what is taken of the stretch which begins with profile `first`, unless that was done."""
+        key = road, first
+        with self._turns[hash(key) % (TURNS - 1)]:
+            if key not in self._taken:
+                self._strips[key] = {}
+                self._taken[key] = self._decided(road, first, self._strips[key])
+
+    def _decided(self, road, first, strips):
+        """Number of points, and which of them are taken for every `most`: bits in the file, None for all; `strips` are filled in."""
+        points = self._window(road, first, first + self._together)
+        taken, done = {most: np.ones(len(points), bool) for most in MOSTS}, 0
+        for piece in in_pieces(points, first * self.width, self.width):
+            for number, own, columns in _by_pass(piece.records):
+                cells = _Cells(*columns, self.width, self.spacing)
+                for most, chosen in cells.thinned().items():
+                    here = taken[most][done:done + len(piece)]
+                    here[slice(None) if own is None else own] = chosen
+                if cells.looked_through:
+                    strip = strips.setdefault(number, LevelStrip.none(first, self._together, self.width))
+                    self._note_strip(strip, cells, self.survey.frame.passes[number])
+            done += len(piece)
         return len(points), {most: None if chosen.all() else self._noted(np.packbits(chosen)) for most, chosen in taken.items()}
+
+    def _note_strip(self, strip, cells, p):
+        """Fill in the profiles of a strip that some cells are of."""
+        middles = (cells.first + np.arange(cells.profiles) + 0.5) * self.width
+        found = strip_about(np.floor(p.at_station(middles)[0] / UNIT), *cells.grids(), cells.size, self.least / UNIT)
+        own = slice(cells.first - strip.first, cells.first - strip.first + cells.profiles)
+        strip.low[own], strip.high[own], strip.height[own] = found
 
     def _noted(self, bits):
         with self._turns[-1]:
@@ -119,72 +156,78 @@ def in_pieces(points, start, width):
     return [points[a:b] for a, b in zip(cuts, np.r_[cuts[1:], len(points)]) if b > a]
 
 
-def _few_of(points, width, spacing):
-    """{most: (N,) bool} which of some points are taken."""
-    columns = [points.records[name] for name in ("s", "d", "z")]
-    numbers = points.records["pass_number"]
+def _by_pass(records):
+    """[(pass number, indices of its records, None for all, their columns s, d, z)]"""
+    columns, numbers = [records[name] for name in ("s", "d", "z")], records["pass_number"]
     if numbers.min() == numbers.max():
-        return _thinned(*columns, width, spacing)
-    taken = {most: np.empty(len(points), bool) for most in MOSTS}
-    for number in np.flatnonzero(np.bincount(numbers)):
-        own = np.flatnonzero(numbers == number)
-        for most, chosen in _thinned(*(column.take(own) for column in columns), width, spacing).items():
-            taken[most][own] = chosen
-    return taken
+        return [(int(numbers[0]), None, columns)]
+    owns = [(int(number), np.flatnonzero(numbers == number)) for number in np.flatnonzero(np.bincount(numbers))]
+    return [(number, own, [column.take(own) for column in columns]) for number, own in owns]
 
 
-def _thinned(s, d, z, width, spacing):
-    """{most: (N,) bool} which points are taken of every cell; stations s (ascending), offsets d and heights z in 0.1 mm."""
-    cell = _cells(s, d, width, spacing)
-    held = np.bincount(cell)
-    crowded = held > min(MOSTS)
-    in_crowds = held[crowded].sum()
-    if not in_crowds:
-        return dict.fromkeys(MOSTS, True)
-    if in_crowds < RARELY * len(s):
-        own = np.flatnonzero(crowded.take(cell))
-        level = _level(cell.take(own), held, z.take(own))
-    else:
-        level = _level(cell, held, z)
-    lot, lots = _by_lot(s, np.abs(d)), 65536.0 / np.maximum(held, 1)
-    return {most: lot <= np.minimum(np.where(level, most, UNEVEN) * lots, 65535.0).astype(np.uint16).take(cell) for most in MOSTS}
+class _Cells:
+    """Points by cell: a profile long, about `spacing` wide, of one side of the road.
+
+    s (ascending), d, z : (N,) stations, offsets and heights in 0.1 mm
+    first, profiles, size : number of the first profile, count of profiles, width of a cell in 0.1 mm
+    looked_through : whether the heights of all points have been looked at, which `grids` needs
+    """
+
+    def __init__(self, s, d, z, width, spacing):
+        self.s, self.d, self.z = s, d, z
+        bits = int(np.rint(np.log2(spacing / UNIT)))
+        self.size, self.half, self.looked_through = 1 << bits, (FARTHEST >> bits) + 1, False
+        # stations ascend, so profiles are runs of points; bounds lie off the whole units
+        self.first, last = (int(np.floor((int(end) + 0.5) * UNIT / width)) for end in (s[0], s[-1]))
+        self.profiles = last - self.first + 1
+        cuts = np.searchsorted(s, np.ceil(np.arange(self.first + 1, last + 1) * (width / UNIT) - 0.5 - EXACT).astype(np.int32)).tolist()
+        # the two sides of a road are parted alike
+        cell = np.abs(d)
+        np.minimum(cell, FARTHEST, out=cell)
+        cell >>= bits
+        side = d >> 31
+        side &= self.half
+        cell += side
+        for k, (start, end) in enumerate(zip([0, *cuts], [*cuts, len(s)])):
+            cell[start:end] += np.int32(2 * self.half * k)
+        self.cell = cell.astype(np.intp)
+        self.held = np.bincount(self.cell, minlength=2 * self.half * self.profiles)
+
+    def thinned(self):
+        """{most: (N,) bool} which points are taken of every cell."""
+        crowded = self.held > min(MOSTS)
+        in_crowds = self.held[crowded].sum()
+        if not in_crowds:
+            return dict.fromkeys(MOSTS, True)
+        if in_crowds < RARELY * len(self.s):
+            level = self.level(np.flatnonzero(crowded.take(self.cell)))
+        else:
+            level = self.level()
+        lot, lots = _by_lot(self.s, np.abs(self.d)), 65536.0 / np.maximum(self.held, 1)
+        return {most: lot <= np.minimum(np.where(level, most, UNEVEN) * lots, 65535.0).astype(np.uint16).take(self.cell) for most in MOSTS}
+
+    def level(self, own=None):
+        """(C,) bool: is the ground of each cell level? Told for those of which all points are among `own`, indices, None for all."""
+        cell, z = (self.cell, self.z) if own is None else (self.cell.take(own), self.z.take(own))
+        z = z.astype(float)
+        self.total = total = np.bincount(cell, z, len(self.held))
+        z *= z
+        squares = np.bincount(cell, z, len(self.held))
+        self.squares = squares - total * total / np.maximum(self.held, 1)
+        self.looked_through = own is None
+        return self.squares <= self.held * (LEVEL / UNIT) ** 2
+
+    def grids(self):
+        """Of every cell its points, the sum of their heights, and that of the squares off their mean: (profiles, 2 sides, cells outward)."""
+        return tuple(values.reshape(self.profiles, 2, self.half) for values in (self.held, self.total, self.squares))
 
 
 def _mostly_uneven(records, width, spacing):
     if not len(records):
         return False
-    cell = _cells(records["s"], records["d"], width, spacing)
-    held = np.bincount(cell)
-    told = np.where(held >= TOLD, held, 0)
-    return told[~_level(cell, held, records["z"])].sum() > MOSTLY * told.sum()
-
-
-def _cells(s, d, width, spacing):
-    """(N,) number of the cell of each point; stations s (ascending) and offsets d in 0.1 mm."""
-    bits = int(np.rint(np.log2(spacing / UNIT)))
-    half = (FARTHEST >> bits) + 1
-    # stations ascend, so profiles are runs of points; bounds lie off the whole units
-    first, last = (int(np.floor((int(end) + 0.5) * UNIT / width)) for end in (s[0], s[-1]))
-    cuts = np.searchsorted(s, np.ceil(np.arange(first + 1, last + 1) * (width / UNIT) - 0.5 - EXACT).astype(np.int32)).tolist()
-    # the two sides of a road are parted alike
-    cell = np.abs(d)
-    np.minimum(cell, FARTHEST, out=cell)
-    cell >>= bits
-    side = d >> 31
-    side &= half
-    cell += side
-    for k, (start, end) in enumerate(zip([0, *cuts], [*cuts, len(s)])):
-        cell[start:end] += np.int32(2 * half * k)
-    return cell.astype(np.intp)
-
-
-def _level(cell, held, z):
-    """(C,) bool: is the ground of each cell level? Told for those of which all points are among (N,) cell and z."""
-    z = z.astype(float)
-    total = np.bincount(cell, z, len(held))
-    z *= z
-    squares = np.bincount(cell, z, len(held))
-    return squares - total * total / np.maximum(held, 1) <= held * (LEVEL / UNIT) ** 2
+    cells = _Cells(*(records[name] for name in ("s", "d", "z")), width, spacing)
+    told = np.where(cells.held >= TOLD, cells.held, 0)
+    return told[~cells.level()].sum() > MOSTLY * told.sum()
 
 
 def _by_lot(s, out):

@@ -38,6 +38,13 @@ class Sight:
         seen = self.ground[first:last]
         seen[:, place[starts]] = np.fmin(seen[:, place[starts]], lowest)
 
+    def level(self, profiles, nearest, farthest, height):
+        """Note that some profiles (first, last + 1) have ground everywhere between two offsets, (R,) each, at a height."""
+        cell = np.arange(self.cells) * CELL
+        there = (cell >= nearest[:, None]) & (cell + CELL <= farthest[:, None])
+        seen = self.ground[profiles[0] - self.first:profiles[1] - self.first]
+        seen[:] = np.where(there, np.fmin(seen, height[:, None]), seen)
+
     def hidden(self, s, u, h, near):
         """(N,) bool: is a curb expected at station s, offset u and height h hidden from view?
 

@@ -88,8 +88,8 @@ def curbs_from_scanlines(source, settings=ScanlineBoundarySettings(), block_leng
 
     Parameters
     ----------
-    source : gives `frame`, `crs`, `interval`, `corridor`, `roads()`, `span(road)`, `road_height(road, s)` and
-        `runs(road, start, end)`; see scanline_source
+    source : gives `frame`, `crs`, `interval`, `corridor`, `roads()`, `span(road)`, `road_height(road, s)`,
+        `runs(road, start, end)` and `level`; see SurveyScanlines
     block_length : m of road per corner; 0 = 0.5 to 2.0, shorter in sharp bends
 
     Returns
@@ -132,11 +132,13 @@ def _corners_of_road(source, road, settings, progress):
             grid = height_grid(lines, heights, rows, interval, min(REACH, source.corridor), settings.clipping_height)
             closed = grid.closed(rows_filled(interval))
             tall = _tall(lines, heights, interval)
-            candidates = {}
+            candidates, strip = {}, _level_beside(source, road, int(lines.pass_number[0]), stations[margin:-margin])
             for side, sign in SIDES.items():
                 origin = np.floor(nearest[side].min())
                 outward = grid.outward(sign, origin)
                 sight[side].look(sign * tall[0], *tall[1:], section, outward.part(margin, margin + end - begin))
+                if strip is not None:
+                    sight[side].level(section, *strip[sign])
                 of_side = find_candidates(closed.outward(sign, origin), outward.low, nearest[side], settings)
                 candidates[side] = of_side[(of_side.row >= margin) & (of_side.row < margin + end - begin)]
             for side, corners in _corners(lines, heights, rows, interval, candidates, settings):
@@ -156,6 +158,15 @@ def _sections(start, end, interval):
     count = max(int(np.ceil((end - start) / SECTION)), 1)
     bounds = np.unique(np.rint(np.linspace(first, last, count + 1)).astype(int))
     return [(int(a), int(b)) for a, b in zip(bounds[:-1], bounds[1:])]
+
+
+def _level_beside(source, road, number, stations):
+    """{sign of the side: (nearest, farthest, height)} of the ground that scanlines leave out beside the track of a pass, (R,) each."""
+    if source.level is None:
+        return None
+    low, high, height = source.level(road, number, stations[0], stations[-1] + source.interval).at(stations)
+    height = height - expected_height(source, road, stations)
+    return {1: (low, high, height), -1: (-high, -low, height)}
 
 
 def _tall(lines, heights, interval):

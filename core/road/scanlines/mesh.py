@@ -65,7 +65,7 @@ class Ribs:
         return cls(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(cls)))
 
 
-def scan_lines(records, p, clock, corridor):
+def scan_lines(records, p, clock, corridor, level=None):
     """The points of a scanner as lines.
 
     Parameters
@@ -74,13 +74,17 @@ def scan_lines(records, p, clock, corridor):
     p : Pass
     clock : MirrorClock
     corridor : m either side within which points are used
+    level : LevelStrip in which none are used, None uses all
 
     Returns
     -------
     ScanLines, or None where fewer than two lines are there
     """
     d = records["d"]
-    records = chosen(records, np.abs(d) <= int(round(corridor / UNIT)))
+    used = np.abs(d) <= int(round(corridor / UNIT))
+    if level is not None:
+        used &= ~level.holds(records["s"], d)
+    records = chosen(records, used)
     if len(records) < 4:
         return None
     time = np.ascontiguousarray(records["time"])

@@ -71,8 +71,12 @@ def scanlines_of(survey, road, start, end, settings=ScanlineSettings(), lattice=
     return lines if (np.diff(order) == 1).all() else lines[order]
 
 
-def runs_of(survey, road, start, end, settings=ScanlineSettings(), lattice=None, intensity=True):
-    """The scanlines of `scanlines_of` as a list, each of one pass and scanner; `intensity` says whether theirs is wanted, else it is 0."""
+def runs_of(survey, road, start, end, settings=ScanlineSettings(), lattice=None, intensity=True, level=None):
+    """The scanlines of `scanlines_of` as a list, each of one pass and scanner.
+
+    intensity : whether theirs is wanted, else it is 0
+    level : function of pass number, start and end (metres): the LevelStrip that the mesh leaves out; None leaves nothing out
+    """
     interval = settings.interval
     first, last = int(np.ceil(start / interval - 1e-9)), int(np.ceil(end / interval - 1e-9))
     if last <= first:
@@ -82,12 +86,14 @@ def runs_of(survey, road, start, end, settings=ScanlineSettings(), lattice=None,
     parts, apart = [], not lattice.clocks
     if lattice.clocks:
         margin = max(_margin(survey, road, lattice), LEAST_SLICE, interval)
-        records = survey.window(road, first * interval - margin, (last - 1) * interval + margin).records
+        window = first * interval - margin, (last - 1) * interval + margin
+        records = survey.window(road, *window).records
         for key, own in scanner_runs(records):
             clock = lattice.clocks.get(key)
             apart |= clock is None
             if clock is not None:
-                parts.append(_cut(own, survey.frame.passes[key[0]], key, clock, (first, last), settings, intensity))
+                parts.append(_cut(own, survey.frame.passes[key[0]], key, clock, (first, last), settings, intensity,
+                                  None if level is None else level(key[0], *window)))
     if apart:
         lines = point_scanlines(survey, road, start, end, interval, settings.corridor)
         meshed = [key in lattice.clocks for key in zip(lines.pass_number.tolist(), lines.scanner.tolist())]
@@ -119,9 +125,9 @@ def _margin(survey, road, lattice):
     return margin + LONGEST_EDGE
 
 
-def _cut(records, p, key, clock, planes, settings, intensity=True):
+def _cut(records, p, key, clock, planes, settings, intensity, level):
     """Scanlines of one pass and scanner."""
-    lines = scan_lines(records, p, clock, settings.corridor)
+    lines = scan_lines(records, p, clock, settings.corridor, level)
     if lines is None:
         return Scanlines.none()
     ribs = Ribs.joined([ribs_of(lines, p.direction, clock, settings.interval), slanting_edges(lines, clock, settings.interval)])

@@ -1,5 +1,7 @@
 """Where normalized scanlines come from: cut from a survey section by section, or read from a layer."""
 
+from functools import partial
+
 import numpy as np
 
 from ...errors import RoadExtractionError
@@ -16,10 +18,11 @@ class SurveyScanlines:
     settings : ScanlineSettings
     sensor_height : m from the trajectory down to the road, 0 = from the data
     lattice : ScanLattice; found here where it is not given
+    level : function of road, pass number, start and end (metres): the LevelStrip that is left out; None leaves nothing out
     """
 
-    def __init__(self, survey, settings=ScanlineSettings(), sensor_height=0.0, lattice=None, progress=Progress()):
-        self.settings, self.sensor_height = settings, sensor_height
+    def __init__(self, survey, settings=ScanlineSettings(), sensor_height=0.0, lattice=None, progress=Progress(), level=None):
+        self.settings, self.sensor_height, self.level = settings, sensor_height, level
         self.survey, self.interval, self.corridor = survey, self.settings.interval, self.settings.corridor
         self.lattice = find_lattice(survey, self.settings.rotation_frequency, progress) if lattice is None else lattice
         self.frame, self.crs = survey.frame, survey.crs
@@ -38,7 +41,8 @@ class SurveyScanlines:
 
     def runs(self, road, start, end):
         """List of Scanlines with start <= station < end, each of one pass and scanner; intensity is left out."""
-        return runs_of(self.survey, road, start, end, self.settings, self.lattice, intensity=False)
+        level = None if self.level is None else partial(self.level, road)
+        return runs_of(self.survey, road, start, end, self.settings, self.lattice, intensity=False, level=level)
 
 
 class LayerScanlines:
@@ -59,7 +63,7 @@ class LayerScanlines:
     """
 
     def __init__(self, lines, frame, interval, crs, sensor_height=0.0):
-        self.lines = {road: found for road, found in sorted(lines.items()) if len(found)}
+        self.lines, self.level = {road: found for road, found in sorted(lines.items()) if len(found)}, None
         self.frame, self.interval, self.crs = frame, interval, crs
         if not any(len(np.unique(found.station)) > 1 for found in self.lines.values()):
             raise RoadExtractionError("The scanlines lie on fewer than two section planes of one road, so no curb can be followed from one "
