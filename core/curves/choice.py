@@ -3,22 +3,24 @@
 import numpy as np
 
 from ..errors import RoadExtractionError
-from .arcs import fit_circle, fit_line
+from .arcs import fit_circle, fit_circles, fit_line, fit_lines
 from .clothoid import Clothoid
 from .curve import Arc
 from .ellipse import Ellipse, fit_ellipse
 from .fit import least_bic
 from .polynomial import Polynomial, fit_polynomial
-from .spline import Spline, fit_spline
-from .transitions import fit_clothoid
+from .spline import Spline, fit_spline, fit_splines
+from .transitions import fit_clothoid, fit_clothoids
 
 CURVES = ("automatic", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline")
 WORST_RESIDUAL = 0.05  # m: 95 % of the points must be nearer than this to a simpler curve
 FEWEST_NUMBERS = 3     # that any curve but a straight line has
+HOPELESS = 10 * WORST_RESIDUAL  # what is farther off is not fitted to the millimetre
+LEAST_TURN = np.radians(60.0)  # of a circle that may be an ellipse
 BIC_MARGIN = 6.0       # a simpler curve is taken while its BIC is within this of the best
 
 
-def fit_curve(x, y, curve="automatic", degree=2, along=None):
+def fit_curve(x, y, curve="automatic", degree=2):
     """The curve of one kind, or the simplest acceptable one.
 
     Automatic fits line, circle, clothoid, ellipse and B-spline and takes the
@@ -30,7 +32,6 @@ def fit_curve(x, y, curve="automatic", degree=2, along=None):
     x, y : (N,) metres, thinned (one place per 0.25 m or so), ordered along the line
     curve : one of CURVES
     degree : of the polynomial
-    along : (N,) distances along the line where they are known, metres (B-spline only)
 
     Returns
     -------
@@ -44,63 +45,108 @@ def fit_curve(x, y, curve="automatic", degree=2, along=None):
     if curve not in CURVES:
         raise RoadExtractionError(f"There is no curve called {curve!r}. Choose one of {', '.join(CURVES)}.")
     if curve == "automatic":
-        return choose(candidates(x, y, along))
+        return fit_curves([(x, y)])[0]
     least = {"line": 2, "circle": 3, "ellipse": 6, "clothoid": 5, "polynomial": degree + 1, "b-spline": 4}[curve]
     if len(x) < least:
         raise RoadExtractionError(
             f"A {curve} needs at least {least} places along the line, there are {len(x)}. Choose curve = automatic.")
-    fits = {"line": fit_line, "circle": fit_circle, "ellipse": fit_ellipse, "clothoid": fit_clothoid}
-    if curve == "polynomial":
-        return fit_polynomial(x, y, degree)
-    if curve == "b-spline":
-        return fit_spline(x, y, along)
-    return fits[curve](x, y)
+    fits = {"line": fit_line, "circle": fit_circle, "ellipse": fit_ellipse, "clothoid": fit_clothoid, "b-spline": fit_spline}
+    return fit_polynomial(x, y, degree) if curve == "polynomial" else fits[curve](x, y)
 
 
-def candidates(x, y, along=None):
-    """Yields fits of line, circle, clothoid, ellipse and B-spline, simplest first, without those the points cannot carry."""
-    yield fit_line(x, y)
-    turn = 0.0
-    if len(x) >= 4:
-        circle = fit_circle(x, y)
-        turn = abs(circle.curve.bend) * circle.curve.length
-        yield circle
-    if len(x) >= 8:
-        yield fit_clothoid(x, y)
-    if len(x) >= 12 and turn > np.radians(60.0):
-        try:
-            yield fit_ellipse(x, y)
-        except RoadExtractionError:
-            pass
-    if len(x) >= 6:
-        yield fit_spline(x, y, along)
+def fit_curves(places):
+    """The simplest acceptable curve of each of many lines, as `fit_curve` takes it, all fitted together: a list of (x, y) to a list of Fit.
 
-
-def choose(fits):
-    """The first (simplest) fit whose BIC is within 6 of the best and whose 95 % residual is below 5 cm.
-
-    Where none is that close, the one of the least 95 % residual.
+    Where no curve is near enough, the one of the least 95 % residual.
     """
-    seen = []
-    return simplest((seen.append(fit) or fit for fit in fits), WORST_RESIDUAL) or min(seen, key=lambda fit: fit.worst)
+    choices = choose_each(places, (*ALIGNMENT, ("ellipse", 12, _ellipses), ("b-spline", 6, fit_splines)), WORST_RESIDUAL)
+    return [choice.best or min(choice.found, key=lambda fit: fit.worst) for choice in choices]
+
+
+def _lines(places):
+    return fit_lines(places, HOPELESS)
+
+
+def _circles(places):
+    return fit_circles(places, HOPELESS)
+
+
+def _clothoids(places):
+    return fit_clothoids(places, HOPELESS)
+
+
+def _ellipses(places):
+    """Fits, None of what is no ellipse."""
+    found = []
+    for x, y in places:
+        try:
+            found.append(fit_ellipse(x, y))
+        except RoadExtractionError:
+            found.append(None)
+    return found
+
+
+# name, fewest places, function of a list of (x, y): what roads are made of, simplest first
+ALIGNMENT = ("line", 2, _lines), ("circle", 4, _circles), ("clothoid", 8, _clothoids)
+
+
+def choose_each(places, kinds=ALIGNMENT, worst=np.inf):
+    """The Choice of each of many lines, of curves of some kinds, simplest first; no more are fitted than are needed to know.
+
+    places : list of (x, y)
+    kinds : as ALIGNMENT
+    worst : metres, the 95 % residual of a curve that is taken
+    """
+    choices = [Choice(worst) for _ in places]
+    for name, fewest, fit_all in kinds:
+        open_ones = [k for k, choice in enumerate(choices) if not choice.decided and len(places[k][0]) >= fewest
+                     and (name != "ellipse" or choice.turn > LEAST_TURN)]
+        for k, fit in zip(open_ones, fit_all([places[k] for k in open_ones])):
+            if fit is not None:
+                choices[k].add(fit)
+    return choices
+
+
+class Choice:
+    """The simplest of fits that are added, simplest first: the first whose BIC is within 6 of the best and whose 95 % residual is below `worst`."""
+
+    def __init__(self, worst=np.inf):
+        self.found, self.decided, self._worst = [], False, worst
+
+    def add(self, fit):
+        self.found.append(fit)
+        least = least_bic(len(fit.residuals), FEWEST_NUMBERS)
+        for one in self._near_enough():
+            if one.bic <= least + BIC_MARGIN:
+                self.decided = True  # whatever may follow
+            if one.bic <= self._best_bic() + BIC_MARGIN:
+                break                # what follows decides
+
+    def _near_enough(self):
+        return [fit for fit in self.found if fit.worst < self._worst]
+
+    def _best_bic(self):
+        return min(fit.bic for fit in self.found)
+
+    @property
+    def best(self):
+        """A Fit, or None where none is near enough."""
+        return next((fit for fit in self._near_enough() if fit.bic <= self._best_bic() + BIC_MARGIN), None)
+
+    @property
+    def turn(self):
+        """Radians by which the circle turns."""
+        return max((abs(fit.curve.bend) * fit.curve.length for fit in self.found if fit.curve.kind == "circle"), default=0.0)
 
 
 def simplest(fits, worst=np.inf):
-    """The first fit whose BIC is within 6 of the best and whose 95 % residual is below `worst`; None where there is none.
-
-    fits : an iterable of Fit, simplest first; no more are made than are needed to know
-    """
-    found = []
+    """The best of a Choice among an iterable of Fit, simplest first; no more are made than are needed to know."""
+    choice = Choice(worst)
     for fit in fits:
-        found.append(fit)
-        least = least_bic(len(fit.residuals), FEWEST_NUMBERS)
-        for one in found:
-            if one.worst < worst and one.bic <= least + BIC_MARGIN:
-                return one  # whatever may follow
-            if one.worst < worst and one.bic <= min(other.bic for other in found) + BIC_MARGIN:
-                break       # what follows decides
-    best = min(fit.bic for fit in found)
-    return next((fit for fit in found if fit.worst < worst and fit.bic <= best + BIC_MARGIN), None)
+        choice.add(fit)
+        if choice.decided:
+            break
+    return choice.best
 
 
 _NUMBERS = {

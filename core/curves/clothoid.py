@@ -14,8 +14,14 @@ def _gauss(count):
 
 
 # Gauss points that integrate a clothoid to 1e-12 of its length, by how far it turns (radians)
-_FEW, _SOME, _MANY, _STEP = _gauss(8), _gauss(14), _gauss(24), _gauss(3)
+RULES = _gauss(8), _gauss(14), _gauss(24)
 LITTLE_TURN, MORE_TURN = 0.8, 3.0
+STEP = _gauss(3)   # for steps of decimetres
+
+
+def rule_of(turn):
+    """Which of RULES serves for a turn (radians, float or array) of a clothoid."""
+    return (turn >= LITTLE_TURN) * 1 + (turn >= MORE_TURN) * 1
 
 
 @dataclass(frozen=True)
@@ -42,14 +48,7 @@ class Clothoid(Curve):
     def _rule(self, u):
         far = float(np.abs(u).max()) if len(u) else 0.0
         turn = abs(self.bend) * far + abs(self.change) * far**2 / 2
-        return _FEW if turn < LITTLE_TURN else _SOME if turn < MORE_TURN else _MANY
-
-    def moved_on(self, places, u, step):
-        """(N, 2) places at u + step, given those at u; for steps of decimetres."""
-        nodes, weights = _STEP
-        turn = self.heading(u[:, None] + step[:, None] * nodes)
-        shift = np.stack([np.cos(turn) @ weights, np.sin(turn) @ weights], axis=1)
-        return places + step[:, None] * shift
+        return RULES[rule_of(turn)]
 
     def heading(self, u):
         u = np.asarray(u, float)
@@ -57,19 +56,6 @@ class Clothoid(Curve):
 
     def curvature(self, u):
         return self.bend + self.change * np.asarray(u, float)
-
-    def derivatives(self, u):
-        """(N, 2, 5): how the place at u moves with (x, y, direction, bend, change)."""
-        u = np.asarray(u, float)
-        nodes, weights = self._rule(u)
-        turn = self.heading(u[:, None] * nodes)
-        powers = weights[:, None] * nodes[:, None] ** np.arange(3) * [1.0, 1.0, 0.5]
-        lengths = u[:, None] ** np.arange(1, 4)
-        out = np.zeros((len(u), 2, 5))
-        out[:, 0, 0] = out[:, 1, 1] = 1.0
-        out[:, 0, 2:] = -(np.sin(turn) @ powers) * lengths
-        out[:, 1, 2:] = (np.cos(turn) @ powers) * lengths
-        return out
 
     def moved(self, dx, dy):
         return Clothoid(self.x + dx, self.y + dy, self.direction, self.bend, self.change, self.length)

@@ -6,7 +6,8 @@ import numpy as np
 
 from .arcs import fit_circle
 from .curve import Arc
-from .fit import F_SCALE, NOISE_FLOOR, Fit, checked, minimise
+from .fit import F_SCALE, NOISE_FLOOR, Fit, checked
+from .together import minimise
 
 
 @dataclass(frozen=True)

@@ -36,33 +36,37 @@ class Curve:
         """Metres where the curve is one arc, NaN otherwise."""
         return float("nan")
 
-    def foot(self, x, y):
+    def foot(self, x, y, near=None):
         """Arc length of the foot and left-positive distance of places.
 
         Parameters
         ----------
         x, y : (N,) metres
+        near : (N,) arc lengths near the feet where they are known; else the nearest foot is looked for
 
         Returns
         -------
         u, e : (N,) metres; beyond an end, e is measured from the curve gone on.
         """
         x, y = np.asarray(x, float), np.asarray(y, float)
-        nodes = np.linspace(0.0, self.length, max(3, int(np.ceil(self.length)) + 1))
-        u = nodes[cKDTree(self.at(nodes)).query(np.c_[x, y])[1]]
+        if near is None:
+            nodes = np.linspace(0.0, self.length, max(3, int(np.ceil(self.length)) + 1))
+            near = nodes[cKDTree(self.at(nodes)).query(np.stack([x, y], axis=1))[1]]
+        u = near
         for _ in range(8):
-            along, e = self._gap(x, y, u)
-            step = along / np.clip(1.0 - self.curvature(u) * e, 0.3, 3.0)
-            u = u + np.clip(step, -2.0, 2.0) if self.length > 2.0 else u + step
+            along, e, bend = self._gap(x, y, u)
+            step = along / np.minimum(np.maximum(1.0 - bend * e, 0.3), 3.0)
+            u = u + np.minimum(np.maximum(step, -2.0), 2.0) if self.length > 2.0 else u + step
             if not len(step) or np.abs(step).max() < 1e-9:
                 break
         return u, self._gap(x, y, u)[1]
 
     def _gap(self, x, y, u):
+        """How far places lie ahead of arc lengths u and left of them, and the curvature there."""
         places, heading = self.at(u), self.heading(u)
         dx, dy = x - places[:, 0], y - places[:, 1]
         c, s = np.cos(heading), np.sin(heading)
-        return dx * c + dy * s, dy * c - dx * s
+        return dx * c + dy * s, dy * c - dx * s, self.curvature(u)
 
     def sample(self, step=0.5):
         """(M, 2) places from end to end, evenly spaced by at most `step` metres."""
@@ -110,6 +114,20 @@ class TabledCurve(Curve):
         nodes, inverse, *_ = self._table()
         inside = np.clip(np.asarray(u, float), 0.0, nodes[-1])
         return inverse(inside), np.asarray(u, float) - inside
+
+    def u_of(self, t):
+        """(N,) arc lengths at parameters t, to a millimetre or so."""
+        u, _, nodes, _ = self._table()
+        return np.interp(t, *_rising(nodes, u))
+
+    def _gap(self, x, y, u):
+        t, beyond = self._t(u)
+        places, (sx, sy), (bx, by) = self._place(t), self._slope(t).T, self._bend(t).T
+        speed = np.hypot(sx, sy)
+        c, s = sx / speed, sy / speed
+        dx, dy = x - places[:, 0] - beyond * c, y - places[:, 1] - beyond * s
+        bend = np.where(np.abs(beyond) < 1e-6, (sx * by - sy * bx) / speed**3, 0.0)
+        return dx * c + dy * s, dy * c - dx * s, bend
 
     def at(self, u):
         t, beyond = self._t(u)
@@ -178,7 +196,7 @@ class Arc(Curve):
     def curvature(self, u):
         return np.full(np.shape(u), float(self.bend))
 
-    def foot(self, x, y):
+    def foot(self, x, y, near=None):
         dx, dy = np.asarray(x, float) - self.x, np.asarray(y, float) - self.y
         c, s, k = np.cos(self.direction), np.sin(self.direction), self.bend
         along, across = dx * c + dy * s, dy * c - dx * s

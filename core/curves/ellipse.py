@@ -6,7 +6,8 @@ import numpy as np
 
 from ..errors import RoadExtractionError
 from .curve import TabledCurve
-from .fit import Fit, checked, minimise
+from .fit import Fit, checked
+from .together import minimise
 
 LEAST_TURN = np.radians(60.0)  # on a shorter arc an ellipse cannot be told from a circle
 

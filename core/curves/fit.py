@@ -80,52 +80,6 @@ def medians(values):
     return (ordered[..., low:low + 1] + ordered[..., high:high + 1]) / 2
 
 
-def minimise(residuals, jacobian, start, scale):
-    """Parameters that minimise soft L1 of the residuals, by Levenberg-Marquardt.
-
-    Plain least squares first; where the curve cannot follow the points no residual
-    is an outlier, so the scale of soft L1 grows with that misfit.
-
-    residuals, jacobian : functions of the parameters (P,) giving (N,) and (N, P)
-    scale : (P,) the size of a sensible step in each parameter
-    """
-    scale = np.asarray(scale, float)
-    found = _levenberg(residuals, jacobian, np.asarray(start, float), scale, np.inf)
-    misfit = 1.4826 * median(np.abs(residuals(found)))
-    return _levenberg(residuals, jacobian, found, scale, max(F_SCALE, misfit))
-
-
-def _levenberg(residuals, jacobian, found, scale, f_scale):
-    def cost(r):
-        return float(np.sum(r * r if np.isinf(f_scale) else 2 * f_scale**2 * (np.sqrt(1 + (r / f_scale) ** 2) - 1)))
-
-    r = residuals(found)
-    now, damping = cost(r), 1e-3
-    for _ in range(100):
-        weight = 1.0 / np.sqrt(1.0 + (r / f_scale) ** 2)
-        j = jacobian(found) * scale
-        # by the second derivative of soft L1, which is the weight's cube: the weight itself takes three times the steps
-        normal, right = j.T @ (j * (weight**3)[:, None]), j.T @ (weight * r)
-        diagonal = np.diagonal(normal) + 1e-12
-        while True:
-            damped = normal.copy()
-            damped.flat[::len(found) + 1] += damping * diagonal
-            step = -scale * np.linalg.solve(damped, right)
-            further = found + step
-            tried = residuals(further)
-            then = cost(tried)
-            if then <= now or damping > 1e8 or np.abs(step / scale).max() < 1e-9:
-                break
-            damping *= 8
-        if not then <= now:
-            return found
-        done = now - then <= 1e-13 * now
-        found, r, now, damping = further, tried, then, max(damping / 8, 1e-10)
-        if done and np.abs(step / scale).max() < 1e-9:
-            break
-    return found
-
-
 def checked(x, y, least):
     """x, y as float arrays of one length, at least `least` points; ValueError otherwise (a caller's mistake)."""
     go_on()  # every fit begins here, and a long drive has hundreds
@@ -133,14 +87,3 @@ def checked(x, y, least):
     if x.shape != y.shape or x.ndim != 1 or len(x) < least:
         raise ValueError(f"a curve needs x and y of one length, at least {least} points; got {x.shape} and {y.shape}")
     return x, y
-
-
-def chord(x, y):
-    """Middle (2,) and direction (radians) of ordered points: the line through the two halves' centres.
-
-    Unlike the principal axis this keeps the order of the points, and it does not
-    turn where an arc is nearly half a circle.
-    """
-    half = max(1, len(x) // 2)
-    return (np.array([x.mean(), y.mean()]),
-            float(np.arctan2(y[-half:].mean() - y[:half].mean(), x[-half:].mean() - x[:half].mean())))

@@ -6,7 +6,8 @@ import numpy as np
 
 from ..errors import RoadExtractionError
 from .curve import TabledCurve
-from .fit import Fit, checked, chord, robust_weights
+from .arcs import chord
+from .fit import Fit, checked, robust_weights
 
 
 @dataclass(frozen=True)

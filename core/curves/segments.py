@@ -6,8 +6,8 @@ import numpy as np
 
 from .arcs import fit_circle, fit_line
 from .choice import simplest
-from .fit import checked
-from .spline import fit_spline
+from .fit import checked, median
+from .spline import fit_splines
 from .transitions import fit_clothoid
 
 NODE = 4.0          # m between places where one element may end and the next begin
@@ -55,25 +55,25 @@ def segment_line(x, y):
     -------
     list of Segment, in order, covering the line without gaps.
     """
-    cuts, u, x, y = _cuts(x, y)
+    (cuts, u, x, y), = _cuts([(x, y)])
     return [_segment(first, last, kind, u, x, y) for first, last, kind in cuts]
 
 
-def cuts_of(x, y):
-    """The [(first, last)] arc lengths of the Segments of `segment_line`, where their fits are not asked for."""
-    return [(first, last) for first, last, _ in _cuts(x, y)[0]]
+def cuts_of(lines):
+    """The [(first, last)] arc lengths of the Segments of `segment_line` of each of many lines (x, y), where their fits are not asked for."""
+    return [[(first, last) for first, last, _ in cuts] for cuts, *_ in _cuts(lines)]
 
 
-def _cuts(x, y):
-    """[(first, last, kind)] of the elements, and the arc lengths and places they were found from, in order."""
-    x, y = checked(x, y, 4)
-    base = fit_spline(x, y)
-    u, e = base.curve.foot(x, y)
-    order = np.argsort(u, kind="stable")
-    u, e, x, y = np.clip(u[order], 0, base.curve.length), e[order], x[order], y[order]
-    length = base.curve.length
-    sigma = max(1.4826 * float(np.median(np.abs(e))), NOISE)
-    return _divide(base.curve, u, e, sigma, length), u, x, y
+def _cuts(lines):
+    """[(first, last, kind)] of the elements of each line, and the arc lengths and places they were found from, in order."""
+    lines, found = [checked(x, y, 4) for x, y in lines], []
+    for (x, y), base in zip(lines, fit_splines(lines)):
+        u, e = base.curve.foot(x, y)
+        order = np.argsort(u, kind="stable")
+        u, e = np.clip(u[order], 0, base.curve.length), e[order]
+        sigma = max(1.4826 * median(np.abs(e)), NOISE)
+        found.append((_divide(base.curve, u, e, sigma, base.curve.length), u, x[order], y[order]))
+    return found
 
 
 def _segment(first, last, kind, u, x, y):

@@ -4,15 +4,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.interpolate import BSpline
-from scipy.linalg import LinAlgError
-from scipy.linalg.lapack import dpbsv
 
+from .bases import DEGREE, Bases, pieces_of
 from .curve import TabledCurve
-from .fit import Fit, checked, least_bic, robust_weights
+from .fit import Fit, checked, least_bic, median
+from .together import batches
 
 BANDWIDTHS = (2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0, 40.0, 60.0)  # m; waves shorter than 6 of them are smoothed away
-DEGREE = 3
 TOGETHER = 4096  # places of a line times bandwidths that are fitted at a time: what fits the processor's cache
+TURNS, PROFILE_TURNS = 8, 6  # of weights
 SETTLED = 1e-6  # of a weight: its next change moves the curve by less than a micrometre
 
 
@@ -82,32 +82,58 @@ def fit_spline(x, y, along=None, bandwidth=None):
     .. [1] Eilers and Marx (1996), Statistical Science 11, 89-121; the effective
        dimension is the integral of 1 / (1 + (w b)^6).
     """
-    x, y = checked(x, y, 4)
-    t = _chord_lengths(x, y) if along is None else np.asarray(along, float) - along[0]
-    length = float(t[-1])
-    best, best_score = None, np.inf
-    waiting = [bandwidth] if bandwidth else [b for b in BANDWIDTHS[::-1] if b < max(length, 2.5)]
+    return fit_splines([(x, y)], [along], bandwidth)[0]
+
+
+def fit_splines(places, along=None, bandwidth=None):
+    """`fit_spline` of many lines at once: places is a list of (x, y), `along` a list of what is known of each, or None."""
+    lines = [_Line(*checked(x, y, 4), known, bandwidth) for (x, y), known in zip(places, along or [None] * len(places))]
+    waiting = [line for line in lines if line.waiting]
     while waiting:
-        some = waiting[:max(TOGETHER // len(t), 1)]
-        for b, fitted in zip(some, _penalised(x, y, t, length, some)):
-            fit = Fit(fitted, fitted[2], _freedom(length, b))
+        some, size = [], 0
+        for line in waiting:
+            count = min(max((TOGETHER - size) // len(line.t), 0 if some else 1), len(line.waiting))
+            if not count:
+                break
+            some.append((line, count))
+            size += count * len(line.t)
+        fitted = iter(_penalised([(line.x, line.y, line.t, line.waiting[:count]) for line, count in some]))
+        for line, count in some:
+            line.take([next(fitted) for _ in range(count)])
+        waiting = [line for line in waiting if line.waiting]
+    return [line.fit() for line in lines]
+
+
+class _Line:
+    """A line to which a spline is fitted, the bandwidths that wait to be tried, and the best so far."""
+
+    def __init__(self, x, y, along, bandwidth):
+        self.x, self.y = x, y
+        self.t = _chord_lengths(x, y) if along is None else np.asarray(along, float) - along[0]
+        self.length = float(self.t[-1])
+        self.waiting = [bandwidth] if bandwidth else [b for b in BANDWIDTHS[::-1] if b < max(self.length, 2.5)]
+        self.best = None
+
+    def take(self, fitted):
+        """What was fitted with the first of the bandwidths that wait."""
+        for b, found in zip(self.waiting, fitted):
+            fit = Fit(found, found[2], _freedom(self.length, b))
             # the larger bandwidth wins unless the smaller one earns its freedom
-            if fit.bic < best_score:
-                best, best_score = fit, fit.bic
+            if self.best is None or fit.bic < self.best.bic:
+                self.best = fit
         # for which it may be too dear however well it fits
-        waiting = [b for b in waiting[len(some):] if least_bic(len(t), _freedom(length, b)) < best_score]
-    knots, control, across = best.curve
-    curve = Spline(tuple(knots.tolist()), tuple(control[:, 0].tolist()), tuple(control[:, 1].tolist()))
-    return Fit(curve, across, best.parameters)
+        self.waiting = [b for b in self.waiting[len(fitted):]
+                        if least_bic(len(self.t), _freedom(self.length, b)) < self.best.bic]
+
+    def fit(self):
+        knots, control, across = self.best.curve
+        curve = Spline(tuple(knots.tolist()), tuple(control[:, 0].tolist()), tuple(control[:, 1].tolist()))
+        return Fit(curve, across, self.best.parameters)
 
 
 def _freedom(length, bandwidth):
     """The effective number of parameters of a coordinate."""
-    return min(3 + length / (3 * bandwidth), _pieces(length, bandwidth) + DEGREE)
-
-
-def _pieces(length, bandwidth):
-    return max(1, int(np.ceil(length / max(bandwidth, 1.0))))
+    return min(3 + length / (3 * bandwidth), pieces_of(length, bandwidth) + DEGREE)
 
 
 def _chord_lengths(x, y):
@@ -127,91 +153,30 @@ def _smoothed(values, reach=4):
     return np.convolve(padded, np.full(2 * reach + 1, 1 / (2 * reach + 1)), "valid")
 
 
-class _Bases:
-    """The cubic B-splines on even knots that places t in [0, length] lie in, four a place, with their penalty, for B bandwidths.
-
-    The equations of the bandwidths are solved as one system in which they do not touch: most
-    lines have a few hundred places, and numpy takes longer to be called than to compute.
-    """
-
-    def __init__(self, t, length, bandwidths):
-        pieces = np.array([_pieces(length, b) for b in bandwidths])
-        steps = length / pieces
-        self.knots = [step * np.arange(-DEGREE, count + DEGREE + 1) for step, count in zip(steps, pieces.tolist())]
-        self.counts = pieces + DEGREE
-        self.starts = np.cumsum(self.counts) - self.counts
-        whole, shape = int(self.counts.sum()), (len(pieces) * len(t), 4)
-        step, pieces = steps[:, None], pieces[:, None]
-        inside = np.clip(t / step, 0.0, pieces)
-        piece = np.minimum(inside.astype(np.int64), pieces - 1)
-        f = inside - piece
-        self.values = np.stack([(1 - f) ** 3, (3 * f - 6) * f * f + 4, ((3 - 3 * f) * f + 3) * f + 1, f**3], axis=2).reshape(shape) / 6
-        self.slopes = (np.stack([-(1 - f) ** 2, (3 * f - 4) * f, (2 - 3 * f) * f + 1, f * f], axis=2) / (2 * step[:, :, None])).reshape(shape)
-        self.at = ((piece + self.starts[:, None])[:, :, None] + np.arange(4)).reshape(shape)
-        # what each place adds to the upper banded form of the normal matrix, wherever two of its four meet
-        first, second = np.triu_indices(4)
-        self._products = self.values[:, first] * self.values[:, second]
-        self._band = ((DEGREE - (second - first)) * whole + self.at[:, second]).ravel()
-        self._penalty = np.concatenate([_roughness(count) * (len(t) / max(length, 1e-6)) * b**6 / step**5
-                                        for count, b, step in zip(self.counts.tolist(), bandwidths, steps)], axis=1)
-
-    def solve(self, weight, values):
-        """(K, C) control points of all bandwidths, one after the other, that follow (N, C) values with (B, N) weights, smoothly."""
-        weight = weight.reshape(-1, 1)
-        whole = int(self.counts.sum())
-        bands = np.bincount(self._band, (self._products * weight).ravel(), 4 * whole).reshape(4, -1)
-        bands += self._penalty
-        # a breath of ridge keeps control points in a gap from being undetermined
-        bands[DEGREE] += np.repeat(1e-9 * np.maximum.reduceat(bands[DEGREE], self.starts), self.counts)
-        weighted, at = (self.values * weight).reshape(len(self.counts), -1, 4), self.at.ravel()
-        right = np.stack([np.bincount(at, (weighted * column[:, None]).ravel(), whole) for column in values.T], axis=1)
-        # solveh_banded checks more than it computes
-        _, control, trouble = dpbsv(bands, right)
-        if trouble:
-            raise LinAlgError(f"The spline's equations cannot be solved ({trouble}).")
-        return control
-
-    def of(self, control):
-        """(B, N, C) what control points (K, C) give at the places, and the slopes there."""
-        around = control[self.at]
-        return tuple(np.einsum("na,nac->nc", by, around).reshape(len(self.counts), -1, control.shape[1]) for by in (self.values, self.slopes))
-
-    def part(self, control, k):
-        """The control points of one bandwidth."""
-        return control[self.starts[k]:self.starts[k] + self.counts[k]]
-
-
-def _penalised(x, y, t, length, bandwidths):
-    """[(knots, control points (K, 2), distances (N,) across the curve)], one for each bandwidth."""
-    bases = _Bases(t, length, bandwidths)
-    weight = np.ones((len(bandwidths), len(t)))
-    middle = np.array([x.mean(), y.mean()])
-    places = np.stack([x, y], axis=1) - middle
-    found = [None] * len(bandwidths)
-    for turn in range(8):
+def _penalised(lines):
+    """[(knots, control points (K, 2), distances (N,) across the curve)] of (x, y, t, bandwidths), line by line, for each bandwidth."""
+    bases = Bases([(t, bandwidths) for _, _, t, bandwidths in lines])
+    blocks = len(bases.sizes)
+    weight, turn = np.ones(int(bases.sizes.sum())), 0
+    middles = [np.array([x.mean(), y.mean()]) for x, y, _, bandwidths in lines for _ in bandwidths]
+    places = np.concatenate([np.stack([x, y], axis=1) for x, y, _, bandwidths in lines for _ in bandwidths])
+    places -= np.repeat(middles, bases.sizes, axis=0)
+    found = [None] * blocks
+    for turn in range(TURNS):
         control = bases.solve(weight, places)
         at, slope = bases.of(control)
         gap = places - at
-        size = np.maximum(np.hypot(slope[..., 0], slope[..., 1]), 1e-12)
-        across = (gap[..., 1] * slope[..., 0] - gap[..., 0] * slope[..., 1]) / size
-        before, weight = weight, robust_weights(across)
-        settled = np.abs(weight - before).max(axis=1) < SETTLED
-        for k in range(len(found)):
-            if found[k] is None and (settled[k] or turn == 7):
-                found[k] = bases.knots[k], bases.part(control, k) + middle, across[k]
+        size = np.maximum(np.hypot(slope[:, 0], slope[:, 1]), 1e-12)
+        across = (gap[:, 1] * slope[:, 0] - gap[:, 0] * slope[:, 1]) / size
+        before, weight = weight, bases.weights(across)
+        settled = np.maximum.reduceat(np.abs(weight - before), bases.rows) < SETTLED
+        for k in range(blocks):
+            if found[k] is None and (settled[k] or turn == TURNS - 1):
+                rows = slice(bases.rows[k], bases.rows[k] + bases.sizes[k])
+                found[k] = bases.knots[k], bases.part(control, k) + middles[k], across[rows]
         if None not in found:
             break
     return found
-
-
-def _roughness(count):
-    """Upper banded form (4, K) of D'D with D the third differences of K control points."""
-    bands = np.zeros((DEGREE + 1, count))
-    difference = np.array([-1.0, 3.0, -3.0, 1.0])
-    for row in range(4):
-        for column in range(row, 4):
-            bands[DEGREE - (column - row), column:column + count - 3] += difference[row] * difference[column]
-    return bands
 
 
 def smooth_profile(t, values, bandwidth):
@@ -219,19 +184,47 @@ def smooth_profile(t, values, bandwidth):
 
     t : (N,) rising; values : (N,) metres, as a height or an offset along a line.
     """
-    t, values = np.asarray(t, float), np.asarray(values, float)
-    length = float(t[-1] - t[0])
-    if len(t) < 4 or length < 1.0:
-        level = float(np.median(values))
-        return lambda at: np.full(np.shape(at), level)
-    bases = _Bases(t - t[0], length, [bandwidth])
-    level = float(np.median(values))
-    weight = np.ones((1, len(t)))
-    for _ in range(6):
-        control = bases.solve(weight, values[:, None] - level)
-        before, weight = weight, robust_weights(values - level - bases.of(control)[0][..., 0])
-        if np.abs(weight - before).max() < SETTLED:
+    return smooth_profiles([(t, values)], bandwidth)[0]
+
+
+def smooth_profiles(profiles, bandwidth):
+    """`smooth_profile` of many at once: profiles is a list of (t, values)."""
+    profiles = [(np.asarray(t, float), np.asarray(values, float)) for t, values in profiles]
+    found = [None] * len(profiles)
+    which = []
+    for k, (t, values) in enumerate(profiles):
+        if len(t) < 4 or t[-1] - t[0] < 1.0:
+            found[k] = _level(median(values))
+        else:
+            which.append(k)
+    for first, end in batches([len(profiles[k][0]) for k in which], TOGETHER):
+        some = which[first:end]
+        for k, smooth in zip(some, _smooth([profiles[k] for k in some], bandwidth)):
+            found[k] = smooth
+    return found
+
+
+def _level(level):
+    return lambda at: np.full(np.shape(at), level)
+
+
+def _smooth(profiles, bandwidth):
+    bases = Bases([(t - t[0], [bandwidth]) for t, _ in profiles])
+    levels = [median(values) for _, values in profiles]
+    places = np.concatenate([values - level for (_, values), level in zip(profiles, levels)])
+    weight, found = np.ones(len(places)), [None] * len(profiles)
+    for turn in range(PROFILE_TURNS):
+        control = bases.solve(weight, places[:, None])
+        before, weight = weight, bases.weights(places - bases.of(control)[0][:, 0])
+        settled = np.maximum.reduceat(np.abs(weight - before), bases.rows) < SETTLED
+        for k, (t, _) in enumerate(profiles):
+            if found[k] is None and (settled[k] or turn == PROFILE_TURNS - 1):
+                found[k] = _profile(bases.knots[k], bases.part(control, k)[:, 0], levels[k], t[0])
+        if None not in found:
             break
-    knots = bases.knots[0]
-    spline = BSpline(knots, control[:, 0], DEGREE)
-    return lambda at: level + spline(np.clip(np.asarray(at, float) - t[0], 0.0, knots[-DEGREE - 1]))
+    return found
+
+
+def _profile(knots, control, level, start):
+    spline = BSpline(knots, control, DEGREE)
+    return lambda at: level + spline(np.clip(np.asarray(at, float) - start, 0.0, knots[-DEGREE - 1]))

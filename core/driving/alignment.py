@@ -4,11 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..curves.arcs import fit_circle, fit_line
-from ..curves.choice import simplest
+from ..curves.choice import HOPELESS, choose_each
 from ..curves.curve import Arc
 from ..curves.segments import cuts_of
-from ..curves.transitions import fit_clothoid
+from ..curves.transitions import fit_clothoids
 from .boundaries import STEP
 from .track import BRIDGED
 
@@ -53,14 +52,14 @@ def lane_elements(tracks, s, road):
     -------
     list, for every track, of lists of Element in order of station
     """
-    found = [None] * len(tracks)
+    found, groups = [None] * len(tracks), []
     waiting = sorted(range(len(tracks)), key=lambda i: (-len(tracks[i]), i))
     while waiting:
-        members, axis, first = _parallel_lanes([(i, tracks[i]) for i in waiting])
-        divided = _divided(axis, first, s, road)
+        groups.append(_parallel_lanes([(i, tracks[i]) for i in waiting]))
+        waiting = [i for i in waiting if i not in dict(groups[-1][0])]
+    for (members, _, _), divided in zip(groups, _divided([_Axis.of(s, axis, first, road) for _, axis, first in groups])):
         for i, offset in members:
             found[i] = _of_lane(tracks[i], offset, divided, s, road)
-        waiting = [i for i in waiting if i not in dict(members)]
     return found
 
 
@@ -101,53 +100,83 @@ def _parallel_lanes(tracks):
     return members, total[first:last + 1] / weight[first:last + 1], int(first)
 
 
-def _divided(axis, first, s, road):
-    """[(start station, end station, curve)] of the axis."""
-    at = s[first:first + len(axis)]
-    if len(axis) < LEAST_PLACES:
-        return []
-    x, y = road.to_map(at, axis)
-    u = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
-    thin = np.unique(np.r_[np.arange(0, len(x), int(SPACING / STEP)), len(x) - 1])
-    bounds = cuts_of(x[thin], y[thin])
+@dataclass(frozen=True)
+class _Axis:
+    """Places x, y (N,) of what lanes have in common, their stations and lengths `u` along it."""
 
-    def fit(first, last, make=_simplest):
-        inside = (u >= first) & (u <= last)
-        return make(x[inside], y[inside])
+    at: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    u: np.ndarray
 
-    found = _without_steps([(first, last, fit(first, last)) for first, last in bounds], fit)
-    return [(*map(float, np.interp([first, last], u, at)), best.curve) for first, last, best in found]
+    @classmethod
+    def of(cls, s, d, first, road):
+        at = s[first:first + len(d)]
+        x, y = road.to_map(at, d)
+        return cls(at, x, y, np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
+
+    @property
+    def thinned(self):
+        """x, y of places a metre apart."""
+        rows = np.unique(np.r_[np.arange(0, len(self.x), int(SPACING / STEP)), len(self.x) - 1])
+        return self.x[rows], self.y[rows]
+
+    def part(self, first, last):
+        """x, y of the places between two lengths."""
+        inside = slice(np.searchsorted(self.u, first), np.searchsorted(self.u, last, side="right"))
+        return self.x[inside], self.y[inside]
 
 
-def _without_steps(found, fit):
+def _divided(axes):
+    """[(start station, end station, curve)] of each of some axes, whose parts are fitted together."""
+    long = [k for k, axis in enumerate(axes) if len(axis.at) >= LEAST_PLACES]
+    cuts = cuts_of([axes[k].thinned for k in long])
+    parts = [(k, first, last) for k, bounds in zip(long, cuts) for first, last in bounds]
+    choices = choose_each([axes[k].part(first, last) for k, first, last in parts])
+    found = [[] for _ in axes]
+    for (k, first, last), choice in zip(parts, choices):
+        found[k].append((first, last, choice.best))
+    found = _without_steps(axes, found)
+    return [[(*map(float, np.interp([first, last], axis.u, axis.at)), best.curve) for first, last, best in parts]
+            for axis, parts in zip(axes, found)]
+
+
+def _without_steps(axes, found):
     """Divisions in which no transition is a staircase of short arcs.
 
     A short arc and its neighbour make way for one clothoid where that keeps within
     2 cm of the places: on the road an arc this short, with no straight around it, is
     half a transition.
     """
-    joints = {}
-    while True:
-        merged = []
-        for k in range(len(found) - 1):
-            (first, middle, a), (_, last, b) = found[k:k + 2]
-            arcs = [q for q, length in ((a, middle - first), (b, last - middle))
-                    if q.curve.kind == "circle" and length < SHORT_ARC]
-            if not arcs or {a.curve.kind, b.curve.kind} == {"circle", "line"} and last - first > 2 * SHORT_ARC:
-                continue
-            joint = joints.get((first, last)) or fit(first, last, fit_clothoid)
-            joints[first, last] = joint
-            if joint.worst < STAIRCASE:
-                merged.append((joint.worst, k, joint))
-        if not merged:
-            return found
-        _, k, joint = min(merged, key=lambda m: m[:2])
-        found = found[:k] + [(found[k][0], found[k + 1][1], joint)] + found[k + 2:]
+    found, joints = list(found), [{} for _ in axes]
+    open_ones = range(len(axes))
+    while open_ones:
+        pairs = {k: _steps(found[k]) for k in open_ones}
+        new = [(k, first, last) for k, steps in pairs.items() for _, first, last in steps if (first, last) not in joints[k]]
+        for (k, first, last), joint in zip(new, fit_clothoids([axes[k].part(first, last) for k, first, last in new], HOPELESS)):
+            joints[k][first, last] = joint
+        for k, steps in pairs.items():
+            merged = [(joints[k][first, last].worst, j, joints[k][first, last]) for j, first, last in steps]
+            merged = [one for one in merged if one[0] < STAIRCASE]
+            if merged:
+                _, j, joint = min(merged, key=lambda one: one[:2])
+                found[k] = found[k][:j] + [(found[k][j][0], found[k][j + 1][1], joint)] + found[k][j + 2:]
+            else:
+                pairs[k] = []
+        open_ones = [k for k, steps in pairs.items() if steps]
+    return found
 
 
-def _simplest(x, y):
-    """The simplest of straight, arc and clothoid by BIC."""
-    return simplest(make(x, y) for make, least in ((fit_line, 2), (fit_circle, 4), (fit_clothoid, 8)) if len(x) >= least)
+def _steps(found):
+    """(number, first, last) of an element that, with the next, may be half a transition each."""
+    steps = []
+    for j in range(len(found) - 1):
+        (first, middle, a), (_, last, b) = found[j:j + 2]
+        arcs = [q for q, length in ((a, middle - first), (b, last - middle))
+                if q.curve.kind == "circle" and length < SHORT_ARC]
+        if arcs and not ({a.curve.kind, b.curve.kind} == {"circle", "line"} and last - first > 2 * SHORT_ARC):
+            steps.append((j, first, last))
+    return steps
 
 
 def _of_lane(track, offset, divided, s, road):

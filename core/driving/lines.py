@@ -16,7 +16,7 @@ from .heights import lane_heights
 from .lanes import chosen_lines, divided_strips, lone_lanes, paired_lanes, strips, usual_width
 from .room import Room
 from .settings import DrivingSettings
-from .shape import element_of, lane_course, pieces, settled
+from .shape import element_of, lane_courses, pieces, settled
 from .track import STATUS, connect, extend
 
 __all__ = ["DrivingSettings", "driving_lines"]
@@ -67,8 +67,9 @@ def driving_lines(marking_lines, frame, settings=DrivingSettings(), progress=Pro
         if any(np.isnan(z).any() for z in heights):
             progress.warn("Neither the marking lines nor road points have heights; the trajectory's are used.")
             heights = [frame.track_height(number, road_lines.s[t.first:t.last + 1]) for t in tracks]
-        for lane, (track, way, found_elements, z) in enumerate(zip(tracks, ways, alignment, heights), start=1):
-            _write_lane(lines, lane, track, way, found_elements, road_lines, z, frame, number)
+        courses = lane_courses(tracks, road_lines.s, frame.roads[number], alignment)
+        for lane, (track, way, course, found_elements, z) in enumerate(zip(tracks, ways, courses, alignment, heights), start=1):
+            _write_lane(lines, lane, track, way, course, found_elements, road_lines, z, frame, number)
             _write_elements(elements, lane, way, found_elements, number, frame.origin)
         progress.at(0.4 + 0.6 * (count + 1) / len(found))
     _say(lines, side, progress)
@@ -119,9 +120,8 @@ def _traffic_side(found, settings, progress):
     return "left" if left > right else "right"
 
 
-def _write_lane(lines, lane, track, way, elements, road_lines, z, frame, number):
+def _write_lane(lines, lane, track, way, course, elements, road_lines, z, frame, number):
     origin, s = frame.origin, road_lines.s
-    course = lane_course(track, s, frame.roads[number], elements)
     grid = s[track.first:track.last + 1]
     status = settled(track.status)
     functions = {}   # of curves by identity: those of long splines are long, and many pieces share one

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..curves.choice import fit_curve
+from ..curves.choice import fit_curves
 from .boundaries import STEP
 from .track import BRIDGED
 
@@ -30,36 +30,44 @@ class Course:
     rmse: float
 
 
-def lane_course(track, s, road, elements=()):
-    """Fit the course of a lane.
+def lane_courses(tracks, s, road, elements):
+    """Fit the courses of the lanes of a road, together.
 
     Parameters
     ----------
-    track : Track
+    tracks : list of Track
     s : (K,) grid stations
     road : Road
-    elements : Elements of the lane; on them the course is the arc or straight itself, so
+    elements : Elements of each lane; on them the course is the arc or straight itself, so
         that lanes of one bend are concentric
 
     Returns
     -------
-    Course
+    list of Course
     """
-    at = s[track.first:track.last + 1]
-    x, y = road.to_map(at, track.d)
+    fits = fit_curves([_known_places(track, s, road) for track in tracks])
+    drawn = [fit.curve.sample(STEP) for fit in fits]
+    stations = road.locate(*np.concatenate(drawn).T)[0] if drawn else []
+    found, first = [], 0
+    for fit, places, of_lane in zip(fits, drawn, elements):
+        station = stations[first:first + len(places)]
+        first += len(places)
+        good = np.isfinite(station)
+        good[good] &= station[good] > np.r_[-np.inf, np.maximum.accumulate(station[good])[:-1]]
+        places, station = places[good], station[good]
+        for element in of_lane:
+            if element.rmse < TRUE_ARC:
+                places = _drawn_to(element, places, station)
+        found.append(Course(places[:, 0], places[:, 1], station, fit.curve, fit.rmse))
+    return found
+
+
+def _known_places(track, s, road):
+    """x, y of a lane where it is not bridged, of all of it where little is known."""
     known = track.status != BRIDGED
     if known.sum() < LEAST_PLACES:
-        known = np.ones(len(at), bool)
-    fit = fit_curve(x[known], y[known])
-    places = fit.curve.sample(STEP)
-    station, _ = road.locate(places[:, 0], places[:, 1])
-    good = np.isfinite(station)
-    good[good] &= station[good] > np.r_[-np.inf, np.maximum.accumulate(station[good])[:-1]]
-    places, station = places[good], station[good]
-    for element in elements:
-        if element.rmse < TRUE_ARC:
-            places = _drawn_to(element, places, station)
-    return Course(places[:, 0], places[:, 1], station, fit.curve, fit.rmse)
+        known = np.ones(len(track), bool)
+    return road.to_map(s[track.first:track.last + 1][known], track.d[known])
 
 
 def _drawn_to(element, places, station):

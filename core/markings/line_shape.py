@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..curves.choice import fit_curve
+from ..curves.choice import fit_curve, fit_curves
 from ..curves.fit import Fit, median
-from ..curves.spline import fit_spline, smooth_profile
+from ..curves.spline import fit_splines, smooth_profiles
 from ..errors import RoadExtractionError
 
 FAINT = 3            # points that a place must have to count, where there are enough such places
@@ -46,58 +46,94 @@ class LineShape:
         return np.c_[self.fit.curve.at(u), self._height(s)]
 
 
-def shape_of(line, road, drift, track_height, span, settings):
-    """The LineShape of a linked line.
+def shapes_of(lines, spans, road, drift, track_height, settings):
+    """The LineShapes of linked lines, fitted together.
 
     Parameters
     ----------
-    line : Line
+    lines : list of Line
+    spans : (first, last) stations of each to be drawn, which may reach beyond the paint
     road : Road
     drift : Drift, how the painted lines of the road run together
     track_height : function of stations (N,), height of the trajectory; the line's height is
         smoothed as the difference to it, so that it goes on along the road's slope
-    span : (first, last) stations to be drawn, which may reach beyond the paint
     settings : LineSettings
 
     Returns
     -------
-    LineShape, and whether the wanted curve could be fitted (automatic replaces it where not)
+    list of LineShape, and how many could not take the wanted curve (automatic replaces it there)
     """
+    if not lines:
+        return [], 0
+    courses = [_course(line, drift, span) for line, span in zip(lines, spans)]
+    s, d, own = (np.concatenate(parts) for parts in zip(*((course.s, course.d, course.own) for course in courses)))
+    bounds = np.cumsum([len(course.s) for course in courses])[:-1]
+    x, y = (np.split(values, bounds) for values in road.to_map(s, d))
+    measured = [(x[k][course.own], y[k][course.own]) for k, course in enumerate(courses)]
+    fits, replaced = _fitted(measured, settings)
+    # splines once more with the guides, which are no measurements and count in no choice
+    curved = [k for k, fit in enumerate(fits) if fit.curve.kind == "b-spline"]
+    along = [_along(road, courses[k].s, courses[k].d) for k in curved]
+    near = [None] * len(courses)
+    for k, t, guided in zip(curved, along, fit_splines([(x[k], y[k]) for k in curved], along)):
+        fits[k], near[k] = guided, guided.curve.u_of(t)
+    track = np.split(track_height(s[own]), np.cumsum([len(course.z) for course in courses])[:-1])
+    heights = smooth_profiles([(course.s[course.own], course.z - below) for course, below in zip(courses, track)], HEIGHT_SMOOTHING)
+    found = []
+    for k, (course, fit, height) in enumerate(zip(courses, fits, heights)):
+        u, e = fit.curve.foot(x[k], y[k], near[k])
+        if near[k] is not None:
+            fit = Fit(fit.curve, e[course.own], fit.parameters)
+        rising = np.maximum.accumulate(u)
+        keep = np.append(True, np.diff(rising) > 1e-6)
+        found.append(LineShape(fit, course.s[course.own], (course.s[keep], rising[keep]),
+                               lambda at, height=height: height(at) + track_height(at)))
+    return found, replaced
+
+
+@dataclass
+class _Course:
+    """Places of a line by station, and places that guide its curve where nothing is painted.
+
+    s, d : (N,) metres; own : (N,) True for the line's own places; z : heights of these
+    """
+
+    s: np.ndarray
+    d: np.ndarray
+    own: np.ndarray
+    z: np.ndarray
+
+
+def _course(line, drift, span):
     s, d, z, weight = line.places()
     strong = weight >= FAINT
     if strong.sum() >= max(4, 0.5 * len(s)):
-        s, d, z, weight = s[strong], d[strong], z[strong], weight[strong]
+        s, d, z = s[strong], d[strong], z[strong]
     order = np.argsort(s, kind="stable")
     s, d, z = s[order], d[order], z[order]
     guide_s, guide_d = _guides(s, d - drift.at(s), drift, span)
-    all_s, all_d = np.r_[s, guide_s], np.r_[d, guide_d]
-    order = np.argsort(all_s, kind="stable")
-    all_s, all_d = all_s[order], all_d[order]
-    along = _along(road, all_s, all_d)
-    x, y = road.to_map(s, d)
-    fit, as_wanted = _fitted(x, y, settings)
-    if fit.curve.kind == "b-spline":
-        # the same curve with the guides, which are no measurements and count in no choice
-        guided = fit_spline(*road.to_map(all_s, all_d), along)
-        fit = Fit(guided.curve, guided.curve.foot(x, y)[1], guided.parameters)
-    u, _ = fit.curve.foot(*road.to_map(all_s, all_d))
-    rising = np.maximum.accumulate(u)
-    keep = np.r_[True, np.diff(rising) > 1e-6]
-    height = smooth_profile(s, z - track_height(s), HEIGHT_SMOOTHING)
-    shape = LineShape(fit, s, (all_s[keep], rising[keep]), lambda at: height(at) + track_height(at))
-    return shape, as_wanted
+    order = np.argsort(np.concatenate([s, guide_s]), kind="stable")
+    return _Course(np.concatenate([s, guide_s])[order], np.concatenate([d, guide_d])[order], order < len(s), z)
 
 
-def _fitted(x, y, settings):
-    try:
-        return fit_curve(x, y, settings.curve, settings.degree), True
-    except RoadExtractionError:
-        return fit_curve(x, y, "automatic"), False
+def _fitted(places, settings):
+    """Fits to a list of (x, y), and how many of them are not the wanted curve."""
+    if settings.curve == "automatic":
+        return fit_curves(places), 0
+    found, replaced = [], 0
+    for x, y in places:
+        try:
+            found.append(fit_curve(x, y, settings.curve, settings.degree))
+        except RoadExtractionError:
+            found.append(fit_curve(x, y, "automatic"))
+            replaced += 1
+    return found, replaced
 
 
 def _guides(s, level, drift, span):
     """Places in long gaps and beyond the ends, where nothing is painted: parallel to the other lines."""
-    gaps = [(a, b) for a, b in zip(s[:-1], s[1:]) if b - a > GUIDED_GAP]
+    wide = np.flatnonzero(np.diff(s) > GUIDED_GAP)
+    gaps = zip(s[wide].tolist(), s[wide + 1].tolist())
     stations, offsets = [], []
     for a, b in gaps:
         at = np.linspace(a, b, int(np.ceil((b - a) / GUIDE)) + 1)[1:-1]

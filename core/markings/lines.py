@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from shapely.geometry import LineString
@@ -13,7 +14,7 @@ from ..progress import Progress
 from ..schemas import MARKING_LINES
 from ..survey.points import ROAD_POINT, joined
 from . import line_choice
-from .line_shape import shape_of
+from .line_shape import shapes_of
 from .linking import Drift, Line, link, link_far, without_strays
 from .patterns import same_rhythm
 from .tracing import line_paint, trace
@@ -87,13 +88,14 @@ def fit_marking_lines(clustered_points, markings, frame, settings=LineSettings()
         chosen = line_choice.choose(lines, drift, line_choice.crossings(markings, road, frame), settings.min_paint,
                                     line_choice.bars(markings, road, frame), frame.passes_of(road))
         dropped += len(lines) - len(chosen)
-        for j, one in enumerate(chosen):
-            shape, as_wanted = shape_of(one.line, frame.road(road), drift,
-                                        lambda s, road=road: frame.track_height(road, s), one.span, settings)
+        shapes, unwanted = shapes_of([one.line for one in chosen], [one.span for one in chosen], frame.road(road), drift,
+                                     partial(frame.track_height, road), settings)
+        part.at(0.8)
+        replaced += unwanted
+        for j, (one, shape) in enumerate(zip(chosen, shapes)):
             number += 1
-            replaced += not as_wanted
             _add(found, one, shape, number, road, frame.origin)
-            part.at(0.5 + 0.5 * (j + 1) / len(chosen))
+            part.at(0.8 + 0.2 * (j + 1) / len(chosen))
     progress.say(f"Marking lines: {number}; {dropped} fragments were left out.")
     if replaced:
         progress.warn(f"{replaced} of {number} lines cannot take the curve “{settings.curve}”; "
