@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import RoadExtractionError
-from .curve import TabledCurve
 from .arcs import chord
+from .curve import TabledCurve
 from .fit import Fit, checked, robust_weights
 
 

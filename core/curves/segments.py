@@ -18,6 +18,9 @@ NOISE = 0.008       # m: what a line is never better known than, for counting ev
 # points whose errors are alike (worn paint, trajectory drift), which plain BIC takes for shape.
 PRICE = 2.0
 ORDER = {"line": 1, "circle": 2, "clothoid": 3}
+MARGIN = 1.0        # of cost, beyond all rounding
+POWERS, DIAGONAL = np.arange(7), np.arange(4)
+GRID = np.add.outer(DIAGONAL, DIAGONAL)
 
 
 @dataclass(frozen=True)
@@ -95,30 +98,27 @@ def _divide(curve, u, e, sigma, length):
     if count < 2 * shortest:
         nodes = nodes[[0, -1]]
         count = shortest = 1
-    curvature, heading, shape = _integrated(curve, u, nodes)
-    begin = np.searchsorted(u, nodes)
-    begin[-1] = len(u)
-    best = np.full(count + 1, np.inf)
+    costs = _Costs(curve, u, e, nodes, sigma)
+    best, beaten = np.full(count + 1, np.inf), np.full(count + 1, count)
     best[0] = 0.0
     came_from, came_by = np.zeros((2, count + 1), int)
-    price = PRICE * np.log(max(len(u), 2))
-    for i in range(count):
-        if not np.isfinite(best[i]):
+    prices = PRICE * np.log(max(len(u), 2)) * np.array([degree + 2 for degree in ORDER.values()])
+    begun = np.empty(0, np.int64)   # nodes at which an element may have begun that is not yet beaten
+    for j in range(1, count + 1):
+        begun = begun[(beaten[begun] > j - shortest) & (nodes[begun] >= nodes[j] - LONGEST - 1e-9)]
+        if np.isfinite(best[j - 1]):
+            begun = np.append(begun, j - 1)
+        costs.lead_on(begun, j)
+        long_enough = begun[begun <= j - shortest]
+        if not len(long_enough) or 0 < count - j < shortest:
             continue
-        window = slice(begin[i], begin[np.searchsorted(nodes, nodes[i] + LONGEST, "right") - 1])
-        t = u[window] - nodes[i]
-        bend = 0.5 * curvature(nodes[i]) * t * t
-        value = e[window] + shape(u[window]) - shape(nodes[i]) - heading(nodes[i]) * t
-        ends = np.arange(i + shortest, count + 1)
-        ends = ends[(nodes[ends] <= nodes[i] + LONGEST + 1e-9) & ((ends == count) | (count - ends >= shortest))]
-        if not len(ends):
-            continue
-        costs = _costs(t, value, bend, begin[ends] - begin[i], nodes[ends] - nodes[i], sigma)
-        for kind, (name, degree) in enumerate(ORDER.items()):
-            total = best[i] + costs[name] + price * (degree + 2)
-            better = total < best[ends]
-            best[ends[better]] = total[better]
-            came_from[ends[better]], came_by[ends[better]] = i, kind
+        cost = costs.of(long_enough, j)
+        total = best[long_enough, None] + cost + prices
+        first = int(total.argmin())
+        best[j], came_from[j], came_by[j] = total.flat[first], long_enough[first // len(ORDER)], first % len(ORDER)
+        # an element that ends here at more than the least cost leads nowhere: to go on from here is cheaper than to lead it on
+        lost = long_enough[best[long_enough] + cost.min(axis=1) > best[j] + MARGIN]
+        beaten[lost] = np.minimum(beaten[lost], j)
     cuts, j, names = [], count, list(ORDER)
     while j:
         i = came_from[j]
@@ -127,37 +127,49 @@ def _divide(curve, u, e, sigma, length):
     return cuts[::-1]
 
 
-def _integrated(curve, u, nodes):
-    """Functions of arc length: curvature of the base, its integral, and the integral of that."""
-    fine = np.linspace(0.0, curve.length, max(16, int(curve.length / 0.25)) + 1)
-    k = curve.curvature(fine)
-    step = fine[1] - fine[0]
-    turn = np.r_[0.0, np.cumsum((k[:-1] + k[1:]) / 2 * step)]
-    area = np.r_[0.0, np.cumsum((turn[:-1] + turn[1:]) / 2 * step)]
-    return tuple((lambda v: lambda at: np.interp(at, fine, v))(v) for v in (k, turn, area))
-
-
-def _costs(t, value, bend, counts, spans, sigma):
-    """Residual sums over sigma^2 of polynomials of degree 1 to 3 through the first `counts` points, per kind.
+class _Costs:
+    """What elements cost that began at some nodes, by kind: residual sums over sigma^2 of polynomials of degree 1 to 3.
 
     Less the line's own bend, which arc and clothoid can take up and a straight cannot, the
     shape stays small and sums keep their digits.
     """
-    powers = np.vander(t, 7, increasing=True)
-    sums = np.cumsum(powers, axis=0)
-    rows = np.maximum(counts - 1, 0)
-    out = {}
-    for shape, kinds in ((value, ("line",)), (value - bend, ("circle", "clothoid"))):
-        most = max(ORDER[kind] for kind in kinds) + 1
-        mixed = np.cumsum(powers[:, :most] * shape[:, None], axis=0)[rows]
-        squares = np.cumsum(shape**2)[rows]
-        for kind in kinds:
-            size = ORDER[kind] + 1
-            grid = np.add.outer(np.arange(size), np.arange(size))
-            scale = spans[:, None] ** -np.arange(float(size))
-            normal = sums[rows][:, grid] * scale[:, :, None] * scale[:, None, :]
-            right = mixed[:, :size] * scale
-            normal = normal + 1e-10 * np.eye(size) * np.maximum(counts, 1)[:, None, None]
-            found = np.linalg.solve(normal, right[:, :, None])[:, :, 0]
-            out[kind] = np.maximum(squares - (found * right).sum(1), 0.0) / sigma**2
-    return out
+
+    def __init__(self, curve, u, e, nodes, sigma):
+        self.u, self.nodes, self.sigma = u, nodes, sigma
+        self.begin = np.searchsorted(u, nodes)
+        self.begin[-1] = len(u)
+        fine = np.linspace(0.0, curve.length, max(16, int(curve.length / 0.25)) + 1)
+        # curvature of the base, its integral, and the integral of that
+        k = curve.curvature(fine)
+        step = fine[1] - fine[0]
+        turn = np.append(0.0, np.cumsum((k[:-1] + k[1:]) / 2 * step))
+        area = np.append(0.0, np.cumsum((turn[:-1] + turn[1:]) / 2 * step))
+        self.curvature, self.heading, self.area = (np.interp(nodes, fine, values) for values in (k, turn, area))
+        self.shape = e + np.interp(u, fine, area)
+        # sums over the places of each node's element: of powers of t; of powers of t times the shape, and of its square; the same less the bend
+        self.powers, self.whole, self.less = np.zeros((len(nodes), 7)), np.zeros((len(nodes), 3)), np.zeros((len(nodes), 5))
+
+    def lead_on(self, begun, j):
+        """Add the places between node j - 1 and node j to the elements that began at some nodes."""
+        places = slice(self.begin[j - 1], self.begin[j])
+        t = self.u[places] - self.nodes[begun, None]
+        powers = t[:, :, None] ** POWERS
+        whole = self.shape[places] - self.area[begun, None] - self.heading[begun, None] * t
+        less = whole - 0.5 * self.curvature[begun, None] * powers[:, :, 2]
+        self.powers[begun] += powers.sum(axis=1)
+        for sums, values, most in ((self.whole, whole, 2), (self.less, less, 4)):
+            sums[begun, :most] += np.einsum("nt,ntk->nk", values, powers[:, :, :most])
+            sums[begun, most] += (values * values).sum(axis=1)
+
+    def of(self, begun, j):
+        """(M, 3) costs of elements that began at some nodes and end at node j."""
+        found = np.empty((len(begun), len(ORDER)))
+        scale = (self.nodes[j] - self.nodes[begun])[:, None] ** -np.arange(4.0)
+        normal = self.powers[begun][:, GRID] * (scale[:, :, None] * scale[:, None, :])
+        normal[:, DIAGONAL, DIAGONAL] += 1e-10 * np.maximum(self.begin[j] - self.begin[begun], 1)[:, None]
+        for kind, sums in enumerate((self.whole, self.less, self.less)):
+            size = kind + 2
+            right = sums[begun, :size] * scale[:, :size]
+            by = np.linalg.solve(normal[:, :size, :size], right[:, :, None])[:, :, 0]
+            found[:, kind] = sums[begun, -1] - (by * right).sum(axis=1)
+        return np.maximum(found, 0.0) / self.sigma**2

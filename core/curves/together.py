@@ -7,6 +7,7 @@ from .fit import F_SCALE
 
 TOGETHER = 8192   # places fitted at a time: what fits the processor's cache
 FEW = 128         # places of a line that are fitted first
+EXACT, NEARLY = 1e-9, 1e-3  # shares of a sensible step
 MISSED = 0.05     # share of the places that lie farther off than is allowed, and the curve is none of theirs
 
 
@@ -80,7 +81,7 @@ def minimise_each(lines, problem_of, hopeless=np.inf):
         x, y = (np.concatenate([lines[k][axis] for k in numbers]) for axis in (0, 1))
         rows = whole.thinned(FEW)
         problem = problem_of(Places(np.minimum(whole.counts, FEW)), x[rows], y[rows])
-        solved = minimise_all(problem, problem.start(), problem.scale)
+        solved = minimise_all(problem, problem.start(), problem.scale, np.where(whole.counts <= FEW, EXACT, NEARLY))
         _put(found, numbers, np.flatnonzero(whole.counts <= FEW), problem, lines, *solved)
         long = np.flatnonzero(whole.counts > FEW)
         for a, b in batches(whole.counts[long]):
@@ -109,7 +110,7 @@ def _put(found, numbers, which, problem, lines, unknown, residuals, state):
         found[numbers[k]] = problem.fit(k, unknown[k], x, y, residuals[own], tuple(values[own] for values in state))
 
 
-def minimise_all(problem, start, scale):
+def minimise_all(problem, start, scale, exact=EXACT):
     """Parameters of every line that minimise soft L1 of its residuals, by Levenberg-Marquardt.
 
     Plain least squares first; where the curve cannot follow the points no residual
@@ -123,6 +124,7 @@ def minimise_all(problem, start, scale):
         places are `rows`; and `state` to begin with
     start : (L, P)
     scale : (L, P) the size of a sensible step in each parameter
+    exact : (L,) or one; the share of such a step below which nothing is gained any more
 
     Returns
     -------
@@ -130,12 +132,13 @@ def minimise_all(problem, start, scale):
     residuals : (N,)
     state : tuple of (N,), that of the residuals
     """
-    found, residuals, state = _levenberg(problem, np.array(start, float), scale, np.full(len(start), np.inf), problem.state)
+    exact = np.broadcast_to(exact, len(start))
+    found, residuals, state = _levenberg(problem, np.array(start, float), scale, np.full(len(start), np.inf), problem.state, exact)
     misfit = 1.4826 * problem.places.medians(np.abs(residuals))
-    return _levenberg(problem, found, scale, np.maximum(F_SCALE, misfit), state)
+    return _levenberg(problem, found, scale, np.maximum(F_SCALE, misfit), state, exact)
 
 
-def _levenberg(problem, found, scale, f_scale, state):
+def _levenberg(problem, found, scale, f_scale, state, exact):
     size = found.shape[1]
     above, below = np.triu_indices(size)
     diagonal = np.arange(size)
@@ -160,9 +163,9 @@ def _levenberg(problem, found, scale, f_scale, state):
         further = found - scale * step
         tried, new = problem.at(further, state)
         then = _cost(problem, tried, f_scale)
-        better, small = then <= now, np.abs(step).max(axis=1) < 1e-9
+        better, small = then <= now, np.abs(step).max(axis=1) < exact
         steps += better
-        over = np.where(better, (now - then <= 1e-13 * now) & small | (steps >= 100), (damping > 1e8) | small)
+        over = np.where(better, (now - then <= 1e-4 * exact * now) & small | (steps >= 100), (damping > 1e8) | small)
         damping = np.where(better, np.maximum(damping / 8, 1e-10), damping * 8)
         if better.all():
             found, residuals, state, now = further, tried, new, then
@@ -187,7 +190,8 @@ def _levenberg(problem, found, scale, f_scale, state):
         there = np.flatnonzero(~over[owner])
         problem = problem.only(left, there)
         lines, rows = lines[left], rows[there]
-        found, scale, f_scale, now, damping, steps = (values[left] for values in (found, scale, f_scale, now, damping, steps))
+        found, scale, f_scale, exact = found[left], scale[left], f_scale[left], exact[left]
+        now, damping, steps = now[left], damping[left], steps[left]
         residuals, state = residuals[there], tuple(values[there] for values in state)
 
 

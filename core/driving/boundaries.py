@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from ..curves.fit import median
+
 STEP = 0.5                    # m of station between places where lanes are looked for
 OBLIQUE = np.tan(np.radians(25.0))  # a line that runs more across the road than this bounds no lane
 DOUBLE = 0.8                  # m: lines nearer than this are one boundary, a lane ends at the nearer one
@@ -47,43 +49,67 @@ def road_boundaries(marking_lines, frame):
     -------
     dict of road number to Boundaries
     """
-    pieces = {}
-    for row_number, (geometry, row) in enumerate(marking_lines):
+    rows, parts = [], []
+    for number, (geometry, row) in enumerate(marking_lines):
         if geometry is None or geometry.is_empty:
             continue
         for part in getattr(geometry, "geoms", [geometry]):
-            piece = _piece(part, row, frame)
-            if piece is not None:
-                line = row.get("line")
-                pieces.setdefault(piece["road"], {}).setdefault(
-                    (0, int(line)) if line is not None else (1, row_number), []).append(piece)
+            rows.append((number, row))
+            parts.append(part)
+    pieces = {}
+    for (number, row), piece in zip(rows, _pieces(parts, [row for _, row in rows], frame)):
+        if piece is not None:
+            line = row.get("line")
+            pieces.setdefault(piece["road"], {}).setdefault((0, int(line)) if line is not None else (1, number), []).append(piece)
     return {road: _on_grid(frame.roads[road], lines) for road, lines in sorted(pieces.items())}
 
 
-def _piece(line, row, frame):
+def _pieces(lines, rows, frame):
+    """Stations, offsets and heights of each of some lines, None of what bounds no lane."""
+    if not lines:
+        return []
     # straight between far vertices on the map is not straight in the road's frame
-    x, y, *z = shapely.get_coordinates(shapely.segmentize(line, STEP), include_z=line.has_z).T
-    x, y = frame.to_local(x, y)
-    z = z[0] - frame.origin[2] if z else np.full(len(x), np.nan)
-    road = row.get("road")
-    if road is None or not 0 <= int(road) < len(frame.roads):
-        numbers, _, _ = frame.locate_nearest(x, y)
-        numbers = numbers[numbers >= 0]
-        if not len(numbers):
-            return None
-        road = np.bincount(numbers).argmax()
-    s, d = frame.roads[int(road)].locate(x, y)
+    x, y, z, counts = _vertices(shapely.segmentize(np.asarray(lines, object), STEP), frame)
+    bounds = np.cumsum(counts)[:-1]
+    known = [row.get("road") for row in rows]
+    roads = [int(road) if road is not None and 0 <= int(road) < len(frame.roads) else _road_of(frame, px, py)
+             for road, px, py in zip(known, np.split(x, bounds), np.split(y, bounds))]
+    of_place = np.repeat(roads, counts)
+    s, d = np.full((2, len(x)), np.nan)
+    for road in sorted(set(roads) - {-1}):
+        there = np.flatnonzero(of_place == road)
+        s[there], d[there] = frame.roads[road].locate(x[there], y[there])
+    return [_piece(road, row, *places) for road, row, *places in zip(roads, rows, *(np.split(v, bounds) for v in (s, d, z)))]
+
+
+def _vertices(lines, frame):
+    """Local x, y and z (NaN where there is none) of the vertices of lines, one after the other, and how many each has."""
+    places, owner = shapely.get_coordinates(lines, include_z=True, return_index=True)
+    x, y = frame.to_local(places[:, 0], places[:, 1])
+    return x, y, places[:, 2] - frame.origin[2], np.bincount(owner, minlength=len(lines))
+
+
+def _road_of(frame, x, y):
+    """The road that most places are nearest to, -1 where there is none."""
+    numbers, _, _ = frame.locate_nearest(x, y)
+    numbers = numbers[numbers >= 0]
+    return int(np.bincount(numbers).argmax()) if len(numbers) else -1
+
+
+def _piece(road, row, s, d, z):
     good = np.isfinite(s)
-    s, d, z = s[good], d[good], z[good]
+    if not good.all():
+        s, d, z = s[good], d[good], z[good]
     if len(s) < 2:
         return None
     if s[-1] < s[0]:
         s, d, z = s[::-1], d[::-1], z[::-1]
-    rising = s > np.r_[-np.inf, np.maximum.accumulate(s)[:-1]]
-    s, d, z = s[rising], d[rising], z[rising]
-    if len(s) < 2 or np.median(np.abs(np.diff(d)) / np.diff(s)) > OBLIQUE:
+    rising = np.append(True, s[1:] > np.maximum.accumulate(s)[:-1])
+    if not rising.all():
+        s, d, z = s[rising], d[rising], z[rising]
+    if len(s) < 2 or median(np.abs(np.diff(d)) / np.diff(s)) > OBLIQUE:
         return None
-    return dict(road=int(road), s=s, d=d, z=z, kind=str(row.get("kind") or ""), pattern=str(row.get("pattern") or ""),
+    return dict(road=road, s=s, d=d, z=z, kind=str(row.get("kind") or ""), pattern=str(row.get("pattern") or ""),
                 seen=str(row.get("status") or "measured") != "bridged")
 
 
@@ -100,7 +126,7 @@ def _on_grid(road, lines):
         pieces = sorted(lines[key], key=lambda p: (p["s"][0], p["s"][-1]))
         for p in pieces:
             # pieces of one line touch: the hair between two grid stations belongs to the line too
-            inside = (s >= p["s"][0] - 1e-6) & (s <= p["s"][-1] + 1e-6)
+            inside = slice(np.searchsorted(s, p["s"][0] - 1e-6), np.searchsorted(s, p["s"][-1] + 1e-6, side="right"))
             d[k, inside] = np.interp(s[inside], p["s"], p["d"])
             z[k, inside] = np.interp(s[inside], p["s"], p["z"])
             seen[k, inside] |= p["seen"]
@@ -123,13 +149,19 @@ def _joined(lines):
     ends = {k: np.flatnonzero(np.isfinite(lines.d[k])) for k in rows}
     owner = dict(enumerate(rows))  # the line that a row ends as
     rows = [k for k in rows if len(ends[k])]
+    # columns in which rows end and their offsets there, NaN where there is no row any more
+    end, at_end = np.zeros(len(lines.d), int), np.full(len(lines.d), np.nan)
+    end[rows] = [ends[k][-1] for k in rows]
+    at_end[rows] = lines.d[rows, end[rows]]
     for k in sorted(rows, key=lambda k: (ends[k][0], k)):
-        behind = [j for j in rows if j != k and 0 < (ends[k][0] - ends[j][-1]) * STEP <= DASH_GAP
-                  and abs(lines.d[k, ends[k][0]] - lines.d[j, ends[j][-1]]) <= IN_LINE]
-        if not behind:
+        last = ends[k][0]
+        away = np.abs(lines.d[k, last] - at_end)
+        gap = (last - end) * STEP
+        behind = np.flatnonzero((gap > 0) & (gap <= DASH_GAP) & (away <= IN_LINE))
+        if not len(behind):
             continue
-        j = min(behind, key=lambda j: (abs(lines.d[k, ends[k][0]] - lines.d[j, ends[j][-1]]), j))
-        first, last = ends[j][-1], ends[k][0]
+        j = int(behind[np.argmin(away[behind])])
+        first = end[j]
         gaps.append((j, first, last, *("double" in lines.patterns[owner[i]] for i in (j, k))))
         owner[j] = owner[k]
         gap = np.arange(first + 1, last)
@@ -139,7 +171,7 @@ def _joined(lines):
         lines.seen[j, last:] |= lines.seen[k, last:]
         # a gap of a dashed line is no gap
         lines.seen[j, gap] = any(lines.patterns[i].startswith("dash") for i in (j, k))
-        ends[j] = np.r_[ends[j], gap, ends[k]]
+        end[j], at_end[j], at_end[k] = end[k], lines.d[j, end[k]], np.nan
         rows.remove(k)
     found = Boundaries(lines.s, lines.d[rows], lines.z[rows], lines.seen[rows], [lines.numbers[k] for k in rows],
                        [lines.kinds[k] for k in rows], [lines.patterns[k] for k in rows])
