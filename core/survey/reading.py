@@ -17,6 +17,7 @@ LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags")  # what is d
 WAITING = 4_000_000    # points kept back at most until the height of the road is known
 SAMPLES = 5_000        # points on the track that tell it
 THREADS = 4            # at most: each has blocks decoded, by all cores (lazrs keeps the others waiting), and places their points
+QUEUE = 4              # blocks for each of them that are begun or wait: what keeps them busy while sections are put into the temporary file
 
 
 class SurveyReader:
@@ -57,7 +58,7 @@ class SurveyReader:
                 for load in readers.blocks(files, block):
                     waiting.append(pool.submit(self._read_block, load))
                     # the first blocks tell the road's height, which the others are chosen by
-                    while len(waiting) > (2 * threads if self._ground else 0):
+                    while len(waiting) > (QUEUE * threads if self._ground else 0):
                         take()
                 while waiting:
                     take()
