@@ -13,6 +13,7 @@ from .markings.clusters import ClusterSettings, cluster_markings
 from .markings.extraction import MarkingSettings, extract_markings
 from .markings.image import ImageSettings, IntensityImage, write_intensity_image
 from .markings.intensity import IntensitySettings, correct_intensity
+from .markings.line_names import named_by_lines
 from .markings.lines import LineSettings, fit_marking_lines
 from .markings.outliers import OutlierSettings, remove_outliers
 from .progress import Progress
@@ -171,6 +172,7 @@ def _paint(result, image_path, settings, stages):
                                             points, frame, settings.clusters)
     result.marking_lines = stages.run("lines", "Fitting marking lines …", fit_marking_lines,
                                       clustered, result.markings, frame, settings.lines)
+    named_by_lines(result.markings, result.marking_lines)
     result.marking_curvature = marking_curvature(_places(clustered), result.marking_lines.geometries, frame.origin)
     result.driving_lines, result.curve_elements = stages.run(
         "driving", "Making driving lines …", driving_lines, result.marking_lines, frame, settings.driving,

@@ -20,8 +20,11 @@ STOP_WIDTH = (0.18, 0.90)
 STOP_LENGTH = 1.5
 COVER = (0.30, 1.15)  # m, diameter of manhole covers
 ROUND = 1.7           # a cover is not longer for its width than this
-FILLED = 0.7          # of its length times its width: a stop line is a full bar, the outline of hatching with its bars is not
+FILLED = 0.62         # of its length times its width: a stop line is a full bar, the outline of hatching with its bars is not
+SHAFT, HEAD = 0.20, 0.25  # of an arrow's length: its shaft at least, and at the other end the tip of its head at most
 TOUCHING = 0.3        # m from a bar of hatching to its outline
+BAR_APART, HATCHED_AREA = 3.0, 4.0  # m between bars of one hatching, m along the road: what is longer is more than one bar
+CORNER, SHORT_BAR = 0.30, 2.0  # m from the road edge, m: a lone bar so near and so short is the curb or gutter of a corner
 RIM = 0.60            # m from the road edge where verge, gutter and curb may look like paint
 BEYOND = 0.80         # m outside an edge line that strips are mistrusted
 AT_RIM, NO_LANE = 0.10, 3.0  # m: what lies this near the road edge is mistrusted as far out as no lane has room
@@ -95,6 +98,8 @@ def classify(shapes, half_widths, settings=ClassSettings(), covered=0.0):
         found.append((kind, "keep" if kind in LINES else "other"))
     for k in _outlines(column, [kind for kind, _ in found]):
         found[k] = "hatch", "other"
+    for k in _lone_bars(column, [kind for kind, _ in found]):
+        found[k] = NOT_PAINT if room[k] < CORNER and shapes[k].length < SHORT_BAR else "symbol", "other"
     return found
 
 
@@ -185,6 +190,19 @@ def _outlines(column, kinds):
     return rows[touch.any(axis=1)]
 
 
+def _lone_bars(column, kinds):
+    """What looked like a bar of hatching and has no other bar near it."""
+    rows = np.flatnonzero(np.array([kind == "hatch" for kind in kinds], bool))
+    away = np.zeros((len(rows), len(rows)))
+    for low, high in (("s0", "s1"), ("d0", "d1")):
+        first, last = column[low][rows], column[high][rows]
+        away = np.maximum(away, np.maximum(first[:, None], first) - np.minimum(last[:, None], last))
+    near = away < BAR_APART
+    np.fill_diagonal(near, False)
+    single = column["s1"][rows] - column["s0"][rows] < HATCHED_AREA
+    return rows[~near.any(axis=1) & single]
+
+
 def _line_kind(shape, room, double):
     if room < LANE and not double:
         return "edge"
@@ -221,7 +239,7 @@ def _other_kind(shape):
         return "stop"
     along, across = shape.s1 - shape.s0, shape.d1 - shape.d0
     if 1.5 <= along <= 8.0 and 0.3 <= across <= 1.8 and shape.area < 0.7 * along * across and turn < np.radians(25):
-        return "arrow"
+        return "arrow" if max(shape.stems) >= SHAFT and min(shape.stems) <= HEAD else "symbol"
     if (np.radians(20) < turn <= np.radians(75) and shape.elongation > 2) or (along > 4 and across > 0.8):
         return "hatch"
     return "symbol"

@@ -15,6 +15,7 @@ BIN = 5000          # units: 0.5 m of station that the run of a line is followed
 RANGE = 95.0        # % of the points that the width spans; divided out again
 ALONG = np.radians(20.0)   # closer to the road's direction than this is "along" it
 ACROSS = np.radians(60.0)  # farther from it is "across"
+STEM, STEM_STEP = 9, 5  # cells: a stroke along the road is no broader (0.36 m), looked at every 20 cm
 BAR_GAPS = 10, 6    # cells along the road and across it: gaps between the scan lines on a bar
 SMALL, SMALL_GAPS = 1.2, (3, 1)  # m, and cells likewise of what is no longer than that: the strokes of a sign lie farther apart
 
@@ -27,6 +28,7 @@ class Shape:
     s0, s1, d0, d1 bound it; `offset` is the median offset, `area` that of its 4 cm cells;
     `closed_area` is the area with the gaps between scan lines, of what runs across the road or is small (`area` of the rest);
     `begin` and `finish` are the offsets of its middle line at s0 and s1 (the median for what is not along the road).
+    `stems` are the shares of its length, from s0 on and from s1 back, over which it is a single stroke.
     """
 
     s0: float
@@ -42,6 +44,7 @@ class Shape:
     begin: float
     finish: float
     closed_area: float
+    stems: tuple
 
     @property
     def elongation(self):
@@ -94,7 +97,8 @@ def measure(s, d):
         closed = _closed(cells, BAR_GAPS) if abs(direction) > ACROSS else len(cells)
     area, closed_area = (count * (CELL * UNIT) ** 2 for count in (len(cells), closed))
     return Shape(s0 * UNIT, s1 * UNIT, d0 * UNIT, d1 * UNIT, median(d) * UNIT, float(length),
-                 spread(across) * UNIT, direction, area, len(s), float(begin), float(finish), closed_area)
+                 spread(across) * UNIT, direction, area, len(s), float(begin), float(finish), closed_area,
+                 _stems(cells))
 
 
 def fill_gaps(mask, limit, axis=0):
@@ -119,6 +123,17 @@ def _closed(cells, gaps):
     for axis, limit in enumerate(gaps):
         mask = fill_gaps(mask, limit, axis)
     return int(mask.sum())
+
+
+def _stems(cells):
+    """Shares of the length, from either end, over which cells reach no farther across than a stroke; wear parts none."""
+    step = (cells[:, 0] - cells[:, 0].min()) // STEM_STEP
+    count = int(step.max()) + 1
+    low, high = np.full(count, np.inf), np.full(count, -np.inf)
+    np.minimum.at(low, step, cells[:, 1])
+    np.maximum.at(high, step, cells[:, 1])
+    broad = np.flatnonzero(high - low >= STEM)
+    return (float(broad[0]) / count, 1.0 - float(broad[-1] + 1) / count) if len(broad) else (1.0, 1.0)
 
 
 def spread(across):

@@ -151,6 +151,42 @@ def test_a_manhole_cover_is_none_where_scan_lines_lie_apart():
     assert classes(markings) == ["lane"]
 
 
+def test_a_manhole_cover_beside_a_line_leaves_the_line_a_line():
+    markings = markings_of([strip(10, 30, 0.0, 0.15), disc(20, 0.40, 0.60)], density=2500)
+    assert classes(markings) == ["centre"]
+    assert markings.rows[0]["width_m"] == pytest.approx(0.15, abs=0.03)
+
+
+def arrow(s0, d0, way=1):
+    """A straight arrow of 5 m, its shaft 0.15 m and its head 0.9 m broad."""
+    def painted(s, d):
+        u, across = (s - s0) * way, np.abs(d - d0)
+        return (u >= 0) & (u < 3.2) & (across < 0.075) | (u >= 3.2) & (u < 5.0) & (across < 0.45 * (5.0 - u) / 1.8)
+    return painted
+
+
+def letter(s0, d0):
+    """An E of 2.4 m by 1 m."""
+    return lambda s, d: np.any([strip(s0, s0 + 2.4, d0, d0 + 0.2)(s, d)]
+                               + [strip(u, u + 0.3, d0, d0 + 1.0)(s, d) for u in (s0, s0 + 1.05, s0 + 2.1)], axis=0)
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_an_arrow_has_a_shaft_and_a_letter_none(way):
+    assert classes(markings_of([arrow(30, 1.5, way), letter(40, -2.0)], density=3000)) == ["arrow", "symbol"]
+
+
+def slanting(s0, d0, length=1.2, width=0.3):
+    """A bar at 45 degrees to the road, to the left of its place."""
+    return lambda s, d: (np.abs(s - s0 - (d - d0)) < width * np.sqrt(0.5)) & (d > d0) & (d < d0 + length * np.sqrt(0.5))
+
+
+def test_bars_side_by_side_are_hatching_one_alone_is_not_and_at_the_edge_it_is_the_curb_of_a_corner():
+    assert classes(markings_of([slanting(s, 0.5) for s in (20, 21.5, 23)], density=3000)) == ["hatch"] * 3
+    assert classes(markings_of([slanting(20, 0.5)], density=3000)) == ["symbol"]
+    assert len(markings_of([slanting(20, 5.5, 0.7)], density=3000)) == 0
+
+
 def test_specks_are_no_markings():
     specks = [disc(s, d, 0.15) for s, d in ((12, 1.0), (30, -2.0), (47, 0.3))]
     assert len(markings_of(specks)) == 0
