@@ -23,6 +23,7 @@ WIDEST_FACE = 0.10   # m across
 NOISE_RUN = 4.0      # sigmas by which noise widens a face
 ALMOST = 0.8         # share of the least height below which no turning makes a step of a rise
 SIGMAS = 4.0        # a step must stand this far above the noise of its road side
+DROWNED = 0.5        # share of that below which no turning makes a step of a rise
 LEAST_VIEW = 5       # points of a view that is measured by itself, and of the other: else it shows what all points show
 FACE_LOW, FACE_HIGH = 0.15, 0.70  # part of the height that counts as face: grass hangs over the top
 LEAST_SHARE = 0.5    # noise brings points from above and below into a thinner part
@@ -165,7 +166,8 @@ class NearSteps:
         height, n_behind, stays = self._raised(rise)
         found = dict(level=level, slope=slope, noise=noise, n_road=n_road, height=height, n_behind=n_behind, stays=stays)
         # most candidates are no step from whatever direction they are seen: their faces need no measuring
-        likely = (n_road >= 4) & (height >= ALMOST * self.least) & (np.abs(slope) <= STEEPEST_ROAD / ALMOST)
+        likely = (n_road >= 4) & (height >= np.maximum(ALMOST * self.least, DROWNED * SIGMAS * noise)) \
+            & (np.abs(slope) <= STEEPEST_ROAD / ALMOST)
         which = np.flatnonzero(likely)
         number = np.full(count, -1)
         number[which] = np.arange(len(which))

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d, uniform_filter1d
+from scipy.ndimage import correlate1d, uniform_filter1d
 
 from .cells import COLUMN, ROW, known_median
 
@@ -54,8 +54,10 @@ def follow_road(cells, prior):
     height, ground = np.full(relative.shape, np.nan), np.zeros(relative.shape, bool)
     middle = int(np.flatnonzero(offsets > 0)[0])
     start = _starting_tilt(relative, offsets)
-    for columns, direction in ((range(middle, len(offsets)), 1.0), (range(middle - 1, -1, -1), -1.0)):
-        _walk(relative, cells.count, columns, direction, start, noise, height, ground)
+    # both sides at once, as far as both go
+    both = min(middle, len(offsets) - middle)
+    columns = np.stack([middle + np.arange(both), middle - 1 - np.arange(both)], axis=1)
+    _walk(relative, cells.count, columns, start, noise, height, ground)
     return RoadHeight((height + base[:, None]).astype(np.float32), ground, noise)
 
 
@@ -77,31 +79,40 @@ def _starting_tilt(relative, offsets):
     return np.clip(_running_median(tilt, 5), -STEEPEST, STEEPEST) if np.isfinite(tilt).any() else np.zeros(len(tilt))
 
 
-def _walk(relative, count, columns, direction, start, noise, height, ground):
-    """Follow one side; fills `height` and `ground` in place."""
-    z, tilt, unseen = np.zeros(len(start)), start * direction, np.zeros(len(start))
-    sigma = ALONG / ROW
-    for k, j in enumerate(columns):
+def _walk(relative, count, columns, start, noise, height, ground):
+    """Follow both sides outward, (K, 2) columns; fills `height` and `ground` in place."""
+    tilt = np.stack([start, -start])
+    z, unseen = np.zeros_like(tilt), np.zeros_like(tilt)
+    count = np.nan_to_num(count)
+    error, most = NOISE * noise / np.sqrt(np.clip(count, 1.0, 25.0)), np.minimum(count, 20.0)
+    kernel = _bell(ALONG / ROW)
+    for k, pair in enumerate(columns):
         promised = z + tilt * (0.5 * COLUMN if k == 0 else COLUMN)
-        off = relative[:, j] - promised
-        error = NOISE * noise / np.sqrt(np.clip(count[:, j], 1.0, 25.0))
-        tolerance = STEP + error + np.minimum(FOUND_AGAIN * np.maximum(unseen - 0.5, 0.0), MOST)
-        seen = np.isfinite(off) & (np.abs(off) < tolerance)
+        there = relative[:, pair].T
+        off = there - promised
+        tolerance = STEP + error[:, pair].T + np.minimum(FOUND_AGAIN * np.maximum(unseen - 0.5, 0.0), MOST)
+        seen = np.abs(off) < tolerance   # not where there is nothing
+        off = np.where(seen, off, 0.0)
         # what is nearly off the road teaches little: a low curb must not be climbed
-        trust = np.where(seen, (1.0 - (np.nan_to_num(off) / tolerance) ** 2) ** 2, 0.0)
-        weight = trust * np.minimum(np.nan_to_num(count[:, j]), 20.0)
+        weight = np.where(seen, (1.0 - (off / tolerance) ** 2) ** 2, 0.0) * most[:, pair].T
         # what the rows around see, weighed by their points: one row's gap is filled by its neighbours
-        total = gaussian_filter1d(weight, sigma, mode="nearest")
-        around = gaussian_filter1d(np.where(seen, off, 0.0) * weight, sigma, mode="nearest") / np.maximum(total, 1e-9)
-        told = np.clip(total / 3.0, 0.0, 1.0)
+        total, around = correlate1d(np.stack([weight, off * weight]), kernel, mode="nearest")
+        around /= np.maximum(total, 1e-9)
+        told = np.minimum(total / 3.0, 1.0)
         # found again behind something, the height is taken as it is seen
-        follow = np.where(unseen > 0.5, 1.0, FOLLOW)
-        z = promised + follow * told * around
+        z = promised + np.where(unseen > 0.5, 1.0, FOLLOW) * told * around
         tilt = np.clip(tilt + TURN * told * around / COLUMN, -STEEPEST, STEEPEST)
-        tilt = gaussian_filter1d(tilt, sigma, mode="nearest")
+        tilt = correlate1d(tilt, kernel, mode="nearest")
         unseen = np.where(told > 0.5, 0.0, unseen + COLUMN)
-        height[:, j] = z
-        ground[:, j] = np.isfinite(relative[:, j]) & (np.abs(relative[:, j] - z) < tolerance)
+        height[:, pair] = z.T
+        ground[:, pair] = (np.abs(there - z) < tolerance).T
+
+
+def _bell(sigma):
+    """Weights of a normal distribution, out to four sigmas."""
+    reach = int(4.0 * sigma + 0.5)
+    weights = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
+    return weights / weights.sum()
 
 
 def smooth_road(road, cells):
