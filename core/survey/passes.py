@@ -99,7 +99,7 @@ def _split_at_pauses(trajectory):
 
 
 def _split_at_returns(trajectory, first, last):
-    x, y, z = trajectory.x[first:last], trajectory.y[first:last], trajectory.z[first:last]
+    x, y = trajectory.x[first:last], trajectory.y[first:last]
     rows = moving_rows(x, y)
     driven = np.interp(np.arange(last - first), rows, np.r_[0.0, np.cumsum(np.hypot(np.diff(x[rows]), np.diff(y[rows])))])
     rows = rows[thin_by_distance(x[rows], y[rows], STEP)]
@@ -109,7 +109,7 @@ def _split_at_returns(trajectory, first, last):
         along = np.r_[0.0, np.cumsum(np.hypot(np.diff(px), np.diff(py)))]
         heading = np.unwrap(np.arctan2(np.gradient(py), np.gradient(px)))
         cuts = [(int(rows[k]), *(int(rows[m]) for m in (_turn_ends(heading, along, k) if is_turn else (k, k))))
-                for k, is_turn in _return_cuts(px, py, z[rows], along, heading)]
+                for k, is_turn in _return_cuts(px, py, along, heading)]
     count = last - first
     cuts = _long_enough(cuts, driven)
     starts = [(0, 0)] + [(row, after) for row, _, after in cuts]
@@ -144,28 +144,29 @@ def _apex(px, py, heading, a, b):
     return a + int(np.argmax(px[a:b + 1] * out_x + py[a:b + 1] * out_y))
 
 
-def _return_cuts(px, py, pz, along, heading):
+def _return_cuts(px, py, along, heading):
     """[(index, is it a turn on the spot)] of the positions at which a new pass begins."""
     pairs = cKDTree(np.c_[px, py]).query_pairs(NEAR, output_type="ndarray")
     if not len(pairs):
         return []
     i, j = pairs.min(axis=1), pairs.max(axis=1)
-    level = np.abs(pz[j] - pz[i]) < LEVEL
-    i, j = i[level], j[level]
     apart = along[j] - along[i]
     turned = np.abs((heading[j] - heading[i] + np.pi) % (2 * np.pi) - np.pi)
     back = (turned > np.pi - PARALLEL) & (apart > 4 * STEP)
     again = (turned < PARALLEL) & (apart > RETURN_AFTER)
     crossed = (apart > RETURN_AFTER) & (np.hypot(px[i] - px[j], py[i] - py[j]) < STEP)
     use = back | again | crossed
-    i, j, back, apart = i[use], j[use], back[use], apart[use]
-    order = np.lexsort((-i, j))
+    order = np.flatnonzero(use)[np.lexsort((-i[use], j[use]))]
     cuts, start = [], 0
-    for a, b, is_back, path in zip(i[order], j[order], back[order], apart[order]):
+    for a, b, is_back, joins, path in zip(i[order].tolist(), j[order].tolist(), back[order], (back | again)[order], apart[order]):
         if a < start:
             continue
-        # A turn on the spot is cut at its apex, a return from elsewhere where it comes back.
+        # A turn on the spot is cut at its apex, a return from elsewhere where it comes back, and a loop that crosses
+        # itself half way round: neither part then has two stations at the crossing, on whatever levels they meet
         is_turn = bool(is_back and path < RETURN_AFTER + 20)
-        start = _apex(px, py, heading, int(a), int(b)) if is_turn else int(b)
+        if is_turn:
+            start = _apex(px, py, heading, a, b)
+        else:
+            start = b if joins else int(np.searchsorted(along, (along[a] + along[b]) / 2))
         cuts.append((start, is_turn))
     return cuts

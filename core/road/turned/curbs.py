@@ -205,6 +205,8 @@ def _steps_of_section(crowds, road, section, limits, known, barrier, settings, f
         return None
     views = _averaged_views(raster, place, along, settings.layer_jump) if noisy else [raster]
     steps = measure_plan_steps(views, x[fresh], y[fresh], nx[fresh], ny[fresh], 0.5 * settings.min_height, settings.max_height)
+    # within a tight bend a step may be measured beyond where stations end
+    steps = steps[np.isfinite(line.locate(steps.x, steps.y)[0])]
     lean = [float(np.median(slope[driven])) for slope in slopes]
     falls = falls_again(raster, lean, steps.x, steps.y, steps.nx, steps.ny, steps.h, steps.height, ISLAND_WIDTH)
     return steps, falls, np.full(len(steps), views[0].noise)

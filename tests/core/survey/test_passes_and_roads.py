@@ -72,6 +72,23 @@ def test_a_figure_of_eight_is_cut_where_it_crosses_itself():
         assert road.length == pytest.approx(2 * np.pi * 40, abs=15)
 
 
+@pytest.mark.parametrize("climb", [0.0, 6.0])
+def test_a_road_that_crosses_itself_has_one_station_at_the_crossing(climb):
+    path = chain(ahead(160), bend(40, -270), ahead(160))
+    loop = drive(path)
+    share = np.linspace(0.0, 1.0, len(loop))
+    loop = Trajectory(loop.time, loop.x, loop.y, loop.z + climb * np.clip(3 * share - 1, 0, 1))
+    frame = build_frame(loop)
+    assert len(frame.passes) == len(frame.roads) == 2
+    crossing = path[1200]
+    x, y = frame.to_local(EAST + crossing[0], NORTH + crossing[1])
+    for road in frame.roads:
+        away = np.hypot(road.x - x, road.y - y)
+        near = np.flatnonzero(away < 20.0)
+        assert len(near) and (np.diff(near) == 1).all(), "the road passes the crossing once"
+        assert near[0] > 100 and near[-1] < len(road.x) - 100, "and goes on beyond it both ways"
+
+
 def test_parallel_carriageways_fifteen_metres_apart_are_two_roads():
     frame = build_frame(joined(drive(STREET), drive(STREET[::-1] + [0.0, 15.0], start=2000.0)))
     assert sorted(p.road for p in frame.passes) == [0, 1]
