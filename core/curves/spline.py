@@ -10,7 +10,7 @@ from .curve import TabledCurve
 from .fit import Fit, checked, least_bic, median
 from .together import batches
 
-BANDWIDTHS = (2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0, 40.0, 60.0)  # m; waves shorter than 6 of them are smoothed away
+BANDWIDTHS = (1.0, 1.4, 2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0, 40.0, 60.0)  # m; waves shorter than 6 of them are smoothed away
 TOGETHER = 4096  # places of a line times bandwidths that are fitted at a time: what fits the processor's cache
 TURNS, PROFILE_TURNS = 8, 6  # of weights
 SETTLED = 1e-6  # of a weight: its next change moves the curve by less than a micrometre

@@ -110,8 +110,9 @@ def columns_of(shapes):
 
 
 def _is_line(column, settings):
-    width = column["width"]
-    return column["along"] & (width >= settings.min_width) & (width <= settings.max_width) \
+    # of a line far off each scan line may show one point only, and no width
+    width, thin = column["width"], column["length"] >= SOLID
+    return column["along"] & ((width >= settings.min_width) | thin) & (width <= settings.max_width) \
         & (column["length"] >= settings.min_length) & (column["elongation"] >= settings.min_elongation)
 
 

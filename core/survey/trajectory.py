@@ -8,6 +8,7 @@ from ..errors import RoadExtractionError
 from .time_systems import unwrap_time
 
 FASTEST = 70.0  # m/s that a survey vehicle may drive
+FAR_FROM_ZERO = 1000.0  # m from the origin of the coordinates beyond which no drive passes it
 
 
 @dataclass(frozen=True)
@@ -76,6 +77,7 @@ def clean_trajectory(trajectory):
         notes.append("The trajectory's time starts again from zero during the drive; it was carried on.")
         trajectory = replace(trajectory, time=carried)
     good = np.isfinite(trajectory.time) & np.isfinite(trajectory.x) & np.isfinite(trajectory.y) & np.isfinite(trajectory.z)
+    good &= ~_zero_rows(trajectory, good)
     if not good.all():
         notes.append(f"{np.count_nonzero(~good)} of {len(good)} trajectory rows had no usable time or position and were dropped.")
         trajectory = trajectory.rows(good)
@@ -96,6 +98,13 @@ def clean_trajectory(trajectory):
             f"The trajectory has {len(trajectory)} usable positions over {length:.1f} m. At least two positions and "
             "1 m of driving are needed; check the time and coordinate columns of the file.")
     return replace(trajectory, notes=tuple(notes))
+
+
+def _zero_rows(trajectory, good):
+    """Mask of rows at exactly (0, 0) where no other usable row is near: how receivers write that they had no position."""
+    zero = (trajectory.x == 0) & (trajectory.y == 0)
+    away = np.hypot(trajectory.x[good & ~zero], trajectory.y[good & ~zero])
+    return zero & bool(len(away) and away.min() > FAR_FROM_ZERO)
 
 
 def _stray_rows(trajectory):

@@ -121,6 +121,13 @@ def test_a_winding_road_becomes_a_spline_that_lies_on_the_paint():
     assert np.sqrt(np.mean(fit.curve.foot(*exact)[1] ** 2)) < 0.006
 
 
+@pytest.mark.parametrize("radius, off", [(9.0, 0.02), (6.0, 0.03)])
+def test_the_line_of_a_hairpin_stays_on_its_paint_where_the_bend_begins_and_ends(radius, off):
+    course = [(0, 0, 45), (1 / radius, 1 / radius, np.pi * radius), (0, 0, 45)]
+    fit = fit_curve(*along(course))
+    assert np.abs(fit.curve.foot(*along(course, noise=0))[1]).max() < off
+
+
 def test_a_spline_crosses_the_gaps_of_a_dashed_bend():
     """6 m dashes, 9 m gaps, R = 60 m: between the dashes the line stays on the arc."""
     truth = Arc(0.0, 0.0, 0.0, 1 / 60, 120.0)

@@ -201,6 +201,14 @@ def test_a_line_that_every_scan_line_meets_once_is_a_line():
     assert sum(markings.column("length_m")) > 15.0
 
 
+def test_a_long_line_so_far_off_that_its_width_cannot_be_told_is_a_line():
+    s = np.arange(5.0, 60.0, 0.1)
+    records = records_at(FRAME, s, 5.5 + 0.02 * np.sin(7 * s), np.full(len(s), 4000.0), 6.0)
+    markings, _ = cluster_markings(road_points(records, FRAME), FRAME)
+    assert set(classes(markings)) == {"edge"}
+    assert markings.rows[0]["width_m"] < 0.06
+
+
 def test_bright_concrete_along_the_road_edge_is_no_marking():
     assert len(markings_of([strip(10, 60, 5.55, 6.0)])) == 0
 

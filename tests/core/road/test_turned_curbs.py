@@ -1,5 +1,6 @@
 """Curbs that do not run along the road: corners, side streets, islands, and what is none of them."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -9,7 +10,10 @@ import shapely.affinity
 from lanewright.core.road.curbs import detect_curbs
 from lanewright.core.road.edges import fit_road_edges
 from lanewright.core.road.surface.limits import edge_offsets
+from lanewright.core.road.turned import curbs
+from lanewright.core.road.turned.plan_steps import measure_plan_steps
 
+from . import street_plans
 from .curbed_streets import EAST, NORTH, parked_car
 from .street_plans import LENGTH, scan, side_street, sidewalks, survey_along, with_points
 
@@ -155,3 +159,16 @@ def test_the_width_of_the_road_is_told_by_its_own_curbs_alone():
     left, seen = edge_offsets(edges, survey.frame, 0, stations)["left"]
     assert seen.all()
     np.testing.assert_allclose(left, 8.0, atol=0.03)
+
+
+def test_steps_measured_just_beyond_the_corridor_are_left_out(monkeypatch):
+    """They are sought within it; here all are found a little farther out than that."""
+    def farther_out(*arguments):
+        steps = measure_plan_steps(*arguments)
+        return replace(steps, y=steps.y + 0.3)
+
+    monkeypatch.setattr(street_plans, "WIDTH", 28.0)
+    monkeypatch.setattr(curbs, "measure_plan_steps", farther_out)
+    edges = edges_of(scan(side_street(radius=4.0), spacing=0.1))
+    assert np.isfinite(np.concatenate([shapely.get_coordinates(line, include_z=True) for line in edges.geometries])).all()
+    assert 23.0 < shapely.union_all(turned(edges)).bounds[3] <= 25.0

@@ -197,6 +197,17 @@ def test_rows_without_a_position_are_dropped_and_counted():
     assert cleaned.notes == (f"5 of {len(trajectory)} trajectory rows had no usable time or position and were dropped.",)
 
 
+def test_rows_of_zeros_are_no_positions_unless_the_drive_passes_there():
+    lost = drive(STREET)
+    for name in ("x", "y", "z"):
+        getattr(lost, name)[np.r_[100:110, -20:0]] = 0.0
+    kept = clean_trajectory(lost)
+    assert len(kept) == len(lost) - 30
+    assert any("30 of" in note and "no usable time or position" in note for note in kept.notes)
+    local = drive(STREET, east=0.0, north=0.0)
+    assert len(clean_trajectory(local)) == len(local)
+
+
 def test_repeated_times_keep_one_row():
     trajectory = drive(STREET[:500])
     doubled = joined(trajectory, trajectory)
