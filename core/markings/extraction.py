@@ -16,6 +16,7 @@ from ..progress import Progress
 from ..survey.points import UNIT, Points, chosen, joined
 from ..survey.road_points import RoadPoints
 from .averages import Averages
+from .clipping import clipping_of
 from .gutters import edge_distance, rim_distance
 from .intensity_peaks import PeakSettings, points_on_peaks
 from .levels import Levels, asphalt_profile, flatten
@@ -86,6 +87,9 @@ def extract_markings(road_points, image, frame, settings=MarkingSettings(), prog
     -------
     RoadPoints
     """
+    clipped = "" if road_points.has_corrected else clipping_of(road_points).warning
+    if clipped:
+        progress.warn(clipped)
     with marking_mask(mask_path, image, frame.origin) if mask_path else nullcontext() as burn:
         if settings.method == "multi-threshold":
             kept = _extract(road_points, image, frame, settings, progress, burn)

@@ -9,13 +9,13 @@ from ..parallel import in_order
 from ..progress import Progress
 from ..survey.points import Points
 from .beams import Beams
+from .clipping import Clipping
 from .intensity_table import BIN, HALF, REACH, ROW, SHIFT, AsphaltTable, LevelCounts, asphalt_of
 from .vehicle_places import ACROSS, UNKNOWN, Tracks
 
 ENOUGH = 16_000   # points of a metre of road: more tell nothing new of asphalt
 STRIPE = 100    # units of 0.1 mm along the road: where there are more, stripes of it are looked at
 AT_ONCE = 1 << 15  # points corrected at a time: what fits the processor's cache
-CLIPPED = 0.05   # share of points at their scanner's highest intensity: more than paint covers of most roads
 WITHOUT_VEHICLE = 0.2   # share of points that may lack a vehicle's position before the correction is given up
 
 
@@ -46,7 +46,7 @@ class IntensityReport:
         asphalt over the distances, %)
     beams : how many beams of spinning scanners were evened, 0 where there are none
     between_before, between_after : highest over lowest scanner's asphalt
-    highest, at_highest : the highest intensity of the road, and the share of points within 1.1 % of their scanner's highest
+    clipping : whether intensities were cut off at an end
     reason : why nothing was corrected, "" where it was
     """
 
@@ -58,18 +58,13 @@ class IntensityReport:
     spread_before: float = float("nan")
     spread_after: float = float("nan")
     beams: int = 0
-    highest: float = float("nan")
-    at_highest: float = 0.0
+    clipping: Clipping = Clipping()
     reason: str = ""
 
     @property
     def clipped(self):
-        """What to say of intensities that were cut off at their highest value, "" where they were not."""
-        if self.at_highest < CLIPPED:
-            return ""
-        return (f"{100 * self.at_highest:.0f} % of the road's points have the highest intensity, {self.highest:.0f}: what was brighter has "
-                "been cut off, so that paint there may be no brighter than asphalt and be missed. Export the cloud with the "
-                "scanner's full intensities (16 bits, not stretched).")
+        """What to say of intensities that were cut off, "" where they were not."""
+        return self.clipping.warning
 
     def lines(self):
         """Sentences for a log."""
@@ -182,7 +177,7 @@ def correct_intensity(road_points, frame, settings=IntensitySettings(), progress
         after.add(counts, step)
     report = _report(before.counts, after.counts, table, by_scanner)
     report.beams = beams.count if beams else 0
-    report.highest, report.at_highest = float(highest), _at_highest(before.counts[ACROSS].sum(axis=1))
+    report.clipping = Clipping.of(before.counts[ACROSS].sum(axis=1), highest)
     if report.clipped:
         progress.warn(report.clipped)
     for line in report.lines()[:1]:
@@ -211,15 +206,6 @@ def _by_scanner(points):
     """(256,) how many points each scanner has."""
     scanner = points.scanner
     return sum((np.bincount(scanner[k:k + AT_ONCE], minlength=256) for k in range(0, len(scanner), AT_ONCE)), np.zeros(256, np.int64))
-
-
-def _at_highest(levels):
-    """Share of points (scanners, LEVELS) in their scanner's highest level, where it stands out from those below; else 0."""
-    top = levels.shape[1] - 1 - np.argmax(levels[:, ::-1] > 0, axis=1)
-    rows = np.arange(len(levels))
-    below = levels[rows, np.maximum(top - 1, 0)] + levels[rows, np.maximum(top - 2, 0)]
-    piled = np.where(levels[rows, top] > below, levels[rows, top], 0)
-    return float(piled.sum() / max(levels.sum(), 1))
 
 
 def _looked_up(lookup, scanner, place):

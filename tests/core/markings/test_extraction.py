@@ -7,6 +7,7 @@ from lanewright.core.errors import RoadExtractionError
 from lanewright.core.markings import extraction
 from lanewright.core.markings.extraction import MarkingSettings, extract_markings
 from lanewright.core.markings.image import IntensityImage, write_intensity_image
+from lanewright.core.progress import Progress
 from painted_streets import ASPHALT, assert_same_points, drive, records_at, road_points, shuffled, street, strewn, strip
 
 gdal = pytest.importorskip("osgeo.gdal")
@@ -128,6 +129,30 @@ def test_noisy_multi_beam_intensities_show_bars_of_paint_and_stay_silent_without
     assert np.count_nonzero(bar(paint.s, paint.d)) > 0.8 * np.count_nonzero(bar(s, d))
     assert bar(paint.s, paint.d).mean() > 0.75
     assert len(seen(np.zeros(len(s), bool))) == 0
+
+
+class Listener(Progress):
+    """Keeps what a user is warned of."""
+
+    def __init__(self):
+        self.warnings = []
+
+    def warn(self, text):
+        self.warnings.append(text)
+
+    def part(self, first, last):
+        return self
+
+
+@pytest.mark.parametrize("ends, told", [((0, 100), 0), ((0, 84), 1), ((33, 100), 1)], ids=["whole", "bright end", "dark end"])
+def test_intensities_cut_off_at_an_end_are_warned_of_also_where_nothing_is_corrected(tmp_path, ends, told):
+    records, listener = street(FRAME, [strip(10, 70, 1.0, 1.15)]), Listener()
+    low, high = np.percentile(records["intensity"], ends)
+    records["intensity"] = np.rint(np.clip((records["intensity"] - low) / (high - low), 0, 1) * 1000)
+    points = road_points(records, FRAME)
+    write_intensity_image(points, tmp_path / "image.tif")
+    extract_markings(points, IntensityImage.open(tmp_path / "image.tif"), FRAME, progress=listener)
+    assert len(listener.warnings) == told
 
 
 def test_neither_the_order_of_points_nor_the_length_of_sections_matters(tmp_path):

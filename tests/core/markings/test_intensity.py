@@ -224,6 +224,14 @@ def test_an_export_that_cuts_off_the_brightest_sixth_of_the_road_is_warned_of(sc
     assert warnings[0] in html.unescape(report.to_html())
 
 
+def test_an_export_that_cuts_off_the_darkest_third_of_the_road_is_warned_of():
+    records, _, _ = street()
+    low, top = np.percentile(records["intensity"], [33, 99.9])
+    records["intensity"] = np.rint(np.clip((records["intensity"] - low) * (255 / (top - low)), 0, 255))
+    warnings, _ = warned(records)
+    assert len(warnings) == 1 and "of the road's points have the lowest intensity, 0:" in warnings[0]
+
+
 def test_cut_off_paint_and_a_road_all_of_one_colour_are_not_warned_of():
     records, _, paint = street(law=lambda across, scanner: np.full(len(across), 5000.0))
     records["intensity"][paint] = 9000
