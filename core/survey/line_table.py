@@ -30,7 +30,7 @@ class LineTable:
         self.road, self.last, self._few = road, len(road.x) - 2, KeptArrays()
         self.start = round(road.start / UNIT)
         self.end = self.start + STEP * (len(road.x) - 1)
-        # modulo 2**32: what is near is told right, and other numbers of whole kilometres lie beyond every step
+        # 32 bits of fine units reach 13 km: what lies nearer to a node is told right wherever both are, for differences wrap as places do
         self.x, self.y = (np.rint(v / UNIT * 2**FINE).astype(np.int64).astype(np.int32) for v in (road.x, road.y))
         c, n = road._cos, road._sin
         dx, dy, dc, dn = (np.diff(v, append=v[-1:]) / NODE for v in (road.x, road.y, c, n))
@@ -80,7 +80,7 @@ class LineTable:
 
     def _away(self, places, nodes, k, kept, name):
         """(N,) float32 fine units from nodes to places, along one axis."""
-        step = nodes.take(k, out=kept("step", np.int32), mode="clip")
+        step = _of_nodes(nodes, k, kept("step", np.int32))
         np.subtract(places, step, out=step)
         away = kept(name, np.float32)
         np.copyto(away, step)
@@ -89,13 +89,13 @@ class LineTable:
     def _seen_from(self, k, x, y, kept):
         """How far places lie ahead of node k and to its left, how the line turns from there to the next, and their bend."""
         east, north = self._away(x, self.x, k, kept, "east"), self._away(y, self.y, k, kept, "north")
-        c, n = (table.take(k, out=kept(name, np.float32), mode="clip") for table, name in ((self.cos, "c"), (self.sin, "n")))
+        c, n = (_of_nodes(table, k, kept(name, np.float32)) for table, name in ((self.cos, "c"), (self.sin, "n")))
         ahead = np.multiply(east, c, out=kept("ahead", np.float32))
         north_n = np.multiply(north, n, out=kept("bend", np.float32))
         ahead += north_n
         left = np.multiply(north, c, out=north)
         left -= np.multiply(east, n, out=east)
-        turn = self.turn.take(k, out=c, mode="clip")
+        turn = _of_nodes(self.turn, k, c)
         return ahead, left, turn, np.multiply(turn, left, out=north_n)
 
     def _moved(self, k, ahead, bend, kept):
@@ -121,7 +121,7 @@ class LineTable:
         # (E - f D) . (N + f N'), to the second order of the turn
         offset = np.multiply(turn, bend, out=turn)
         offset *= np.subtract(share, np.float32(0.5), out=part)
-        offset += self.sag.take(k, out=part, mode="clip")
+        offset += _of_nodes(self.sag, k, part)
         offset *= share
         offset += left
         return share, offset, left, bend, ahead
@@ -156,6 +156,11 @@ class LineTable:
         rows = rows[found]
         s[rows], d[rows] = to_units(s_there[found]), to_units(d_there[found])
         inside[rows] = True
+
+
+def _of_nodes(table, k, out):
+    # nodes are within bounds here; numpy makes sure of it faster so than with "clip", and needs no buffer as with "raise"
+    return table.take(k, out=out, mode="wrap")
 
 
 def _all_within(values, least, most):

@@ -62,7 +62,9 @@ def times_by_value(values, time):
     """{value: (first time, last time, count)} of (N,) small integers and times; of many values those that show there are many."""
     if not len(values):
         return {}
-    low, high = int(values.min()), int(values.max())
+    # of what all have the same one tells
+    few = values if values.strides[0] else values[:1]
+    low, high = int(few.min()), int(few.max())
     present = [low, high][:high - low + 1] if high - low < 2 else np.flatnonzero(np.bincount(values))[: 4 * MOST_SCANNERS + 1].tolist()
     found = {}
     for value in present:
