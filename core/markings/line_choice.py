@@ -53,15 +53,15 @@ def bars(markings, road, frame):
 
 
 def _extents(markings, road, frame, classes):
-    found = []
-    for geometry, row in markings:
-        if row["road"] == road and row["class"] in classes:
-            places = shapely.get_coordinates(geometry)
-            x, y = frame.to_local(places[:, 0], places[:, 1])
-            s, d = frame.road(road).locate(x, y)
-            if np.isfinite(s).any():
-                found.append((np.nanmin(s), np.nanmax(s), np.nanmin(d), np.nanmax(d)))
-    return np.array(found).reshape(-1, 4)
+    shown = [geometry for geometry, row in markings if row["road"] == road and row["class"] in classes]
+    places, owner = shapely.get_coordinates(np.asarray(shown, object), return_index=True)
+    s, d = frame.road(road).locate(*frame.to_local(places[:, 0], places[:, 1])) if len(places) else np.empty((2, 0))
+    known = np.isfinite(s)
+    s, d, owner = s[known], d[known], owner[known]
+    if not len(s):
+        return np.empty((0, 4))
+    starts = np.flatnonzero(np.r_[True, np.diff(owner) != 0])
+    return np.stack([end.reduceat(values, starts) for values in (s, d) for end in (np.minimum, np.maximum)], axis=1)
 
 
 def choose(lines, drift, crossed, min_paint, hatched=np.empty((0, 4)), passes=()):
@@ -102,7 +102,7 @@ def choose(lines, drift, crossed, min_paint, hatched=np.empty((0, 4)), passes=()
         if frayed[k] or outside[k] or _frames_hatching(line, hatched) or not (line.painted >= min_paint or beats[k] or lone):
             continue
         kind = _kind(line, double[k], bool(beats[k]) or lone is not None)
-        drawn = pieces(line)
+        drawn = pieces(parts[k])
         if lone is not None:
             drawn = [Piece(line.first, line.last, "measured", "dashed")]
         neighbours = _painted_beside(k, lines, level)

@@ -31,20 +31,17 @@ class Drift:
 
     def __init__(self, strands):
         self.s, self.value = np.zeros(1), np.zeros(1)
-        slopes = [_slopes(strand) for strand in strands if strand.length >= 1.5]
-        if not slopes:
+        long = [strand for strand in strands if strand.length >= 1.5]
+        if not long:
             return
-        s, slope, weight = (np.concatenate(parts) for parts in zip(*slopes))
+        s, slope, weight = _slopes(long)
         bins = np.floor(s / BIN).astype(np.int64)
+        order = np.lexsort((slope, bins))
+        starts = np.flatnonzero(np.r_[True, np.diff(bins[order]) != 0])
         first = bins.min()
         nodes = np.arange(first, bins.max() + 1)
         middle = np.full(len(nodes), np.nan)
-        order = np.lexsort((slope, bins))
-        starts = np.flatnonzero(np.r_[True, np.diff(bins[order]) != 0])
-        for a, b in zip(starts, np.r_[starts[1:], len(order)]):
-            rows = order[a:b]
-            share = np.cumsum(weight[rows])
-            middle[bins[rows[0]] - first] = slope[rows[np.searchsorted(share, share[-1] / 2)]]
+        middle[bins[order[starts]] - first] = _weighted_medians(slope[order], weight[order], starts)
         known = np.isfinite(middle)
         at = (nodes + 0.5) * BIN
         # where nothing is painted for long the lines are taken to follow the reference
@@ -62,19 +59,29 @@ class Drift:
         return np.interp(s, self.s, self.value)
 
 
-def _slopes(strand):
-    """Station, dd/ds and weight every half metre of a strand, each from the places within 2.5 m."""
-    s = np.arange(strand.first + BIN / 2, strand.last, BIN)
-    low, high = np.searchsorted(strand.s, s - MEMORY / 2), np.searchsorted(strand.s, s + MEMORY / 2)
-    sums = [np.r_[0.0, np.cumsum(v)] for v in
-            (np.ones(len(strand.s)), strand.s, strand.d, strand.s**2, strand.s * strand.d)]
-    n, ms, md, mss, msd = (v[high] - v[low] for v in sums)
+def _slopes(strands):
+    """Station, dd/ds and weight every half metre of some strands, each from the places within 2.5 m on the strand."""
+    counts = np.array([len(strand.s) for strand in strands])
+    starts = np.cumsum(counts) - counts
+    owner = np.repeat(np.arange(len(strands)), counts)
+    own_s, own_d = (np.concatenate([getattr(strand, name) for strand in strands]) for name in ("s", "d"))
+    at = [np.arange(strand.first + BIN / 2, strand.last, BIN) for strand in strands]
+    of = np.repeat(np.arange(len(strands)), [len(some) for some in at])
+    at = np.concatenate(at)
+    # strands one after the other, so far apart that none reaches into the next
+    far = owner * (float(max(strand.last for strand in strands) - min(strand.first for strand in strands)) + 4 * MEMORY)
+    shift = far[starts]
+    low, high = (np.searchsorted(own_s + far, at + shift[of] + side * MEMORY / 2) for side in (-1, 1))
+    # from the strand's own start, so that sums keep their digits
+    s, d = own_s - own_s[starts][owner], own_d - own_d[starts][owner]
+    n = high - low
+    ms, md, mss, msd = (sums[high] - sums[low] for sums in (np.append(0.0, np.cumsum(v)) for v in (s, d, s * s, s * d)))
     spread = n * mss - ms * ms
     good = (n >= 5) & (spread > 0.2 * n * n)
     slope = np.where(good, (n * msd - ms * md) / np.where(good, spread, 1.0), 0.0)
     # a slope beyond any lane change is a false strand's
     good &= np.abs(slope) < TURN
-    return s[good], slope[good], (spread / np.maximum(n, 1))[good]
+    return at[good], slope[good], (spread / np.maximum(n, 1))[good]
 
 
 @dataclass
@@ -119,28 +126,47 @@ class _End:
         return self.d + trust * self.slope * (s - self.s)
 
 
-def line_end(line, drift, at_start, reach=END):
-    """The `_End` at the start or the end of a line, from its last `reach` metres of station."""
-    s, d, _, weight = line.places()
-    tip = line.first if at_start else line.last
-    near = np.abs(s - tip) <= reach
-    s, d, weight = s[near], d[near] - drift.at(s[near]), weight[near]
-    weight = np.minimum(weight, 10.0)
-    if not len(s):
-        return _End(tip, float("nan"), 0.0, 0.0)
-    middle, span = np.average(s, weights=weight), float(np.ptp(s))
-    level = _weighted_median(d, weight)
-    if span < 1.0:
-        return _End(tip, level, 0.0, span)
-    slope = np.sum(weight * (s - middle) * (d - np.average(d, weights=weight))) / np.sum(weight * (s - middle) ** 2)
-    slope = float(np.clip(slope, -TURN, TURN))
-    return _End(tip, float(level + slope * (tip - middle)), slope, span)
+def line_ends(lines, drift, at_start, reach=END):
+    """The `_End` at the start or the end of every line, from its last `reach` metres of station."""
+    if not lines:
+        return []
+    places = [line.places() for line in lines]
+    counts = [len(s) for s, *_ in places]
+    owner = np.repeat(np.arange(len(lines)), counts)
+    s, d, weight = (np.concatenate([columns[k] for columns in places]) for k in (0, 1, 3))
+    tips = np.array([line.first if at_start else line.last for line in lines])
+    near = np.flatnonzero(np.abs(s - tips[owner]) <= reach)
+    owner, s, weight = owner[near], s[near], np.minimum(weight[near], 10.0)
+    d = d[near] - drift.at(s)
+    starts = np.flatnonzero(np.r_[True, np.diff(owner) != 0]) if len(owner) else np.empty(0, int)
+    count = np.diff(np.append(starts, len(owner)))
+    total = np.add.reduceat(weight, starts) if len(owner) else weight
+    middle, offset = (np.add.reduceat(v * weight, starts) / total if len(owner) else v for v in (s, d))
+    span = np.maximum.reduceat(s, starts) - np.minimum.reduceat(s, starts) if len(owner) else s
+    order = np.lexsort((d, owner))
+    level = _weighted_medians(d[order], weight[order], starts)
+    away = s - np.repeat(middle, count)
+    squares = np.add.reduceat(weight * away**2, starts) if len(owner) else s
+    slope = np.add.reduceat(weight * away * (d - np.repeat(offset, count)), starts) / np.where(span < 1.0, 1.0, squares) if len(owner) else s
+    slope = np.where(span < 1.0, 0.0, np.clip(slope, -TURN, TURN))
+    found = [_End(float(tip), float("nan"), 0.0, 0.0) for tip in tips]
+    for k, lv, sl, m, reached in zip(owner[starts].tolist(), level.tolist(), slope.tolist(), middle.tolist(), span.tolist()):
+        tip = float(tips[k])
+        found[k] = _End(tip, lv + sl * (tip - m), sl, reached)
+    return found
 
 
-def _weighted_median(values, weight):
-    order = np.argsort(values, kind="stable")
-    share = np.cumsum(weight[order])
-    return float(values[order][np.searchsorted(share, share[-1] / 2)])
+def _weighted_medians(values, weight, starts):
+    """(G,) weighted medians of groups of (N,) values, ascending within each group, that begin at `starts`."""
+    if not len(starts):
+        return np.empty(0)
+    count = np.diff(np.append(starts, len(values)))
+    # a row for every group, so that each sums its own weights and nothing else
+    table = np.zeros((len(starts), int(count.max())))
+    column = np.arange(len(values)) - np.repeat(starts, count)
+    table[np.repeat(np.arange(len(starts)), count), column] = weight
+    share = np.cumsum(table, axis=1)
+    return values[starts + (share < share[:, -1:] / 2).sum(axis=1)]
 
 
 def mismatch(before, after):
@@ -173,11 +199,10 @@ def link(lines, drift, max_gap, allowed=0.30):
     -------
     list of Line
     """
-    starts = [line_end(line, drift, True) for line in lines]
-    ends = [line_end(line, drift, False) for line in lines]
+    starts, ends = (line_ends(lines, drift, at_start) for at_start in (True, False))
     by_start = np.argsort([e.s for e in starts], kind="stable")
     stations = np.array([starts[k].s for k in by_start])
-    twin_ends, twin_starts = (twins(lines, drift, at_start) for at_start in (False, True))
+    twin_ends, twin_starts = (twins(lines, drift, tips, at_start) for tips, at_start in ((ends, False), (starts, True)))
     pairs = []
     for a, before in enumerate(ends):
         low, high = np.searchsorted(stations, [before.s - OVERLAP, before.s + max_gap])
@@ -200,20 +225,27 @@ def link(lines, drift, max_gap, allowed=0.30):
     return _joined(lines, follows, preceded)
 
 
-def twins(lines, drift, at_start):
-    """(N,) signed distance across to the other line of a double line at each start (or end); 0 where there is none."""
-    tips = [line_end(line, drift, at_start) for line in lines]
+def twins(lines, drift, tips, at_start):
+    """(N,) signed distance across to the other line of a double line at each start (or end), of which `tips` tell; 0 where there is none."""
     spans = np.array([(line.first, line.last) for line in lines]).reshape(-1, 2)
-    result = np.zeros(len(lines))
+    inner = np.array([tip.s for tip in tips]) + (1.0 if at_start else -1.0) * np.minimum(2.0, (spans[:, 1] - spans[:, 0]) / 2)
+    by_start = np.argsort(spans[:, 0], kind="stable")
+    longest = float((spans[:, 1] - spans[:, 0]).max(initial=0.0))
+    low = np.searchsorted(spans[by_start, 0], inner - longest)
+    high = np.searchsorted(spans[by_start, 0], inner, side="right")
+    result, levels = np.zeros(len(lines)), {}
     for k, tip in enumerate(tips):
-        inner = tip.s + (1.0 if at_start else -1.0) * min(2.0, (spans[k, 1] - spans[k, 0]) / 2)
-        for j in np.flatnonzero((spans[:, 0] <= inner) & (spans[:, 1] >= inner)):
+        around = by_start[low[k]:high[k]]
+        for j in sorted(around[spans[around, 1] >= inner[k]].tolist()):
             if j == k:
                 continue
-            s, d, *_ = lines[j].places()
-            near = np.abs(s - inner) <= 2.0
+            if j not in levels:
+                s, d, *_ = lines[j].places()
+                levels[j] = s, d - drift.at(s)
+            s, level = levels[j]
+            near = np.abs(s - inner[k]) <= 2.0
             if near.any():
-                away = median(d[near] - drift.at(s[near])) - tip.d
+                away = median(level[near]) - tip.d
                 if TWIN[0] <= abs(away) <= TWIN[1]:
                     result[k] = away
     return result
@@ -253,8 +285,7 @@ def link_far(lines, drift, max_gap, max_bridge, same_rhythm, allowed=0.25):
     without one, so that the road does not end there.
     """
     while True:
-        ends = [line_end(line, drift, False, 3 * END) for line in lines]
-        starts = [line_end(line, drift, True, 3 * END) for line in lines]
+        ends, starts = (line_ends(lines, drift, at_start, 3 * END) for at_start in (False, True))
         by_start = np.argsort([e.s for e in starts], kind="stable")
         stations = np.array([starts[k].s for k in by_start])
         pairs = []

@@ -55,9 +55,11 @@ def intervals(line):
 def _painted(strand):
     """(first, last) of the parts of a strand: a strand leaps the gaps of short dashes. Where they are uneven they are wear."""
     holes = np.flatnonzero(np.diff(strand.s) > WEAR)
+    if len(holes) + 1 < FEWEST_SHORT:
+        return [(strand.first, strand.last)]
     parts = np.column_stack([np.r_[strand.first, strand.s[holes + 1]], np.r_[strand.s[holes], strand.last]])
     length, steps = np.diff(parts, axis=1)[:, 0], np.diff(parts.mean(axis=1))
-    if len(parts) < FEWEST_SHORT or (np.abs(steps - np.median(steps)) > ALIKE * np.median(steps)).mean() > UNEVEN \
+    if (np.abs(steps - np.median(steps)) > ALIKE * np.median(steps)).mean() > UNEVEN \
             or (np.abs(length - np.median(length)) > SHORT_ALIKE).mean() > UNEVEN:
         return [(strand.first, strand.last)]
     return list(map(tuple, parts.tolist()))
@@ -152,14 +154,13 @@ class Piece:
     pattern: str
 
 
-def pieces(line):
-    """Cut a line where its status or pattern changes.
+def pieces(parts):
+    """Cut a line of some stretches where its status or pattern changes.
 
     A regular gap between dashes is part of the dashed line; a hole longer than the
     line's own gap, or in a solid line longer than 2.5 m, is bridged.
     """
     found = []
-    parts = stretches(line)
     for k, part in enumerate(parts):
         gap = part.rhythm.gap * 1.25 + 0.8 if part.rhythm else SOLID_GAP
         if k:
