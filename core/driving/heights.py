@@ -10,6 +10,7 @@ from .boundaries import STEP
 
 REACH = 0.3        # m either side of the driving line
 LEAST_POINTS = 3
+SLICE, CROWD = 0.05, 200  # m before and after a place: with so many points there, no others are looked at
 SMOOTHING = 2.0    # m: a car does not follow a pothole
 WINDOW = 20.0      # m of road points in memory at a time
 
@@ -38,7 +39,8 @@ def road_heights(road_points, road, s, tracks):
         points = road_points.window(road, s[first] - STEP / 2, s[last] + STEP / 2) if inside else ()
         if not len(points):
             return []
-        return [(k, a - tracks[k].first, _medians(points.records, s[a:b + 1], tracks[k].d[a - tracks[k].first:b - tracks[k].first + 1]))
+        strip = _Strip(points.records, s[first:last + 1])
+        return [(k, a - tracks[k].first, strip.medians(np.arange(a, b + 1) - first, tracks[k].d[a - tracks[k].first:b - tracks[k].first + 1]))
                 for k, a, b in inside]
 
     for heights in in_order(of_window, range(0, len(s), size)):
@@ -47,23 +49,49 @@ def road_heights(road_points, road, s, tracks):
     return found
 
 
-def _medians(records, s, d):
-    offset = records["d"]
-    low, high = np.floor((np.nanmin(d) - REACH) / UNIT), np.ceil((np.nanmax(d) + REACH) / UNIT)
-    near = np.flatnonzero((offset >= low) & (offset <= high))
-    cell = np.rint((records["s"].take(near) * UNIT - s[0]) / STEP).astype(np.int32)
-    inside = (cell >= 0) & (cell < len(s))
-    inside[inside] &= np.abs(offset.take(near[inside]) * UNIT - d[cell[inside]]) <= REACH
-    cell, z = cell[inside], records["z"].take(near[inside])
-    order = order_by(z, cell)
-    cell, pz = cell[order], z[order] * UNIT
-    begin, end = (np.searchsorted(cell, np.arange(len(s)), side) for side in ("left", "right"))
-    count = end - begin
-    found = np.full(len(s), np.nan)
-    enough = count >= LEAST_POINTS
+class _Strip:
+    """Road points, by station, about some grid stations."""
+
+    def __init__(self, records, s):
+        self.records = records
+        self._bounds = [np.searchsorted(records["s"], np.ceil((s + side * STEP / 2) / UNIT)) for side in (-1, 1)]
+        # of crowded points those right beside the grid stations say the same
+        low, high = (np.searchsorted(records["s"], np.ceil((s + side * SLICE) / UNIT)) for side in (-1, 1))
+        self._beside = self._places(np.arange(len(s)), low, high)
+
+    def _places(self, cells, low, high):
+        """Cell, offset and height (units) of the rows from `low` to `high` of each cell."""
+        count = high - low
+        rows = np.arange(count.sum()) + np.repeat(low - (np.cumsum(count) - count), count)
+        return np.repeat(cells, count), self.records["d"].take(rows), self.records["z"].take(rows)
+
+    def medians(self, cells, d):
+        """(M,) median height about offsets d (M,) at successive cells, NaN where there are too few points."""
+        z, count = _medians(*self._beside, cells, d)
+        few = np.flatnonzero(count < CROWD)
+        if len(few):
+            which = cells[few]
+            z[few], count = _medians(*self._places(which, *(bound[which] for bound in self._bounds)), cells[few], d[few])
+            z[few[count < LEAST_POINTS]] = np.nan
+        return z
+
+
+def _medians(cell, offset, height, cells, d):
+    """(M,) median height of points within reach of offsets d at cells (ascending), and how many there are."""
+    at = np.full(int(cells[-1]) + 2, -1)
+    at[cells] = np.arange(len(cells))
+    place = at.take(cell, mode="clip")
+    middle = np.rint(d / UNIT).astype(np.int32)
+    inside = np.flatnonzero((place >= 0) & (np.abs(offset - middle.take(place, mode="clip")) <= REACH / UNIT))
+    place, height = place[inside], height[inside]
+    height = height[order_by(height, place)] * UNIT
+    count = np.bincount(place, minlength=len(cells))
+    begin = np.cumsum(count) - count
+    found = np.full(len(cells), np.nan)
+    some = np.flatnonzero(count)
     lower, upper = begin + (count - 1) // 2, begin + count // 2
-    found[enough] = (pz[lower[enough]] + pz[upper[enough]]) / 2
-    return found
+    found[some] = (height[lower[some]] + height[upper[some]]) / 2
+    return found, count
 
 
 def line_heights(lines, first, d):
