@@ -7,7 +7,8 @@ from .fit import F_SCALE
 
 TOGETHER = 8192   # places fitted at a time: what fits the processor's cache
 FEW = 128         # places of a line that are fitted first
-EXACT, NEARLY = 1e-9, 1e-3  # shares of a sensible step
+EXACT, NEARLY = 1e-7, 1e-3  # shares of a sensible step
+LITTLE = 1e-3     # of what is left: where a step gains no more, a hopeless curve stays hopeless
 MISSED = 0.05     # share of the places that lie farther off than is allowed, and the curve is none of theirs
 
 
@@ -81,7 +82,7 @@ def minimise_each(lines, problem_of, hopeless=np.inf):
         x, y = (np.concatenate([lines[k][axis] for k in numbers]) for axis in (0, 1))
         rows = whole.thinned(FEW)
         problem = problem_of(Places(np.minimum(whole.counts, FEW)), x[rows], y[rows])
-        solved = minimise_all(problem, problem.start(), problem.scale, np.where(whole.counts <= FEW, EXACT, NEARLY))
+        solved = minimise_all(problem, problem.start(), problem.scale, np.where(whole.counts <= FEW, EXACT, NEARLY), hopeless)
         _put(found, numbers, np.flatnonzero(whole.counts <= FEW), problem, lines, *solved)
         long = np.flatnonzero(whole.counts > FEW)
         for a, b in batches(whole.counts[long]):
@@ -110,7 +111,7 @@ def _put(found, numbers, which, problem, lines, unknown, residuals, state):
         found[numbers[k]] = problem.fit(k, unknown[k], x, y, residuals[own], tuple(values[own] for values in state))
 
 
-def minimise_all(problem, start, scale, exact=EXACT):
+def minimise_all(problem, start, scale, exact=EXACT, hopeless=np.inf):
     """Parameters of every line that minimise soft L1 of its residuals, by Levenberg-Marquardt.
 
     Plain least squares first; where the curve cannot follow the points no residual
@@ -125,6 +126,7 @@ def minimise_all(problem, start, scale, exact=EXACT):
     start : (L, P)
     scale : (L, P) the size of a sensible step in each parameter
     exact : (L,) or one; the share of such a step below which nothing is gained any more
+    hopeless : metres; what misses by so much on average is given up when steps gain little
 
     Returns
     -------
@@ -133,12 +135,13 @@ def minimise_all(problem, start, scale, exact=EXACT):
     state : tuple of (N,), that of the residuals
     """
     exact = np.broadcast_to(exact, len(start))
-    found, residuals, state = _levenberg(problem, np.array(start, float), scale, np.full(len(start), np.inf), problem.state, exact)
+    found, residuals, state = _levenberg(problem, np.array(start, float), scale, np.full(len(start), np.inf), problem.state,
+                                          np.maximum(exact, NEARLY / 10), hopeless)
     misfit = 1.4826 * problem.places.medians(np.abs(residuals))
-    return _levenberg(problem, found, scale, np.maximum(F_SCALE, misfit), state, exact)
+    return _levenberg(problem, found, scale, np.maximum(F_SCALE, misfit), state, exact, hopeless)
 
 
-def _levenberg(problem, found, scale, f_scale, state, exact):
+def _levenberg(problem, found, scale, f_scale, state, exact, hopeless):
     size = found.shape[1]
     above, below = np.triu_indices(size)
     diagonal = np.arange(size)
@@ -165,7 +168,9 @@ def _levenberg(problem, found, scale, f_scale, state, exact):
         then = _cost(problem, tried, f_scale)
         better, small = then <= now, np.abs(step).max(axis=1) < exact
         steps += better
-        over = np.where(better, (now - then <= 1e-4 * exact * now) & small | (steps >= 100), (damping > 1e8) | small)
+        gain = now - then
+        given_up = (gain <= LITTLE * now) & (then > places.counts * hopeless**2)
+        over = np.where(better, (gain <= 1e-4 * exact * now) & small | given_up | (steps >= 100), (damping > 1e8) | small)
         damping = np.where(better, np.maximum(damping / 8, 1e-10), damping * 8)
         if better.all():
             found, residuals, state, now = further, tried, new, then

@@ -109,9 +109,10 @@ def _moments(places, unknown, direction, bend, change, u):
     """(3, N) each: means over [0, u] of cos and sin of the heading, times the share of the way to the power of 0, 1 and 2."""
     far = places.most(np.abs(u))
     rule = rule_of(np.abs(unknown[:, 3]) * far + np.abs(unknown[:, 4]) * far**2 / 2)[places.owner]
+    least, most = int(rule.min()), int(rule.max())
     cosines, sines = np.empty((2, 3, len(u)))
-    for k in np.unique(rule).tolist():
-        rows = np.flatnonzero(rule == k)
+    for k in range(least, most + 1):
+        rows = slice(None) if least == most else np.flatnonzero(rule == k)
         nodes, weights = RULES[k]
         at = np.multiply.outer(nodes, u[rows])
         turn = direction[rows] + (bend[rows] + 0.5 * change[rows] * at) * at

@@ -126,7 +126,7 @@ def trace(records, rank):
     if not len(records):
         return []
     bins = records["s"] // BIN
-    order = order_by(records["z"], records["d"], bins)
+    order = order_by(records["d"], bins)
     records, rank, bins = records[order], rank[order], bins[order]
     across = records["d"].astype(np.int64)
     run = _runs(bins, across)
@@ -243,37 +243,35 @@ def _strands(records, rank, label):
     used = label >= 0
     records, rank, label = records[used], rank[used], label[used]
     place = records["s"] // PLACE
-    order = order_by(records["z"], records["d"], place, label)
-    records, rank, label, place = records[order], rank[order], label[order], place[order]
+    # within a place points keep their order, which is across
+    order = order_by(place, label)
+    label, columns = label[order], [rank[order], place[order], *(records[name].take(order) for name in ("s", "d", "z", "half_width"))]
     bounds = np.flatnonzero(np.r_[True, np.diff(label) != 0, True]) if len(label) else np.zeros(1, int)
     found = []
-    for a, b in zip(bounds[:-1], bounds[1:]):
-        strand = _strand(records[a:b], rank[a:b], place[a:b], *_ends(records[a:b]))
+    for a, b in zip(bounds[:-1].tolist(), bounds[1:].tolist()):
+        strand = _strand(*(column[a:b] for column in columns))
         mixed = strand.classes.get("mixed", 0.0) > 0.5 * strand.length
         if strand.length >= (MIXED_SHORTEST if mixed else SHORTEST):
             found.append(strand)
     return sorted(found, key=lambda strand: (strand.first, strand.d[0]))
 
 
-def _strand(part, rank, place, first, last):
-    starts = np.flatnonzero(np.r_[True, np.diff(place) != 0])
-    count = np.diff(np.r_[starts, len(place)])
-    middle, outer = _middle_and_width(part["d"], starts)
+def _strand(rank, place, along, across, height, half_width):
+    """A Strand of points sorted by place, then across; all columns (N,), lengths in units."""
+    starts = np.flatnonzero(np.append(True, place[1:] != place[:-1]))
+    count = np.diff(np.append(starts, len(place)))
+    middle, outer = _middle_and_width(across, starts)
     # where a line runs into other paint it is wider than itself, and its middle is not its own
     own = outer <= 1.5 * median(outer) + 400
     if not own.all():
         inside = np.repeat(own, count)
-        return _strand(part[inside], rank[inside], place[inside], *_ends(part[inside]))
-    s = np.add.reduceat(part["s"].astype(np.int64), starts) / count * UNIT
-    z = np.add.reduceat(part["z"].astype(np.int64), starts) / count * UNIT
+        return _strand(*(column[inside] for column in (rank, place, along, across, height, half_width)))
+    first, last = float(along.min() * UNIT), float(along.max() * UNIT)
+    s, z = (np.add.reduceat(values, starts, dtype=np.int64) / count * UNIT for values in (along, height))
     d = middle * UNIT
-    across = part["d"] * UNIT - np.repeat(d, count)
-    low, high = np.percentile(across, [2.5, 97.5])
-    room = median(part["half_width"] * 1e-3 - np.abs(part["d"] * UNIT))
+    offset = across * UNIT
+    low, high = np.percentile(offset - np.repeat(d, count), [2.5, 97.5])
+    room = median(half_width * 1e-3 - np.abs(offset))
     share = np.bincount(rank, minlength=len(LINES) + 1) / len(rank) * (last - first)
     classes = {name: float(share[k]) for k, name in enumerate(LINES + ("mixed",)) if share[k] > 0}
     return Strand(first, last, s, d, z, count.astype(float), float(high - low) / 0.95, room, classes)
-
-
-def _ends(part):
-    return float(part["s"].min() * UNIT), float(part["s"].max() * UNIT)
