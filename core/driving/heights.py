@@ -11,6 +11,7 @@ from .boundaries import STEP
 REACH = 0.3        # m either side of the driving line
 LEAST_POINTS = 3
 SLICE, CROWD = 0.05, 200  # m before and after a place: with so many points there, no others are looked at
+GRAIN = 4          # bits: points are sorted by offset to 1.6 mm
 SMOOTHING = 2.0    # m: a car does not follow a pothole
 WINDOW = 20.0      # m of road points in memory at a time
 
@@ -39,9 +40,9 @@ def road_heights(road_points, road, s, tracks):
         points = road_points.window(road, s[first] - STEP / 2, s[last] + STEP / 2) if inside else ()
         if not len(points):
             return []
-        strip = _Strip(points.records, s[first:last + 1])
-        return [(k, a - tracks[k].first, strip.medians(np.arange(a, b + 1) - first, tracks[k].d[a - tracks[k].first:b - tracks[k].first + 1]))
-                for k, a, b in inside]
+        lanes = [(np.arange(a, b + 1) - first, tracks[k].d[a - tracks[k].first:b - tracks[k].first + 1]) for k, a, b in inside]
+        heights = _heights(points.records, s[first:last + 1], lanes)
+        return [(k, a - tracks[k].first, z) for (k, a, _), z in zip(inside, heights)]
 
     for heights in in_order(of_window, range(0, len(s), size)):
         for k, first, z in heights:
@@ -49,49 +50,52 @@ def road_heights(road_points, road, s, tracks):
     return found
 
 
-class _Strip:
-    """Road points, by station, about some grid stations."""
+def _heights(records, s, lanes):
+    """Median heights along lanes, each (cells, offsets), of road points, by station, about grid stations s."""
+    # of crowded points those right beside the grid stations say the same
+    found = _Near(records, s, np.arange(len(s)), SLICE).medians(lanes)
+    few = [np.flatnonzero(count < CROWD) for _, count in found]
+    lacking = [(cells[which], d[which]) for (cells, d), which in zip(lanes, few)]
+    cells = np.unique(np.concatenate([cells for cells, _ in lacking]))
+    if len(cells):
+        for (z, _), which, (more, count) in zip(found, few, _Near(records, s, cells, STEP / 2).medians(lacking)):
+            z[which] = np.where(count >= LEAST_POINTS, more, np.nan)
+    return [z for z, _ in found]
 
-    def __init__(self, records, s):
-        self.records = records
-        self._bounds = [np.searchsorted(records["s"], np.ceil((s + side * STEP / 2) / UNIT)) for side in (-1, 1)]
-        # of crowded points those right beside the grid stations say the same
-        low, high = (np.searchsorted(records["s"], np.ceil((s + side * SLICE) / UNIT)) for side in (-1, 1))
-        self._beside = self._places(np.arange(len(s)), low, high)
 
-    def _places(self, cells, low, high):
-        """Cell, offset and height (units) of the rows from `low` to `high` of each cell."""
+class _Near:
+    """Road points at most `reach` metres of station from some cells of a grid, sorted by offset."""
+
+    def __init__(self, records, s, cells, reach):
+        low, high = (np.searchsorted(records["s"], np.ceil((s[cells] + side * reach) / UNIT)) for side in (-1, 1))
         count = high - low
         rows = np.arange(count.sum()) + np.repeat(low - (np.cumsum(count) - count), count)
-        return np.repeat(cells, count), self.records["d"].take(rows), self.records["z"].take(rows)
+        offset = records["d"].take(rows)
+        across = offset >> GRAIN
+        order = order_by(across)
+        self.across, self.offset = across[order], offset[order]
+        self.cell, self.height = np.repeat(cells, count)[order], records["z"].take(rows)[order]
 
-    def medians(self, cells, d):
-        """(M,) median height about offsets d (M,) at successive cells, NaN where there are too few points."""
-        z, count = _medians(*self._beside, cells, d)
-        few = np.flatnonzero(count < CROWD)
-        if len(few):
-            which = cells[few]
-            z[few], count = _medians(*self._places(which, *(bound[which] for bound in self._bounds)), cells[few], d[few])
-            z[few[count < LEAST_POINTS]] = np.nan
-        return z
+    def medians(self, lanes):
+        """[((M,) median heights, (M,) number of points)] within reach of each lane: (M,) cells, ascending, and (M,) offsets there."""
+        return [self._medians(*lane) if len(lane[0]) else (np.empty(0), np.empty(0, int)) for lane in lanes]
 
-
-def _medians(cell, offset, height, cells, d):
-    """(M,) median height of points within reach of offsets d at cells (ascending), and how many there are."""
-    at = np.full(int(cells[-1]) + 2, -1)
-    at[cells] = np.arange(len(cells))
-    place = at.take(cell, mode="clip")
-    middle = np.rint(d / UNIT).astype(np.int32)
-    inside = np.flatnonzero((place >= 0) & (np.abs(offset - middle.take(place, mode="clip")) <= REACH / UNIT))
-    place, height = place[inside], height[inside]
-    height = height[order_by(height, place)] * UNIT
-    count = np.bincount(place, minlength=len(cells))
-    begin = np.cumsum(count) - count
-    found = np.full(len(cells), np.nan)
-    some = np.flatnonzero(count)
-    lower, upper = begin + (count - 1) // 2, begin + count // 2
-    found[some] = (height[lower[some]] + height[upper[some]]) / 2
-    return found, count
+    def _medians(self, cells, d):
+        middle, reach = np.rint(d / UNIT).astype(np.int32), int(REACH / UNIT)
+        near = slice(np.searchsorted(self.across, (middle.min() - reach) >> GRAIN),
+                     np.searchsorted(self.across, (middle.max() + reach) >> GRAIN, side="right"))
+        at = np.full(int(cells[-1]) + 2, -1)
+        at[cells] = np.arange(len(cells))
+        place = at.take(self.cell[near], mode="clip")
+        inside = np.flatnonzero((place >= 0) & (np.abs(self.offset[near] - middle.take(place, mode="clip")) <= reach))
+        place, height = place[inside], self.height[near][inside]
+        height = height[order_by(height, place)] * UNIT
+        count = np.bincount(place, minlength=len(cells))
+        begin = np.cumsum(count) - count
+        found, some = np.full(len(cells), np.nan), np.flatnonzero(count)
+        lower, upper = begin + (count - 1) // 2, begin + count // 2
+        found[some] = (height[lower[some]] + height[upper[some]]) / 2
+        return found, count
 
 
 def line_heights(lines, first, d):
