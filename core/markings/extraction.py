@@ -23,7 +23,7 @@ from .levels import Levels, asphalt_profile, flatten
 from .mask import burn_points, marking_mask, painted_pixels
 from .morphology import morphology
 from .point_segments import SegmentSettings, points_in_segments
-from .road_cells import RoadCells, cell_numbers, pieces
+from .road_cells import RoadCells, cell_numbers, in_cells
 from .road_grid import CELL, RoadGrid
 from .strokes import Witnesses, stroke_cells, views
 from .thresholds import FEWEST, asphalt_bins, bin_edges, scatter_of, split_bins
@@ -177,7 +177,8 @@ class _Look:
         self.masked = masked
         start, end = road_points.store.span(road)
         self.first, self.last = int(np.floor(start / UNIT / CELL / WINDOW)), int(np.floor(end / UNIT / CELL / WINDOW))
-        self._bins, self._seen, self._turns = {}, {}, {}  # by window; what several threads ask for is looked at by one
+        # by window; what several threads ask for is looked at by one
+        self._pieces, self._bins, self._seen, self._turns, self._piece_turns = {}, {}, {}, {}, {}
 
     def windows(self):
         return list(range(self.first, self.last + 1))
@@ -196,12 +197,21 @@ class _Look:
     def _points(self, first, last):
         return self.road_points.window(self.road, first * CELL * UNIT, last * CELL * UNIT)
 
+    def _in_cells(self, window):
+        """[PieceOfRoad] of a window's own points; they are kept until it is painted, for windows beside it look at them too."""
+        with self._piece_turns.setdefault(window, threading.Lock()):
+            if window not in self._pieces:
+                first, last = window * WINDOW, (window + 1) * WINDOW
+                step = max(len(self._points(first, last)) // MOST, 1)
+                self._pieces[window] = in_cells(self.road_points, self.road, first, last, step)
+            return self._pieces[window]
+
     def _look(self, window):
         """_Seen of a window with its halo; None where it has no points of its own."""
-        first, last = window * WINDOW, (window + 1) * WINDOW
-        if not len(self._points(first, last)):
+        if not self._in_cells(window):
             return None
-        cells = RoadCells.of(self.road_points, self.road, first - HALO, last + HALO)
+        parts = [piece for beside in (window - 1, window, window + 1) for piece in self._in_cells(beside)]
+        cells = RoadCells.of(parts, window * WINDOW - HALO, (window + 1) * WINDOW + HALO)
         rims = rim_distance(cells.occupied), edge_distance(cells.half_width, cells.grid.offsets())
         return _Seen(cells.grid, cells.grid.read(self.image, self.frame, self.road), rims)
 
@@ -223,18 +233,12 @@ class _Look:
         if not interior.any():
             return []
         columns = np.flatnonzero(interior.any(axis=0))
-        edges = bin_edges(self._offsets(window), offsets[columns[0]], offsets[columns[-1]])
+        edges = bin_edges(np.concatenate([piece.offsets for piece in self._in_cells(window)]), offsets[columns[0]], offsets[columns[-1]])
         across = np.broadcast_to(offsets, interior.shape)
         bins = asphalt_bins(brightness[rows][interior], across[interior], edges)
         z, gutter = flatten(brightness, *asphalt_profile(bins, offsets), seen.rims)
         counted = (scanned & ~gutter)[rows]
         return list(zip(bins, split_bins(z[rows][counted], across[counted], bins, self.settings.separation)))
-
-    def _offsets(self, window):
-        """(N,) int32 offsets of points of a window, where they crowd of evenly strewn ones."""
-        parts = [points for _, _, points in pieces(self.road_points, self.road, window * WINDOW, (window + 1) * WINDOW)]
-        step = max(sum(map(len, parts)) // MOST, 1)
-        return np.concatenate([points.records["d"][::step] for points in parts])
 
     def _levels(self, window):
         """Levels between the windows about one, which are looked at if they were not yet."""
@@ -255,7 +259,8 @@ class _Look:
     def paint(self, window):
         """Records of one window that lie on paint; local x, y of the mask's pixels where one is asked for."""
         levels = self._levels(window)
-        seen = self._seen.pop(window)
+        # those beside have been looked at for the levels
+        seen, parts = self._seen.pop(window), self._pieces.pop(window)
         if seen is None or not len(levels.numbers):
             return self._nothing()
         grid, brightness = seen.grid, seen.brightness
@@ -265,45 +270,46 @@ class _Look:
             mask = morphology((z > threshold * scale) & ~gutter, self.settings)
         # what was taken from the cell as background is taken from the point as well
         least = (brightness - z * spread) + (threshold - 0.5) * (spread * scale)
-        return self._handed_out(window, grid, mask, least)
+        return self._handed_out(parts, grid, mask, least)
 
     def strokes(self, window):
         """The same where single points are noisy: what is as bright as paint must have its shape too."""
         first, last = window * WINDOW, (window + 1) * WINDOW
         if not len(self._points(first, last)):
             return self._nothing()
-        cells = RoadCells.of(self.road_points, self.road, first - HALO, last + HALO)
+        parts = in_cells(self.road_points, self.road, first - HALO, last + HALO)
+        cells = RoadCells.of(parts, first - HALO, last + HALO)
         points = self._points(first - HALO, last + HALO)
         cell = np.concatenate([cell for _, cell in cell_numbers(points.records, cells.grid)])
         averages = Averages.of(cell, points.value, points.records["z"], cells.grid.shape)
         witnesses = Witnesses(cell, points.value, points.covered > 0, views(points, self.frame))
-        return self._handed_out(window, cells.grid, stroke_cells(averages, rim_distance(cells.occupied), witnesses, self.settings.faint))
+        mask = stroke_cells(averages, rim_distance(cells.occupied), witnesses, self.settings.faint)
+        return self._handed_out([part for part in parts if part.grid.first >= first and part.grid.last <= last], cells.grid, mask)
 
     def _nothing(self):
         return self.road_points.window(self.road, 0, 0).records, np.empty(0), np.empty(0)
 
-    def _handed_out(self, window, grid, mask, least=None):
-        """Records of the window itself in painted cells, brighter than `least` of their cell, and the mask's pixels."""
-        parts, on = [], np.zeros(grid.shape, bool)
-        for _, _, points in pieces(self.road_points, self.road, window * WINDOW, (window + 1) * WINDOW):
-            rows, cells = [], []
-            for some, cell in cell_numbers(points.records, grid):
-                painted = np.flatnonzero(mask.ravel().take(cell))
-                rows.append(painted + some.start)
-                cells.append(cell.take(painted))
-            records, cell = chosen(points.records, np.concatenate(rows)), np.concatenate(cells)
+    def _handed_out(self, parts, grid, mask, least=None):
+        """Records of the window's own parts in painted cells, brighter than `least` of their cell, and the mask's pixels."""
+        found, on = [], np.zeros(grid.shape, bool)
+        for part in parts:
+            place = part.within(grid)
+            rows, cell = part.points_on(mask[place])
+            records = chosen(self._points(part.grid.first, part.grid.last).records, rows)
             if least is not None:
-                bright = np.flatnonzero(Points(records).value > least.ravel().take(cell))
+                bright = np.flatnonzero(Points(records).value > least[place].ravel().take(cell))
                 records, cell = chosen(records, bright), cell.take(bright)
-            parts.append(records)
-            on.ravel()[cell] = True
-        records = joined(parts, self.road_points.store.dtype)
+            found.append(records)
+            own = np.zeros(part.grid.shape, bool)
+            own.ravel()[cell] = True
+            on[place] = own
+        records = joined(found, self.road_points.store.dtype)
         if not self.masked:
             return records, np.empty(0), np.empty(0)
         # the image spreads a point over its neighbours: a cell whose own points are dark is no marking
-        for _, _, points in pieces(self.road_points, self.road, window * WINDOW, (window + 1) * WINDOW):
-            for _, cell in cell_numbers(points.records, grid):
-                mask.ravel()[cell] = on.ravel().take(cell)
+        for part in parts:
+            place = part.within(grid)
+            mask[place][part.occupied] = on[place][part.occupied]
         return records, *self._pixels(mask, grid)
 
 

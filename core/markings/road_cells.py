@@ -12,6 +12,56 @@ AT_ONCE = 1 << 15  # points put into cells at a time: what fits the processor's 
 
 
 @dataclass(frozen=True)
+class PieceOfRoad:
+    """The points of a few metres of road in cells.
+
+    grid : RoadGrid of these rows alone, as wide as the points lie
+    cell : (N,) int32 flat number in it of each point
+    occupied : (rows, columns) bool, cells that points lie in
+    half_width : (2, rows) uint16, mm to the road's edge on the left and on the right, 0 where no point says
+    offsets : (M,) int32, units of 0.1 mm, of an evenly strewn share of the points
+    """
+
+    grid: RoadGrid
+    cell: np.ndarray
+    occupied: np.ndarray
+    half_width: np.ndarray
+    offsets: np.ndarray
+
+    @classmethod
+    def of(cls, points, first, last, step=1):
+        """The points of rows `first` to before `last`; one of `step` tells the offsets."""
+        records = points.records
+        d = records["d"]
+        grid = RoadGrid(first, last, int(d.min()) // CELL - 1, int(d.max()) // CELL + 2)
+        number, occupied = np.empty(len(d), np.int32), np.zeros(grid.shape, bool)
+        for some, cell in cell_numbers(records, grid):
+            number[some] = cell
+            occupied.ravel()[cell] = True
+        return cls(grid, number, occupied, _half_widths(records, first, last), d[::step].copy())
+
+    def within(self, grid):
+        """Where this piece lies in a larger grid: slices of its rows and columns."""
+        mine = self.grid
+        return slice(mine.first - grid.first, mine.last - grid.first), slice(mine.low - grid.low, mine.high - grid.low)
+
+    def points_on(self, mask):
+        """Ascending indices of the points whose cells are on in (rows, columns) of a mask, and the numbers of their cells."""
+        mask, rows, cells = mask.ravel(), [], []
+        for k in range(0, len(self.cell), AT_ONCE):
+            cell = self.cell[k:k + AT_ONCE]
+            found = np.flatnonzero(mask.take(cell))
+            rows.append(found + k)
+            cells.append(cell.take(found))
+        return np.concatenate(rows), np.concatenate(cells)
+
+
+def in_cells(road_points, road, first, last, step=1):
+    """[PieceOfRoad] of the rows from `first` to before `last`."""
+    return [PieceOfRoad.of(points, begin, end, step) for begin, end, points in pieces(road_points, road, first, last)]
+
+
+@dataclass(frozen=True)
 class RoadCells:
     """A window of the road in cells.
 
@@ -25,25 +75,24 @@ class RoadCells:
     half_width: np.ndarray
 
     @classmethod
-    def of(cls, road_points, road, first, last):
-        """RoadCells of the rows from `first` to before `last`; None where there are no points."""
-        parts, half_width = [], np.zeros((2, last - first), np.uint16)
-        for begin, end, points in pieces(road_points, road, first, last):
-            records = points.records
-            low, high = int(records["d"].min()) // CELL - 1, int(records["d"].max()) // CELL + 2
-            grid = RoadGrid(begin, end, low, high)
-            occupied = np.zeros(grid.shape, bool)
-            for _, cell in cell_numbers(records, grid):
-                occupied.ravel()[cell] = True
-            parts.append((grid, occupied))
-            half_width[:, begin - first:end - first] = _half_widths(records, begin, end)
+    def of(cls, parts, first, last):
+        """RoadCells of the rows from `first` to before `last` of some PieceOfRoad; None where no point lies in them."""
+        parts = [part for part in parts if part.grid.first < last and part.grid.last > first]
         if not parts:
             return None
-        grid = RoadGrid(first, last, min(part.low for part, _ in parts), max(part.high for part, _ in parts))
-        occupied = np.zeros(grid.shape, bool)
-        for part, seen in parts:
-            occupied[part.first - first:part.last - first, part.low - grid.low:part.high - grid.low] = seen
-        return cls(grid, occupied, half_width)
+        low, high = min(part.grid.low for part in parts), max(part.grid.high for part in parts)
+        occupied, half_width = np.zeros((last - first, high - low), bool), np.zeros((2, last - first), np.uint16)
+        for part in parts:
+            begin, end = max(part.grid.first, first), min(part.grid.last, last)
+            rows = slice(begin - part.grid.first, end - part.grid.first)
+            occupied[begin - first:end - first, part.grid.low - low:part.grid.high - low] = part.occupied[rows]
+            half_width[:, begin - first:end - first] = part.half_width[:, rows]
+        # a part may reach farther across beyond these rows
+        columns = np.flatnonzero(occupied.any(axis=0))
+        if not len(columns):
+            return None
+        begin, end = int(columns[0]) - 1, int(columns[-1]) + 2
+        return cls(RoadGrid(first, last, low + begin, low + end), np.ascontiguousarray(occupied[:, begin:end]), half_width)
 
 
 def pieces(road_points, road, first, last):
