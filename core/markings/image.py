@@ -17,7 +17,9 @@ __all__ = ["ImageSettings", "IntensityImage", "write_intensity_image", "write_di
 WINDOW = 20.0          # m of station over which intensities are ranked for the second rule
 LARGEST = 2_000_000    # px, side of an image: beyond it a coordinate is wrong
 PIECES = 4             # pieces of a window, each interpolated at a time
-MOST = 3               # points of a cell: where there are more, an evenly spread share of them makes the image
+MOST = 3               # points of a cell: where there are twice as many, an even share of them weighs on cells farther than the next
+WIDTH_TOLD = 16        # points, of which one tells how wide they lie
+RANKED = 50_000        # points of a piece whose intensities are ranked: where there are twice as many, evenly strewn ones
 AHEAD = 16             # tiles for which a piece is kept
 
 
@@ -55,8 +57,8 @@ def write_intensity_image(road_points, path, settings=ImageSettings(), progress=
         G = sum(w I) / sum(w),  w = (1 - beta + beta * b) / (distance + 1 mm)**power
         b = clip((I - P1) / (P99 - P1), 0, 1)
 
-    with P1 and P99 of 20 m of road. Where points crowd, with six or more to a cell, an evenly
-    strewn share of them makes the image: three or more a cell. The corrected intensity is used where there
+    with P1 and P99 of 20 m of road. Where points crowd, with six or more to a cell, an evenly strewn
+    share of them stands for all on cells farther away than the next: three or more a cell. The corrected intensity is used where there
     is one. Cells are multiples of the cell size in map coordinates, so images
     of one place lie cell on cell; a cell with no point in the radius is no data.
 
@@ -130,11 +132,10 @@ def _survey_window(road_points, window, settings):
         points = _points_of(road_points, (road, piece))
         if len(points):
             steps[road, piece] = _step(points, settings)
-            points = points[::steps[road, piece]]
             (c0, c1), (r0, r1) = ([int(lattice_cell(int(end), o, settings.cell_size)) for end in (c.min(), c.max())]
                                   for c, o in ((points.records[name], o) for name, o in zip("xy", road_points.origin)))
             extents[road, piece] = c0 - reach, c1 + reach, r0 - reach, r1 + reach
-            values.append(points.value)
+            values.append(points[::max(steps[road, piece], len(points) // RANKED)].value)
     return tuple(quantiles(np.concatenate(values), [0.01, 0.99])) if values else (0.0, 1.0), extents, steps
 
 
@@ -146,32 +147,29 @@ def _points_of(road_points, piece):
 
 
 def _step(points, settings):
-    """Of how many points of a piece one makes the image, and stands for the others.
+    """Of how many points of a piece one weighs on cells farther than the next, and stands for the others there.
 
     Where they crowd these are evenly strewn: one of so many in the order of station and offset that a cell has MOST of them.
     """
-    d = points.records["d"]
+    d = points[::WIDTH_TOLD].records["d"]
     width = max((int(d.max()) - int(d.min())) * UNIT, settings.cell_size)
     return max(int(len(points) * settings.cell_size**2 / (WINDOW / PIECES * width) / MOST), 1)
 
 
 def _piece_sums(road_points, piece, step, limits, settings):
-    """Sums of one piece, of which one point in `step` is taken."""
+    """Sums of one piece, with its `_step`."""
     low, high = limits
-    points = _points_of(road_points, piece)[::step]
 
-    def weigh(points):
-        value = points.value
-        brightness = value - np.float32(low)
-        brightness /= np.float32(max(high - low, 1e-9))
-        np.maximum(brightness, np.float32(0.0), out=brightness)
-        np.minimum(brightness, np.float32(1.0), out=brightness)
-        brightness *= np.float32(settings.beta)
-        brightness += np.float32(1.0 - settings.beta)
-        brightness *= np.float32(step)  # each stands for so many
-        return value, brightness
+    def brightness(value):
+        found = value - np.float32(low)
+        found /= np.float32(max(high - low, 1e-9))
+        np.maximum(found, np.float32(0.0), out=found)
+        np.minimum(found, np.float32(1.0), out=found)
+        found *= np.float32(settings.beta)
+        found += np.float32(1.0 - settings.beta)
+        return found
 
-    return interpolation_sums(points, weigh, road_points.origin, settings)
+    return interpolation_sums(_points_of(road_points, piece), brightness, road_points.origin, settings, step)
 
 
 def _with_pieces(work, sums, progress):

@@ -191,7 +191,9 @@ def new_geotiff(path, width, height, geotransform, crs, byte=False, nodata=NODAT
     path = Path(path)
     unfinished = path.with_name(path.name + ".unfinished.tif")
     options = [f"BLOCKXSIZE={TILE}", f"BLOCKYSIZE={TILE}", "TILED=YES", "COMPRESS=DEFLATE", "SPARSE_OK=TRUE",
-               "BIGTIFF=IF_SAFER", f"PREDICTOR={2 if byte else 3}", f"NUM_THREADS={COMPRESSING}"]
+               "BIGTIFF=IF_SAFER", f"NUM_THREADS={COMPRESSING}"]
+    # intensities are too noisy to be told from those beside them: a predictor costs twice what it saves, and more to undo
+    options += ["PREDICTOR=2"] if byte else ["ZLEVEL=1"]
     try:
         dataset = gdal.GetDriverByName("GTiff").Create(
             str(unfinished), width, height, 1, gdal.GDT_Byte if byte else gdal.GDT_Float32, options)

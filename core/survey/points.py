@@ -67,7 +67,8 @@ class Points:
     def value(self):
         """(N,) float32: corrected intensity where there is one, raw intensity elsewhere."""
         corrected = self.records["corrected"]
-        return np.where(np.isnan(corrected), self.records["intensity"].astype(np.float32), corrected)
+        missing = np.isnan(corrected)
+        return np.where(missing, self.records["intensity"].astype(np.float32), corrected) if missing.any() else corrected
 
 
 def canonical_order(records):

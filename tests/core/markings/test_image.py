@@ -113,7 +113,7 @@ def test_the_image_does_not_depend_on_the_length_of_sections(tmp_path, section_l
 
 
 def test_where_points_crowd_a_share_of_them_makes_the_same_image(tmp_path):
-    """Ten points to a cell, of which each third is taken, whatever the length of sections."""
+    """Ten points to a cell, of which each third weighs on all cells, whatever the length of sections."""
     crowded = painted_street(length=12.0, density=6300)
     share = all_pixels(image_of(crowded, tmp_path / "a.tif"))
     other = all_pixels(image_of(crowded[::-1], tmp_path / "b.tif", section_length=7.3))
@@ -124,6 +124,17 @@ def test_where_points_crowd_a_share_of_them_makes_the_same_image(tmp_path):
         assert abs(np.nanmedian(values) - ASPHALT) < 10
     middle = (PAINT + ASPHALT) / 2
     assert abs(np.mean(share > middle) - np.mean(usual > middle)) * 6.0 < 0.005
+
+
+def test_where_points_crowd_almost_every_pixel_is_as_if_all_points_weighed_on_all_cells(tmp_path, monkeypatch):
+    from lanewright.core.markings import image
+
+    crowded = painted_street(length=12.0, density=6300)
+    share = all_pixels(image_of(crowded, tmp_path / "a.tif", ImageSettings(beta=0.0)))
+    monkeypatch.setattr(image, "MOST", 100)
+    every = all_pixels(image_of(crowded, tmp_path / "b.tif", ImageSettings(beta=0.0)))
+    assert share.shape == every.shape and (share != every).mean() > 0.5
+    assert (np.abs(share - every) <= 0.02 * (PAINT - ASPHALT)).sum() > 0.97 * np.isfinite(every).sum()
 
 
 def test_what_is_interpolated_again_for_a_later_tile_is_the_same(tmp_path, monkeypatch):
