@@ -17,7 +17,7 @@ LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags")  # what is d
 WAITING = 4_000_000    # points kept back at most until the height of the road is known
 SAMPLES = 5_000        # points on the track that tell it
 THREADS = 4            # at most: each has blocks decoded, by all cores (lazrs keeps the others waiting), and places their points
-QUEUE = 4              # blocks for each of them that are begun or wait: what keeps them busy while sections are put into the temporary file
+QUEUE = 3              # blocks for each of them that are begun or wait: what keeps them busy while sections are put into the temporary file
 
 
 class SurveyReader:
