@@ -145,17 +145,23 @@ def _around(tree, xyz, which, radius):
 
 def _quadrics(off, count, radius):
     """Mean curvature of neighbourhoods: (N, 3) places about each one's point, `count` (K,) of them after each other, none empty."""
-    owner = np.repeat(np.arange(len(count)), count)
-    starts = np.cumsum(count) - count
-    mean = np.add.reduceat(off, starts) / count[:, None]
-    centred = off - mean[owner]
-    spread = np.add.reduceat(centred[:, :, None] * centred[:, None, :], starts)
-    values, frame = np.linalg.eigh(spread)
-    u, v, w = (np.einsum("ij,ij->i", off, frame[owner, :, k]) for k in (2, 1, 0))
-    # in units of the kernel, so that the six columns weigh alike
-    terms = np.stack([np.ones(len(u)), u / radius, v / radius, (u / radius)**2, u * v / radius**2, (v / radius)**2], axis=1)
-    normal = np.add.reduceat(terms[:, :, None] * terms[:, None, :], starts) + 1e-9 * np.eye(6)
-    right = np.add.reduceat(terms * w[:, None], starts)
+    values, normal, right = np.empty((len(count), 3)), np.empty((len(count), 6, 6)), np.empty((len(count), 6))
+    terms, scale = np.ones((7, int(count.max()))), np.array([[radius], [radius], [1.0]])
+    # hundreds of neighbours each: a matrix product of a neighbourhood is faster than sums over all of them
+    for k, (first, number) in enumerate(zip(np.cumsum(count) - count, count)):
+        own = off[first:first + number]
+        centred = own - own.mean(axis=0)
+        values[k], frame = np.linalg.eigh(centred.T @ centred)
+        some = terms[:, :number]
+        # in units of the kernel, so that the six columns weigh alike
+        u, v, w = (frame.T[::-1] / scale) @ own.T
+        some[1], some[2], some[6] = u, v, w
+        np.multiply(u, u, out=some[3])
+        np.multiply(u, v, out=some[4])
+        np.multiply(v, v, out=some[5])
+        product = some @ some.T
+        normal[k], right[k] = product[:6, :6], product[:6, 6]
+    normal += 1e-9 * np.eye(6)
     _, b, c, d, e, g = np.linalg.solve(normal, right[:, :, None])[:, :, 0].T
     fx, fy, fxx, fxy, fyy = b / radius, c / radius, 2 * d / radius**2, e / radius**2, 2 * g / radius**2
     bend = ((1 + fx**2) * fyy - 2 * fx * fy * fxy + (1 + fy**2) * fxx) / (2 * (1 + fx**2 + fy**2)**1.5)
