@@ -31,17 +31,18 @@ def road_heights(road_points, road, s, tracks):
     list of (N,) z, NaN where there are fewer than 3 points, one array per track
     """
     found = [np.full(len(track), np.nan) for track in tracks]
-    size = int(WINDOW / STEP)
+    size, length = int(WINDOW / STEP), road_points.store.section_length
 
     def of_window(first):
         last = min(first + size, len(s)) - 1
         inside = [(k, max(first, track.first), min(last, track.last)) for k, track in enumerate(tracks)]
         inside = [row for row in inside if row[1] <= row[2]]
-        points = road_points.window(road, s[first] - STEP / 2, s[last] + STEP / 2) if inside else ()
-        if not len(points):
+        if not inside:
             return []
+        near = [int(np.floor((s[k] + side * STEP / 2) / length)) for k, side in ((first, -1), (last, 1))]
+        sections = [road_points.section(road, number).records for number in range(near[0], near[1] + 1)]
         lanes = [(np.arange(a, b + 1) - first, tracks[k].d[a - tracks[k].first:b - tracks[k].first + 1]) for k, a, b in inside]
-        heights = _heights(points.records, s[first:last + 1], lanes)
+        heights = _heights([records for records in sections if len(records)], s[first:last + 1], lanes)
         return [(k, a - tracks[k].first, z) for (k, a, _), z in zip(inside, heights)]
 
     for heights in in_order(of_window, range(0, len(s), size)):
@@ -50,31 +51,50 @@ def road_heights(road_points, road, s, tracks):
     return found
 
 
-def _heights(records, s, lanes):
-    """Median heights along lanes, each (cells, offsets), of road points, by station, about grid stations s."""
+def _heights(sections, s, lanes):
+    """Median heights along lanes, each (cells, offsets), of sections of road points about grid stations s."""
     # of crowded points those right beside the grid stations say the same
-    found = _Near(records, s, np.arange(len(s)), SLICE).medians(lanes)
+    found = _Near(sections, s, np.arange(len(s)), SLICE, lanes).medians(lanes)
     few = [np.flatnonzero(count < CROWD) for _, count in found]
     lacking = [(cells[which], d[which]) for (cells, d), which in zip(lanes, few)]
     cells = np.unique(np.concatenate([cells for cells, _ in lacking]))
     if len(cells):
-        for (z, _), which, (more, count) in zip(found, few, _Near(records, s, cells, STEP / 2).medians(lacking)):
+        for (z, _), which, (more, count) in zip(found, few, _Near(sections, s, cells, STEP / 2, lacking).medians(lacking)):
             z[which] = np.where(count >= LEAST_POINTS, more, np.nan)
     return [z for z, _ in found]
 
 
-class _Near:
-    """Road points at most `reach` metres of station from some cells of a grid, sorted by offset."""
+def _beside(lanes):
+    """Where, in grains across the road, a table begins that tells which offsets lie within reach of lanes (offsets in metres), and the table."""
+    spans = np.array([(d.min() - REACH, d.max() + REACH) for d in lanes]) / UNIT
+    spans = np.stack([np.floor(spans[:, 0]), np.ceil(spans[:, 1])], axis=1).astype(np.int32) >> GRAIN
+    first = np.int32(spans[:, 0].min() - 1)
+    table = np.zeros(spans[:, 1].max() - first + 2, bool)
+    for low, high in (spans - first).tolist():
+        table[low:high + 1] = True
+    return first, table
 
-    def __init__(self, records, s, cells, reach):
-        low, high = (np.searchsorted(records["s"], np.ceil((s[cells] + side * reach) / UNIT)) for side in (-1, 1))
-        count = high - low
-        rows = np.arange(count.sum()) + np.repeat(low - (np.cumsum(count) - count), count)
-        offset = records["d"].take(rows)
+
+class _Near:
+    """Road points at most `reach` metres of station from some cells of a grid and near lanes, sorted by offset."""
+
+    def __init__(self, sections, s, cells, reach, lanes):
+        # of the points' own kind, or all stations would be copied to compare them
+        bounds = np.ceil((s[cells] + reach * np.array([[-1], [1]])) / UNIT).astype(np.int32)
+        first, beside = _beside([d for _, d in lanes if len(d)])
+        parts = [(np.empty(0, int), *np.empty((2, 0), np.int32))]
+        for records in sections:
+            # points lie by station
+            low, high = np.searchsorted(records["s"], bounds)
+            count = high - low
+            rows = np.arange(count.sum()) + np.repeat(low - (np.cumsum(count) - count), count)
+            offset = records.take(rows)["d"]
+            near = np.flatnonzero(beside.take((offset >> GRAIN) - first, mode="clip"))
+            parts.append((np.repeat(cells, count)[near], offset[near], records.take(rows[near])["z"]))
+        cell, offset, height = (np.concatenate(columns) for columns in zip(*parts))
         across = offset >> GRAIN
         order = order_by(across)
-        self.across, self.offset = across[order], offset[order]
-        self.cell, self.height = np.repeat(cells, count)[order], records["z"].take(rows)[order]
+        self.across, self.offset, self.cell, self.height = across[order], offset[order], cell[order], height[order]
 
     def medians(self, lanes):
         """[((M,) median heights, (M,) number of points)] within reach of each lane: (M,) cells, ascending, and (M,) offsets there."""
@@ -82,8 +102,8 @@ class _Near:
 
     def _medians(self, cells, d):
         middle, reach = np.rint(d / UNIT).astype(np.int32), int(REACH / UNIT)
-        near = slice(np.searchsorted(self.across, (middle.min() - reach) >> GRAIN),
-                     np.searchsorted(self.across, (middle.max() + reach) >> GRAIN, side="right"))
+        low, high = np.array([middle.min() - reach, middle.max() + reach], np.int32) >> GRAIN
+        near = slice(np.searchsorted(self.across, low), np.searchsorted(self.across, high, side="right"))
         at = np.full(int(cells[-1]) + 2, -1)
         at[cells] = np.arange(len(cells))
         place = at.take(self.cell[near], mode="clip")
