@@ -77,7 +77,8 @@ def classify(shapes, half_widths, settings=ClassSettings(), covered=0.0):
         return []
     column = columns_of(shapes)
     room = np.asarray(half_widths) - np.abs(column["offset"])
-    line = _is_line(column, settings)
+    curb = np.array([_curb(shape, r) for shape, r in zip(shapes, room)])
+    line = _is_line(column, settings) & ~curb
     zebra = zebra_stripes(column)
     line |= _dashes_in_rows(shapes, column, room, settings)
     line &= ~zebra
@@ -86,7 +87,7 @@ def classify(shapes, half_widths, settings=ClassSettings(), covered=0.0):
     doubles = _has_partner(column, line)
     foot = (np.broadcast_to(covered, len(shapes)) > BENEATH) & ~(line & (column["length"] > CAR))
     for k, shape in enumerate(shapes):
-        no_paint = _speck(shape) and not (line[k] and shape.length >= ROW) or scrap[k] or foot[k] or _curb(shape, room[k]) or _round_cover(shape)
+        no_paint = _speck(shape) and not (line[k] and shape.length >= ROW) or scrap[k] or foot[k] or curb[k] or _round_cover(shape)
         if room[k] < -settings.margin or no_paint or _gutter(shape, room[k], line[k], zebra[k]):
             kind = NOT_PAINT
         elif zebra[k]:

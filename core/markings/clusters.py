@@ -16,13 +16,14 @@ from ..errors import RoadExtractionError
 from ..features import Features
 from ..progress import Progress
 from ..schemas import MARKINGS
-from ..survey.points import ROAD_POINT, UNIT, joined
+from ..survey.points import ROAD_POINT, UNIT, Points, joined
 from ..survey.sorting import order_by
 from . import polygons
 from .cells import components, occupied
 from .classes import LINES, NOT_PAINT, ClassSettings, classify
 from .compounds import split_compounds
 from .fragments import join_fragments
+from .paleness import PALE, PALE_BAR, contrast
 from .shapes import CELL, measure
 
 WINDOW = 500     # cells of 4 cm: 20 m of station are linked at a time
@@ -85,6 +86,10 @@ def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress
         half_widths = [float(np.median(records["half_width"][a:b])) * 1e-3 for a, b in rows]
         covered = [float(np.count_nonzero(records["covered"][a:b])) / (b - a) for a, b in rows]
         kinds = classify(shapes, half_widths, settings.classes, covered)
+        if marking_points.has_corrected:
+            bright = contrast(Points(records).value, records["s"], starts)
+            kinds = [(NOT_PAINT, "other") if share < (PALE_BAR if kind == "stop" else PALE) else (kind, use)
+                     for share, (kind, use) in zip(bright.tolist(), kinds)]
         cluster = np.zeros(len(records), np.int32)
         for i in sorted(range(len(rows)), key=lambda i: (shapes[i].s0, shapes[i].d0, shapes[i].s1)):
             if kinds[i][0] == NOT_PAINT:
@@ -96,7 +101,7 @@ def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress
             _add(markings, records[a:b], shapes[i], kinds[i], number, road, frame)
             part.at(0.4 + 0.6 * number / max(len(rows), 1))
         _put(clustered.store, road, cluster, marking_points)
-    progress.say(f"Markings: {number} found; {refused} clusters were left out as gutters, covers, specks or the feet of what stands on the road.")
+    progress.say(f"Markings: {number} found; {refused} clusters were left out as gutters, seams, covers, specks or the feet of what stands on the road.")
     return markings, clustered
 
 

@@ -222,6 +222,38 @@ def test_the_bright_top_of_a_curb_is_no_edge_line():
     assert len(markings_of([strip(5, 70, 3.2, 3.32), strip(30, 60, 5.84, 6.0)])) == 1
 
 
+def test_an_edge_line_beside_the_bright_hair_of_a_curb_is_no_double_line():
+    assert classes(markings_of([strip(10, 30, 5.6, 5.75), strip(8, 40, 5.97, 6.0)], density=3000)) == ["edge"]
+
+
+def with_values(marks, value):
+    """Markings of paint at 4000 but for what `value(s, d)` says, in corrected intensities."""
+    records = paint(FRAME, marks, density=3000)
+    s, d = records["s"] * 1e-4, records["d"] * 1e-4
+    records["corrected"] = value(s, d) * np.random.default_rng(3).normal(1.0, 0.05, len(s))
+    points = road_points(records, FRAME)
+    points.has_corrected = True
+    return cluster_markings(points, FRAME)[0]
+
+
+def test_a_seam_and_the_joint_of_a_bridge_that_are_far_paler_than_the_paint_about_are_no_markings():
+    dashes = [strip(s, s + 3, -0.06, 0.06) for s in (10, 19, 28, 37, 46, 55)]
+    seam, joint = strip(5, 65, 1.4, 1.5), strip(44, 44.25, -5.5, 5.5)
+    found = with_values([*dashes, seam, joint], lambda s, d: np.where(np.any([dash(s, d) for dash in dashes], axis=0), 4000, 1900))
+    assert classes(found) == ["lane"] * 6
+    assert classes(with_values([seam], lambda s, d: np.full(len(s), 1900.0))) == ["centre"]
+
+
+def test_worn_paint_is_a_marking_beside_fresh_paint_since_what_is_left_of_it_is_bright():
+    fresh, worn = strip(5, 65, 3.0, 3.15), strip(10, 60, -1.0, -0.85)
+
+    def value(s, d):
+        faint = worn(s, d) & (np.random.default_rng(5).random(len(s)) < 0.6)
+        return np.where(faint, 1700, np.where(worn(s, d), 2800, 4000))
+
+    assert classes(with_values([fresh, worn], value)) == ["centre", "centre"]
+
+
 def test_an_edge_line_a_hand_from_the_edge_is_one():
     assert classes(markings_of([strip(10, 60, 5.65, 5.80)])) == ["edge"]
 
