@@ -111,12 +111,19 @@ def scanner_runs(records):
     """[((pass number, scanner), records of first returns)] of a section's records."""
     if not len(records):
         return []
-    key = records["pass_number"].astype(np.int64) * 256 + records["scanner"]
+    passes, scanner = records["pass_number"], records["scanner"]
+    number = int(passes[0])
+    # of one pass and few scanners, as most sections are, comparing bytes is all that is needed
+    if (passes == number).all():
+        values = [number * 256 + value for value in range(int(scanner.min()), int(scanner.max()) + 1) if (scanner == value).any()]
+        key = scanner
+    else:
+        key = passes.astype(np.uint32) * np.uint32(256) + scanner
+        values, number = np.flatnonzero(np.bincount(key)).tolist(), 0
     first = (records["returns"] & 15) <= 1
-    values = np.flatnonzero(np.bincount(key))
     if len(values) == 1 and first.all():
-        return [((int(values[0]) // 256, int(values[0]) % 256), records)]
-    return [((int(value) // 256, int(value) % 256), chosen(records, (key == value) & first)) for value in values]
+        return [(divmod(values[0], 256), records)]
+    return [(divmod(value, 256), chosen(records, (key == value - 256 * number) & first)) for value in values]
 
 
 def phasors(survey, number, records):

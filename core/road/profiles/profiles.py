@@ -140,9 +140,12 @@ def run_of_profiles(points, kept, place, profiles, cells, layer_jump):
     profiles : (first, last + 1)
     """
     rows = profiles[1] - profiles[0]
-    order = order_by(np.rint((points[2][kept] + DEPTH) * 1e4).astype(np.int32), place)
-    place = place[order]
-    u, s, h, along = (v.take(kept[order]) for v in points)
+    height = points[2].take(kept)
+    height += DEPTH
+    height *= 1e4
+    order = order_by(np.rint(height, out=height).astype(np.int32), place)
+    place, kept = place.take(order), kept.take(order)
+    u, s, h, along = (v.take(kept) for v in points)
     ground, first_of, count = lowest_layers(place, h, layer_jump)
     low, high, noise = (np.full((rows, cells), np.nan) for _ in range(3))
     owner = place[first_of]

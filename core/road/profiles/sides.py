@@ -89,9 +89,9 @@ def _by_pass(numbers, chosen):
     own = np.flatnonzero(chosen)
     if not len(own):
         return []
-    numbers = numbers.take(own)
     if numbers.min() == numbers.max():
         return [(int(numbers[0]), own)]
+    numbers = numbers.take(own)
     return [(int(number), own[numbers == number]) for number in np.flatnonzero(np.bincount(numbers))]
 
 

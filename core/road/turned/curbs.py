@@ -218,12 +218,14 @@ def _beside_vehicle(survey, road, points, reach):
     connected with the track by as short a stretch as a section."""
     s, d = points.s, points.d
     inside, inner = reach(s, d)
-    along = ahead_of_vehicle(survey, points, s)
-    inside &= np.abs(along) < BESIDE + np.abs(d)
     own = np.flatnonzero(inside)
-    s, points = s.take(own), points[own]
+    s, d, inner, points = s.take(own), d.take(own), inner.take(own), points[own]
+    along = ahead_of_vehicle(survey, points, s)
+    near = np.flatnonzero(np.abs(along) < BESIDE + np.abs(d))
+    if len(near) < len(s):
+        s, inner, along, points = s.take(near), inner.take(near), along.take(near), points[near]
     h = points.z - expected_height(survey, road, s)
-    return points.x, points.y, h, along.take(own), inner.take(own) & (np.abs(h) < INNER_HEIGHT)
+    return points.x, points.y, h, along, inner & (np.abs(h) < INNER_HEIGHT)
 
 
 class _Reach:
