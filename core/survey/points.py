@@ -3,7 +3,6 @@
 import numpy as np
 
 from .columns import Columns
-from .sorting import BITS, above_least
 
 UNIT = 1e-4  # m: coordinates are kept as integers of 0.1 mm, exact for every LAS scale in use
 
@@ -69,30 +68,6 @@ class Points:
         corrected = self.records["corrected"]
         missing = np.isnan(corrected)
         return np.where(missing, self.records["intensity"].astype(np.float32), corrected) if missing.any() else corrected
-
-
-def canonical_order(records):
-    """Indices that sort records by station, offset, height and time: the same whatever order files came in."""
-    if not len(records):
-        return np.empty(0, np.intp)
-    across, along = above_least(records["d"]), above_least(records["s"])
-    across >>= max(int(across.max()).bit_length() - BITS, 0)
-    length = int(along.max()).bit_length()
-    order = np.argsort(across.astype(np.uint16), kind="stable")
-    for shift in range(0, max(length, 1), BITS):
-        digit = (along >> shift).astype(np.uint16)
-        order = order.take(np.argsort(digit.take(order), kind="stable"))
-    # the few that share a station to the last digit and an offset nearly are left to sort
-    place = along.astype(np.uint64 if length > BITS else np.uint32) << BITS
-    place = np.bitwise_or(place, across, out=place).take(order)
-    repeated = np.flatnonzero(place[1:] == place[:-1])
-    if len(repeated):
-        tied = np.union1d(repeated, repeated + 1)
-        rows = order[tied]
-        some = chosen(records, rows)
-        keys = [some[name] for name in ("returns", "source", "y", "x", "intensity", "time", "z", "d")]
-        order[tied] = rows[np.lexsort([*keys, place[tied]])]
-    return order
 
 
 def chosen(records, which):

@@ -17,8 +17,9 @@ import numpy as np
 from ..parallel import in_order
 from ..progress import Progress
 from .mirror_clock import clock_from_phasors
-from .points import BITS, UNIT, chosen
+from .points import UNIT, chosen
 from .rotation import LEAST_PEAK, WINDOW, clearest_rotation, spectrum
+from .sorting import BITS
 
 SAMPLES = 6           # places along a pass at which the frequency is sought
 SAMPLE_LENGTH = 30.0  # m of road about them: lines slant, and of a short piece of road see little each

@@ -4,19 +4,22 @@ import threading
 from bisect import bisect_left
 from collections import OrderedDict
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from ..parallel import go_on
 from .columns import Columns, in_columns
-from .kept_arrays import KeptArrays, columns_kept
-from .points import UNIT, Points, canonical_order
+from .kept_arrays import KeptArrays
+from .points import UNIT, Points
+from .sorting import dealt
 from .spill_file import SpillFile
+from .stored_section import StoredSection
 
 SECTION_LENGTH = 5.0   # m of station; results must not depend on it
 MEMORY_LIMIT = 64 * 2**20  # bytes of records kept before they are spilled
 KEPT = 64 * 2**20      # bytes of spilled sections kept as last read: neighbours ask for them again
-FEW = 24               # sections of some points that are looked through one by one: faster than to sort
+STRIPS = 16            # across a section: points lie strip by strip till they are put in order, so that what is sorted together lies together
 TURNS = 16             # locks that sections share while they are put in order
 
 
@@ -28,20 +31,6 @@ class Parted:
     records: Columns
     first: int
     ends: list
-
-
-class _Section:
-    """The points of one section in parts: Columns in memory, and dicts of what lies in the file by name of column."""
-
-    __slots__ = ("parts", "in_order")
-
-    def __init__(self, in_order):
-        self.parts, self.in_order = [], in_order
-
-    @property
-    def nbytes(self):
-        """Bytes in memory."""
-        return sum(part.nbytes for part in self.parts if isinstance(part, Columns))
 
 
 class SectionStore:
@@ -63,7 +52,7 @@ class SectionStore:
         self.memory_limit = memory_limit
         self.finish = finish
         self._arrays = KeptArrays()
-        self._sections = {}                 # (road, section) -> _Section
+        self._sections = {}                 # (road, section) -> StoredSection
         self._kept = OrderedDict()          # a few spilled sections as last read
         self._kept_bytes, self._kept_limit = 0, kept
         self._lock = threading.Lock()       # sections are read by several threads
@@ -87,26 +76,15 @@ class SectionStore:
 
         `own` is a mask of those that are meant, all by default.
         """
-        kept = self._arrays.of(len(records))
-        at = np.multiply(records["s"], UNIT, out=kept("at"))
-        at /= self.section_length
-        np.floor(at, out=at)
-        low, high = int(at.min()), int(at.max())
-        at -= low
-        if high - low < FEW:
-            section = kept("section", np.uint8)
-            np.copyto(section, at, casting="unsafe")
-            if own is not None:
-                section[~own] = FEW
-            rows = [np.flatnonzero(section == k) for k in range(high - low + 1)]
-            order, ends = np.concatenate(rows), np.cumsum([len(some) for some in rows])
-        else:
-            rows = np.arange(len(at)) if own is None else np.flatnonzero(own)
-            section = at.take(rows).astype(np.int64)
-            order = rows.take(np.argsort(section.astype(np.uint16) if high - low < 2**16 else section, kind="stable"))
-            ends = np.cumsum(np.bincount(section))
+        strip = np.multiply(records["s"], UNIT, out=self._arrays.of(len(records))("strip"))
+        strip /= self.section_length
+        low, high = int(np.floor(strip.min())), int(np.floor(strip.max()))
+        strip *= STRIPS
+        np.floor(strip, out=strip)
+        strip -= STRIPS * low
+        order, ends = dealt(strip, STRIPS * (high + 1 - low), own)
         records = records.take(order).whole() if isinstance(records, Columns) else in_columns(records, order)
-        return Parted(int(road), records, low, ends.tolist())
+        return Parted(int(road), records, low, ends[STRIPS - 1::STRIPS].tolist())
 
     def add(self, parted):
         """Add what `parted` made."""
@@ -122,7 +100,7 @@ class SectionStore:
             self._spill_beyond_limit()
 
     def _place(self, key, records, in_order):
-        section = self._sections.setdefault(key, _Section(in_order))
+        section = self._sections.setdefault(key, StoredSection(self.dtype, in_order))
         section.in_order = in_order and not section.parts
         section.parts.append(records)
         self._forget(key)
@@ -135,10 +113,7 @@ class SectionStore:
         if self._file is None:
             self._file = SpillFile()
         for section in self._sections.values():
-            waiting = [part for part in section.parts if isinstance(part, Columns)]
-            if waiting:
-                stored = {name: self._file.put(_end_to_end([part[name] for part in waiting])) for name in self.dtype.names}
-                section.parts = [part for part in section.parts if not isinstance(part, Columns)] + [stored]
+            section.spill(self._file)
         self._waiting_bytes = 0
 
     def roads(self):
@@ -168,7 +143,10 @@ class SectionStore:
         """The Columns of one section, and whether they are worth keeping as read."""
         section = self._sections.get((road, section))
         if section is not None and not section.in_order:
-            self._put_in_order(road, section)
+            before = section.nbytes
+            section.put_in_order(self._file, self.finish and partial(self.finish, road))
+            with self._lock:
+                self._waiting_bytes += section.nbytes - before
         if section is None or not section.parts:
             return Columns.joined([], self.dtype), False
         records = section.parts[0]
@@ -192,45 +170,6 @@ class SectionStore:
         """Columns that are read one by one when they are asked for."""
         return Columns({}, self.dtype, stored[self.dtype.names[0]].packing.count, lambda name: self._file.get(stored[name]),
                        pick=lambda name, rows: self._file.get(stored[name], rows=rows))
-
-    def _put_in_order(self, road, section):
-        """Finish and sort the points of a section into one part; it is in the file then where some of them were."""
-        before, spilled = section.nbytes, [part for part in section.parts if not isinstance(part, Columns)]
-        records = self._all_of(section)
-        for part in spilled:
-            for stored in part.values():
-                self._file.give_back(stored)
-        stay = None if self.finish is None else self.finish(road, records)
-        if stay is None:
-            order = canonical_order(records)
-        else:
-            order = np.flatnonzero(stay)
-            order = order.take(canonical_order(records.take(order)))
-        section.parts, section.in_order = [], True
-        if len(order) and spilled:
-            kept = columns_kept.of(len(order))
-            section.parts = [{name: self._file.put(np.take(records[name], order, out=kept("column", self.dtype[name]), mode="clip"))
-                              for name in self.dtype.names}]
-        elif len(order):
-            section.parts = [Columns({name: records[name].take(order) for name in self.dtype.names}, self.dtype)]
-        with self._lock:
-            self._waiting_bytes += section.nbytes - before
-
-    def _all_of(self, section):
-        """Columns of all parts of a section, for this thread alone and till it asks for others."""
-        counts = [len(part) if isinstance(part, Columns) else part[self.dtype.names[0]].packing.count for part in section.parts]
-        kept = columns_kept.of(sum(counts))
-        columns = {name: kept(name, self.dtype[name]) for name in self.dtype.names}
-        for name, column in columns.items():
-            first = 0
-            for part, count in zip(section.parts, counts):
-                out = column[first:first + count]
-                if isinstance(part, Columns):
-                    out[:] = part[name]
-                else:
-                    self._file.get(part[name], out)
-                first += count
-        return Columns(columns, self.dtype)
 
     def _keep(self, key, records):
         with self._lock:
@@ -328,11 +267,6 @@ class _WithColumn(SectionStore):
     def close(self):
         self._column.close()
         self._points.close()
-
-
-def _end_to_end(columns):
-    """Arrays of a column one after the other, for this thread alone and till it asks for others."""
-    return np.concatenate(columns, out=columns_kept.of(sum(map(len, columns)))("column", columns[0].dtype))
 
 
 class _Metres:

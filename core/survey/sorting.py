@@ -17,8 +17,30 @@ def order_by(*keys):
         key = above_least(np.asarray(key, np.int32))
         for shift in range(0, max(int(key.max()).bit_length(), 1), BITS):
             digit = (key >> shift).astype(np.uint16)
-            order = np.argsort(digit, kind="stable") if order is None else order[np.argsort(digit[order], kind="stable")]
+            order = np.argsort(digit, kind="stable") if order is None else order.take(np.argsort(digit.take(order), kind="stable"))
     return order
+
+
+def dealt(cell, count, own=None):
+    """Rows dealt to cells, in linear time where there are less than 2**16 of them.
+
+    Parameters
+    ----------
+    cell : (N,) whole numbers from 0 to count - 1
+    own : (N,) bool, those that are meant; all by default
+
+    Returns
+    -------
+    rows : (M,) those of the first cell, then those of the next, each in ascending order
+    ends : (count,) where the rows of every cell end
+    """
+    kind = np.min_scalar_type(count)
+    cell = cell.astype(kind)
+    if own is not None:
+        cell[~own] = count
+    rows = np.argsort(cell, kind="stable")
+    ends = np.searchsorted(cell.take(rows), np.arange(count, dtype=kind), side="right")
+    return rows[:ends[-1]], ends
 
 
 def above_least(values):

@@ -6,7 +6,8 @@ import warnings
 
 import numpy as np
 import pytest
-from lanewright.core.survey.points import SURVEY_POINT, canonical_order, joined, to_units
+from lanewright.core.survey.canonical_order import canonical_order
+from lanewright.core.survey.points import SURVEY_POINT, joined, to_units
 from lanewright.core.survey.section_store import SectionStore
 
 
@@ -133,6 +134,23 @@ def test_points_are_ordered_by_station_then_offset_then_height(length):
     made["d"] -= made["d"] % 20_000  # many share an offset, and some a station
     expected = np.lexsort((made["x"], made["intensity"], made["time"], made["z"], made["d"], made["s"]))
     np.testing.assert_array_equal(canonical_order(made), expected)
+
+
+@pytest.mark.parametrize("count", [1, 500, 90_000])
+def test_points_at_one_place_are_ordered_by_time_intensity_and_the_rest(count):
+    made = records(count, length=3.0)
+    for name, step in (("s", 2000), ("d", 20_000), ("z", 200_000), ("time", 50), ("x", 500_000), ("intensity", 30_000)):
+        made[name] -= (made[name] % step).astype(made[name].dtype)
+    made["source"], made["returns"] = np.arange(count) % 7, np.arange(count) % 5
+    expected = np.lexsort([made[name] for name in ("returns", "source", "y", "x", "intensity", "time", "z", "d", "s")])
+    np.testing.assert_array_equal(canonical_order(made), expected)
+
+
+def test_points_that_do_not_stay_leave_the_order_of_the_others_alone():
+    made = records(90_000, length=3.0)
+    order, stay = canonical_order(made), made["d"] % 3 > 0
+    np.testing.assert_array_equal(canonical_order(made, stay), order[stay[order]])
+    assert len(canonical_order(made, np.zeros(len(made), bool))) == 0
 
 
 def test_a_tenth_of_a_millimetre_survives():

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.survey.sorting import quantiles, ranked
+from lanewright.core.survey.sorting import dealt, quantiles, ranked
 
 RNG = np.random.default_rng(7)
 COLUMNS = {
@@ -26,3 +26,13 @@ def test_a_rank_is_that_of_the_sorted_column(values):
 def test_quantiles_are_those_of_numpy(values):
     shares = [0.01, 0.25, 0.5, 0.99, 1.0, 0.0]
     np.testing.assert_allclose(quantiles(values, shares), np.quantile(values.astype(float), shares), rtol=1e-12)
+
+
+@pytest.mark.parametrize("count", [1, 255, 256, 70_000])
+def test_rows_are_dealt_to_their_cells_and_lie_there_in_the_order_they_came_in(count):
+    cell, own = RNG.integers(0, count, 5000), RNG.random(5000) < 0.7
+    rows, ends = dealt(cell, count, own)
+    mine = np.flatnonzero(own)
+    np.testing.assert_array_equal(rows, mine[np.argsort(cell[mine], kind="stable")])
+    np.testing.assert_array_equal(ends, np.cumsum(np.bincount(cell[mine], minlength=count)))
+    assert len(dealt(cell, count)[0]) == 5000
