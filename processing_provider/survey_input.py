@@ -27,6 +27,13 @@ SURVEY_KNOBS = (
            "compares with the point clouds and says what it chose."),
         choices=("automatic", "gps", "adjusted", "week", "day"), advanced=True,
     ),
+    Knob(
+        "FIT_PASSES", SURVEY, "fit_passes", tr("Lay passes over one road on each other"),
+        tr("Where two drives over a road measurably lie centimetres apart, as navigation drifts between them, each is moved by its "
+           "share until curbs and paint agree, and the log says how far. Off keeps every point where it was measured, for surveys "
+           "adjusted to control points already; what the passes differ by then blurs curbs and doubles lines."),
+        advanced=True,
+    ),
 )
 
 

@@ -8,11 +8,11 @@ import shapely
 from ..curves.fit import median
 from .centre_lines import SAME_OFFSET, lone_centre, one_centre, outer_lines_alone
 from .classes import LANE
-from .linking import TWIN
+from .linking import TWIN, Line
 from .patterns import LONGEST_DASH, Piece, merged, pieces, stretches
 
 SHARED = 0.6         # of a line's paint that must have its twin beside it in a double line
-TWIN_PAINT = 6.0     # m of paint: a shorter line beside another is its frayed edge, however short the other is there
+TWIN_PAINT = 4.0     # m of paint: a shorter line beside another is its frayed edge, however short the other is there
 SLIVER = 0.35        # of a line's length: less paint beside a line than this is no second line but its frayed edge
 LONE_DASH = 1.5      # m
 LONG = 15.0          # m of paint: enough to bound a road by
@@ -22,6 +22,7 @@ BAR = 4.0            # m along the road: what is called hatching and is longer i
 AT_BAR = 0.35        # m between the end of a bar and the outline
 BAR_PITCH = 3.0      # m from bar to bar along an outline
 BARS = 4             # that make an outline
+FEW_BARS = 2         # that tell which strands of an outline are its own
 
 
 @dataclass
@@ -197,14 +198,20 @@ def _beyond_the_edge(lines, level):
     return result
 
 
-def _frames_hatching(line, hatched):
+def hatching_borders(lines, hatched):
+    """Strands that frame hatched areas, of those lines that do so as a whole."""
+    return [strand for line in lines if len(line.strands) > 1 and _frames_hatching(line, hatched)
+            for strand in line.strands if _frames_hatching(Line([strand]), hatched, FEW_BARS)]
+
+
+def _frames_hatching(line, hatched, fewest=BARS):
     """Whether bars end at a line along most of it; an edge line beside a hatched area goes on after it."""
     s, d, *_ = line.places()
     middle = hatched[:, :2].mean(axis=1)
     at = np.interp(middle, s, d)
     ends = np.minimum(np.abs(hatched[:, 2] - at), np.abs(hatched[:, 3] - at)) < AT_BAR
     near = middle[ends & (middle > line.first) & (middle < line.last)]
-    if len(near) < BARS:
+    if len(near) < fewest:
         return False
     steps = np.diff(np.sort(near))
     return steps[steps < BAR_PITCH].sum() + BAR_PITCH > SHARED * (line.last - line.first)

@@ -80,13 +80,15 @@ def fit_marking_lines(clustered_points, markings, frame, settings=LineSettings()
         part.at(0.1)
         strands = trace(records, rank)
         part.at(0.4)
-        drift = Drift(strands)
-        lines = link([Line([strand]) for strand in strands], drift, settings.max_gap)
-        lines = link_far(lines, drift, settings.max_gap, settings.max_bridge, same_rhythm)
-        lines = [without_strays(line, drift) for line in lines]
+        hatched = line_choice.bars(markings, road, frame)
+        lines, drift = _linked(strands, settings)
+        # a line that leads up to a hatched area may be taken for its border: linked anew without that, it goes on behind the area
+        while borders := line_choice.hatching_borders(lines, hatched):
+            strands = [strand for strand in strands if not any(strand is border for border in borders)]
+            lines, drift = _linked(strands, settings)
         part.at(0.5)
         chosen = line_choice.choose(lines, drift, line_choice.crossings(markings, road, frame), settings.min_paint,
-                                    line_choice.bars(markings, road, frame), frame.passes_of(road))
+                                    hatched, frame.passes_of(road))
         dropped += len(lines) - len(chosen)
         shapes, unwanted = shapes_of([one.line for one in chosen], [one.span for one in chosen], frame.road(road), drift,
                                      partial(frame.track_height, road), settings)
@@ -101,6 +103,14 @@ def fit_marking_lines(clustered_points, markings, frame, settings=LineSettings()
         progress.warn(f"{replaced} of {number} lines cannot take the curve “{settings.curve}”; "
                       "the automatic curve was used for them.")
     return found
+
+
+def _linked(strands, settings):
+    """Lines of strands, and the Drift they have in common."""
+    drift = Drift(strands)
+    lines = link([Line([strand]) for strand in strands], drift, settings.max_gap)
+    lines = link_far(lines, drift, settings.max_gap, settings.max_bridge, same_rhythm)
+    return [without_strays(line, drift) for line in lines], drift
 
 
 def _records_of(points, road):

@@ -18,7 +18,8 @@ class RoadPoints:
     """Road points in their sections, with what a later stage must know of them.
 
     `origin` (3 integers, map coordinates) is what was subtracted from x, y, z.
-    `has_corrected` and `has_cluster` say whether those columns carry anything.
+    `has_corrected` and `has_cluster` say whether those columns carry anything. `moves` are the PassMoves by
+    which they lie off the coordinates that were measured, None where they do not.
     """
 
     store: SectionStore
@@ -26,12 +27,13 @@ class RoadPoints:
     crs: str = ""
     has_corrected: bool = False
     has_cluster: bool = False
+    moves: object = None
 
     @classmethod
     def empty_like(cls, other=None, origin=None, crs=""):
         """A new, empty set; with `other` given, its sections, origin, CRS and columns."""
         if other is not None:
-            return cls(_store_like(other.store), other.origin, other.crs, other.has_corrected, other.has_cluster)
+            return cls(_store_like(other.store), other.origin, other.crs, other.has_corrected, other.has_cluster, other.moves)
         return cls(SectionStore(ROAD_POINT), np.asarray(origin, float), crs)
 
     @classmethod
@@ -41,7 +43,7 @@ class RoadPoints:
         The points stay in the survey's store, which lives as long as the road points and is closed with them.
         """
         store = ChosenPoints(survey.store, ROAD_POINT, ("half_width", "covered"), dict(corrected=np.nan, cluster=0))
-        return cls(store, np.asarray(survey.frame.origin, float), survey.crs)
+        return cls(store, np.asarray(survey.frame.origin, float), survey.crs, moves=survey.moves)
 
     def close(self):
         """Forget the points, and give back the disk space they took."""

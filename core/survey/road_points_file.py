@@ -5,6 +5,7 @@ import numpy as np
 from ..errors import RoadExtractionError
 from ..progress import Progress
 from .new_laz import new_laz
+from .pass_moves import PassMoves
 from .point_cloud import BLOCK, open_cloud, read_blocks
 from .points import ROAD_POINT, UNIT
 from .road_points import RoadPoints
@@ -26,6 +27,7 @@ NEEDED = ("road", "pass", "station_m", "offset_m", "half_width")
 def write_road_points(road_points, path, progress=Progress()):
     """Write road points as LAS 1.4 class 11 in road order; the file appears whole or not at all.
 
+    Coordinates are those that were measured; how passes were moved is kept beside them and done again on reading.
     `path` ends in .laz or .las. Raises RoadExtractionError where it cannot be written.
     """
     sections = road_points.all_sections()
@@ -50,6 +52,8 @@ def _header(road_points):
         laspy.ExtraBytesParams(name=name, type=kind, description=text,
                                **({} if scale is None else dict(scales=np.array([scale]), offsets=np.array([0.0]))))
         for name, kind, text, scale in extra])
+    if road_points.moves is not None:
+        header.vlrs.extend(road_points.moves.to_records())
     if road_points.crs:
         from .crs import parse_crs
 
@@ -62,7 +66,9 @@ def _record(road_points, road, number, header):
 
     records = road_points.store.section(road, number)
     out = laspy.ScaleAwarePointRecord.zeros(len(records), header=header)
-    out.array["X"], out.array["Y"], out.array["Z"] = records["x"], records["y"], records["z"]
+    off = (0, 0, 0) if road_points.moves is None else road_points.moves.units(records)
+    for name, moved in zip("xyz", off):
+        out.array[name.upper()] = records[name] - moved
     out["gps_time"] = records["time"]
     out["intensity"] = records["intensity"]
     out["point_source_id"] = records["source"]
@@ -96,7 +102,7 @@ def read_road_points(path, progress=Progress()):
                 f"{path} lacks the extra field(s) {', '.join(missing)} that tell where on the road a point lies. "
                 "Give it the road points written by “Extract road surface” or a stage after it.")
         origin, scales, total = np.asarray(header.offsets, float), np.asarray(header.scales), header.point_count
-        crs = header.parse_crs()
+        crs, moves = header.parse_crs(), PassMoves.of_records(header.vlrs)
     has_corrected, has_cluster = "intensity_corrected" in names, "cluster" in names
     store = SectionStore(ROAD_POINT)
     done = 0
@@ -117,6 +123,9 @@ def read_road_points(path, progress=Progress()):
         records["corrected"] = block["intensity_corrected"] if has_corrected else np.nan
         records["cluster"] = block["cluster"] if has_cluster else 0
         records["covered"] = block["covered"] if "covered" in names else 0
+        if moves is not None:
+            for name, moved in zip("xyz", moves.units(records)):
+                records[name] += moved
         roads = np.asarray(block["road"])
         for road in np.unique(roads):
             store.append(int(road), records[roads == road])
@@ -124,4 +133,4 @@ def read_road_points(path, progress=Progress()):
         progress.at(done / max(total, 1))
     if not store.count:
         raise RoadExtractionError(f"{path} holds no points. Run the stage that made it again with other settings.")
-    return RoadPoints(store, origin, "" if crs is None else crs.to_wkt(), has_corrected, has_cluster)
+    return RoadPoints(store, origin, "" if crs is None else crs.to_wkt(), has_corrected, has_cluster, moves)

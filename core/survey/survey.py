@@ -7,8 +7,10 @@ import numpy as np
 from ..errors import RoadExtractionError
 from ..progress import Progress
 from .block_points import ABOVE, BELOW, carried_on
+from .clock_check import check_clock
 from .cloud_blocks import CloudReaders
 from .crs import check_projected, crs_note, parse_crs, reproject_trajectory
+from .pass_fitting import fit_passes
 from .point_cloud import BLOCK, read_headers
 from .points import SURVEY_POINT, UNIT, Points
 from .reading import SurveyReader
@@ -17,6 +19,7 @@ from .section_store import MEMORY_LIMIT, SECTION_LENGTH, SectionStore
 from .time_systems import align_time, wrapped_week
 
 HEIGHT_STEP = 0.25     # m between the stations at which the height of the road is taken to choose points by
+READING = 0.7          # of the work where passes are laid on each other afterwards
 TALL = 5.0, 15.0       # m above the road: higher than survey vehicles carry a sensor, and what 1.5 to 4.5 m are in feet
 
 
@@ -28,12 +31,14 @@ class SurveySettings:
     scanner_field : "automatic", "scanner_channel" or "point_source_id"
     time : how the trajectory counts time: automatic, gps, adjusted, week or day
     crs : WKT for clouds that carry none
+    fit_passes : whether passes over one road that lie apart are laid on each other
     """
 
     corridor: float = CORRIDOR
     scanner_field: str = "automatic"
     time: str = "automatic"
     crs: str = ""
+    fit_passes: bool = True
     section_length: float = SECTION_LENGTH
     memory_limit: int = MEMORY_LIMIT
     block: int = BLOCK
@@ -47,7 +52,8 @@ class SurveySettings:
 class Survey:
     """Points in their sections, the road frame, and what was found out on the way.
 
-    `sensor_height` is metres from the trajectory down to the road, one value per pass.
+    `sensor_height` is metres from the trajectory down to the road, one value per pass. `moves` are the PassMoves by which
+    points and tracks were laid on those of other passes, None where they are as they were measured.
     """
 
     files: list
@@ -60,6 +66,7 @@ class Survey:
     has_intensity: bool
     has_time: bool
     counts: dict = field(default_factory=dict)
+    moves: object = None
 
     def __post_init__(self):
         self.store.finish = self._finished
@@ -134,7 +141,8 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
     _check_extent(files, frame, crs, trajectory.crs)
     store = SectionStore(SURVEY_POINT, settings.section_length, settings.memory_limit)
     reader = SurveyReader(frame, store, settings.corridor, has_time, week_ends)
-    reader.read(files, settings.block, progress)
+    again = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
+    reader.read(files, settings.block, progress.part(0.0, READING) if again else progress)
     total = sum(file.count for file in files)
     if not store.count:
         raise RoadExtractionError(_no_overlap(files, frame, reader, settings.corridor))
@@ -157,6 +165,10 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
     progress.say(f"Points read: {total:,} from {len(files)} file(s), {store.count:,} near the road kept; "
                  f"{len(frame.roads)} road(s), {len(frame.passes)} pass(es), {len(scanners)} scanner(s); "
                  f"sensor {height:.2f} m above the road.")
+    if has_time:
+        check_clock(survey, progress)
+    if again:
+        fit_passes(survey, progress.part(READING, 1.0))
     return survey
 
 

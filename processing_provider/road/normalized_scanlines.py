@@ -57,7 +57,7 @@ class NormalizedScanlines(LanewrightAlgorithm):
         self.add_knobs(SCANLINE_KNOBS)
         self.add_knobs(LAYER_KNOBS)
         self.add_knobs(POINT_KNOBS)
-        self.add_knobs(SURVEY_KNOBS, only=("SCANNER_FIELD", "TIME"))
+        self.add_knobs(SURVEY_KNOBS, only=("SCANNER_FIELD", "TIME", "FIT_PASSES"))
         self.add_sink("SCANLINES", tr("Normalized scanlines"),
                       tr("Lines with height (Z) and intensity (M)."), fields=SCANLINES, geometry="LineStringZM", optional=True)
         self.add_laz("RESAMPLED_POINTS", tr("Resampled points"), tr("Points at equal steps along the scanlines, with intensity, station and "

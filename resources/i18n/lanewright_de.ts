@@ -2775,6 +2775,16 @@
         </message>
         <message>
             <location filename="../../processing_provider/survey_input.py" />
+            <source>Lay passes over one road on each other</source>
+            <translation>Befahrungen derselben Straße aufeinanderlegen</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/survey_input.py" />
+            <source>Where two drives over a road measurably lie centimetres apart, as navigation drifts between them, each is moved by its share until curbs and paint agree, and the log says how far. Off keeps every point where it was measured, for surveys adjusted to control points already; what the passes differ by then blurs curbs and doubles lines.</source>
+            <translation>Wo zwei Befahrungen einer Straße messbar Zentimeter auseinanderliegen, weil die Navigation zwischen ihnen driftet, wird jede um ihren Anteil verschoben, bis Bordsteine und Farbe übereinstimmen; das Protokoll sagt, um wie viel. Ausgeschaltet bleibt jeder Punkt, wo er gemessen wurde: für Aufnahmen, die schon an Passpunkten ausgeglichen sind. Worin die Befahrungen sich dann unterscheiden, macht Bordsteine unscharf und Linien doppelt.</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/survey_input.py" />
             <source>The points</source>
             <translation>Die Punkte</translation>
         </message>

@@ -167,9 +167,10 @@ def test_a_double_line_is_two_lines():
         assert street.distance(geometry, offset).max() < 0.01
 
 
-def test_between_two_junctions_a_short_double_line_keeps_both_its_lines_though_only_one_is_linked_with_what_follows():
+@pytest.mark.parametrize("worn_from", [19, 15.6])
+def test_between_two_junctions_a_short_double_line_keeps_both_its_lines_though_only_one_is_linked_with_what_follows(worn_from):
     street = Street().paint(0, 120, 4.0, kind="edge").paint(10, 19, 0.0, kind="centre").paint(45, 110, 0.0, kind="centre")
-    lines = street.paint(10, 19, 0.31, kind="centre").paint(64, 110, 0.31, kind="centre").lines()
+    lines = street.paint(10, worn_from, 0.31, kind="centre").paint(64, 110, 0.31, kind="centre").lines()
     assert len({row["line"] for row in lines.rows if row["station_m"] < 15 and row["kind"] == "centre"}) == 2
     frayed = Street().paint(10, 110, 0.0, kind="centre").paint(30, 39, 0.31, kind="centre").lines()
     assert len({row["line"] for row in frayed.rows}) == 1
@@ -206,6 +207,24 @@ def test_the_frame_of_a_hatched_area_is_no_line_and_an_edge_line_beside_one_is()
     lines = street.lines()
     assert told(lines, "kind", "status") == [("edge", "measured")]
     assert street.distance(lines.geometries[0], -4.0).max() < 0.02
+
+
+def test_a_double_line_that_leads_up_to_a_hatched_area_keeps_both_its_lines_and_goes_on_behind_the_area():
+    street = Street(130.0).paint(0, 130, 4.0, kind="edge")
+    for left in (0.0, 0.31):
+        street.paint(10, 20, left, width=0.12, kind="centre").paint(46, 110, left, width=0.12, kind="centre")
+    for s in np.arange(22.0, 43.5, 0.5):
+        wide = 0.8 * np.sin(np.pi * (s - 20.5) / 25.0)
+        street.paint(s, s + 0.52, 0.31 + wide, width=0.12, kind="centre").paint(s, s + 0.52, -wide, width=0.12, kind="centre")
+    for s in np.arange(22.3, 43.5, 1.5):
+        wide = 0.8 * np.sin(np.pi * (s - 20.5) / 25.0)
+        street.paint(s, s + 0.4, 0.05 - wide, across=0.26 + wide, kind="hatch", use="other")
+    lines = street.lines()
+    centre = [(geometry, row) for geometry, row in lines if row["kind"] == "centre"]
+    assert sorted((row["status"], round(row["station_m"], -1)) for _, row in centre) == [
+        ("bridged", 20.0), ("bridged", 20.0), ("measured", 10.0), ("measured", 10.0), ("measured", 50.0), ("measured", 50.0)]
+    for geometry, _ in centre:
+        assert min(street.distance(geometry, left).max() for left in (0.0, 0.31)) < 0.05
 
 
 def test_the_stop_line_that_touches_an_edge_line_leaves_the_edge_line_straight():

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from drives import write_cloud
 from lanewright.core.errors import RoadExtractionError
+from lanewright.core.survey.pass_moves import STEP, PassMoves
 from lanewright.core.survey.points import ROAD_POINT, to_units
 from lanewright.core.survey.road_points import RoadPoints
 from lanewright.core.survey.road_points_file import read_road_points, write_road_points
@@ -42,6 +43,24 @@ def test_every_column_comes_back_to_the_bit(tmp_path, suffix, corrected, cluster
         for name in ROAD_POINT.names:
             np.testing.assert_array_equal(read.store.section(road, number)[name], written.store.section(road, number)[name], err_msg=name)
     assert list(tmp_path.iterdir()) == [tmp_path / f"road{suffix}"], "nothing unfinished is left"
+
+
+def test_points_of_moved_passes_are_written_as_measured_and_read_as_moved(tmp_path):
+    import laspy
+
+    written = road_points(count=500)
+    stations = np.arange(-15.0, 300.0, STEP)
+    left = np.rint([200 + stations, -100 + 0 * stations, 5 * np.sin(stations)]).astype(np.int16)
+    written.moves = PassMoves({1: (-15.0, left), 4: (-15.0, -left)})
+    write_road_points(written, tmp_path / "road.laz")
+    read = read_road_points(tmp_path / "road.laz")
+    for road, number in written.all_sections():
+        for name in "xyzsd":
+            np.testing.assert_array_equal(read.store.section(road, number)[name], written.store.section(road, number)[name], err_msg=name)
+    file = laspy.read(tmp_path / "road.laz")
+    moved = np.concatenate([written.section(*key).x - written.moves.units(written.store.section(*key))[0] * 1e-4 for key in written.all_sections()])
+    np.testing.assert_allclose(np.sort(file.x), np.sort(moved) + 500_000.0, atol=1e-6)
+    assert np.abs(np.sort(file.x) - np.sort(np.concatenate([written.section(*key).x for key in written.all_sections()])) - 500_000.0).max() > 1e-3
 
 
 def test_a_cloud_without_the_road_s_fields_is_refused_by_their_names(tmp_path):

@@ -294,6 +294,26 @@ def test_a_street_all_in_feet_that_no_crs_tells_of_is_warned_of(street, tmp_path
     assert any(re.search("as if cloud and trajectory were in feet.*set CRS", text) for text in heard.warnings) == warned
 
 
+@pytest.mark.parametrize("late, warned", [
+    (0.0, None), (0.3, None), (2.0, "20 m before that place, about 2.0 s"), (-1.5, "15 m past that place, about 1.5 s"),
+])
+def test_times_that_run_against_the_trajectory_are_warned_of_once(street, late, warned):
+    trajectory, _, path = street
+    heard = Heard()
+    open_survey([path], replace(trajectory, time=trajectory.time + late), progress=heard)
+    said = [text for text in heard.warnings if "do not seem to fit" in text]
+    assert len(said) == (warned is not None) and all(warned in text for text in said)
+
+
+def test_a_scanner_that_sees_far_ahead_and_behind_in_every_turn_keeps_time(street, tmp_path):
+    trajectory, (x, y, z, time), _ = street
+    seen = time + np.random.default_rng(2).uniform(-2.5, 2.5, len(time))
+    heard = Heard()
+    seen = np.clip(seen, trajectory.time[0], trajectory.time[-1])
+    open_survey([write_cloud(tmp_path / "spinning.laz", x, y, z, seen, crs=CRS)], trajectory, progress=heard)
+    assert not [text for text in heard.warnings if "do not seem to fit" in text]
+
+
 @pytest.mark.parametrize("own, given, says", [
     (None, "", "carries no CRS.*parameter CRS"), (None, CRS, None), (CRS, "", None), (CRS, CRS, None),
     (CRS, "EPSG:25833", "zone 32N.*zone 33N.*not used"),

@@ -1,0 +1,46 @@
+"""Whether the clock of the points is that of the trajectory: what is scanned on the vehicle's own way, it is near to at that time."""
+
+import numpy as np
+
+from ..progress import Progress
+
+NEAR_TRACK = 2.0     # m either side of the vehicle's own track
+NEAREST = 6.5        # m along the road: mirrors and spinning scanners see road nearer than this in each of their turns
+SHARE = 10           # % of the points on the way that are nearer
+SECTIONS, POINTS = 20, 5000  # that are looked at, spread over the survey
+FEWEST = 500         # points that tell
+
+
+def check_clock(survey, progress=Progress()):
+    """Warn where points were measured at times at which the vehicle was elsewhere.
+
+    Parameters
+    ----------
+    survey : Survey with times
+    """
+    ahead, speed = _looked_at(survey)
+    if len(ahead) < FEWEST or np.percentile(np.abs(ahead), SHARE) < NEAREST:
+        return
+    away, fast = float(np.median(ahead)), float(np.median(speed))
+    seconds = f", about {abs(away) / fast:.1f} s at its speed" if fast > 1.0 else ""
+    progress.warn(f"The times of the points do not seem to fit the trajectory: the road on the vehicle's own way was scanned when it was "
+                  f"{abs(away):.0f} m {'before' if away > 0 else 'past'} that place{seconds}, and scanners see road nearer than that in every turn. "
+                  "The map is blurred where passes are mixed up for it. Check that cloud and trajectory are of one drive and count time alike "
+                  "(leap seconds, a lag of the recorder).")
+
+
+def _looked_at(survey):
+    """Metres from the vehicle ahead to points on its own track when they were measured, and its speed then (m/s), of a sample."""
+    keys = [(road, number) for road in survey.store.roads() for number in survey.store.sections(road)]
+    ahead, speed = [np.empty(0)], [np.empty(0)]
+    for k in np.unique(np.linspace(0, len(keys) - 1, SECTIONS).astype(int)) if keys else ():
+        points = survey.section(*keys[k])
+        points = points[np.unique(np.linspace(0, len(points) - 1, POINTS).astype(int))] if len(points) > POINTS else points
+        s, d, time, owner = points.s, points.d, points.time, points.pass_number
+        for number in np.unique(owner).tolist():
+            p = survey.frame.passes[number]
+            own = np.flatnonzero((owner == number) & (np.abs(d - p.at_station(s)[0]) < NEAR_TRACK) & (time >= p.time[0]) & (time <= p.time[-1]))
+            here, soon = (p.station_at(time[own] + wait) for wait in (0.0, 0.5))
+            ahead.append(p.direction * (s[own] - here))
+            speed.append(2.0 * np.abs(soon - here))
+    return np.concatenate(ahead), np.concatenate(speed)
