@@ -31,11 +31,7 @@ class Fit:
     @cached_property
     def worst(self):
         """95 % of the residuals are smaller, metres."""
-        size, rank = np.abs(self.residuals), 0.95 * (len(self.residuals) - 1)
-        low = int(rank)
-        high = min(low + 1, len(size) - 1)
-        size.partition((low, high))
-        return float(size[low] + (rank - low) * (size[high] - size[low]))
+        return percentiles(np.abs(self.residuals), (95.0,))[0]
 
     @cached_property
     def _information(self):
@@ -71,6 +67,18 @@ def median(values):
     middle = (len(values) - 1) // 2, len(values) // 2
     ordered = np.partition(values, middle)
     return float(ordered[middle[0]] + ordered[middle[1]]) / 2
+
+
+def percentiles(values, shares):
+    """np.percentile of (N,) float, N >= 1, without NaN, at shares in %, each a float."""
+    at = [share / 100 * (len(values) - 1) for share in shares]
+    ranks = [(int(rank), min(int(rank) + 1, len(values) - 1)) for rank in at]
+    ordered = np.partition(values, sorted({rank for pair in ranks for rank in pair}))
+    found = []
+    for rank, (low, high) in zip(at, ranks):
+        share, low, high = rank - low, float(ordered[low]), float(ordered[high])
+        found.append(low + (high - low) * share if share < 0.5 else high - (high - low) * (1 - share))
+    return found
 
 
 def medians(values):

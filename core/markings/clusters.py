@@ -12,6 +12,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from ..curves.fit import median
 from ..errors import RoadExtractionError
 from ..features import Features
 from ..progress import Progress
@@ -76,15 +77,18 @@ def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress
         records, labels = group(marking_points, road, settings.distance, part.part(0, 0.4))
         order, starts, _ = _by_cluster(split_compounds(records, labels), FRAGMENT)
         records = records.take(order)
-        pieces = [measure(records["s"][a:b], records["d"][a:b]) for a, b in zip(starts[:-1], starts[1:])]
+        s, d = records["s"], records["d"]
+        pieces = [measure(s[a:b], d[a:b]) for a, b in zip(starts[:-1].tolist(), starts[1:].tolist())]
         joins = join_fragments(pieces, settings.classes.max_width)
         again, starts, labels = _by_cluster(_relabelled(records, starts, joins), settings.min_points)
         records, order = records.take(again), order[again]
-        rows = list(zip(starts[:-1], starts[1:]))
+        rows = list(zip(starts[:-1].tolist(), starts[1:].tolist()))
+        s, d = records["s"], records["d"]
         alone = _alone(pieces, joins)
-        shapes = [alone.get(label) or measure(records["s"][a:b], records["d"][a:b]) for label, (a, b) in zip(labels.tolist(), rows)]
-        half_widths = [float(np.median(records["half_width"][a:b])) * 1e-3 for a, b in rows]
-        covered = [float(np.count_nonzero(records["covered"][a:b])) / (b - a) for a, b in rows]
+        shapes = [alone.get(label) or measure(s[a:b], d[a:b]) for label, (a, b) in zip(labels.tolist(), rows)]
+        half_width, hidden = records["half_width"].astype(float), records["covered"]
+        half_widths = [median(half_width[a:b]) * 1e-3 for a, b in rows]
+        covered = [float(np.count_nonzero(hidden[a:b])) / (b - a) for a, b in rows]
         kinds = classify(shapes, half_widths, settings.classes, covered)
         if marking_points.has_corrected:
             bright = contrast(Points(records).value, records["s"], starts)
@@ -212,7 +216,7 @@ def _add(markings, records, shape, kind, number, road, frame):
         drawn = polygons.band(records["s"], records["d"], shape)
     else:
         drawn = polygons.outline(*polygons.painted_cells(records["s"] * UNIT, records["d"] * UNIT))
-    places = np.c_[records["x"], records["y"], records["z"]] * UNIT
+    places = np.stack([records["x"], records["y"], records["z"]], axis=1) * UNIT
     scanned_from = _scanning_distance(records, frame)
     for part in polygons.parts(drawn):
         geometry = polygons.to_map(part, frame.road(road), frame.origin, places)
@@ -223,9 +227,10 @@ def _add(markings, records, shape, kind, number, road, frame):
 
 def _scanning_distance(records, frame):
     """Median distance across the road from the track that scanned the marking."""
+    numbers, along, across = (records[name] for name in ("pass_number", "s", "d"))
     away = np.empty(len(records))
-    for number in np.unique(records["pass_number"]):
-        rows = records["pass_number"] == number
-        track = frame.passes[number].at_station(records["s"][rows] * UNIT)[0]
-        away[rows] = np.abs(records["d"][rows] * UNIT - track)
-    return float(np.median(away))
+    for number in numbers[:1] if (numbers == numbers[0]).all() else np.unique(numbers):
+        rows = np.flatnonzero(numbers == number)
+        track = frame.passes[number].at_station(along[rows] * UNIT)[0]
+        away[rows] = np.abs(across[rows] * UNIT - track)
+    return median(away)

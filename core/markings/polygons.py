@@ -10,6 +10,7 @@ import shapely
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
+from ..curves.fit import medians
 from ..survey.points import UNIT
 from .shapes import fill_gaps, middle
 
@@ -37,14 +38,14 @@ def band(s, d, shape):
     shapely Polygon in (s, d)
     """
     c, n = (1.0, 0.0) if shape.along else (np.cos(shape.direction), np.sin(shape.direction))
-    u, v = np.rint(s * c + d * n).astype(np.int64), np.rint(d * c - s * n).astype(np.int64)
+    u, v = (s, d) if shape.along else (np.rint(s * c + d * n).astype(np.int64), np.rint(d * c - s * n).astype(np.int64))
     nodes, offsets = middle(u, v)
-    ends = np.array([u.min(), u.max()])
-    offsets = np.interp(np.r_[ends[0], nodes, ends[1]], nodes, offsets) * UNIT
-    nodes = np.r_[ends[0], nodes, ends[1]] * UNIT
-    keep = np.r_[True, np.diff(nodes) > 1e-6]
+    all_nodes = np.concatenate([[u.min()], nodes, [u.max()]])
+    offsets, nodes = np.interp(all_nodes, nodes, offsets) * UNIT, all_nodes * UNIT
+    keep = np.append(True, np.diff(nodes) > 1e-6)
     nodes, offsets = nodes[keep], offsets[keep]
-    ring = np.r_[np.c_[nodes, offsets - shape.width / 2], np.c_[nodes, offsets + shape.width / 2][::-1]]
+    ring = np.stack([np.concatenate([nodes, nodes[::-1]]),
+                     np.concatenate([offsets - shape.width / 2, offsets[::-1] + shape.width / 2])], axis=1)
     return shapely.simplify(shapely.Polygon(ring @ np.array([[c, n], [-n, c]])), STRAIGHT)
 
 
@@ -116,6 +117,6 @@ def to_map(shape, road, origin, places):
     x, y = road.to_map(vertices[:, 0], vertices[:, 1])
     k = min(HEIGHT_NEIGHBOURS, len(places))
     _, nearest = cKDTree(places[:, :2], balanced_tree=False, compact_nodes=False).query(np.c_[x, y], k)
-    z = np.median(places[:, 2][nearest.reshape(len(x), k)], axis=1)
+    z = medians(places[:, 2][nearest.reshape(len(x), k)])[:, 0]
     lifted = shapely.force_3d(shape)
     return shapely.set_coordinates(lifted, np.c_[x + origin[0], y + origin[1], z + origin[2]])

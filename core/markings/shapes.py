@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from ..curves.fit import median
+from ..curves.fit import median, percentiles
 from ..survey.points import UNIT
 from ..survey.sorting import order_by
 from .cells import occupied
@@ -138,8 +138,8 @@ def _stems(cells):
 
 def spread(across):
     """Full width of evenly strewn values from their 95 % range."""
-    low, high = np.percentile(across, [(100 - RANGE) / 2, (100 + RANGE) / 2])
-    return float(high - low) / (RANGE / 100)
+    low, high = percentiles(across, ((100 - RANGE) / 2, (100 + RANGE) / 2))
+    return (high - low) / (RANGE / 100)
 
 
 def _principal_direction(cells):
@@ -164,12 +164,13 @@ def middle(s, d):
     """
     bins = (s - s.min()) // BIN
     order = order_by(d, bins)
-    starts = np.flatnonzero(np.r_[True, np.diff(bins[order]) > 0])
-    ends = np.r_[starts[1:], len(s)]
+    sorted_bins = bins[order]
+    starts = np.flatnonzero(np.append(True, sorted_bins[1:] != sorted_bins[:-1]))
+    ends = np.append(starts[1:], len(s))
     count = ends - starts
     # the middle between the outer eighths is steadier than a median where paint is worn on one side
-    low, high = d[order][starts + count // 8], d[order][ends - 1 - count // 8]
-    nodes = s.min() + (bins[order][starts] + 0.5) * BIN
+    low, high = d[order[starts + count // 8]], d[order[ends - 1 - count // 8]]
+    nodes = s.min() + (sorted_bins[starts] + 0.5) * BIN
     weight = np.minimum(count, 30).astype(float)
     return nodes, _smooth(nodes, (low + high) / 2, weight)
 
