@@ -27,7 +27,7 @@ from .fragments import join_fragments
 from .paleness import PALE, PALE_BAR, contrast
 from .shapes import CELL, measure
 
-WINDOW = 500     # cells of 4 cm: 20 m of station are linked at a time
+WINDOW = 1250    # cells of 4 cm: 50 m of station are linked at a time
 FRAGMENT = 1     # points: the smallest worn rest that a line may be joined from
 STRIPS = LINES + ("zebra", "stop")  # drawn as even strips, the others cell by cell
 STRETCH = 2.5    # neighbours may be this times the distance apart along the road,
