@@ -32,7 +32,8 @@ RIM = 0.60        # m from the rim of the road where gutters end and asphalt is 
 NOISY = 0.40      # of asphalt's level: single points that scatter more are averaged (multi-beam scanners)
 METHODS = ("multi-threshold", "intensity-peaks", "point-segments")
 WINDOW = 500      # cells: thresholds are taken from 20 m of road
-MOST = 300_000    # points of a window: where there are twice as many, evenly strewn ones tell how they lie and scatter
+STREWN = 100_000  # points of a window: where there are twice as many, evenly strewn ones tell whether single ones scatter
+MOST = 300_000    # points of a window: where there are twice as many, evenly strewn ones tell how they lie
 HALO = 100        # cells: 4 m about a window in which rims and runs are still looked at
 
 
@@ -192,7 +193,7 @@ class _Look:
         points = self._points(window * WINDOW, (window + 1) * WINDOW)
         if len(points) < FEWEST:
             return None
-        return scatter_of(points[::max(len(points) // MOST, 1)])
+        return scatter_of(points[::max(len(points) // STREWN, 1)])
 
     def _points(self, first, last):
         return self.road_points.window(self.road, first * CELL * UNIT, last * CELL * UNIT)

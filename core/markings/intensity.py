@@ -13,7 +13,7 @@ from .clipping import Clipping
 from .intensity_table import BIN, HALF, REACH, ROW, SHIFT, AsphaltTable, LevelCounts, asphalt_of
 from .vehicle_places import ACROSS, UNKNOWN, Tracks
 
-ENOUGH = 16_000   # points of a metre of road: more tell nothing new of asphalt
+ENOUGH = 6_000   # points of a metre of road: more tell nothing new of asphalt
 STRIPE = 100    # units of 0.1 mm along the road: where there are more, stripes of it are looked at
 AT_ONCE = 1 << 15  # points corrected at a time: what fits the processor's cache
 WITHOUT_VEHICLE = 0.2   # share of points that may lack a vehicle's position before the correction is given up

@@ -124,7 +124,8 @@ def _peers(results):
             "reading and writing left out; the image is plain inverse distance, from points in memory to a GeoTIFF: of gdal_grid's time that of "
             "filling a single cell, which is starting and reading the points, is taken off. Our "
             "clusters join points by cells of 4 cm, which a marking never tells and dense paint is quicker by; theirs link every pair of "
-            "points. Where six points and more crowd in a cell our image weighs an even share of them, theirs weighs all. In the chain, "
+            "points. Where six points and more crowd in a cell an even share of them weighs on cells farther than the next in our image, in "
+            "theirs all of them. In the chain, "
             "outliers are judged by windows and the image lets bright points count more.")
     if rows:
         text += "\n\n" + table(["task", "beside", "s, ours", "theirs", "CPU s, ours", "theirs", "alike", "found"], rows, words=2)
