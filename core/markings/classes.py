@@ -6,6 +6,7 @@ import numpy as np
 
 from ..errors import RoadExtractionError
 from .dash_rows import in_rows
+from .shapes import ALONG
 
 NOT_PAINT = ""
 LINES = ("edge", "lane", "centre")
@@ -16,6 +17,7 @@ STRIPE_WIDTH = (0.25, 0.80)
 STRIPE_LENGTH = (1.5, 10.0)
 STRIPE_PITCH = (0.5, 1.6)   # m from stripe to stripe of a zebra crossing
 STRIPES = 3
+ASKEW, PARALLEL = np.radians((35.0, 8.0))  # of the stripes of a crossing to the road, and to each other
 STOP_WIDTH = (0.18, 0.90)
 STOP_LENGTH = 1.5
 COVER = (0.30, 1.15)  # m, diameter of manhole covers
@@ -128,21 +130,26 @@ def _dashes_in_rows(shapes, column, room, settings):
 
 
 def zebra_stripes(column, shortest=STRIPE_LENGTH[0]):
-    """Stripes along the road, side by side at an even pitch, at least three of them.
+    """Stripes along the road or somewhat askew, side by side across it at an even pitch, at least three of them.
 
     column : dict of (N,) of the Shapes; shortest : m
     """
-    stripe = column["along"] & (column["width"] >= STRIPE_WIDTH[0]) & (column["width"] <= STRIPE_WIDTH[1]) \
+    stripe = (np.abs(column["direction"]) <= ASKEW) & (column["width"] >= STRIPE_WIDTH[0]) & (column["width"] <= STRIPE_WIDTH[1]) \
         & (column["length"] >= shortest) & (column["length"] <= STRIPE_LENGTH[1])
     rows = np.flatnonzero(stripe)
     result = np.zeros(len(stripe), bool)
     if len(rows) < STRIPES:
         return result
-    s0, s1, d = column["s0"][rows], column["s1"][rows], column["offset"][rows]
-    overlap = np.minimum(s1[:, None], s1) - np.maximum(s0[:, None], s0)
-    shared = overlap > 0.5 * np.minimum((s1 - s0)[:, None], s1 - s0)
-    pitch = np.abs(d[:, None] - d)
-    beside = shared & (pitch >= STRIPE_PITCH[0]) & (pitch <= STRIPE_PITCH[1])
+    s, d = ((column[low][rows] + column[high][rows]) / 2 for low, high in (("s0", "s1"), ("d0", "d1")))
+    ds, dd = s - s[:, None], d - d[:, None]
+    turn, length = column["direction"][rows], column["length"][rows]
+    # on a crossing askew each stripe begins somewhat farther than the one before
+    middle = (turn + turn[:, None]) / 2
+    ahead, pitch = ds * np.cos(middle) + dd * np.sin(middle), np.abs(dd * np.cos(middle) - ds * np.sin(middle))
+    shared = (length + length[:, None]) / 2 - np.abs(ahead) > 0.5 * np.minimum(length, length[:, None])
+    # the bars of hatching follow each other along the road
+    across = ((np.abs(dd) > np.abs(ds)) | (np.abs(middle) <= ALONG)) & (np.abs(turn - turn[:, None]) <= PARALLEL)
+    beside = shared & across & (pitch >= STRIPE_PITCH[0]) & (pitch <= STRIPE_PITCH[1])
     from scipy.sparse.csgraph import connected_components
 
     count, group = connected_components(beside, directed=False)

@@ -30,6 +30,7 @@ from .shapes import CELL, measure
 WINDOW = 1250    # cells of 4 cm: 50 m of station are linked at a time
 FRAGMENT = 1     # points: the smallest worn rest that a line may be joined from
 STRIPS = LINES + ("zebra", "stop")  # drawn as even strips, the others cell by cell
+SQUARE_TO_ROAD = np.radians(5.0)  # stripes of a crossing that is more askew end askew to their run
 STRETCH = 2.5    # neighbours may be this times the distance apart along the road,
 SQUEEZE = 2.0    # and across it the distance over this
 
@@ -105,7 +106,8 @@ def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress
             _add(markings, records[a:b], shapes[i], kinds[i], number, road, frame)
             part.at(0.4 + 0.6 * number / max(len(rows), 1))
         _put(clustered.store, road, cluster, marking_points)
-    progress.say(f"Markings: {number} found; {refused} clusters were left out as gutters, seams, covers, specks or the feet of what stands on the road.")
+    progress.say(f"Markings: {number} found; {refused} clusters were left out as gutters, seams, covers, specks or the feet of what "
+                 "stands on the road.")
     return markings, clustered
 
 
@@ -212,7 +214,7 @@ def _by_cluster(labels, fewest):
 
 
 def _add(markings, records, shape, kind, number, road, frame):
-    if kind[0] in STRIPS:
+    if kind[0] in STRIPS and not (kind[0] == "zebra" and abs(shape.direction) > SQUARE_TO_ROAD):
         drawn = polygons.band(records["s"], records["d"], shape)
     else:
         drawn = polygons.outline(*polygons.painted_cells(records["s"] * UNIT, records["d"] * UNIT))

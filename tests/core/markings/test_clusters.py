@@ -116,6 +116,18 @@ def test_a_zebra_crossing_keeps_its_stripes():
         assert area == pytest.approx(4 * 0.45, rel=0.08)
 
 
+@pytest.mark.parametrize("askew", [-30, -20, 12, 20, 30])
+def test_a_zebra_crossing_askew_to_the_road_keeps_its_stripes(askew):
+    c, n = np.cos(np.radians(askew)), np.sin(np.radians(askew))
+
+    def stripe(k):
+        return lambda s, d: (np.abs((s - 30) * c + d * n) < 1.5) & (np.abs(d * c - (s - 30) * n - k) < 0.25)
+
+    markings = markings_of([stripe(k) for k in (-2, -1, 0, 1, 2)], density=2500)
+    assert classes(markings) == ["zebra"] * 5
+    assert markings.column("area_m2") == pytest.approx([1.5] * 5, rel=0.15)
+
+
 def test_a_stop_line_is_a_stop_line_also_where_it_is_narrow():
     for depth in (0.30, 0.50):
         markings = markings_of([strip(20, 20 + depth, -3.5, -0.2)])
