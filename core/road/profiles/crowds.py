@@ -15,6 +15,7 @@ from .level_strip import LevelStrip, strip_about
 FEW = 12          # points of a cell that tell level ground
 FEW_IN_PLAN = 6   # the same in plan: there are four such cells and more in one of the raster
 MOSTS = FEW, FEW_IN_PLAN
+LONGEST = 0.30    # m of road of a profile: in the means of longer ones a low curb that runs askew looks like a slope
 LEAST = 0.03      # m, the least step that is sought anywhere
 LEVEL = 0.008     # m, standard deviation of heights in a cell that is level, on a road that climbs as on one that does not
 UNEVEN = 60       # points of any other cell: more hardly tell its layers better
@@ -127,7 +128,7 @@ class Crowds:
                 for most, chosen in cells.thinned().items():
                     here = taken[most][done:done + len(piece)]
                     here[slice(None) if own is None else own] = chosen
-                if cells.looked_through:
+                if cells.looked_through and self.width <= LONGEST:
                     strip = strips.setdefault(number, LevelStrip.none(first, self._together, self.width))
                     self._note_strip(strip, cells, self.survey.frame.passes[number])
             done += len(piece)

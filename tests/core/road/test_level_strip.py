@@ -59,6 +59,11 @@ def test_to_a_noisy_scanner_no_ground_is_level_beyond_doubt(noise):
     assert not found.holds(np.array([100_000, 120_000], np.int32), np.array([0, 0], np.int32)).any()
 
 
+def test_profiles_so_long_that_a_curb_may_look_like_a_slope_tell_of_no_strip():
+    found = Crowds(survey_of(crowded(), driven(20.0)), 0.5, SPACING).level_strip(0, 0, (20, 28), ACROSS, ALONG)
+    assert (found.low > found.high).all()
+
+
 def test_where_nothing_was_scanned_there_is_none():
     _, low, high = strip(crowded(), profiles=(400, 420))
     assert (low > high).all()
