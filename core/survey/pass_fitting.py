@@ -105,6 +105,10 @@ def _tell(road, offsets, moved, progress):
         plan, up = (f"{100 * np.median(v):.1f} cm (at most {100 * v.max():.1f})" if len(v) else "an unknown distance" for v in _distances(offsets))
         progress.say(f"Road {road}: its passes lay {plan} beside and {up} above each other, as navigation drifts between two drives. "
                      "They were laid on each other, each moved by its share.")
+    elif all(len(v) for v in _distances(offsets)):
+        plan, up = (100 * np.percentile(v, 90) for v in _distances(offsets))
+        progress.say(f"Road {road}: nine tenths of its passes lie within {plan:.1f} cm beside and {up:.1f} cm above each other; "
+                     "they stay as they were measured.")
     beyond = WINDOW * sum(pair.beyond for pair in offsets)
     if beyond:
         progress.warn(f"Road {road}: along {beyond:.0f} m its passes seem to lie more than {100 * MOST:.0f} cm apart, which is too far to lay "

@@ -85,10 +85,11 @@ def test_a_track_goes_with_its_points():
 
 
 def test_drives_that_agree_stay_as_they_were_measured():
-    survey = twice()
+    survey, heard = twice(), Heard()
     store, frame = survey.store, survey.frame
-    fit_passes(survey)
+    fit_passes(survey, heard)
     assert survey.store is store and survey.frame is frame
+    assert "stay as they were measured" in heard.said[0]
 
 
 def test_drift_that_grows_along_the_street_is_followed():
