@@ -7,6 +7,7 @@ import numpy as np
 from ..errors import RoadExtractionError
 
 MOST_SCANNERS = 8
+MOST_POINTS = 0.8   # share of the points whose numbers interleave where numbers tell scanners
 
 
 @dataclass
@@ -32,12 +33,14 @@ class ScannerCensus:
         """The LAS field that tells the scanners apart, or None where there is one scanner.
 
         `scanner_channel` where it holds more than one value, else `point_source_id`
-        when it has 2 to 8 values that interleave in time (LAS defines it as a flight
-        line or file number, and some exporters count frames in it).
+        when it has 2 to 32 values that interleave in time (LAS defines it as a flight
+        line or file number, some exporters count frames in it, and others give every
+        recording of every scanner a number of its own).
 
         Returns
         -------
-        (field name or None, list of its values in ascending order)
+        (field name or None, list of its values in ascending order; a tuple of them where recordings
+        one after the other are those of one scanner)
         """
         if wanted not in ("", "automatic", None):
             if wanted not in self.spans:
@@ -48,13 +51,15 @@ class ScannerCensus:
                 raise RoadExtractionError(
                     f"{wanted} has more than {4 * MOST_SCANNERS} different values, too many to be scanners. "
                     "Set the scanner field to automatic.")
-            return wanted, values
+            return wanted, values if len(values) <= MOST_SCANNERS else _heads(self.spans[wanted])
         channels = self.spans["scanner_channel"]
         if 1 < len(channels) <= MOST_SCANNERS:
             return "scanner_channel", sorted(channels)
         sources = self.spans["point_source_id"]
-        if 1 < len(sources) <= MOST_SCANNERS and _interleaved(sources.values()):
-            return "point_source_id", sorted(sources)
+        if 1 < len(sources) <= 4 * MOST_SCANNERS and _interleaved(sources.values()):
+            heads = _heads(sources)
+            if 1 < len(heads) <= MOST_SCANNERS:
+                return "point_source_id", heads
         return None, [0]
 
 
@@ -73,11 +78,38 @@ def times_by_value(values, time):
     return found
 
 
+def numbers_by_value(scanners, count):
+    """(count,) uint8: the number of the scanner that each value 0 ... count - 1 stands for; scanners as `choose` gives them."""
+    numbers = np.zeros(count, np.uint8)
+    for number, values in enumerate(scanners):
+        values = np.atleast_1d(values)
+        numbers[values[values < count]] = number
+    return numbers
+
+
+def _heads(spans):
+    """Values of a field, ascending, those that measured one after the other taken together as one scanner's."""
+    heads = []
+    for value in sorted(spans):
+        free = next((head for head in heads if not any(_together(spans[value], spans[other]) for other in head)), None)
+        if free is None:
+            heads.append([value])
+        else:
+            free.append(value)
+    return [head[0] if len(head) == 1 else tuple(head) for head in heads]
+
+
+def _together(one, other):
+    """Whether the shorter of two spans of time shares more than half of its length with the other."""
+    return min(one[1], other[1]) - max(one[0], other[0]) > 0.5 * min(one[1] - one[0], other[1] - other[0])
+
+
 def _interleaved(spans):
-    """True where each span of time shares more than half of its length with some other."""
-    spans = [(first, last) for first, last, _ in spans]
-    for k, (first, last) in enumerate(spans):
-        shared = max((min(last, b) - max(first, a) for j, (a, b) in enumerate(spans) if j != k), default=0.0)
-        if shared < 0.5 * (last - first):
-            return False
-    return True
+    """Whether most points have a value whose span of time shares more than half of its length with that of some other."""
+    spans, total, shared = list(spans), 0, 0
+    for k, (first, last, count) in enumerate(spans):
+        longest = max((min(last, b) - max(first, a) for j, (a, b, _) in enumerate(spans) if j != k), default=0.0)
+        total += count
+        # where a recording begins or ends one scanner may see the road alone
+        shared += count * (longest > 0 and longest >= 0.5 * (last - first))
+    return shared >= MOST_POINTS * total

@@ -15,6 +15,7 @@ from .point_cloud import BLOCK, read_headers
 from .points import SURVEY_POINT, UNIT, Points
 from .reading import SurveyReader
 from .road_frame import CORRIDOR, build_frame
+from .scanners import numbers_by_value
 from .section_store import MEMORY_LIMIT, SECTION_LENGTH, SectionStore
 from .time_systems import align_time, wrapped_week
 
@@ -85,7 +86,7 @@ class Survey:
             records["scanner"] = 0
         else:
             numbers = records["source" if self.scanner_field == "point_source_id" else "scanner"]
-            records["scanner"] = np.searchsorted(self.scanners, np.arange(int(numbers.max()) + 1)).astype(np.uint8).take(numbers)
+            records["scanner"] = numbers_by_value(self.scanners, int(numbers.max()) + 1).take(numbers)
         # most are near beyond doubt: the others are looked at one by one
         z = records["z"]
         first, nodes = self._heights(road, records["s"].min() * UNIT, records["s"].max() * UNIT)

@@ -6,7 +6,7 @@ from drives import EAST, NORTH, write_cloud
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.survey.crs import check_projected
 from lanewright.core.survey.point_cloud import read_blocks, read_header, read_headers
-from lanewright.core.survey.scanners import ScannerCensus
+from lanewright.core.survey.scanners import ScannerCensus, numbers_by_value
 
 
 def places(count=5000):
@@ -140,6 +140,16 @@ def test_flight_lines_one_after_the_other_are_one_scanner():
 
 def test_frame_numbers_are_not_scanners():
     assert census(point_source_id=(np.arange(1000) // 10, TIME)).choose() == (None, [0])
+
+
+@pytest.mark.parametrize("number", [lambda strip, scanner: 2 * strip + scanner + 1, lambda strip, scanner: strip + 6 * scanner + 1])
+def test_recordings_of_two_scanners_numbered_one_by_one_are_two_scanners(number):
+    """Six recordings; at the first the second scanner saw the road for its last third only."""
+    scanner, strip = np.arange(1000) % 2, np.arange(1000) * 6 // 1000
+    seen = (scanner == 0) | (TIME > 110)
+    field, scanners = census(point_source_id=(number(strip, scanner)[seen], TIME[seen])).choose()
+    assert (field, len(scanners)) == ("point_source_id", 2)
+    np.testing.assert_array_equal(numbers_by_value(scanners, 13)[number(strip, scanner)], scanner)
 
 
 def test_the_scanner_channel_counts_first():
