@@ -19,7 +19,8 @@ class Boundaries:
     """All lines of one road on a common grid of stations.
 
     s : (K,) stations; d, z : (L, K) offset and height of each line, NaN where it is not;
-    seen : (L, K) False where the line itself was bridged; numbers, kinds, patterns : per line
+    seen : (L, K) False where the line itself was bridged; numbers, kinds, patterns : per line, of its longest piece
+    drawn : (L, K) how it is drawn at each place, a row of `names`; -1 where that is not known
     """
 
     s: np.ndarray
@@ -29,6 +30,8 @@ class Boundaries:
     numbers: list
     kinds: list
     patterns: list
+    drawn: np.ndarray
+    names: list
 
     @property
     def seen_length(self):
@@ -120,7 +123,8 @@ def _on_grid(road, lines):
     # the order of the layer's rows must not matter
     order = sorted(lines, key=lambda key: (min(p["s"][0] for p in lines[key]), np.median(lines[key][0]["d"]), key))
     d, z = np.full((2, len(order), len(s)), np.nan)
-    seen = np.zeros((len(order), len(s)), bool)
+    seen, drawn = np.zeros((len(order), len(s)), bool), np.full((len(order), len(s)), -1, np.int16)
+    names = sorted({p["pattern"] for pieces in lines.values() for p in pieces})
     kinds, patterns = [], []
     for k, key in enumerate(order):
         pieces = sorted(lines[key], key=lambda p: (p["s"][0], p["s"][-1]))
@@ -130,10 +134,11 @@ def _on_grid(road, lines):
             d[k, inside] = np.interp(s[inside], p["s"], p["d"])
             z[k, inside] = np.interp(s[inside], p["s"], p["z"])
             seen[k, inside] |= p["seen"]
+            drawn[k, inside] = names.index(p["pattern"])
         longest = max(pieces, key=lambda p: (p["seen"], p["s"][-1] - p["s"][0]))
         kinds.append(longest["kind"])
         patterns.append(longest["pattern"])
-    found, gaps = _joined(Boundaries(s, d, z, seen, [key[1] for key in order], kinds, patterns))
+    found, gaps = _joined(Boundaries(s, d, z, seen, [key[1] for key in order], kinds, patterns, drawn, names))
     _even_doubles(found, _lead_over(found, gaps))
     _lengthen_dashed(found)
     return found
@@ -169,12 +174,13 @@ def _joined(lines):
             values[j, last:] = np.where(np.isfinite(values[k, last:]), values[k, last:], values[j, last:])
             values[j, gap] = np.interp(gap, [first, last], values[j, [first, last]])
         lines.seen[j, last:] |= lines.seen[k, last:]
+        lines.drawn[j, last:] = lines.drawn[k, last:]
         # a gap of a dashed line is no gap
         lines.seen[j, gap] = any(lines.patterns[i].startswith("dash") for i in (j, k))
         end[j], at_end[j], at_end[k] = end[k], lines.d[j, end[k]], np.nan
         rows.remove(k)
     found = Boundaries(lines.s, lines.d[rows], lines.z[rows], lines.seen[rows], [lines.numbers[k] for k in rows],
-                       [lines.kinds[k] for k in rows], [lines.patterns[k] for k in rows])
+                       [lines.kinds[k] for k in rows], [lines.patterns[k] for k in rows], lines.drawn[rows], lines.names)
     return found, [(rows.index(j), *gap) for j, *gap in gaps]
 
 

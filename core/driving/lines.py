@@ -139,18 +139,26 @@ def _write_lane(lines, lane, track, way, course, elements, road_lines, z, frame,
             functions[id(curve)] = _function(curve.moved(*origin[:2]))
         length = float(np.hypot(*np.diff(places[:, :2], axis=0).T).sum())
         lines.add(shapely.linestrings(places), road=number, lane=lane, kind="lane",
-                  pattern=_patterns(track, rows, way, road_lines.patterns), direction=way,
+                  pattern=_patterns(track, rows, way, road_lines), direction=way,
                   source="offset" if track.offset[rows].mean() > 0.5 else "pair", status=STATUS[code], curve=curve.kind,
                   radius_m=float(curve.radius) if np.isfinite(curve.radius) else None, rmse_m=float(course.rmse),
                   station_m=start, end_m=end, offset_m=float(np.median(track.d[rows])), length_m=length,
                   width_m=float(np.median(track.width[rows])), params=functions[id(curve)])
 
 
-def _patterns(track, rows, way, patterns):
-    """The patterns of the lines left and right of a stretch of lane in the direction of travel, as "dashed|solid"; "none" where there is no line."""
-    sides = [track.left[rows], track.right[rows]][::way]
-    most = [np.bincount(side + 1).argmax() - 1 for side in sides]
-    return "|".join(patterns[line] or "none" if line >= 0 else "none" for line in most)
+def _patterns(track, rows, way, lines):
+    """How the lines left and right of a stretch of lane are drawn in the direction of travel, as "dashed|solid"; "none" where there is no line.
+
+    A line may be drawn otherwise farther on: the pattern is that of most places of the stretch.
+    """
+    names, columns = [*lines.names, "none"], np.arange(track.first, track.first + len(track))[rows]
+    usual = np.array([lines.names.index(pattern) for pattern in lines.patterns], int)
+    found = []
+    for side in (track.left[rows], track.right[rows])[::way]:
+        drawn = lines.drawn[side, columns]
+        drawn = np.where(side < 0, len(lines.names), np.where(drawn < 0, usual[side], drawn))
+        found.append(names[np.bincount(drawn).argmax()] or "none")
+    return "|".join(found)
 
 
 def _between(course, start, end, code_first, code_last):

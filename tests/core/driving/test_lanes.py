@@ -13,6 +13,16 @@ from shapely import force_2d
 from shapely.geometry import LineString, Polygon
 
 
+@pytest.mark.parametrize("change, pattern", [(30.0, "dashed"), (70.0, "double-solid")])
+def test_a_lane_beside_a_double_line_that_goes_on_dashed_is_told_by_what_most_of_it_runs_beside(change, pattern):
+    street = Street(vehicle=-1.9).paint(3.65).paint(-3.65)
+    for side in (0.15, -0.15):
+        street.paint(side, 5.0, change, kind="centre", pattern="double-solid")
+    lines, _ = street.paint(0.0, change + 4.0, 95.0, kind="centre", pattern="dashed").lanes()
+    driven = [row["pattern"] for row in lines.rows if row["direction"] == 1 and row["status"] == "measured"]
+    assert driven and set(driven) == {f"{pattern}|solid"}
+
+
 def test_two_lines_three_and_a_half_metres_apart_give_one_driving_line_in_their_middle():
     street = Street(vehicle=-1.75).paint(0.0).paint(-3.5)
     lines, _ = street.lanes()
