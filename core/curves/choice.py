@@ -10,6 +10,7 @@ from .ellipse import Ellipse, fit_ellipse
 from .fit import least_bic
 from .polynomial import Polynomial, fit_polynomial
 from .spline import Spline, fit_spline, fit_splines
+from .together import FEW, Places
 from .transitions import fit_clothoid, fit_clothoids
 
 CURVES = ("automatic", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline")
@@ -76,14 +77,19 @@ def _clothoids(places):
 
 
 def _ellipses(places):
-    """Fits, None of what is no ellipse."""
-    found = []
-    for x, y in places:
-        try:
-            found.append(fit_ellipse(x, y))
-        except RoadExtractionError:
-            found.append(None)
-    return found
+    """Fits, None of what is no ellipse or misses by more than HOPELESS."""
+    return [_ellipse(x, y) for x, y in places]
+
+
+def _ellipse(x, y):
+    rows = Places([len(x)]).thinned(FEW)
+    try:
+        few = fit_ellipse(x[rows], y[rows], HOPELESS)
+        if len(rows) == len(x):
+            return few
+        return fit_ellipse(x, y) if few.worst <= HOPELESS else None
+    except RoadExtractionError:
+        return None
 
 
 # name, fewest places, function of a list of (x, y): what roads are made of, simplest first

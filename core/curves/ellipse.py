@@ -50,12 +50,13 @@ class Ellipse(TabledCurve):
         return Ellipse(self.x, self.y, self.a, self.b, self.tilt, self.last, self.first)
 
 
-def fit_ellipse(x, y):
+def fit_ellipse(x, y, hopeless=np.inf):
     """An ellipse: Halir and Flusser's direct fit as start, then robust orthogonal distances.
 
     Parameters
     ----------
     x, y : (N,) metres, N >= 6, ordered along the line
+    hopeless : metres; what misses by so much on average is given up when steps gain little
 
     Returns
     -------
@@ -100,7 +101,7 @@ def fit_ellipse(x, y):
                           normal[:, 0] * np.cos(t), normal[:, 1] * np.sin(t),
                           normal[:, 1] * a * np.cos(t) - normal[:, 0] * b * np.sin(t)], 1)
 
-    unknown = minimise(residuals, jacobian, start, [size, size, size, size, 1.0])
+    unknown = minimise(residuals, jacobian, start, [size, size, size, size, 1.0], hopeless)
     t, _, e = foot(unknown)
     cx, cy, a, b, tilt = unknown
     t = np.unwrap(t)

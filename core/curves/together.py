@@ -208,14 +208,14 @@ def _cost(problem, residuals, f_scale):
     return problem.places.sums(2 * scale**2 * (np.sqrt(1 + (residuals / scale) ** 2) - 1))
 
 
-def minimise(residuals, jacobian, start, scale):
+def minimise(residuals, jacobian, start, scale, hopeless=np.inf):
     """`minimise_all` of one curve.
 
     residuals, jacobian : functions of the parameters (P,) giving (N,) and (N, P)
     scale : (P,) the size of a sensible step in each parameter
     """
     problem = _One(residuals, jacobian, start)
-    return minimise_all(problem, problem.first[None, :], np.asarray(scale, float)[None, :])[0][0]
+    return minimise_all(problem, problem.first[None, :], np.asarray(scale, float)[None, :], hopeless=hopeless)[0][0]
 
 
 class _One:
