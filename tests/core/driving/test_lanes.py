@@ -8,6 +8,7 @@ from lanewright.core.features import Features
 from lanewright.core.schemas import MARKING_LINES, MARKINGS, ROAD_EDGES
 from lanewright.core.survey.points import ROAD_POINT, to_units
 from lanewright.core.survey.road_points import RoadPoints
+from lanewright.core.survey.section_store import SectionStore
 from lined_streets import EAST, HEIGHT, Street, middle
 from shapely import force_2d
 from shapely.geometry import LineString, Polygon
@@ -274,23 +275,37 @@ def test_flat_lines_without_road_points_take_the_trajectory_s_height():
     np.testing.assert_allclose(np.asarray(lines.geometries[0].coords)[:, 2], HEIGHT + 2.5, atol=1e-6)
 
 
-def test_height_is_the_road_s_own_where_it_was_scanned():
-    street = Street(vehicle=-1.75).paint(0.0, z=HEIGHT + 0.3).paint(-3.5, z=HEIGHT + 0.3)
+def scanned(street, count, section_length=5.0, left=0.5, right=-4.0):
+    """Points of a road that rises by 2 %, with 5 mm of noise."""
     rng = np.random.default_rng(3)
-    s, d = rng.uniform(0, 120, 20_000), rng.uniform(-4, 0.5, 20_000)
+    s, d = rng.uniform(0, 120, count), rng.uniform(right, left, count)
     x, y = street.frame.to_local(*street.places(s, d).T)
     records = np.zeros(len(s), ROAD_POINT)
     station, offset = street.frame.roads[0].locate(x, y)
     z = HEIGHT - street.frame.origin[2] + 0.02 * s + rng.normal(0, 0.005, len(s))
     for name, values in zip("xyzsd", (x, y, z, station, offset)):
         records[name] = to_units(values)
-    points = RoadPoints.empty_like(origin=street.frame.origin)
-    points.store.append(0, records[np.argsort(station, kind="stable")])
-    lines, _ = street.lanes(road_points=points)
+    points = RoadPoints(SectionStore(ROAD_POINT, section_length), street.frame.origin)
+    points.store.append(0, records)
+    return points
+
+
+def test_height_is_the_road_s_own_where_it_was_scanned():
+    street = Street(vehicle=-1.75).paint(0.0, z=HEIGHT + 0.3).paint(-3.5, z=HEIGHT + 0.3)
+    lines, _ = street.lanes(road_points=scanned(street, 20_000))
     x, _, z = np.asarray(lines.geometries[0].coords).T
     np.testing.assert_allclose(z, HEIGHT + 0.02 * (x - 500_000.0), atol=0.01)
     lines, _ = street.lanes()
     np.testing.assert_allclose(np.asarray(lines.geometries[0].coords)[:, 2], HEIGHT + 0.3, atol=1e-6)
+
+
+def test_among_crowded_points_height_is_known_to_the_millimetre_wherever_sections_end():
+    street = Street(vehicle=-1.75).paint(0.0).paint(-3.5)
+    crowded = [street.lanes(road_points=scanned(street, 600_000, length, -1.25, -2.25))[0].geometries[0] for length in (5.0, 7.3)]
+    (x, _, z), (_, _, other) = (np.asarray(line.coords).T for line in crowded)
+    np.testing.assert_array_equal(z, other)
+    inner = (x > x[0] + 5.0) & (x < x[-1] - 5.0)
+    np.testing.assert_allclose(z[inner], HEIGHT + 0.02 * (x[inner] - 500_000.0), atol=0.001)
 
 
 def test_a_street_without_paint_has_no_driving_lines_and_says_so():
