@@ -27,10 +27,13 @@ def _between(ends, specks):
 
     A run may leave its column by one: the road's frame is not the paint's.
     """
-    beside = np.ones((1, 3), np.uint8)
+    beside, result = np.ones((1, 3), np.uint8), np.zeros(specks.shape, bool)
     ends, specks = (cv2.dilate(mask.view(np.uint8), beside, borderValue=0).view(bool) for mask in (ends, specks))
+    columns = np.flatnonzero(ends.any(axis=0))
+    ends, specks = np.ascontiguousarray(ends[:, columns]), np.ascontiguousarray(specks[:, columns])
     run = fill_gaps(specks, int(round(WORN / (CELL * UNIT))), 0)
-    return run & _met_since(ends, ~run) & _met_since(ends[::-1], ~run[::-1])[::-1]
+    result[:, columns] = run & _met_since(ends, ~run) & _met_since(ends[::-1], ~run[::-1])[::-1]
+    return result
 
 
 def _met_since(ends, breaks):
