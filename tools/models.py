@@ -39,12 +39,12 @@ ROAD_MAP = Recipe(
         "extractmarkings": (
             {"ROAD_POINTS": "correctintensity.OUTPUT", "INTENSITY_IMAGE": "intensityimage.INTENSITY_IMAGE", **DRIVE}, ()),
         "removeoutliers": ({"INPUT": "extractmarkings.MARKING_POINTS"}, ()),
-        "clustermarkings": ({"MARKING_POINTS": "removeoutliers.OUTPUT", **DRIVE}, ("MARKINGS",)),
+        "clustermarkings": ({"MARKING_POINTS": "removeoutliers.OUTPUT", **DRIVE}, ()),
         "fitmarkinglines": (
             {"CLUSTERED_POINTS": "clustermarkings.CLUSTERED_POINTS", "MARKINGS": "clustermarkings.MARKINGS", **DRIVE},
-            ("MARKING_LINES",)),
+            (("NAMED_MARKINGS", "MARKINGS"), "MARKING_LINES")),
         "drivinglines": (
-            {"MARKING_LINES": "fitmarkinglines.MARKING_LINES", "MARKINGS": "clustermarkings.MARKINGS",
+            {"MARKING_LINES": "fitmarkinglines.MARKING_LINES", "MARKINGS": "fitmarkinglines.NAMED_MARKINGS",
              "ROAD_EDGES": "detectboundaries.ROAD_EDGES", "ROAD_POINTS": "correctintensity.OUTPUT", **DRIVE},
             ("DRIVING_LINES", "CURVE_ELEMENTS")),
     },

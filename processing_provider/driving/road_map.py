@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from qgis.core import QgsProcessingParameterBoolean
 
+from ...core.errors import RoadExtractionError
 from ...core.features import Features
 from ...core.schemas import CURB_POINTS, CURVE_ELEMENTS, DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES, ROAD_SURFACE
 from ..algorithm import LanewrightAlgorithm
@@ -92,6 +93,9 @@ class RoadMap(LanewrightAlgorithm):
             **{field: call.settings(knobs) for field, knobs in STAGES.items()},
         )
         paths, trajectory = survey_inputs(call, progress)
+        if not any(call.wants(one.name()) for one in self.destinationParameterDefinitions()):
+            raise RoadExtractionError(tr(
+                "No result was asked for, and all of the work would be lost. Name at least one output, such as DRIVING_LINES, MARKINGS or REPORT."))
         image_path = call.new_file("INTENSITY_IMAGE") or call.scratch_file("intensity.tif")
         road_map = make_road_map(paths, trajectory, image_path, settings, progress.part(0.0, 0.95))
         if call.wants("ROAD_POINTS"):

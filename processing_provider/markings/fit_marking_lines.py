@@ -40,6 +40,7 @@ LINE_KNOBS = (
 class FitMarkingLines(LanewrightAlgorithm):
     ID, TITLE, ROOM = "fitmarkinglines", "Fit marking lines", "Markings"
     SUMMARY = "Links dashes along the road and fits a curve to every painted line."
+    LOOKS = {"NAMED_MARKINGS": "MARKINGS"}
     TAGS = ("lane line", "curve fitting", "circle", "clothoid", "spline")
 
     def initAlgorithm(self, configuration=None):
@@ -48,11 +49,19 @@ class FitMarkingLines(LanewrightAlgorithm):
         self.add_trajectory()
         self.add_knobs(LINE_KNOBS)
         self.add_sink("MARKING_LINES", tr("Marking lines"), fields=MARKING_LINES, geometry="LineStringZ")
+        self.add_sink("NAMED_MARKINGS", tr("Markings named by their lines"), fields=MARKINGS, geometry="PolygonZ", optional=True, by_default=False,
+                      text=tr("The markings again, each dash and piece of a line with the class of the line that runs along it: alone, a dash of a "
+                              "centre line looks like any other."))
 
     def work(self, call, progress):
+        from ...core.markings.line_names import named_by_lines
         from ...core.markings.lines import fit_marking_lines
 
         markings = call.features("MARKINGS", MARKINGS, "PolygonZ")
         points = paint_of(call, "CLUSTERED_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, points.crs, progress, points, {"MARKINGS": markings})
-        call.layer("MARKING_LINES", fit_marking_lines(points, markings, frame, call.settings(LINE_KNOBS), progress.part(0.2, 1.0)))
+        lines = fit_marking_lines(points, markings, frame, call.settings(LINE_KNOBS), progress.part(0.2, 1.0))
+        call.layer("MARKING_LINES", lines)
+        if call.wants("NAMED_MARKINGS"):
+            named_by_lines(markings, lines)
+            call.layer("NAMED_MARKINGS", markings)

@@ -1039,6 +1039,11 @@
             <translation>Zuerst Intensität korrigieren</translation>
         </message>
         <message>
+            <location filename="../../processing_provider/driving/road_map.py" />
+            <source>No result was asked for, and all of the work would be lost. Name at least one output, such as DRIVING_LINES, MARKINGS or REPORT.</source>
+            <translation>Es wurde kein Ergebnis verlangt, und die ganze Arbeit wäre verloren. Nennen Sie mindestens eine Ausgabe, etwa DRIVING_LINES, MARKINGS oder REPORT.</translation>
+        </message>
+        <message>
             <location filename="../../processing_provider/layers.py" />
             <source>{label} lacks the field(s) {fields}. Use the layer that Lanewright wrote.</source>
             <translation>{label} fehlen die Felder {fields}. Den Layer verwenden, den Lanewright geschrieben hat.</translation>
@@ -1492,6 +1497,16 @@
             <location filename="../../processing_provider/markings/fit_marking_lines.py" />
             <source>The layer written by Cluster markings together with the points.</source>
             <translation>Der von „Markierungen zusammenfassen“ zusammen mit den Punkten geschriebene Layer.</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
+            <source>Markings named by their lines</source>
+            <translation>Markierungen, nach ihren Linien benannt</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
+            <source>The markings again, each dash and piece of a line with the class of the line that runs along it: alone, a dash of a centre line looks like any other.</source>
+            <translation>Die Markierungen noch einmal, jeder Strich und jedes Stück einer Linie mit der Klasse der Linie, die an ihm entlangläuft: für sich sieht ein Strich einer Mittellinie aus wie jeder andere.</translation>
         </message>
         <message>
             <location filename="../../processing_provider/markings/intensity_image.py" />

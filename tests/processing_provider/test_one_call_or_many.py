@@ -55,10 +55,10 @@ def stage_by_stage(survey, tmp_path_factory):
     run("extractmarkings", ROAD_POINTS=to["ROAD_POINTS"], INTENSITY_IMAGE=to["INTENSITY_IMAGE"], **drive,
         MARKING_POINTS=str(folder / "paint.laz"))
     run("removeoutliers", INPUT=str(folder / "paint.laz"), OUTPUT=str(folder / "kept.laz"))
-    run("clustermarkings", MARKING_POINTS=str(folder / "kept.laz"), **drive, MARKINGS=to["MARKINGS"],
+    run("clustermarkings", MARKING_POINTS=str(folder / "kept.laz"), **drive, MARKINGS=str(folder / "clusters.gpkg"),
         CLUSTERED_POINTS=str(folder / "clustered.laz"))
-    run("fitmarkinglines", CLUSTERED_POINTS=str(folder / "clustered.laz"), MARKINGS=to["MARKINGS"], **drive,
-        MARKING_LINES=to["MARKING_LINES"])
+    run("fitmarkinglines", CLUSTERED_POINTS=str(folder / "clustered.laz"), MARKINGS=str(folder / "clusters.gpkg"), **drive,
+        MARKING_LINES=to["MARKING_LINES"], NAMED_MARKINGS=to["MARKINGS"])
     run("drivinglines", MARKING_LINES=to["MARKING_LINES"], MARKINGS=to["MARKINGS"], ROAD_EDGES=to["ROAD_EDGES"],
         ROAD_POINTS=to["ROAD_POINTS"], **drive, DRIVING_LINES=to["DRIVING_LINES"], CURVE_ELEMENTS=to["CURVE_ELEMENTS"])
     return folder
@@ -152,3 +152,11 @@ def test_results_one_does_not_want_are_left_out(survey, tmp_path):
     })
     assert set(results) == {"DRIVING_LINES"}
     assert sorted(path.name for path in tmp_path.iterdir()) == ["lines.gpkg"]
+
+
+def test_a_road_map_of_which_nothing_is_kept_is_not_begun(survey):
+    import processing
+    from qgis.core import QgsProcessingException
+
+    with pytest.raises(QgsProcessingException, match="Name at least one output"):
+        processing.run("lanewright:roadmap", {"POINT_CLOUDS": [survey["POINT_CLOUD"]], "TRAJECTORY": survey["TRAJECTORY"]})
