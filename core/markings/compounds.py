@@ -16,7 +16,7 @@ from ..survey.sorting import order_by
 from .cells import occupied
 from .shapes import CELL
 
-LEAST_ALONG, LEAST_ACROSS = 5.0, 0.9  # m: arrows, letters and single dashes are smaller and stay whole
+LEAST_ALONG = 5.0  # m of a strip
 LONG, BROADER = 9.0, 0.5  # m: no arrow or letter is so long; a line that is broader somewhere has something beside it
 RUN = 1.0          # m along the road that a strip does not break off; stop lines and hatching bars are shorter
 BAR = 2.0          # m across the road that a bar does not break off; no arrow or letter is as broad
@@ -47,8 +47,7 @@ def split_compounds(records, labels):
     following = int(labels.max()) + 1
     along, across = records["s"].take(order), records["d"].take(order)
     ranges = [np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts) for values in (along, across)]
-    large = (ranges[0] * UNIT >= LEAST_ALONG) & (ranges[1] * UNIT >= LEAST_ACROSS) \
-        | (ranges[0] * UNIT >= LONG) & (ranges[1] * UNIT >= BROADER) \
+    large = (ranges[0] * UNIT >= LONG) & (ranges[1] * UNIT >= BROADER) \
         | (ranges[0] * UNIT >= LEAST_BESIDE) & (ranges[1] * UNIT >= BAR)
     for a, b in zip(starts[large], np.r_[starts[1:], len(order)][large]):
         rows = order[a:b]

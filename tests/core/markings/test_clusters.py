@@ -188,6 +188,13 @@ def test_an_arrow_has_a_shaft_and_a_letter_none(way):
     assert classes(markings_of([arrow(30, 1.5, way), letter(40, -2.0)], density=3000)) == ["arrow", "symbol"]
 
 
+def test_an_arrow_of_6_m_keeps_its_shaft():
+    def painted(s, d):
+        u, across = s - 30, np.abs(d - 1.5)
+        return (u >= 0) & (u < 3.6) & (across < 0.10) | (u >= 3.6) & (u < 6.0) & (across < 0.55 * (6.0 - u) / 2.4)
+    assert classes(markings_of([painted], density=3000)) == ["arrow"]
+
+
 def slanting(s0, d0, length=1.2, width=0.3):
     """A bar at 45 degrees to the road, to the left of its place."""
     return lambda s, d: (np.abs(s - s0 - (d - d0)) < width * np.sqrt(0.5)) & (d > d0) & (d < d0 + length * np.sqrt(0.5))
