@@ -6,7 +6,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from ..curves.fit import median
+from ..curves.fit import median, percentiles
 from ..survey.points import UNIT
 from ..survey.sorting import order_by
 from .classes import LINES
@@ -125,23 +125,20 @@ def trace(records, rank):
     """
     if not len(records):
         return []
-    bins = records["s"] // BIN
-    order = order_by(records["d"], bins)
-    records, rank, bins = records[order], rank[order], bins[order]
-    across = records["d"].astype(np.int64)
-    run = _runs(bins, across)
-    run = _without_thin(run)
-    inside = run >= 0
-    records, rank, bins, run = records[inside], rank[inside], bins[inside], run[inside]
-    if not len(records):
+    across, bins = records["d"], records["s"] // BIN
+    order = order_by(across, bins)
+    run = _without_thin(_runs(bins[order], across[order].astype(np.int64)))
+    inside = np.flatnonzero(run >= 0)
+    if not len(inside):
         return []
-    starts = np.flatnonzero(np.r_[True, np.diff(run) != 0])
-    node_bin = bins[starts]
-    node_d, width = _middle_and_width(records["d"], starts)
-    good = width <= WIDEST
-    label = _chains(node_bin, node_d, good)
-    of_point = np.repeat(label, np.diff(np.r_[starts, len(run)]))
-    return _strands(records, rank, of_point)
+    run, order = run[inside], order[inside]
+    starts = np.flatnonzero(np.append(True, run[1:] != run[:-1]))
+    node_d, width = _middle_and_width(across[order], starts)
+    label = _chains(bins[order[starts]], node_d, width <= WIDEST)
+    of_point = np.repeat(label, np.diff(np.append(starts, len(run))))
+    used = np.flatnonzero(of_point >= 0)
+    order = order[used]
+    return _strands([rank[order], *(records[name][order] for name in ("s", "d", "z", "half_width"))], of_point[used])
 
 
 def _runs(bins, across):
@@ -239,24 +236,23 @@ def _mutual(node_bin, node_d, ends, starts, leap, span):
     return ends[rows], starts[there[rows]]
 
 
-def _strands(records, rank, label):
-    used = label >= 0
-    records, rank, label = records[used], rank[used], label[used]
-    place = records["s"] // PLACE
+def _strands(columns, label):
+    """Strands of points that lie by bin, then across: columns rank, s, d, z and half width, (N,) each, and the chain of each point."""
+    place = columns[1] // PLACE
     # within a place points keep their order, which is across
     order = order_by(place, label)
-    label, columns = label[order], [rank[order], place[order], *(records[name].take(order) for name in ("s", "d", "z", "half_width"))]
+    label, place, columns = label[order], place[order], [column[order] for column in columns]
     bounds = np.flatnonzero(np.r_[True, np.diff(label) != 0, True]) if len(label) else np.zeros(1, int)
     found = []
     for a, b in zip(bounds[:-1].tolist(), bounds[1:].tolist()):
-        strand = _strand(*(column[a:b] for column in columns))
+        strand = _strand(place[a:b], *(column[a:b] for column in columns))
         mixed = strand.classes.get("mixed", 0.0) > 0.5 * strand.length
         if strand.length >= (MIXED_SHORTEST if mixed else SHORTEST):
             found.append(strand)
     return sorted(found, key=lambda strand: (strand.first, strand.d[0]))
 
 
-def _strand(rank, place, along, across, height, half_width):
+def _strand(place, rank, along, across, height, half_width):
     """A Strand of points sorted by place, then across; all columns (N,), lengths in units."""
     starts = np.flatnonzero(np.append(True, place[1:] != place[:-1]))
     count = np.diff(np.append(starts, len(place)))
@@ -265,13 +261,13 @@ def _strand(rank, place, along, across, height, half_width):
     own = outer <= 1.5 * median(outer) + 400
     if not own.all():
         inside = np.repeat(own, count)
-        return _strand(*(column[inside] for column in (rank, place, along, across, height, half_width)))
+        return _strand(*(column[inside] for column in (place, rank, along, across, height, half_width)))
     first, last = float(along.min() * UNIT), float(along.max() * UNIT)
     s, z = (np.add.reduceat(values, starts, dtype=np.int64) / count * UNIT for values in (along, height))
     d = middle * UNIT
     offset = across * UNIT
-    low, high = np.percentile(offset - np.repeat(d, count), [2.5, 97.5])
+    low, high = percentiles(offset - np.repeat(d, count), (2.5, 97.5))
     room = median(half_width * 1e-3 - np.abs(offset))
     share = np.bincount(rank, minlength=len(LINES) + 1) / len(rank) * (last - first)
     classes = {name: float(share[k]) for k, name in enumerate(LINES + ("mixed",)) if share[k] > 0}
-    return Strand(first, last, s, d, z, count.astype(float), float(high - low) / 0.95, room, classes)
+    return Strand(first, last, s, d, z, count.astype(float), (high - low) / 0.95, room, classes)
