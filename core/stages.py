@@ -12,10 +12,10 @@ from .survey.road_frame import CORRIDOR
 
 # How long each stage takes, in proportions, by points and by length of road: of a million points, of a kilometre (`make bench`).
 # What is read packed is decoded; boundaries by both methods take what either does.
-COSTS = dict(survey=(0.23, 0.9), profiles=(0.13, 3.0), scanlines=(0.24, 2.5), edges=(0.0, 0.05), surface=(0.045, 1.2), intensity=(0.03, 0.9),
-             image=(0.025, 1.1), markings=(0.025, 2.8), outliers=(0.04, 0.2), clusters=(0.01, 0.7), lines=(0.004, 0.9), driving=(0.01, 1.0))
+COSTS = dict(survey=(0.31, 0.1), profiles=(0.105, 4.6), scanlines=(0.2, 8.0), edges=(0.0, 0.04), surface=(0.05, 1.5), intensity=(0.037, 0.7),
+             image=(0.047, 1.1), markings=(0.017, 2.4), outliers=(0.018, 0.26), clusters=(0.019, 1.1), lines=(0.007, 0.6), driving=(0.005, 0.85))
 START = 0.01                # the same, of a stage that has nothing to do
-PACKED, PLAIN = 1.0, 0.45  # of what the stage of the survey takes for a point of a LAZ and of a LAS file
+PACKED, PLAIN = 1.0, 0.42  # of what the stage of the survey takes for a point of a LAZ and of a LAS file
 
 
 @dataclass(frozen=True)
