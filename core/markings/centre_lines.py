@@ -6,6 +6,7 @@ from .linking import TWIN
 
 TWO_LANES = 5.0      # m between the outer lines of a road of two lanes
 SAME_OFFSET = 0.25   # m: a lone dash this near the course of a dashed line is one of its dashes
+GOES_ON = 40.0       # m: over a junction, between a double line and the dashes that take its place
 ONE_LANE = 2.2, 5.5  # m of carriageway on either side of a line that is alone: a lane, with a gutter or a cycle lane
 
 
@@ -40,9 +41,17 @@ def one_centre(chosen):
             one.kind = "lane"
     central = [one for one in chosen if one.kind == "centre"]
     for one in chosen:
-        on_course = any(abs(other.level - one.level) <= SAME_OFFSET for other in central if not other.double)
-        if one.kind == "lane" and on_course and not _shared(one, central):
+        if one.kind == "lane" and any(_on_course(one, other, central) for other in central) and not _shared(one, central):
             one.kind = "centre"
+
+
+def _on_course(one, other, central):
+    """Whether a line lies where a centre line would go on; of a double line its middle counts, and only near its ends."""
+    if not other.double:
+        return abs(other.level - one.level) <= SAME_OFFSET
+    twins = [twin.level for twin in central if twin.double and abs(twin.level - other.level) <= TWIN[1] and _shared(other, [twin])]
+    apart = max(one.span[0] - other.span[1], other.span[0] - one.span[1])
+    return abs(float(np.mean(twins)) - one.level) <= SAME_OFFSET and apart <= GOES_ON
 
 
 def _shared(one, others):

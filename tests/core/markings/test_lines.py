@@ -314,6 +314,15 @@ def test_solid_lane_lines_beside_a_double_line_are_no_centre_lines():
         ("centre", "double-solid"), ("centre", "double-solid"), ("lane", "solid")]
 
 
+def test_dashes_behind_a_double_line_part_the_directions_as_it_did():
+    """Up to a crossing the centre line is double, behind it there are dashes: first alone, then with a turning lane beside."""
+    street = Street().paint(0, 40, 0.15, kind="centre").paint(0, 40, -0.15, kind="centre")
+    street.dashes(4.0, 6.0, 0.0, first=50.0, last=120.0).dashes(4.0, 6.0, -2.2, first=70.0, last=120.0)
+    assert sorted(set(told(street.lines(), "kind", "pattern"))) == [("centre", "dashed"), ("centre", "double-solid"), ("lane", "dashed")]
+    beside = Street().paint(0, 40, 0.15, kind="centre").paint(0, 40, -0.15, kind="centre").dashes(4.0, 6.0, 2.2, first=50.0, last=120.0)
+    assert ("lane", "dashed") in told(beside.lines(), "kind", "pattern")
+
+
 def test_a_worn_solid_line_is_not_called_dashed():
     street = Street(length=200.0, seed=5)
     for first, last in ((0, 14), (14.9, 22), (24, 31), (32.2, 38), (43, 46), (47.5, 56), (58.1, 75), (77, 83), (84, 90),
