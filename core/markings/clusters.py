@@ -24,7 +24,7 @@ from .cells import components, occupied
 from .classes import LINES, NOT_PAINT, ClassSettings, classify
 from .compounds import split_compounds
 from .fragments import join_fragments
-from .paleness import PALE, PALE_BAR, contrast
+from .paleness import contrast, too_pale
 from .shapes import CELL, measure
 
 WINDOW = 1250    # cells of 4 cm: 50 m of station are linked at a time
@@ -93,8 +93,7 @@ def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress
         kinds = classify(shapes, half_widths, settings.classes, covered)
         if marking_points.has_corrected:
             bright = contrast(Points(records).value, records["s"], starts)
-            kinds = [(NOT_PAINT, "other") if share < (PALE_BAR if kind == "stop" else PALE) else (kind, use)
-                     for share, (kind, use) in zip(bright.tolist(), kinds)]
+            kinds = [(NOT_PAINT, "other") if too_pale(share, kind) else (kind, use) for share, (kind, use) in zip(bright.tolist(), kinds)]
         cluster = np.zeros(len(records), np.int32)
         for i in sorted(range(len(rows)), key=lambda i: (shapes[i].s0, shapes[i].d0, shapes[i].s1)):
             if kinds[i][0] == NOT_PAINT:

@@ -13,6 +13,12 @@ STRETCH = 100.0        # m of road, with as much before and after it, whose pain
 FAINTEST, BRIGHT = 2, 90   # % of the bright points there: what only just was one, and paint
 BEST = 75              # % of a marking's points, whose brightness stands for it
 PALE, PALE_BAR = 0.20, 0.30  # of the way from one to the other: less is no paint, nor is a bar across the road, a joint as a rule
+PALE_EDGE = 0.10       # the same of a line where edge lines lie, which wear most and where seams are rare
+
+
+def too_pale(share, kind):
+    """Whether a cluster of such a contrast is no paint, by the class that its shape has."""
+    return share < {"stop": PALE_BAR, "edge": PALE_EDGE}.get(kind, PALE)
 
 
 def contrast(value, s, starts):

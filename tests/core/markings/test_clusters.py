@@ -263,6 +263,14 @@ def test_a_seam_and_the_joint_of_a_bridge_that_are_far_paler_than_the_paint_abou
     assert classes(with_values([seam], lambda s, d: np.full(len(s), 1900.0))) == ["centre"]
 
 
+def test_a_pale_edge_line_beside_bright_dashes_is_one():
+    """Wheels and gutters wear it most: it is paler than all paint about it, and yet no seam."""
+    dashes = [strip(s, s + 3, -0.06, 0.06) for s in (10, 19, 28, 37, 46, 55)]
+    edge = strip(5, 65, 5.3, 5.42)
+    found = with_values([*dashes, edge], lambda s, d: np.where(np.any([dash(s, d) for dash in dashes], axis=0), 4000, 2300))
+    assert sorted(set(classes(found))) == ["edge", "lane"]
+
+
 def test_worn_paint_is_a_marking_beside_fresh_paint_since_what_is_left_of_it_is_bright():
     fresh, worn = strip(5, 65, 3.0, 3.15), strip(10, 60, -1.0, -0.85)
 
