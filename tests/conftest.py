@@ -1,13 +1,18 @@
 """Loads the checkout under the name QGIS gives it, whatever its folder is called."""
 
 import importlib.util
+import os
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = "lanewright"
+
+if os.environ.get("LANEWRIGHT_WITHOUT_QGIS"):
+    sys.modules["qgis"] = None  # every import of it fails
 
 if PACKAGE not in sys.modules:
     spec = importlib.util.spec_from_file_location(
@@ -16,6 +21,12 @@ if PACKAGE not in sys.modules:
     module = importlib.util.module_from_spec(spec)
     sys.modules[PACKAGE] = module
     spec.loader.exec_module(module)
+
+
+def pytest_collection_modifyitems(items):
+    """Files with the most slow tests begin, so that at the end no worker waits long for another."""
+    slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
+    items.sort(key=lambda item: -slow[item.path])
 
 
 @pytest.fixture(scope="session")

@@ -1,10 +1,14 @@
 #!/usr/bin/env bash
-# The tests, in three processes: the core where qgis cannot be imported, then the plugin inside QGIS,
-# then calls of the real qgis_process. Arguments go to pytest, for example: tools/test.sh -k curbs
+# The tests, in three parts: the core where qgis cannot be imported, then the plugin inside QGIS, then
+# calls of the real qgis_process. Each part is spread over the processor's cores, one file of tests at a
+# time, those with slow tests first. Arguments go to pytest, for example: tools/test.sh -k curbs, or
+# tools/test.sh -m 'not slow'. LANEWRIGHT_TEST_WORKERS=0 runs everything in one process, for a debugger.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/env.sh"
 cd "$LANEWRIGHT_ROOT"
-python="$LANEWRIGHT_BUILD/venv/bin/python"
+cores="$(nproc)"
+part=("$LANEWRIGHT_BUILD/venv/bin/python" -m pytest -q
+  -n "${LANEWRIGHT_TEST_WORKERS:-$((cores < 8 ? cores : 8))}" --dist loadfile --no-loadscope-reorder)
 # With -k a part may have nothing to run (pytest says 5); without arguments that is a failure.
 run() {
   "$@" && return 0
@@ -15,9 +19,8 @@ run() {
 chosen=$#
 
 echo "== core, where qgis cannot be imported"
-run "$python" -c 'import sys; sys.modules["qgis"] = None; import pytest; sys.exit(pytest.main(sys.argv[1:]))' \
-  -q -p no:pytest_qgis -o addopts='--import-mode=importlib -p no:cacheprovider' tests/core "$@"
+LANEWRIGHT_WITHOUT_QGIS=1 run "${part[@]}" -p no:pytest_qgis -o addopts='--import-mode=importlib -p no:cacheprovider' tests/core "$@"
 echo "== the plugin inside QGIS"
-run "$python" -m pytest -q tests --ignore tests/core --ignore tests/cli "$@"
+run "${part[@]}" tests --ignore tests/core --ignore tests/cli "$@"
 echo "== real qgis_process"
-run "$python" -m pytest -q tests/cli "$@"
+run "${part[@]}" tests/cli "$@"
