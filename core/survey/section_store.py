@@ -232,12 +232,12 @@ class SectionStore:
 
 
 class _WithColumn(SectionStore):
-    """The points of a store with one column of their own."""
+    """The points of a store with one column of their own; nothing is kept here, only in the two stores that it joins."""
 
     def __init__(self, points, name):
+        super().__init__(points.dtype, points.section_length, points.memory_limit)
         self._points, self._name = points, name
         self._column = SectionStore([(name, points.dtype[name])], points.section_length, points.memory_limit)
-        self.dtype, self.section_length, self.memory_limit = points.dtype, points.section_length, points.memory_limit
 
     @property
     def count(self):
@@ -256,15 +256,23 @@ class _WithColumn(SectionStore):
     def sections(self, road):
         return self._points.sections(road)
 
-    def section(self, road, section):
+    def _read(self, road, section):
         column, points = self._column.section(road, section), self._points.section(road, section)
 
         def of(name):
             return column if name == self._name else points
 
-        return Columns({}, self.dtype, len(points), lambda name: of(name)[name], pick=lambda name, rows: of(name)._rows(name, rows)).locked()
+        return Columns({}, self.dtype, len(points), lambda name: of(name)[name], pick=lambda name, rows: of(name)._rows(name, rows)), False
+
+    def column(self, road, section, name, rows):
+        return self.section(road, section).take(rows)[name]
+
+    def let_go(self):
+        self._column.let_go()
+        self._points.let_go()
 
     def close(self):
+        super().close()
         self._column.close()
         self._points.close()
 

@@ -64,6 +64,25 @@ def test_a_column_put_anew_leaves_the_other_columns_of_chosen_points_as_they_are
 
 
 @pytest.mark.parametrize("limit", [0, 10**9])
+def test_points_with_a_column_put_anew_give_memory_back_and_are_the_same_points_afterwards(limit):
+    store = survey_store(limit)
+    bright = store.with_column("intensity")
+    for number in store.sections(0):
+        bright.put(0, number, store.section(0, number)["intensity"] // 2)
+    before = np.asarray(bright.section(0, 4))
+    bright.let_go()
+    np.testing.assert_array_equal(np.asarray(bright.section(0, 4)), before)
+    for name in ("intensity", "x"):
+        np.testing.assert_array_equal(bright.column(0, 4, name, np.array([5, 2])), before[name][[5, 2]])
+    if limit == 0:
+        assert store._kept  # the section was read from the file again
+        bright.let_go()
+        assert not store._kept
+    bright.close()
+    assert not store.roads()
+
+
+@pytest.mark.parametrize("limit", [0, 10**9])
 @pytest.mark.parametrize("rows", [[3], [200, 201, 204], range(-9, 0), range(90, 5, -7), []])
 def test_few_rows_of_a_section_are_those_of_the_whole_whatever_was_read_of_it_before(limit, rows):
     road = road_of(survey_store(limit))
