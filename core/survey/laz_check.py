@@ -9,7 +9,7 @@ import os
 import struct
 
 LASZIP_USER, LASZIP_RECORD = b"laszip encoded", 22204
-VLR_HEADER = 54        # bytes
+VLR_HEADER, EVLR_HEADER = 54, 60  # bytes
 COMPRESSED = 0x80      # bit of the point format
 VARIABLE_CHUNKS = 0xFFFFFFFF
 LARGEST_CHUNK = 50_000_000  # points; LASzip writes 50,000
@@ -32,8 +32,10 @@ def damage(path):
             return f"it is said to have {vlrs:,} header records, more than fit before its points"
         if head[25] >= 4 and len(head) >= 247:
             first_evlr, evlrs = struct.unpack_from("<QI", head, 235)
-            if evlrs and (first_evlr > size or evlrs * 60 > size - first_evlr):
+            if evlrs and (first_evlr > size or evlrs * EVLR_HEADER > size - first_evlr):
                 return f"it is said to have {evlrs:,} further records from byte {first_evlr:,}, of {size:,}"
+            if wrong := _beyond_the_end(file, first_evlr, evlrs, size):
+                return wrong
         if not point_format & COMPRESSED:
             return ""
         record = _laszip(file, header_size, vlrs, points_at)
@@ -46,6 +48,18 @@ def damage(path):
             return f"its points are said to be compressed {chunk_size:,} at a time"
         count = struct.unpack_from("<Q", head, 247)[0] if head[25] >= 4 and len(head) >= 255 else struct.unpack_from("<I", head, 107)[0]
         return _chunk_table(file, points_at, size, record, count)
+
+
+def _beyond_the_end(file, place, evlrs, size):
+    """What is wrong with the lengths of the records behind the points; "" where all lie in the file."""
+    for number in range(1, evlrs + 1):
+        file.seek(place + 20)
+        length = file.read(8)
+        after = place + EVLR_HEADER + (struct.unpack("<Q", length)[0] if len(length) == 8 else 0)
+        if after > size:
+            return f"its record {number:,} behind the points is said to end at byte {after:,}, of {size:,}"
+        place = after
+    return ""
 
 
 def points_per_chunk(path):

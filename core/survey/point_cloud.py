@@ -13,7 +13,7 @@ from .laz_check import damage, points_per_chunk
 BLOCK = 400_000  # points decoded at a time
 SUFFIXES = (".las", ".laz")
 MOST_SCALE, MOST_OFFSET = 1e3, 1e12  # m, of coordinates kept as integers; beyond them nothing on earth lies
-NOT_THE_FILE = (KeyboardInterrupt, SystemExit, GeneratorExit, Cancelled)
+NOT_THE_FILE = (KeyboardInterrupt, SystemExit, GeneratorExit, Cancelled, MemoryError)  # reasons that say nothing about the file
 
 
 @dataclass(frozen=True)
@@ -122,6 +122,8 @@ def _crs_of(header):
     """WKT of the file's CRS from WKT or GeoKeys records; "" where there is none or it cannot be understood."""
     try:
         crs = header.parse_crs()
+    except MemoryError:
+        raise
     except Exception:  # an unreadable CRS record counts as no CRS: the user is then asked for one
         return ""
     return "" if crs is None else crs.to_wkt()

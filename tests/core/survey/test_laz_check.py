@@ -101,3 +101,10 @@ def test_a_table_of_chunks_overwritten_is_told(copc):
         copc.write_bytes(data[:table + 8] + filling * 12 + data[table + 20:])
         with pytest.raises(RoadExtractionError, match="is damaged or cut off"):
             read(copc)
+
+
+def test_a_record_behind_the_points_that_ends_outside_the_file_is_told(copc):
+    """Read as it stands it asks for as much memory, which is no reason to say that there is too little."""
+    first = struct.unpack_from("<Q", copc.read_bytes(), 235)[0]
+    with pytest.raises(RoadExtractionError, match="damaged or cut off: its record 1 behind the points is said to end at byte"):
+        read(changed(copc, first + 20, "<Q", 2**50))

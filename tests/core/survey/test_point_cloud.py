@@ -47,6 +47,19 @@ def test_what_is_no_point_cloud_is_refused_in_one_sentence(tmp_path, name, conte
         read_headers([tmp_path / name])
 
 
+@pytest.mark.parametrize("suffix", [".las", ".laz"])
+def test_too_little_memory_is_not_told_as_a_damaged_file(tmp_path, monkeypatch, suffix):
+    import laspy
+
+    def no_memory(*_):
+        raise MemoryError("Unable to allocate 3.2 GiB")
+
+    path = write_cloud(tmp_path / f"cloud{suffix}", *places())
+    monkeypatch.setattr(laspy.LasReader, "read_points", no_memory)
+    with pytest.raises(MemoryError):
+        list(read_blocks(path))
+
+
 def with_bounds(path, numbers):
     data = bytearray(open(path, "rb").read())
     data[179:227] = np.array(numbers, float).tobytes()  # max x, min x, max y, min y, max z, min z
