@@ -81,8 +81,6 @@ def write_intensity_image(road_points, path, settings=ImageSettings(), progress=
     ----------
     .. [1] Guan et al. (2014), ISPRS J. Photogramm. Remote Sens. 87, 93-107: the two rules.
     """
-    from osgeo import gdal
-
     if not len(road_points):
         raise RoadExtractionError("There are no road points to make an intensity image of. Check the road surface first.")
     # The grid is fixed in the map: pixel column = column of the map's lattice minus the first one
@@ -108,14 +106,13 @@ def write_intensity_image(road_points, path, settings=ImageSettings(), progress=
     def sums(piece):
         return _piece_sums(road_points, piece, steps[piece], limits[piece[0], piece[1] // PIECES], settings)
 
-    with new_geotiff(path, grid.width, grid.height, grid.transform, road_points.crs) as dataset:
-        band = dataset.GetRasterBand(1)
+    with new_geotiff(path, grid.width, grid.height, grid.transform, road_points.crs) as image:
         for (column, row), parts in _with_pieces(work, sums, progress.part(0.3, 1.0)):
             values = grid.tile(column, row, parts)
             if values is not None:
-                band.WriteRaster(column * TILE, row * TILE, values.shape[1], values.shape[0], values.tobytes(), buf_type=gdal.GDT_Float32)
+                image.write(column * TILE, row * TILE, values)
                 # compressed by another thread while the next tiles are made
-                band.FlushCache()
+                image.flush()
     progress.say(f"Intensity image: {grid.width:,} x {grid.height:,} cells of {settings.cell_size:g} m.")
 
 

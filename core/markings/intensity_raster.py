@@ -182,35 +182,77 @@ def _open_raster(path):
             f"{path} cannot be read as an image ({problem}). Give the GeoTIFF written by “Intensity image”.") from problem
 
 
+class NewGeoTiff:
+    """The one band of a GeoTIFF that is being written; nobody else holds its dataset, so that `close` ends it."""
+
+    def __init__(self, path, width, height, geotransform, crs, byte, nodata):
+        from osgeo import gdal
+
+        options = [f"BLOCKXSIZE={TILE}", f"BLOCKYSIZE={TILE}", "TILED=YES", "COMPRESS=DEFLATE", "SPARSE_OK=TRUE",
+                   "BIGTIFF=IF_SAFER", f"NUM_THREADS={COMPRESSING}"]
+        # intensities are too noisy to be told from those beside them: a predictor costs twice what it saves, and more to undo
+        options += ["PREDICTOR=2"] if byte else ["ZLEVEL=1"]
+        self._type, self._numbers = (gdal.GDT_Byte, np.uint8) if byte else (gdal.GDT_Float32, np.float32)
+        self._dataset = gdal.GetDriverByName("GTiff").Create(str(path), width, height, 1, self._type, options)
+        self._dataset.SetGeoTransform(geotransform)
+        if crs:
+            self._dataset.SetProjection(crs)
+        self._dataset.GetRasterBand(1).SetNoDataValue(nodata)
+
+    def write(self, column, row, values):
+        """Write (H, W) pixels from one on; they are compressed by other threads once `flush` is called."""
+        height, width = values.shape
+        data = np.ascontiguousarray(values, self._numbers).tobytes()
+        self._dataset.GetRasterBand(1).WriteRaster(column, row, width, height, data, buf_type=self._type)
+
+    def read(self, column, row, width, height):
+        """(height, width) pixels as written so far, a copy."""
+        data = self._dataset.GetRasterBand(1).ReadRaster(column, row, width, height, buf_type=self._type)
+        return np.frombuffer(data, self._numbers).reshape(height, width).copy()
+
+    def flush(self):
+        """Hand what was written to the file, which compresses it beside the work that follows."""
+        self._dataset.GetRasterBand(1).FlushCache()
+
+    def close(self):
+        """End the file; a file that is still open cannot be renamed on Windows."""
+        try:
+            self._dataset.FlushCache()
+        finally:
+            self.drop()
+
+    def drop(self):
+        """Let go of the file, finished or not."""
+        self._dataset = None
+
+
 @contextmanager
 def new_geotiff(path, width, height, geotransform, crs, byte=False, nodata=NODATA):
-    """A one-band GDAL dataset to write into: tiled, DEFLATE, empty tiles left out; it takes its name when all went well."""
+    """A NewGeoTiff: tiled, DEFLATE, empty tiles left out; it takes its name when all went well.
+
+    Raises
+    ------
+    RoadExtractionError
+        If the file cannot be written.
+    """
     from osgeo import gdal
 
     gdal.UseExceptions()
     path = Path(path)
     unfinished = path.with_name(path.name + ".unfinished.tif")
-    options = [f"BLOCKXSIZE={TILE}", f"BLOCKYSIZE={TILE}", "TILED=YES", "COMPRESS=DEFLATE", "SPARSE_OK=TRUE",
-               "BIGTIFF=IF_SAFER", f"NUM_THREADS={COMPRESSING}"]
-    # intensities are too noisy to be told from those beside them: a predictor costs twice what it saves, and more to undo
-    options += ["PREDICTOR=2"] if byte else ["ZLEVEL=1"]
+    image = None
     try:
-        dataset = gdal.GetDriverByName("GTiff").Create(
-            str(unfinished), width, height, 1, gdal.GDT_Byte if byte else gdal.GDT_Float32, options)
-        dataset.SetGeoTransform(geotransform)
-        if crs:
-            dataset.SetProjection(crs)
-        dataset.GetRasterBand(1).SetNoDataValue(nodata)
-        yield dataset
-        dataset.FlushCache()
-        dataset = None
+        image = NewGeoTiff(unfinished, width, height, geotransform, crs, byte, nodata)
+        yield image
+        image.close()
         os.replace(unfinished, path)
         # statistics that a viewer kept beside yesterday's image are not those of this one
         path.with_name(path.name + ".aux.xml").unlink(missing_ok=True)
     except RuntimeError as problem:  # GDAL's own: the folder refuses, or the disk is full
         raise RoadExtractionError(f"{path} cannot be written ({problem}). Choose another folder or free its space.") from problem
     finally:
-        dataset = None
+        if image is not None:
+            image.drop()
         unfinished.unlink(missing_ok=True)
 
 
@@ -219,12 +261,9 @@ def write_display_image(image_path, path, progress=Progress()):
 
     The stretch runs from the 1st to the 99.5th percentile of the image.
     """
-    from osgeo import gdal
-
     image = IntensityImage.open(image_path)
     low, high = _stretch(image)
-    with new_geotiff(path, image.width, image.height, image.geotransform, image.crs, byte=True, nodata=0) as dataset:
-        band = dataset.GetRasterBand(1)
+    with new_geotiff(path, image.width, image.height, image.geotransform, image.crs, byte=True, nodata=0) as picture:
         rows = range(0, image.height, TILE)
         for row in rows:
             for column in range(0, image.width, TILE):
@@ -233,8 +272,7 @@ def write_display_image(image_path, path, progress=Progress()):
                 known = np.isfinite(values)
                 if known.any():
                     grey = 1 + np.rint(254 * np.clip((values - low) / max(high - low, 1e-9), 0, 1))
-                    data = np.where(known, grey, 0).astype(np.uint8)
-                    band.WriteRaster(column, row, width, height, data.tobytes(), buf_type=gdal.GDT_Byte)
+                    picture.write(column, row, np.where(known, grey, 0).astype(np.uint8))
             progress.at(min(row + TILE, image.height) / image.height)
 
 

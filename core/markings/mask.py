@@ -22,10 +22,7 @@ def marking_mask(path, image, origin):
     image : IntensityImage whose pixels the mask has
     origin : what local coordinates leave out
     """
-    from osgeo import gdal
-
-    with new_geotiff(path, image.width, image.height, image.geotransform, image.crs, byte=True, nodata=0) as dataset:
-        band = dataset.GetRasterBand(1)
+    with new_geotiff(path, image.width, image.height, image.geotransform, image.crs, byte=True, nodata=0) as mask:
 
         def burn(x, y):
             column, row = (np.floor(c).astype(np.int64) for c in image.pixel_of(x, y, origin))
@@ -35,10 +32,9 @@ def marking_mask(path, image, origin):
             for number in np.unique(block):
                 c, r = column[block == number], row[block == number]
                 c0, r0, width, height = int(c.min()), int(r.min()), int(np.ptp(c)) + 1, int(np.ptp(r)) + 1
-                pixels = np.frombuffer(band.ReadRaster(c0, r0, width, height, buf_type=gdal.GDT_Byte), np.uint8)
-                pixels = pixels.reshape(height, width).copy()
+                pixels = mask.read(c0, r0, width, height)
                 pixels[r - r0, c - c0] = 1
-                band.WriteRaster(c0, r0, width, height, pixels.tobytes(), buf_type=gdal.GDT_Byte)
+                mask.write(c0, r0, pixels)
 
         yield burn
 

@@ -174,5 +174,5 @@ class _Seen:
         seen[top - 1 - row, column - left] = True
         seen = binary_dilation(seen, np.ones((2 * SEEN + 1,) * 2, bool)).astype(np.uint8)
         with new_geotiff(path, seen.shape[1], seen.shape[0], (left * CELL, CELL, 0.0, top * CELL, 0.0, -CELL), crs, byte=True,
-                         nodata=0) as dataset:
-            dataset.GetRasterBand(1).WriteRaster(0, 0, seen.shape[1], seen.shape[0], seen.tobytes())
+                         nodata=0) as image:
+            image.write(0, 0, seen)

@@ -1,10 +1,14 @@
 """The intensity image: what a pixel says of the points around it."""
 
+import os
+from pathlib import Path
+
 import numpy as np
 import pytest
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.markings.image import ImageSettings, IntensityImage, write_display_image, write_intensity_image
 from lanewright.core.markings.image_cover import check_image_shows
+from lanewright.core.markings.mask import marking_mask
 from lanewright.core.survey.points import ROAD_POINT, UNIT, to_units
 from lanewright.core.survey.road_points import RoadPoints
 from lanewright.core.survey.section_store import SectionStore
@@ -63,6 +67,37 @@ def test_bright_points_count_more_so_paint_grows_by_less_than_a_cell(tmp_path):
     middle = (PAINT + ASPHALT) / 2
     narrow, wide = (np.mean(all_pixels(image) > middle) * 6.0 for image in (plain, bright))
     assert narrow < wide < narrow + 0.04
+
+
+def _open_files():
+    return {os.path.realpath(f"/proc/self/fd/{number}") for number in os.listdir("/proc/self/fd")}
+
+
+@pytest.fixture
+def as_on_windows(monkeypatch):
+    """A file that this process holds open cannot be renamed; returns the list of those that were."""
+    if not os.path.isdir("/proc/self/fd"):
+        pytest.skip("open files are asked for in /proc")
+    rename, renamed = os.replace, []
+
+    def refuse_open_files(source, target):
+        if os.path.realpath(source) in _open_files():
+            raise PermissionError(f"{source} is open")
+        rename(source, target)
+        renamed.append(Path(target).name)
+
+    monkeypatch.setattr(os, "replace", refuse_open_files)
+    return renamed
+
+
+def test_an_image_is_closed_before_it_takes_its_name(tmp_path, as_on_windows):
+    image = image_of(painted_street(length=20.0), tmp_path / "image.tif")
+    write_display_image(image.path, tmp_path / "display.tif")
+    with marking_mask(tmp_path / "mask.tif", image, ORIGIN) as burn:
+        burn(np.array([5.0]), np.array([1.0]))
+    assert as_on_windows == ["image.tif", "display.tif", "mask.tif"]
+    mask = gdal.Open(str(tmp_path / "mask.tif"))
+    assert np.frombuffer(mask.ReadRaster(), np.uint8).sum() == 1
 
 
 def test_without_the_brightness_rule_a_pixel_is_plain_inverse_distance(tmp_path):
