@@ -10,7 +10,7 @@ from ..progress import Progress
 from ..survey.points import Points
 from .beams import Beams
 from .clipping import Clipping
-from .intensity_table import BIN, HALF, REACH, ROW, SHIFT, AsphaltTable, LevelCounts, asphalt_of
+from .intensity_table import BIN, REACH, AsphaltTable, LevelCounts, asphalt_of
 from .vehicle_places import ACROSS, UNKNOWN, Tracks
 
 ENOUGH = 6_000   # points of a metre of road: more tell nothing new of asphalt
@@ -114,7 +114,8 @@ def correct_intensity(road_points, frame, settings=IntensitySettings(), progress
     Returns
     -------
     RoadPoints with `corrected` (the raw intensity stays, and all other columns are
-    shared with `road_points`), IntensityReport. Where the vehicle's place at a
+    shared with `road_points`; NaN for a point measured when the vehicle's place is not known,
+    or by a scanner with too few points to know its asphalt), IntensityReport. Where the vehicle's place at a
     point's time is not known the points come back as they were, and the report
     says why.
     """
@@ -165,7 +166,7 @@ def correct_intensity(road_points, frame, settings=IntensitySettings(), progress
             here = points[first:first + AT_ONCE]
             places = tracks.places(here, ways)
             place = places[0] if len(places) == 1 else np.where(table.told_by[here.scanner] == ACROSS, *places)
-            found = _looked_up(lookup, here.scanner, place)
+            found = table.looked_up(lookup, here.scanner, place)
             np.add(even(here), found, out=found) if table.logarithmic else np.multiply(even(here), found, out=found)
             corrected[first:first + AT_ONCE] = found
         some = _stripes(Points(points.records.with_columns(corrected=corrected)), step)
@@ -206,17 +207,6 @@ def _by_scanner(points):
     """(256,) how many points each scanner has."""
     scanner = points.scanner
     return sum((np.bincount(scanner[k:k + AT_ONCE], minlength=256) for k in range(0, len(scanner), AT_ONCE)), np.zeros(256, np.int64))
-
-
-def _looked_up(lookup, scanner, place):
-    """(N,) float32 of the lookup table of an AsphaltTable."""
-    index = place + np.int32(HALF)
-    index >>= SHIFT
-    np.minimum(index, ROW - 1, out=index)
-    np.maximum(index, 0, out=index)
-    if len(lookup) > 1:
-        index += scanner.astype(np.int32) * np.int32(ROW)
-    return lookup.ravel().take(index)
 
 
 def _why_not(road_points, frame):

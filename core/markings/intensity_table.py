@@ -16,8 +16,8 @@ FEWEST = 200        # points that make a bin's asphalt known
 BINS = int(2 * REACH / BIN)
 MIXED = 1.5         # times the spread of its neighbours: a bin of paint and asphalt, left out
 PAINT_SIGMA = 3.0   # brighter than asphalt by this many of its lower spread is not asphalt
-SHIFT, ROW = 4, 2**16   # corrections are looked up every 2**4 units of 0.1 mm, so that many to either side as fit
-HALF = ROW << SHIFT >> 1
+SHIFT, PLACES = 4, 2**16   # corrections are looked up every 2**4 units of 0.1 mm, 52 m to either side; beyond REACH they are all alike
+HALF = PLACES << SHIFT >> 1
 LEVEL_OF = np.clip(np.rint(np.log2(np.arange(2**16) + 1.0) * PER_DOUBLING), 0, LEVELS - 1).astype(np.int32)  # of whole numbers
 
 
@@ -51,12 +51,17 @@ class LevelCounts:
     def of(self, scanner, places, intensity, ways=(ACROSS, AWAY)):
         """What some points count, to be added: (way, first bin, (scanners, bins, LEVELS)) for each way.
 
+        A point whose place or intensity is not known counts nowhere.
+
         Parameters
         ----------
-        scanner, intensity : (N,)
+        scanner : (N,)
+        intensity : (N,) NaN where it could not be corrected
         places : for each of `ways` (N,) of `Tracks.places`
         """
         known = places[0] != UNKNOWN
+        if intensity.dtype.kind == "f":
+            known &= ~np.isnan(intensity)
         if not known.all():
             places, intensity, scanner = [row[known] for row in places], intensity[known], scanner[known]
         if not len(intensity):
@@ -154,13 +159,34 @@ class AsphaltTable:
         return cls(asphalt, known, told_by, reference, is_logarithmic(median, sigma, weight))
 
     def lookup(self):
-        """What corrects an intensity at each place: (scanners, ROW) float32 factors, or what is added; NaN where asphalt is unknown."""
-        distance = (((np.arange(ROW) << SHIFT) - HALF) + (1 << SHIFT) / 2) * UNIT
+        """What corrects an intensity at each place: (scanners, PLACES + 1) float32 factors, or what is added.
+
+        Asphalt farther away than REACH is taken for that at REACH, on either side. NaN for a scanner whose asphalt
+        is unknown, and in the last column, which is that of points whose place is UNKNOWN.
+        """
+        distance = (((np.arange(PLACES) << SHIFT) - HALF) + (1 << SHIFT) / 2) * UNIT
         position = np.clip((distance + REACH) / BIN - 0.5, 0, BINS - 1)
         asphalt = np.stack([np.interp(position, np.arange(BINS), row) for row in self.asphalt])
         found = self.reference - asphalt if self.logarithmic else self.reference / np.maximum(asphalt, 1e-6)
-        found[:, -1] = np.nan  # where UNKNOWN leads to
-        return found.astype(np.float32)
+        return np.pad(found.astype(np.float32), ((0, 0), (0, 1)), constant_values=np.nan)
+
+    @staticmethod
+    def looked_up(lookup, scanner, place):
+        """What corrects points: (N,) float32 of `lookup`.
+
+        Parameters
+        ----------
+        lookup : of the method of that name
+        scanner : (N,)
+        place : (N,) int32 of `Tracks.places`
+        """
+        index = place + np.int32(HALF)
+        index >>= SHIFT
+        np.clip(index, 0, PLACES - 1, out=index)
+        index[place == UNKNOWN] = PLACES
+        if len(lookup) > 1:
+            index += scanner.astype(np.int32) * np.int32(PLACES + 1)
+        return lookup.ravel().take(index)
 
 
 def is_logarithmic(median, sigma, weight):

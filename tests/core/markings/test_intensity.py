@@ -238,3 +238,45 @@ def test_cut_off_paint_and_a_road_all_of_one_colour_are_not_warned_of():
     records["intensity"] = np.minimum(records["intensity"], 9000)
     assert warned(records)[0] == []
     assert 0.01 < np.mean(paint)
+
+
+def seen_from_afar(records, away, law, scanner=0, count=300):
+    """Records to which some road is added that is seen `away` metres left (positive) or right of the vehicle, as across the bend of a turn."""
+    rng = np.random.default_rng(3)
+    far = np.zeros(count, ROAD_POINT)
+    x = rng.uniform(0, LENGTH, count)
+    far["x"], far["s"] = to_units(x), to_units(x)
+    far["y"] = far["d"] = to_units(np.broadcast_to(away, count))
+    far["time"], far["scanner"], far["corrected"] = x / 10 + 1000, scanner, np.nan
+    far["intensity"] = np.rint(law(np.broadcast_to(away, count), np.full(count, scanner)))
+    return np.concatenate([records, far])
+
+
+@pytest.mark.parametrize("scale", ["linear", "logarithmic"])
+@pytest.mark.parametrize("side", [1, -1], ids=["left", "right"])
+def test_road_seen_from_52_m_and_more_is_corrected_as_that_at_30_m_on_either_side(side, scale):
+    away = side * np.r_[np.full(150, 30.2), np.linspace(31.0, 120.0, 150)]
+    records = seen_from_afar(street()[0], away, lambda across, scanner: np.full(len(across), 300.0))
+    points, report = corrected(records, settings=IntensitySettings(scale=scale))
+    far = points.corrected[np.abs(points.d) > 30]
+    assert len(far) == 300
+    np.testing.assert_allclose(far, far[0], rtol=1e-6)
+    assert far[0] > 300 and not report.reason
+
+
+def test_a_scanner_that_hardly_met_the_road_keeps_its_raw_intensity_and_the_others_are_corrected():
+    records = seen_from_afar(street()[0], 5.0, falling, scanner=2, count=100)
+    points, report = corrected(records)
+    few = points.scanner == 2
+    assert np.isnan(points.corrected[few]).all() and np.isfinite(points.corrected[~few]).all()
+    np.testing.assert_array_equal(points.value[few], points.intensity[few])
+    assert [row["scanner"] for row in report.scanners] == [0, 1] and report.spread_after < 3
+
+
+def test_points_measured_when_no_vehicle_drove_keep_their_raw_intensity():
+    records = street()[0]
+    records["time"][:500] += 3600.0
+    points, report = corrected(records)
+    lost = points.time > 4000
+    assert np.isnan(points.corrected[lost]).all() and np.isfinite(points.corrected[~lost]).all()
+    assert not report.reason
