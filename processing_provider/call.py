@@ -92,15 +92,17 @@ class Call:
             return None
         from osgeo import gdal
 
+        from ..core.gdal_errors import gdal_exceptions
         from ..core.survey.crs import parse_crs, same_place
 
         path = self.raster(name)
-        gdal.UseExceptions()
-        own = gdal.Open(path).GetProjection()
+        with gdal_exceptions():
+            own = gdal.Open(path).GetProjection()
         if not own or not crs or same_place(parse_crs(own), parse_crs(crs)):
             return path
         target = self.scratch_file(f"{name.lower()}.vrt")
-        gdal.Warp(target, path, format="VRT", dstSRS=crs)
+        with gdal_exceptions():
+            gdal.Warp(target, path, format="VRT", dstSRS=crs)
         return target
 
     def features(self, name, schema, geometry_type):

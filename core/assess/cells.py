@@ -3,16 +3,18 @@
 import numpy as np
 import shapely
 
+from ..gdal_errors import gdal_exceptions
+
 TILE = 2048  # cells a side
 
 
 class Burner:
     """Rasterises numbered polygons tile by tile: a cell belongs to a polygon when its centre does."""
 
+    @gdal_exceptions()
     def __init__(self, polygons):
         from osgeo import ogr
 
-        ogr.UseExceptions()
         self._source = ogr.GetDriverByName("Memory").CreateDataSource("polygons")
         self._layer = self._source.CreateLayer("polygons", None, ogr.wkbUnknown)
         self._layer.CreateField(ogr.FieldDefn("number", ogr.OFTInteger))
@@ -23,11 +25,11 @@ class Burner:
             feature.SetGeometryDirectly(ogr.CreateGeometryFromWkb(wkb))
             self._layer.CreateFeature(feature)
 
+    @gdal_exceptions()
     def burn(self, bounds, shape):
         """(rows, columns) int32 of polygon numbers from 1 on, 0 elsewhere; the later of two that overlap wins."""
         from osgeo import gdal
 
-        gdal.UseExceptions()
         rows, columns = shape
         raster = gdal.GetDriverByName("MEM").Create("", columns, rows, 1, gdal.GDT_Int32)
         size = (bounds[2] - bounds[0]) / columns
@@ -45,13 +47,14 @@ class Burner:
 class Seen:
     """Where a raster has data: what was never scanned can be judged neither right nor wrong."""
 
+    @gdal_exceptions()
     def __init__(self, path):
         from osgeo import gdal
 
-        gdal.UseExceptions()
         self._raster = gdal.Open(str(path))
         self._inverse = gdal.InvGeoTransform(self._raster.GetGeoTransform())
 
+    @gdal_exceptions()
     def burn(self, bounds, shape):
         """(rows, columns) bool: whether the raster's cell at each centre has a value."""
         from osgeo import gdal

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..gdal_errors import gdal_exceptions
 from .cells import TILE, tile_bounds, tiles_of
 
 
@@ -14,10 +15,10 @@ class OutcomeRaster:
     polygons : result and reference together, whose extent the raster covers
     """
 
+    @gdal_exceptions()
     def __init__(self, path, polygons, cell_size, crs, margin=0):
         from osgeo import gdal, osr
 
-        gdal.UseExceptions()
         tiles = np.array(tiles_of(list(polygons), cell_size, margin) or [(0, 0)])
         (self._west, south), (east, self._north) = tiles.min(axis=0), tiles.max(axis=0)
         columns, rows = (east - self._west + 1) * TILE, (self._north - south + 1) * TILE
@@ -33,9 +34,11 @@ class OutcomeRaster:
         band.SetNoDataValue(0)
         band.SetDescription("1 hit, 2 missed, 3 false, 4 missed beside a hit, 5 false beside paint")
 
+    @gdal_exceptions()
     def write(self, tile, values):
         column, row = (tile[0] - self._west) * TILE, (self._north - tile[1]) * TILE
         self._raster.GetRasterBand(1).WriteRaster(int(column), int(row), TILE, TILE, np.ascontiguousarray(values, np.uint8).tobytes())
 
+    @gdal_exceptions()
     def close(self):
         self._raster = None

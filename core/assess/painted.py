@@ -4,6 +4,7 @@ import numpy as np
 import shapely
 
 from ..errors import RoadExtractionError
+from ..gdal_errors import gdal_exceptions
 from ..progress import Progress
 from .common_ground import AssessedLayer, check_kind
 
@@ -15,6 +16,7 @@ def strips(lines, widths):
     return list(shapely.buffer(np.asarray(lines, object), np.asarray(widths, float) / 2, cap_style="flat", join_style="mitre"))
 
 
+@gdal_exceptions()
 def polygons_of_raster(path, progress=Progress()):
     """The painted patches of a raster: cells that touch, corners included, and have the same value other than 0 and no-data.
 
@@ -30,8 +32,6 @@ def polygons_of_raster(path, progress=Progress()):
     """
     from osgeo import gdal, ogr
 
-    gdal.UseExceptions()
-    ogr.UseExceptions()
     try:
         raster = gdal.Open(str(path))
     except RuntimeError as problem:

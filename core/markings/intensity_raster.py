@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import RoadExtractionError
+from ..gdal_errors import gdal_exceptions
 from ..progress import Progress
 
 TILE = 512          # px, side of a tile of the file and of the work
@@ -41,6 +42,7 @@ class IntensityImage:
         self._own = threading.local()  # GDAL's datasets serve one thread each
 
     @classmethod
+    @gdal_exceptions()
     def open(cls, path):
         """Open an image.
 
@@ -66,6 +68,7 @@ class IntensityImage:
         eight_bit = dataset.GetRasterBand(1).DataType == 1  # GDT_Byte
         return cls(path, transform, dataset.RasterXSize, dataset.RasterYSize, crs, eight_bit)
 
+    @gdal_exceptions()
     def read_pixels(self, column, row, width, height):
         """(height, width) float32 from a pixel on; NaN where there is no data or no image."""
         values = np.full((height, width), np.nan, np.float32)
@@ -172,7 +175,6 @@ def _float32():
 def _open_raster(path):
     from osgeo import gdal
 
-    gdal.UseExceptions()
     if not Path(path).is_file():
         raise RoadExtractionError(f"There is no file {path}. Give the intensity image written by “Intensity image”.")
     try:
@@ -185,6 +187,7 @@ def _open_raster(path):
 class NewGeoTiff:
     """The one band of a GeoTIFF that is being written; nobody else holds its dataset, so that `close` ends it."""
 
+    @gdal_exceptions()
     def __init__(self, path, width, height, geotransform, crs, byte, nodata):
         from osgeo import gdal
 
@@ -199,21 +202,25 @@ class NewGeoTiff:
             self._dataset.SetProjection(crs)
         self._dataset.GetRasterBand(1).SetNoDataValue(nodata)
 
+    @gdal_exceptions()
     def write(self, column, row, values):
         """Write (H, W) pixels from one on; they are compressed by other threads once `flush` is called."""
         height, width = values.shape
         data = np.ascontiguousarray(values, self._numbers).tobytes()
         self._dataset.GetRasterBand(1).WriteRaster(column, row, width, height, data, buf_type=self._type)
 
+    @gdal_exceptions()
     def read(self, column, row, width, height):
         """(height, width) pixels as written so far, a copy."""
         data = self._dataset.GetRasterBand(1).ReadRaster(column, row, width, height, buf_type=self._type)
         return np.frombuffer(data, self._numbers).reshape(height, width).copy()
 
+    @gdal_exceptions()
     def flush(self):
         """Hand what was written to the file, which compresses it beside the work that follows."""
         self._dataset.GetRasterBand(1).FlushCache()
 
+    @gdal_exceptions()
     def close(self):
         """End the file; a file that is still open cannot be renamed on Windows."""
         try:
@@ -235,9 +242,6 @@ def new_geotiff(path, width, height, geotransform, crs, byte=False, nodata=NODAT
     RoadExtractionError
         If the file cannot be written.
     """
-    from osgeo import gdal
-
-    gdal.UseExceptions()
     path = Path(path)
     unfinished = path.with_name(path.name + ".unfinished.tif")
     image = None

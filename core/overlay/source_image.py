@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import RoadExtractionError
+from ..gdal_errors import gdal_exceptions
 
 _NOWHERE = (0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
@@ -50,6 +51,7 @@ class SourceImage:
                 & (line >= -margin) & (line <= self.height + margin))
 
 
+@gdal_exceptions()
 def open_image(path):
     """SourceImage of a file; refuses what GDAL cannot read and images that are too small to hold anything.
 
@@ -60,7 +62,6 @@ def open_image(path):
     """
     from osgeo import gdal
 
-    gdal.UseExceptions()
     if not Path(path).is_file():
         raise RoadExtractionError(f"There is no file {path}. Give the image itself (TIFF, JPEG or PNG).")
     try:

@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 
 from ..errors import Cancelled, RoadExtractionError
+from ..gdal_errors import gdal_exceptions
 from ..progress import Progress
 from .georeferencing import lattice, own_pixel_size
 
@@ -53,6 +54,7 @@ def _keeps_its_pixels(found):
     return found.settings.order == 0 and np.allclose(slope, found.pixel_size * np.array([[1, 0], [0, -1]]), rtol=1e-9, atol=1e-12)
 
 
+@gdal_exceptions()
 def draw_image(found, path, progress=None):
     """Write the image as a tiled, losslessly compressed GeoTIFF with overviews; it takes its name when it is whole.
 
@@ -75,7 +77,6 @@ def draw_image(found, path, progress=None):
     """
     from osgeo import gdal
 
-    gdal.UseExceptions()
     progress = progress or Progress()
     bounds, width, height = output_grid(found)
     unfinished, tiled = (Path(path).with_name(Path(path).name + end) for end in (".unfinished.tif", ".source.tif"))

@@ -2,7 +2,10 @@
 
 import numpy as np
 
+from ..gdal_errors import gdal_exceptions
 
+
+@gdal_exceptions()
 def grey_background(path, longest=1800):
     """A stretched grey copy of a raster.
 
@@ -12,7 +15,6 @@ def grey_background(path, longest=1800):
     """
     from osgeo import gdal
 
-    gdal.UseExceptions()
     dataset = gdal.Open(str(path))
     width, height = dataset.RasterXSize, dataset.RasterYSize
     scale = min(1.0, longest / max(width, height))

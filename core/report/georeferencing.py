@@ -3,6 +3,7 @@
 import cv2
 import numpy as np
 
+from ..gdal_errors import gdal_exceptions
 from ..overlay.control_points import CHECK, CONTROL, DISABLED
 from ..overlay.warping import drawn_area, output_grid
 from ..survey.crs import horizontal, parse_crs
@@ -115,11 +116,11 @@ def _round_down(value):
     return float(max(step * ten for step in (1, 2, 5) if step * ten <= value * (1 + 1e-9)))
 
 
+@gdal_exceptions()
 def _small(path):
     """((H, W, 3) small copy of the drawn image, pixels per metre, map coordinates of its north-west corner)."""
     from osgeo import gdal
 
-    gdal.UseExceptions()
     dataset = gdal.Open(str(path))
     share = min(1.0, LONGEST / max(dataset.RasterXSize, dataset.RasterYSize))
     width, height = (max(int(n * share), 1) for n in (dataset.RasterXSize, dataset.RasterYSize))

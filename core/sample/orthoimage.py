@@ -11,6 +11,7 @@ import cv2
 import numpy as np
 
 from ..errors import RoadExtractionError
+from ..gdal_errors import gdal_exceptions
 from ..progress import Progress
 from .control_marks import PLATE, plates
 from .obstacles import Car, Post
@@ -126,6 +127,7 @@ def _within(x, y, at_x, at_y, reach):
     return np.flatnonzero((x - at_x) ** 2 + (y - at_y) ** 2 < reach**2)
 
 
+@gdal_exceptions()
 def write_uav_image(survey, path, progress=None):
     """Write the UAV image of a made survey: an RGB TIFF without a place on the map.
 
@@ -141,7 +143,6 @@ def write_uav_image(survey, path, progress=None):
     """
     from osgeo import gdal
 
-    gdal.UseExceptions()
     progress = progress or Progress()
     camera = survey.camera
     seen = StreetSeen(survey.scene, camera, survey.settings.seed)

@@ -2,7 +2,10 @@
 
 import numpy as np
 
+from ..gdal_errors import gdal_exceptions
 
+
+@gdal_exceptions()
 def write_density(found, path):
     """Write the density of an Inspection: float32 points per m², NaN where no point lies.
 
@@ -13,7 +16,6 @@ def write_density(found, path):
     """
     from osgeo import gdal, osr
 
-    gdal.UseExceptions()
     density, (west, north) = found.density
     height, width = density.shape
     cell = found.settings.cell_size

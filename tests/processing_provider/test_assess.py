@@ -1,10 +1,12 @@
 """The three assessments through real Processing, with layers as other software writes them."""
 
 import math
+from contextlib import suppress
 from pathlib import Path
 
 import processing
 import pytest
+from osgeo import gdal, ogr, osr
 from qgis.core import QgsCoordinateReferenceSystem, QgsFeature, QgsGeometry, QgsProcessingException, QgsProcessingFeedback, QgsVectorLayer
 
 EAST, NORTH = 610400.0, 5405000.0
@@ -152,6 +154,29 @@ def test_markings_are_judged_from_polygons_lines_and_masks(provider, tmp_path):
     # the outcome raster is a mask too: hits (1) and misses (2) are the reference
     again, _ = run("assessmarkings", tmp_path, INPUT=cells, REFERENCE=reference)
     assert (again["HITS"], again["MISSES"], again["FALSE_ALARMS"]) == (3000, 0, 0)
+
+
+def switch_gdal(raises):
+    while not raises and any(module.GetUseExceptions() for module in (gdal, ogr, osr)):
+        for module in (gdal, ogr, osr):
+            with suppress(RuntimeError):  # GDAL before 3.7 takes the last off first
+                module.DontUseExceptions()
+    if raises:
+        gdal.UseExceptions()
+        ogr.UseExceptions()
+
+
+@pytest.mark.parametrize("raises", [False, True])
+def test_an_algorithm_leaves_gdal_to_other_plugins_as_it_was(provider, tmp_path, raises):
+    before = gdal.GetUseExceptions()
+    switch_gdal(raises)
+    line = layer("LineString", ["LineString (0 0.08, 20 0.08)"], fields="&field=width_m:double", rows=[[0.16]])
+    cells = str(tmp_path / "cells.tif")
+    run("assessmarkings", tmp_path, INPUT=line, REFERENCE=line, CELLS=cells, TRAJECTORY=drive())
+    run("assessmarkings", tmp_path, INPUT=cells, REFERENCE=line, IMAGE=cells)
+    after = gdal.GetUseExceptions(), ogr.GetUseExceptions()
+    switch_gdal(before)
+    assert after == (raises, raises)
 
 
 def test_all_of_one_class_and_no_class_at_all_are_judged_alike(provider, tmp_path):
