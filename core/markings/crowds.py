@@ -1,5 +1,7 @@
 """Which of many points cannot be far from their neighbours: told by the cells they lie in, before any neighbour is looked for."""
 
+import math
+
 import cv2
 import numpy as np
 
@@ -8,6 +10,7 @@ from ..survey.points import UNIT
 SIDE = 1.5     # times the usual distance: cells so large that three by three of them hold three times the neighbours asked for
 NOWHERE = 1e9  # m, where no distance is known
 ABOUT = 9      # cells about a point: where others are looked at to tell what is usual there
+CELLS = 8      # for every point at most about so many, however near to each other rounded or repeated points lie
 
 
 def may_be_lonely(records, k, looked, distances, limit, lonelier):
@@ -32,8 +35,11 @@ def may_be_lonely(records, k, looked, distances, limit, lonelier):
     the root of the mean square of these, which sums over cells give for every point::
 
         n |p|² - 2 p · sum(q) + sum(|q|²)
+
+    This holds for cells of any size. They follow the usual distance down to a size that
+    leaves no more than `CELLS` of them for every point.
     """
-    side = max(int(SIDE * np.median(distances) / UNIT), 1)
+    side = max(int(SIDE * np.median(distances) / UNIT), _least_side(records["s"], records["d"]))
     (row, rows), (column, columns) = (_cells(records[name], side) for name in "sd")
     cell = row * np.int32(columns) + column
     places = [(records[name] - records[name][0]).astype(float) for name in "xyz"]
@@ -53,6 +59,13 @@ def may_be_lonely(records, k, looked, distances, limit, lonelier):
     usual = cv2.erode(usual, np.ones((ABOUT, ABOUT), np.uint8), borderType=cv2.BORDER_CONSTANT, borderValue=NOWHERE).ravel().take(cell)
     most = np.maximum(np.where(usual < NOWHERE, lonelier * usual, 0.0), limit) / UNIT
     return np.flatnonzero((count <= k) | (squares > (count - 1) * most**2))
+
+
+def _least_side(s, d):
+    """The smallest side of cells, in units, of which there are at most about `CELLS` for every point."""
+    along, across = (int(units.max()) - int(units.min()) for units in (s, d))
+    most = CELLS * len(s)
+    return max(math.ceil(math.sqrt(along * across / most)), math.ceil(max(along, across) / most), 1)
 
 
 def _cells(units, side):

@@ -14,6 +14,9 @@ LEAF = 20             # points in a leaf of the tree
 EXACT = 1 << 24       # units (1.6 km): up to here float32 holds every integer
 TILE = 18             # bits: 26 m of map worked at together
 MARGIN = 10_000       # units: 1 m about a tile where neighbours are looked for
+COPIES = 32           # of points at one place are in a tree at least: more are left out where they cannot change a distance
+TOGETHER = 1 << 16    # points asked for at a time where only their distances are wanted
+SCATTER = np.uint32(2654435761)  # an odd number that scatters places over a table
 
 
 class Neighbours:
@@ -24,19 +27,30 @@ class Neighbours:
     units : (N, 3) int32 of 0.1 mm
     k : neighbours; fewer where there are no more
 
+    Attributes
+    ----------
+    most_at_place : int, the most points at one and the same place
+
     Notes
     -----
     The tree is OpenCV's exact one, which works in float32. Points are integers
     of 0.1 mm counted from their least, so up to 1.6 km nothing is rounded, and
     beyond it a slower tree in float64 is taken.
+
+    Of points at the very same place the tree holds no more than can be among the k
+    nearest: a search would otherwise look at all of them, for each of them.
     """
 
     def __init__(self, units, k):
         self.k = max(min(k, len(units) - 1), 0)
         least = units.min(axis=0) if len(units) else 0
         self._units = units - least
+        at_place = points_at_place(self._units)
+        self.most_at_place = int(at_place[0].max(initial=0))
+        self._rows = _without_needless(self._units, self.k, at_place)
         if self.k and self._units.max() < EXACT:
-            self._places = self._units.astype(np.float32)
+            places = self._units if self._rows is None else self._units.take(self._rows, axis=0)
+            self._places = places.astype(np.float32)  # the tree does not keep it alive
             self._tree = cv2.flann_Index(self._places, dict(algorithm=4, leaf_max_size=LEAF))  # 4: one exact kd-tree
 
     def __len__(self):
@@ -65,12 +79,65 @@ class Neighbours:
         means = distances.sum(axis=1, dtype=np.float64) * (UNIT / self.k)
         return means.take(back), distances[:, -1].take(back) * UNIT, nearest[:, 1:].take(back, axis=0)
 
+    def distances(self, rows):
+        """Mean distance of some points to their nearest others, and the distance to the last of these, as in `of`: (M,) metres each."""
+        means, farthest = np.empty(len(rows)), np.empty(len(rows))
+        for first in range(0, len(rows), TOGETHER):
+            some = slice(first, first + TOGETHER)
+            means[some], farthest[some], _ = self.of(rows[some])
+        return means, farthest
+
     def _ask(self, rows):
+        asked = self._units.take(rows, axis=0)
         if self._units.max() < EXACT:
-            nearest, squares = self._tree.knnSearch(self._places.take(rows, axis=0), self.k + 1, params={})
-            return nearest, np.sqrt(squares, out=squares)
-        distances, nearest = cKDTree(self._units).query(self._units.take(rows, axis=0), self.k + 1)
-        return nearest.astype(np.int32), distances
+            nearest, squares = self._tree.knnSearch(asked.astype(np.float32), self.k + 1, params={})
+            distances = np.sqrt(squares, out=squares)
+        else:
+            places = self._units if self._rows is None else self._units.take(self._rows, axis=0)
+            distances, nearest = cKDTree(places).query(asked, self.k + 1)
+        nearest = nearest if self._rows is None else self._rows.take(nearest)
+        return nearest.astype(np.int32, copy=False), distances
+
+
+def points_at_place(units):
+    """How many points lie at the very place of each.
+
+    Parameters
+    ----------
+    units : (N, 3) int32
+
+    Returns
+    -------
+    count : (N,) int32
+    rank : (N,) int32, how many of them come before the point
+    """
+    count, rank = np.ones(len(units), np.int32), np.zeros(len(units), np.int32)
+    if not len(units):
+        return count, rank
+    cell = np.zeros(len(units), np.uint32)
+    for axis in range(units.shape[1]):
+        cell ^= units[:, axis].astype(np.uint32)
+        cell *= SCATTER
+        cell ^= cell >> np.uint32(15)
+    cell >>= np.uint32(max(32 - len(units).bit_length() - 2, 8))
+    # only what shares a cell of the table can share a place
+    rows = np.flatnonzero(np.bincount(cell).take(cell) > 1)
+    if not len(rows):
+        return count, rank
+    order = rows.take(order_by(*(units[:, axis].take(rows) for axis in (2, 1, 0))))
+    ordered = units.take(order, axis=0)
+    first = np.flatnonzero(np.r_[True, (ordered[1:] != ordered[:-1]).any(axis=1)])
+    size = np.diff(np.r_[first, len(order)])
+    count[order] = np.repeat(size, size)
+    rank[order] = np.arange(len(order)) - np.repeat(first, size)
+    return count, rank
+
+
+def _without_needless(units, k, at_place=None):
+    """Indices of points, ascending: of each place the first k + 1, or a few more; None where these are all of them."""
+    most = max(k + 1, COPIES)
+    count, rank = points_at_place(units) if at_place is None else at_place
+    return np.flatnonzero(rank < most) if count.max(initial=0) > most else None
 
 
 def mean_distances(units, k, progress=Progress()):
@@ -89,14 +156,16 @@ def mean_distances(units, k, progress=Progress()):
         return np.full(len(units), np.inf)
     means, unsettled = np.empty(len(units)), []
     tiles = list(_tiles(units))
-    asked = in_order(lambda tile: Neighbours(units.take(tile[1], axis=0), k).of(np.arange(tile[0])), tiles, progress)
-    for (own, rows), (distances, farthest, _) in zip(tiles, asked):
+    asked = in_order(lambda tile: Neighbours(units.take(tile[1], axis=0), k).distances(np.arange(tile[0])), tiles, progress)
+    for (own, rows), (distances, farthest) in zip(tiles, asked):
         means[rows[:own]] = distances
         # beyond the margin there may be nearer ones
         unsettled.append(rows[:own][~(farthest <= MARGIN * UNIT) | (len(rows) <= k)])
     unsettled = np.concatenate(unsettled)
     if len(unsettled):
-        means[unsettled] = cKDTree(units).query(units[unsettled], k + 1)[0][:, 1:].mean(axis=1) * UNIT
+        rows = _without_needless(units, k)
+        tree = cKDTree(units if rows is None else units.take(rows, axis=0))
+        means[unsettled] = tree.query(units[unsettled], k + 1)[0][:, 1:].mean(axis=1) * UNIT
     return means
 
 

@@ -132,7 +132,9 @@ def _lonely(records, rows, neighbours, settings):
     distances = neighbours.distances(rows[looked])
     limit = distances.mean() + settings.std_ratio * distances.std(ddof=1)
     if len(looked) < len(rows):
-        rows = rows[may_be_lonely(records.take(rows), settings.neighbours, looked, distances, limit, LONELIER)]
+        # beside places of so many points some are far nearer to their neighbours than the evenly strewn ones show
+        lonelier = LONELIER if neighbours.neighbours.most_at_place <= max(settings.neighbours // 2, 1) else 0.0
+        rows = rows[may_be_lonely(records.take(rows), settings.neighbours, looked, distances, limit, lonelier)]
     return rows[neighbours.distances(rows) > limit]
 
 
@@ -147,7 +149,7 @@ class _Known:
         """(M,) metres of (M,) rows."""
         new = rows[np.isnan(self._distances[rows])]
         if len(new):
-            self._distances[new] = self.neighbours.of(new)[0]
+            self._distances[new] = self.neighbours.distances(new)[0]
         return self._distances[rows]
 
 

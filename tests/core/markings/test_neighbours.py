@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.markings.neighbours import Neighbours, mean_distances
+from lanewright.core.markings.neighbours import Neighbours, mean_distances, points_at_place
 from scipy.spatial.distance import cdist
 
 
@@ -20,6 +20,9 @@ SCENES = {
     "dense paint": paint(900, 1.0),
     "paint across the borders of several tiles": paint(900, 60.0),
     "points at the same places": np.repeat(paint(150, 1.0), 6, axis=0),
+    "many points at the same places": np.repeat(paint(20, 1.0), 45, axis=0),
+    "many points at the same places, three kilometres apart": np.repeat(np.r_[paint(10, 1.0), paint(10, 1.0, 1) + [30_000_000, 0, 0]], 45,
+                                                                        axis=0).astype(np.int32),
     "two patches, three kilometres apart": np.r_[paint(300, 1.0), paint(300, 1.0, 1) + [30_000_000, 0, 0]].astype(np.int32),
     "a lone point beside dense paint": np.r_[paint(300, 1.0), [[200_000, 5, 5]]].astype(np.int32),
     "fewer points than neighbours": paint(7, 1.0),
@@ -58,3 +61,13 @@ def test_a_point_by_itself_has_nobody():
 def test_no_points_have_no_distances():
     assert len(mean_distances(np.empty((0, 3), np.int32), 20)) == 0
     assert len(Neighbours(paint(30, 1.0), 5).of(np.empty(0, int))[0]) == 0
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_points_at_one_place_are_counted(scene):
+    units = SCENES[scene]
+    same = (units[:, None] == units).all(axis=2)
+    count, rank = points_at_place(units)
+    np.testing.assert_array_equal(count, same.sum(axis=1))
+    np.testing.assert_array_equal(rank, np.tril(same, -1).sum(axis=1))
+    assert Neighbours(units, 12).most_at_place == same.sum(axis=1).max()

@@ -1,5 +1,7 @@
 """Points that lie apart from the paint go, paint stays."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from lanewright.core.errors import RoadExtractionError
@@ -84,6 +86,81 @@ def test_no_point_beyond_the_limit_is_taken_for_one_among_many(neighbours):
     found = may_be_lonely(records, neighbours, looked, distances[looked], limit, 0.0)
     assert set(np.flatnonzero(distances > limit)) <= set(found)
     assert len(found) < len(records) / 2
+
+
+def rounded(records, step):
+    """The same points on a grid of so many metres."""
+    result, step = records.copy(), round(step * 1e4)
+    for name in "xyzsd":
+        result[name] = (records[name] + step // 2) // step * step
+    return result[np.argsort(result["s"], kind="stable")]
+
+
+def every_second_repeated(records, times):
+    return np.repeat(records, np.where(np.arange(len(records)) % 2, times, 1))
+
+
+EXPORTS = {
+    "a grid of 1 cm": lambda records: rounded(records, 0.01),
+    "a grid of 10 cm": lambda records: rounded(records, 0.1),
+    "every point 25 times": lambda records: np.repeat(records, 25),
+    "every second point 22 times on a grid of 1 cm": lambda records: every_second_repeated(rounded(records, 0.01), 22),
+}
+
+
+def mean_distances_of_all(records, k):
+    """(N,) metres, from the distances of every point to every other."""
+    places = np.c_[records["x"], records["y"], records["z"]] * 1e-4
+    return np.concatenate([np.sort(cdist(some, places), axis=1)[:, 1:k + 1].mean(axis=1)
+                           for some in np.array_split(places, len(places) // 500 + 1)])
+
+
+@pytest.mark.parametrize("export", EXPORTS)
+def test_of_rounded_and_repeated_points_those_go_that_pcl_removes(export):
+    records = EXPORTS[export](with_stray(paint(FRAME, [strip(5, 15, 1.0, 1.15)], density=150), 8.0, 1.6))
+    distances = mean_distances_of_all(records, 20)
+    kept = remove_outliers(road_points(records, FRAME), OutlierSettings(scope="all"))
+    expected = records[distances <= distances.mean() + distances.std(ddof=1)]
+    for name in "sd":
+        np.testing.assert_array_equal(np.sort(kept.all_points().records[name]), np.sort(expected[name]))
+    # only where all points have as many others at their place as are asked for, none lies apart
+    assert len(expected) < len(records) or export == "every point 25 times"
+
+
+@pytest.mark.parametrize("export", EXPORTS)
+def test_where_points_are_rounded_or_repeated_windows_find_the_same_as_when_every_point_is_asked(export, monkeypatch):
+    records = EXPORTS[export](with_stray(paint(FRAME, [LINE, strip(5, 60, -2.6, -2.45)], density=1500), 33.0, 0.4))
+    points = road_points(records, FRAME)
+    few = remove_outliers(points)
+    monkeypatch.setattr(outliers, "may_be_lonely", lambda records, *_: np.arange(len(records)))
+    assert_same_points(few.all_points().records, remove_outliers(points).all_points().records)
+    # a point of which 25 lie at one place is not alone
+    assert (abs(few.all_points().d - 0.4) < 0.01).any() == (export == "every point 25 times")
+
+
+@pytest.mark.parametrize("export", EXPORTS)
+@pytest.mark.parametrize("neighbours", [1, 20])
+def test_among_rounded_and_repeated_points_none_beyond_the_limit_is_taken_for_one_among_many(export, neighbours):
+    records = EXPORTS[export](paint(FRAME, [strip(5, 15, 1.0, 1.15), strip(5, 15, 0.2, 0.25)], density=150))
+    distances = mean_distances_of_all(records, neighbours)
+    for limit in (0.0, distances.mean(), distances.mean() + distances.std(ddof=1)):
+        looked = np.arange(0, len(records), 7)
+        found = may_be_lonely(records, neighbours, looked, distances[looked], limit, 0.0)
+        assert set(np.flatnonzero(distances > limit + 1e-9)) <= set(found)
+
+
+@pytest.mark.parametrize("export", EXPORTS)
+@pytest.mark.parametrize("scope", ["all", "windows"])
+def test_memory_does_not_depend_on_how_points_are_rounded_or_repeated(export, scope):
+    records = EXPORTS[export](paint(FRAME, [LINE, strip(5, 60, -2.6, -2.45)], density=1500))
+    points = road_points(records, FRAME)
+    tracemalloc.start()
+    try:
+        remove_outliers(points, OutlierSettings(scope=scope))
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert peak < 30e6 + 10 * records.nbytes
 
 
 def test_a_handful_of_points_is_left_alone():
