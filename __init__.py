@@ -70,8 +70,10 @@ def classFactory(iface):
 
     add_library_folders(QgsApplication.qgisSettingsDirPath())
     load_shapely()
-    # QGIS shows every warning, and laspy is warned of what Python 3.19 will refuse: nothing a user can act on
+    # QGIS shows every warning. Once and here, since filters are those of the whole process, which no thread may change
+    # meanwhile: laspy is warned of what Python 3.19 will refuse, and CRSs are compared by their PROJ strings; nothing a user can act on
     warnings.filterwarnings("ignore", category=DeprecationWarning, module="laspy")
+    warnings.filterwarnings("ignore", "You will likely lose important projection information", UserWarning)
     from .processing_provider.texts import install_translator
 
     translator = install_translator()

@@ -1,6 +1,5 @@
 """Layers of any origin brought together: one CRS in metres, the right kind of geometry, a place in common."""
 
-import warnings
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -96,9 +95,7 @@ def in_crs(layer, wkt, warn=lambda text: None):
         return AssessedLayer(layer.label, layer.geometries, layer.rows, wkt)
     from pyproj import Transformer
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)
-        move = Transformer.from_crs(horizontal(source), horizontal(target), always_xy=True)
+    move = Transformer.from_crs(horizontal(source), horizontal(target), always_xy=True)
     moved = shapely.transform(np.asarray(layer.geometries, object), lambda xy: np.column_stack(move.transform(*xy.T)))
     moved = [_with_heights_of(old, new) for old, new in zip(layer.geometries, moved)]
     if not np.isfinite(shapely.get_coordinates(moved)).all():

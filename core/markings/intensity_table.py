@@ -1,6 +1,5 @@
 """What asphalt returns at each distance from a scanner: counted in histograms, so that no order matters."""
 
-import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -218,9 +217,10 @@ def _mixed(spread):
     """Bins whose relative spread stands out from those around: a line painted at one distance fills much of them."""
     around = np.stack([np.roll(np.pad(spread, ((0, 0), (4, 4)), constant_values=np.nan), k, axis=1)[:, 4:-4]
                        for k in range(-4, 5)])
-    with np.errstate(invalid="ignore"), warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # bins with nothing around them
-        return spread > MIXED * np.nanmedian(around, axis=0)
+    known = np.isfinite(spread)  # so that each has something around it: itself
+    found = np.zeros(spread.shape, bool)
+    found[known] = spread[known] > MIXED * np.nanmedian(around[:, known], axis=0)
+    return found
 
 
 def _smooth(values, weight, sigma=0.7):

@@ -1,6 +1,5 @@
 """The coordinate reference system a survey is worked in: projected, in metres, and agreed on."""
 
-import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -110,9 +109,7 @@ def same_place(a, b):
     if a.equals(b, ignore_axis_order=True):
         return True
     # LAS files round and rename; the projection itself is what counts
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)
-        a, b = a.to_dict(), b.to_dict()
+    a, b = a.to_dict(), b.to_dict()
     ignored = ("title", "type", "no_defs")
     return bool(a) and {k: v for k, v in a.items() if k not in ignored} == {k: v for k, v in b.items() if k not in ignored}
 

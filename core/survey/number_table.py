@@ -4,8 +4,8 @@ Half a million rows take about a second: lines are counted and cut as bytes, and
 the numbers are parsed in one call.
 """
 
+import io
 import re
-import warnings
 from collections import Counter
 from dataclasses import dataclass
 
@@ -151,14 +151,13 @@ def _parse(body, delimiter, columns, decimal_comma):
     if not right.all():
         body = text[np.repeat(right, ends - starts + 1)].tobytes()
     rows = int(np.count_nonzero(right))
-    with warnings.catch_warnings():
-        # numpy warns and stops where a field is no number; then fields are read one by one
-        warnings.simplefilter("ignore", DeprecationWarning)
+    values = None
+    if rows:
         try:
-            values = np.fromstring(body, sep=" ")
+            values = np.loadtxt(io.BytesIO(body), comments=None, ndmin=2, encoding="latin1")
         except ValueError:
-            values = np.empty(0)
-    if len(values) != rows * columns:
+            pass  # a field is no number: fields are read one by one
+    if values is None or values.shape != (rows, columns):
         values = _parse_mixed(body, columns)
     return only_numbers(values).reshape(-1, columns), dropped
 
