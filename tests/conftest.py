@@ -2,6 +2,7 @@
 
 import importlib.util
 import os
+import shutil
 import sys
 from collections import Counter
 from pathlib import Path
@@ -27,6 +28,33 @@ def pytest_collection_modifyitems(items):
     """Files with the most slow tests begin, so that at the end no worker waits long for another."""
     slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
     items.sort(key=lambda item: -slow[item.path])
+
+
+@pytest.fixture(scope="session")
+def made_once(tmp_path_factory):
+    """`made_once(name, make)` is a folder that `make(folder)` fills when the first test asks for that name.
+
+    All processes of a run share it, and with `make test` its three parts do; tests only read it.
+    """
+    import fcntl  # there is none on Windows
+
+    base = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        base = base.parent
+    base = Path(os.environ.get("LANEWRIGHT_MADE_ONCE", base / "made_once"))
+    base.mkdir(parents=True, exist_ok=True)
+
+    def made(name, make):
+        folder, unfinished = base / name, base / f"{name}.part"
+        with open(base / f"{name}.lock", "w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not folder.exists():
+                shutil.rmtree(unfinished, ignore_errors=True)
+                unfinished.mkdir()
+                make(unfinished)
+                unfinished.rename(folder)
+        return folder
+    return made
 
 
 @pytest.fixture(scope="session")

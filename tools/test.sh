@@ -17,6 +17,10 @@ run() {
   return "$code"
 }
 chosen=$#
+# Surveys that tests make are made once and shared by all parts and processes of this run.
+LANEWRIGHT_MADE_ONCE="$(mktemp -d)"
+export LANEWRIGHT_MADE_ONCE
+trap 'rm -rf "$LANEWRIGHT_MADE_ONCE"' EXIT
 
 echo "== core, where qgis cannot be imported"
 LANEWRIGHT_WITHOUT_QGIS=1 run "${part[@]}" -p no:pytest_qgis -o addopts='--import-mode=importlib -p no:cacheprovider' tests/core "$@"

@@ -9,22 +9,24 @@ import shapely
 from lanewright.core.assess.lines import compare_lines
 from lanewright.core.errors import RoadExtractionError
 from lanewright.core.road_map import make_road_map
-from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 from lanewright.core.survey.trajectory import clean_trajectory
 
 ONE_SENTENCE = 700  # characters: what was seen, what was needed, what to try
 
 
 @pytest.fixture(scope="module")
-def sample():
-    return make_sample_survey(SampleSettings(length=60.0, pulse_rate=100_000, rotation_rate=100.0))
+def street(made_survey):
+    return made_survey(length=60.0, pulse_rate=100_000.0, rotation_rate=100.0)
 
 
 @pytest.fixture(scope="module")
-def whole(sample, tmp_path_factory):
-    path = tmp_path_factory.mktemp("street") / "survey.laz"
-    sample.write_cloud(path)
-    return path
+def sample(street):
+    return street[0]
+
+
+@pytest.fixture(scope="module")
+def whole(street):
+    return street[1]
 
 
 @pytest.fixture

@@ -8,7 +8,6 @@ from lanewright.core.errors import Cancelled
 from lanewright.core.parallel import heard
 from lanewright.core.progress import Progress
 from lanewright.core.road_map import RoadMapSettings, make_road_map
-from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 from lanewright.core.stages import NAMES
 
 SHORT, LONG = 60.0, 180.0   # m
@@ -46,14 +45,8 @@ def questions(monkeypatch, survey, folder, last=None):
 
 
 @pytest.fixture(scope="module")
-def streets(tmp_path_factory):
-    found = []
-    for length in (SHORT, LONG):
-        sample = make_sample_survey(SampleSettings(length=length, pulse_rate=90_000.0, rotation_rate=90.0))
-        cloud = tmp_path_factory.mktemp("street") / "cloud.laz"
-        sample.write_cloud(cloud)
-        found.append((sample, cloud))
-    return found
+def streets(made_survey):
+    return [made_survey(length=length, pulse_rate=90_000.0, rotation_rate=90.0) for length in (SHORT, LONG)]
 
 
 @pytest.fixture(scope="module")

@@ -12,27 +12,29 @@ from lanewright.core.assess.lines import compare_lines
 from lanewright.core.assess.polygons import compare_polygons
 from lanewright.core.errors import Cancelled
 from lanewright.core.road_map import RoadMapSettings, make_road_map
-from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 from lanewright.core.survey.survey import SurveySettings, open_survey
 
 LAYERS = ("edges", "surface", "markings", "marking_lines", "driving_lines")
 
 
 @pytest.fixture(scope="module")
-def sample():
-    return make_sample_survey(SampleSettings(length=70.0, pulse_rate=120_000, rotation_rate=120.0))
+def street(made_survey):
+    return made_survey(length=70.0, pulse_rate=120_000.0, rotation_rate=120.0)
 
 
 @pytest.fixture(scope="module")
-def cloud(sample, tmp_path_factory):
-    path = tmp_path_factory.mktemp("street") / "survey.laz"
-    sample.write_cloud(path)
-    return path
+def sample(street):
+    return street[0]
 
 
 @pytest.fixture(scope="module")
-def road_map(sample, cloud):
-    return make_road_map([cloud], sample.trajectory, cloud.with_name("intensity.tif"))
+def cloud(street):
+    return street[1]
+
+
+@pytest.fixture(scope="module")
+def road_map(sample, cloud, tmp_path_factory):
+    return make_road_map([cloud], sample.trajectory, tmp_path_factory.mktemp("map") / "intensity.tif")
 
 
 def layers_of(road_map):

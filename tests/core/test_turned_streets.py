@@ -7,7 +7,6 @@ import shapely
 from lanewright.core.assess.lines import compare_lines
 from lanewright.core.assess.polygons import compare_polygons
 from lanewright.core.road_map import make_road_map
-from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 from lanewright.core.survey.trajectory import Trajectory
 
 ABOUT = np.array([610_450.0, 2_710_220.0])
@@ -46,20 +45,19 @@ def folder(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def sample(folder):
-    survey = make_sample_survey(SampleSettings(length=70.0, pulse_rate=120_000, rotation_rate=120.0))
-    survey.write_cloud(folder / "as_surveyed.laz")
-    return survey
+def street(made_survey):
+    return made_survey(length=70.0, pulse_rate=120_000.0, rotation_rate=120.0)
 
 
 @pytest.fixture(scope="module")
-def as_surveyed(sample, folder):
-    return make_road_map([folder / "as_surveyed.laz"], sample.trajectory, folder / "as_surveyed.tif")
+def as_surveyed(street, folder):
+    sample, cloud = street
+    return make_road_map([cloud], sample.trajectory, folder / "as_surveyed.tif")
 
 
-def road_map_of(sample, folder, there, backwards):
+def road_map_of(street, folder, there, backwards):
     """The road map of the same drive in other places, or at reversed time."""
-    points, drive = laspy.read(folder / "as_surveyed.laz"), sample.trajectory
+    points, drive = laspy.read(street[1]), street[0].trajectory
     places, track = (there(np.c_[np.asarray(p.x), np.asarray(p.y)]) for p in (points, drive))
     ends = drive.time[0] + drive.time[-1]
     header = laspy.LasHeader(point_format=6, version="1.4")
@@ -92,8 +90,8 @@ def metres_by_side(layer):
 @pytest.mark.parametrize("there, back, backwards", [
     (mirrored, mirrored, False), (turned, turned_back, False), (moved, moved_back, False), (left_as_it_is, left_as_it_is, True),
 ], ids=["mirrored", "turned by 37°", "moved", "driven backwards"])
-def test_the_map_does_not_depend_on_how_the_street_lies_or_is_driven(sample, folder, as_surveyed, there, back, backwards):
-    found = road_map_of(sample, folder, there, backwards)
+def test_the_map_does_not_depend_on_how_the_street_lies_or_is_driven(street, folder, as_surveyed, there, back, backwards):
+    found = road_map_of(street, folder, there, backwards)
     for name in ("edges", "marking_lines", "driving_lines"):
         lines, before = on_the_map_before(getattr(found, name), back), getattr(as_surveyed, name).geometries
         same = compare_lines(lines, before)

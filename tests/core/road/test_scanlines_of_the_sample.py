@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from lanewright.core.road.scanlines.scanlines import Scanlines
 from lanewright.core.road.scanlines.section_planes import ScanlineSettings, all_scanlines
-from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 from lanewright.core.survey.survey import open_survey
 
 USUAL = dict(length=60.0, pulse_rate=100_000.0, rotation_rate=100.0, speed_kmh=30.0)
@@ -12,10 +11,9 @@ USUAL = dict(length=60.0, pulse_rate=100_000.0, rotation_rate=100.0, speed_kmh=3
 
 @pytest.mark.parametrize("changed", [dict(), dict(mount_yaw=0.0), dict(speed_kmh=60.0), dict(rotation_rate=50.0), dict(pulse_rate=40_000.0)],
                          ids=["usual", "straight mount", "twice the speed", "half the rotation", "fewer pulses"])
-def test_scanlines_lie_on_the_ground_within_the_noise(tmp_path, changed):
-    sample = make_sample_survey(SampleSettings(**{**USUAL, **changed}))
-    sample.write_cloud(tmp_path / "cloud.laz")
-    survey = open_survey([str(tmp_path / "cloud.laz")], sample.trajectory)
+def test_scanlines_lie_on_the_ground_within_the_noise(made_survey, changed):
+    sample, cloud = made_survey(**{**USUAL, **changed})
+    survey = open_survey([str(cloud)], sample.trajectory)
     lines = Scanlines.join(all_scanlines(survey, 0, ScanlineSettings(interval=0.25)))
     x, y, z = survey.frame.to_map(0, np.repeat(lines.station, np.diff(lines.first)), lines.d, lines.z)
     x, y, z = (values - origin for values, origin in zip((x, y, z), sample.settings.origin))

@@ -10,7 +10,6 @@ from lanewright.core.assess.boundaries import assess_boundaries
 from lanewright.core.progress import Progress
 from lanewright.core.road.boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from lanewright.core.road.scanlines.source import SurveyScanlines
-from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 from lanewright.core.survey.survey import open_survey
 
 ROTATION = 100.0
@@ -28,10 +27,8 @@ class Log(Progress):
 
 
 @pytest.fixture(scope="module")
-def street(tmp_path_factory):
-    sample = make_sample_survey(SampleSettings(length=60.0, pulse_rate=100_000.0, rotation_rate=ROTATION, speed_kmh=30.0))
-    cloud = tmp_path_factory.mktemp("street") / "cloud.laz"
-    sample.write_cloud(cloud)
+def street(made_survey):
+    sample, cloud = made_survey(length=60.0, pulse_rate=100_000.0, rotation_rate=ROTATION, speed_kmh=30.0)
     curbs = {dropped: [geometry for geometry, row in sample.truth_boundaries
                        if row.get("part") != "top" and (row.get("kind") == "dropped") == dropped] for dropped in (False, True)}
     return SimpleNamespace(cloud=cloud, trajectory=sample.trajectory, curbs=curbs[False], dropped=curbs[True])
