@@ -17,7 +17,7 @@ from ..errors import RoadExtractionError
 from ..features import Features
 from ..progress import Progress
 from ..schemas import MARKINGS
-from ..survey.points import ROAD_POINT, UNIT, Points, joined
+from ..survey.points import UNIT, Points, joined
 from ..survey.sorting import order_by
 from . import polygons
 from .cells import components, occupied
@@ -168,12 +168,12 @@ def group(marking_points, road, distance, progress=Progress()):
         labels.append(component[member[own]])
         progress.at((step + 1) / len(windows))
     if not records:
-        return joined([], ROAD_POINT), np.empty(0, np.int64)
+        return joined([], marking_points.store.dtype), np.empty(0, np.int64)
     pairs = np.concatenate(links)
     graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
     _, merged = connected_components(graph, directed=False)
     labels = np.concatenate(labels)
-    return joined(records, ROAD_POINT), merged[labels] if len(labels) else labels
+    return joined(records, marking_points.store.dtype), merged[labels] if len(labels) else labels
 
 
 def _components(records, distance):

@@ -15,7 +15,7 @@ from .interpolation import Sums, interpolation_sums, lattice_cell, reach_of
 __all__ = ["ImageSettings", "IntensityImage", "write_intensity_image", "write_display_image"]
 
 WINDOW = 20.0          # m of station over which intensities are ranked for the second rule
-LARGEST = 2_000_000    # px, side of an image: beyond it a coordinate is wrong
+MOST_TILES = 2**24     # of an image, most of them empty: GDAL keeps 16 bytes of each
 PIECES = 4             # pieces of a window, each interpolated at a time
 MOST = 3               # points of a cell: where there are twice as many, an even share of them weighs on cells farther than the next
 WIDTH_TOLD = 16        # points, of which one tells how wide they lie
@@ -90,7 +90,7 @@ def write_intensity_image(road_points, path, settings=ImageSettings(), progress=
     steps = {piece: step for *_, steps in found for piece, step in steps.items()}
     c0, c1 = min(e[0] for e in pieces.values()), max(e[1] for e in pieces.values()) + 1
     r0, r1 = min(e[2] for e in pieces.values()), max(e[3] for e in pieces.values()) + 1
-    if max(c1 - c0, r1 - r0) > LARGEST:
+    if -(-(c1 - c0) // TILE) * -(-(r1 - r0) // TILE) > MOST_TILES:
         raise RoadExtractionError(
             f"The road points span {(c1 - c0) * settings.cell_size / 1000:.1f} by {(r1 - r0) * settings.cell_size / 1000:.1f} km, "
             f"too far for an image with {settings.cell_size} m cells. Use a larger cell size, or split the survey.")

@@ -12,7 +12,7 @@ from ..errors import RoadExtractionError
 from ..features import Features
 from ..progress import Progress
 from ..schemas import MARKING_LINES
-from ..survey.points import ROAD_POINT, joined
+from ..survey.points import joined
 from . import line_choice
 from .line_shape import shapes_of
 from .linking import Drift, Line, link, link_far, without_strays
@@ -115,7 +115,7 @@ def _linked(strands, settings):
 
 def _records_of(points, road):
     parts = [points.store.section(road, section) for section in points.sections(road)]
-    return joined(parts, ROAD_POINT)
+    return joined(parts, points.store.dtype)
 
 
 def _add(found, one, shape, number, road, origin):

@@ -91,8 +91,8 @@ class _Track:
         return np.copysign(np.sqrt(x, out=x), across).astype(np.int32)
 
     def _less(self, units, name, k):
-        """(N,) int32 units less where the vehicle was at ticks k."""
+        """(N,) int32 units less where the vehicle was at ticks k: of places with 64 bits the lower 32 tell it, as what is near is."""
         if name not in self._tables:
-            self._tables[name] = np.rint(self.driven.at(self.ticks, name)[0] / UNIT).astype(np.int32)
+            self._tables[name] = np.rint(self.driven.at(self.ticks, name)[0] / UNIT).astype(np.int64).astype(np.int32)
         there = self._tables[name].take(k, mode="clip")
-        return np.subtract(units, there, out=there)
+        return np.subtract(units.astype(np.int32, copy=False), there, out=there)

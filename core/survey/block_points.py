@@ -8,7 +8,7 @@ from .columns import Columns
 from .kept_arrays import KeptArrays
 from .las_axis import LasAxis
 from .placing import AT_ONCE, Placing
-from .points import SURVEY_POINT, UNIT, in_units, to_units
+from .points import SURVEY_POINT, UNIT, in_units, point_dtype, to_units
 from .scanners import times_by_value
 from .time_systems import WEEK
 
@@ -85,6 +85,7 @@ class BlockReading:
 
     def __init__(self, frame, corridor, has_time, week_ends=False):
         self.frame, self.corridor, self.has_time, self.week_ends = frame, corridor, has_time, week_ends
+        self.dtype = point_dtype(SURVEY_POINT, frame.farthest)
         self.placing = Placing(frame, corridor) if has_time else None
         self.roads = np.array([p.road for p in frame.passes] + [-1])
         self._kept = KeptArrays()
@@ -96,7 +97,7 @@ class BlockReading:
         all. The next piece is written over these Columns; what is said of the whole cloud is added to `found`, BlockPoints.
         """
         names = set(block.point_format.dimension_names)
-        axes = [LasAxis(*axis) for axis in zip("XYZ", block.scales, block.offsets, self.frame.origin)]
+        axes = [LasAxis(*axis, self.dtype[axis[0].lower()]) for axis in zip("XYZ", block.scales, block.offsets, self.frame.origin)]
         # piece by piece, so that what is worked on stays in the processor's cache
         for first in range(0, len(block), AT_ONCE):
             yield from self._piece(block[first:first + AT_ONCE], names, axes, found, ground)
@@ -118,7 +119,7 @@ class BlockReading:
                 return
             # so that they are stations of this piece at all
             columns["s"][~inside] = columns["s"][inside.argmax()]
-        points = Columns(columns, SURVEY_POINT, len(piece))
+        points = Columns(columns, self.dtype, len(piece))
         for number, own in self._by_road(columns["pass_number"], inside):
             if ground is not None:
                 near = ground.near(number, columns["s"], columns["z"], kept)

@@ -65,5 +65,5 @@ def _counted(points):
         count[:len(some)] += some
     held = np.flatnonzero(count)
     x, y, z = held % size[0] + low[0], held // size[0] % size[1] + low[1], held // (size[0] * size[1]) + low[2]
-    half = 2**20
-    return ((z + half) << 42) | ((y + half) << 21) | (x + half), count[held]
+    half = 2**22   # 4,000 km either side, and 32 km up or down
+    return ((z + 2**15) << 46) | ((y + half) << 23) | (x + half), count[held]

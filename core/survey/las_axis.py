@@ -2,9 +2,11 @@
 
 import numpy as np
 
-from .points import UNIT, in_units
+from .points import NARROW, UNIT, in_units
 
-FARTHEST = {"X": 2e5, "Y": 2e5, "Z": 2e4}  # m from the frame's origin: what lies beyond is absurd, and would overflow the units of a record
+# m from the frame's origin: what lies beyond is absurd, and would overflow the units of a record
+FARTHEST = {"X": NARROW, "Y": NARROW, "Z": 2e4}
+FARTHEST_WIDE = 1e8    # where x and y have 64 bits
 
 
 class LasAxis:
@@ -15,22 +17,27 @@ class LasAxis:
     name : "X", "Y" or "Z"
     scale, offset : of the file's header, metres
     origin : metres, of the road frame
+    kind : dtype of the units, int32 or int64
     """
 
-    def __init__(self, name, scale, offset, origin):
+    def __init__(self, name, scale, offset, origin, kind=np.int32):
+        self._kind = np.dtype(kind)
         self.name, self.scale, self.shift = name, scale, offset - origin
         step, start = scale / UNIT, self.shift / UNIT
         # units follow from whole numbers by whole numbers for nearly every file; coordinates have 32 bits
         self._whole = abs(step - round(step)) <= 1e-13 * abs(step) and abs(start - round(start)) < 1e-3
-        self._step, self._start = (np.array(round(value) % 2**32, np.uint32).view(np.int32) if self._whole else None for value in (step, start))
+        unsigned = np.dtype(f"u{self._kind.itemsize}")
+        self._step, self._start = (np.array(round(value) % 2**(8 * unsigned.itemsize), unsigned).view(self._kind) if self._whole else None
+                                   for value in (step, start))
 
         # whole numbers of places within reach
-        reach = sorted((sign * FARTHEST[name] - self.shift) / scale for sign in (-1, 1))
+        farthest = FARTHEST[name] if self._kind == np.int32 else FARTHEST_WIDE
+        reach = sorted((sign * farthest - self.shift) / scale for sign in (-1, 1))
         self._least, self._most = np.ceil(reach[0]), np.floor(reach[1])
 
     def units(self, raw, kept):
-        """(N,) int32 of 0.1 mm of raw points, and (N,) bool which of them have a place on earth; None where all have."""
-        numbers = kept(self.name, np.int32)
+        """(N,) units of 0.1 mm of raw points, and (N,) bool which of them have a place on earth; None where all have."""
+        numbers = kept(self.name, self._kind)
         np.copyto(numbers, raw[self.name])
         there = None
         if len(numbers) and not (numbers.min() >= self._least and numbers.max() <= self._most):

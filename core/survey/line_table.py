@@ -30,6 +30,8 @@ class LineTable:
         self.road, self.last, self._few = road, len(road.x) - 2, KeptArrays()
         self.start = round(road.start / UNIT)
         self.end = self.start + STEP * (len(road.x) - 1)
+        # where places have 64 bits, 32 of them tell them apart within the box about the line
+        self._box = [(int(v.min() / UNIT), int(v.max() / UNIT)) for v in (road.x, road.y)]
         # 32 bits of fine units reach 13 km: what lies nearer to a node is told right wherever both are, for differences wrap as places do
         self.x, self.y = (np.rint(v / UNIT * 2**FINE).astype(np.int64).astype(np.int32) for v in (road.x, road.y))
         c, n = road._cos, road._sin
@@ -42,7 +44,7 @@ class LineTable:
 
         Parameters
         ----------
-        x, y : (N,) int32 local units of 0.1 mm
+        x, y : (N,) int32 or int64 local units of 0.1 mm
         start : (N,) intp
         corridor : metres either side
         s, d : (N,) int32 units, where there is no foot anything
@@ -52,7 +54,7 @@ class LineTable:
         -------
         (N,) bool: which have a foot, as `Road.locate` tells it; None where all have
         """
-        seen = [np.left_shift(places, FINE, out=kept(name, np.int32)) for places, name in ((x, "x"), (y, "y"))]
+        seen = [np.left_shift(places.astype(np.int32, copy=False), FINE, out=kept(name, np.int32)) for places, name in ((x, "x"), (y, "y"))]
         ahead, _, _, bend = self._seen_from(start, *seen, kept)
         k = self._moved(start, ahead, bend, kept)
         found = share, offset, left, bend, _ = self._foot(k, *seen, kept)
@@ -70,6 +72,10 @@ class LineTable:
         k += self.start
         np.add(s, k, out=s, casting="unsafe")
         reach = int(corridor / UNIT)
+        if x.dtype == np.int64:
+            about = self._about(x, y, reach)
+            if not about.all():
+                near = about if near is None else near & about
         if near is None and _all_within(s, self.start, self.end - 1) and _all_within(d, -reach, reach):
             return None
         inside = (s >= self.start) & (s < self.end) & (d >= -reach) & (d <= reach)
@@ -77,6 +83,11 @@ class LineTable:
             inside &= near
             self._follow(x, y, start, np.flatnonzero(~near & (np.abs(left) < (1.5 * corridor + 5.0) / NODE)), corridor, s, d, inside)
         return inside
+
+    def _about(self, x, y, reach):
+        """(N,) bool: which places lie in the box about the line, `reach` units wider; a road is too short for two that 32 bits do not tell apart."""
+        (left, right), (bottom, top) = self._box
+        return (x >= left - reach) & (x <= right + reach) & (y >= bottom - reach) & (y <= top + reach)
 
     def _away(self, places, nodes, k, kept, name):
         """(N,) float32 fine units from nodes to places, along one axis."""

@@ -13,6 +13,7 @@ LEVEL = 3.0         # m of height: farther above is another level of a ramp or b
 PARALLEL = np.radians(30.0)
 RETURN_AFTER = 60.0  # m of driving before coming near one's own track counts as a return
 SHORTEST = 10.0     # m: shorter pieces are not worth a pass of their own
+LONGEST = 200_000.0  # m of one road: its stations have 32 bits; what is longer becomes several roads
 STANDSTILL = 0.5    # m that a standing vehicle's position may tremble
 TURN = np.radians(75.0)   # off the apex's heading: where a turn on the spot begins and ends
 TURN_REACH = 40.0   # m either side of its apex
@@ -74,7 +75,7 @@ def moving_rows(x, y, step=STANDSTILL):
 
 
 def split_into_passes(trajectory):
-    """Cut the trajectory where it pauses, turns back, crosses itself or returns to its own track.
+    """Cut the trajectory where it pauses, turns back, crosses itself or returns to its own track, and what is longer than LONGEST.
 
     Returns
     -------
@@ -111,7 +112,7 @@ def _split_at_returns(trajectory, first, last):
         cuts = [(int(rows[k]), *(int(rows[m]) for m in (_turn_ends(heading, along, k) if is_turn else (k, k))))
                 for k, is_turn in _return_cuts(px, py, along, heading)]
     count = last - first
-    cuts = _long_enough(cuts, driven)
+    cuts = _short_enough(_long_enough(cuts, driven), driven)
     starts = [(0, 0)] + [(row, after) for row, _, after in cuts]
     ends = [(row + 1, before + 1) for row, before, _ in cuts] + [(count, count)]
     return [DrivenPath(first + a, first + b, float(driven[b - 1] - driven[a]), first + line_a, first + line_b)
@@ -128,6 +129,18 @@ def _long_enough(cuts, driven):
     while kept and driven[-1] - driven[kept[-1][0]] < SHORTEST:
         kept.pop()
     return kept
+
+
+def _short_enough(cuts, driven):
+    """The cuts with further ones, by which pieces longer than LONGEST become equal parts."""
+    ends = [0, *(row for row, _, _ in cuts), len(driven) - 1]
+    found = []
+    for first, last in zip(ends[:-1], ends[1:]):
+        length = driven[last] - driven[first]
+        parts = int(np.ceil(length / LONGEST))
+        rows = np.searchsorted(driven, driven[first] + length * np.arange(1, parts) / max(parts, 1)).tolist()
+        found += [(row, row, row) for row in rows if first < row < last]
+    return sorted([*cuts, *found])
 
 
 def _turn_ends(heading, along, apex):

@@ -11,7 +11,7 @@ import numpy as np
 from .driven_pass import MOST_TICKS, TICK
 from .kept_arrays import KeptArrays
 from .line_table import LineTable
-from .points import UNIT, to_units
+from .points import UNIT
 from .reference_line import NODE
 
 AT_ONCE = 100_000     # points worked at a time: of fewer more time goes into waiting for Python's lock, of many more into waiting for memory
@@ -48,14 +48,14 @@ class Placing:
         s, d : (N,) float64; NaN beyond the corridor or the road's ends, as `Road.locate` tells them
         """
         s, d = np.empty((2, len(x)), np.int32)
-        passes, inside = self.put(to_units(x), to_units(y), time, s, d)
+        passes, inside = self.put(*(np.rint(np.asarray(v) / UNIT).astype(np.int64) for v in (x, y)), time, s, d)
         s, d = s * UNIT, d * UNIT
         if inside is not None:
             s[~inside] = d[~inside] = np.nan
         return passes, s, d
 
     def put(self, x, y, time, s, d):
-        """Put stations and offsets of local places into s and d, all (N,) int32 in units of 0.1 mm.
+        """Put stations and offsets of local places into s and d, (N,) int32 in units of 0.1 mm; places are int32 or int64.
 
         Returns
         -------

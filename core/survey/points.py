@@ -5,6 +5,7 @@ import numpy as np
 from .columns import Columns
 
 UNIT = 1e-4  # m: coordinates are kept as integers of 0.1 mm, exact for every LAS scale in use
+NARROW = 2e5  # m from the origin: up to here x and y have 32 bits
 
 # Coordinates are local (map minus the frame's origin); s and d are the road's
 # station and offset. `source` is point_source_id, kept so that a written cloud
@@ -17,6 +18,12 @@ SURVEY_POINT = np.dtype([
 # `half_width` is in millimetres; `corrected` is NaN where intensity was not corrected;
 # `cluster` is 0 before clustering; `covered` is 1 beneath and right beside what stands on the road.
 ROAD_POINT = np.dtype(SURVEY_POINT.descr + [("corrected", "f4"), ("half_width", "u2"), ("cluster", "i4"), ("covered", "u1")])
+
+
+def point_dtype(dtype, farthest):
+    """The dtype of points that lie up to `farthest` metres of x or y from the origin: beyond NARROW x and y have 64 bits."""
+    wide = {"x": "i8", "y": "i8"} if farthest > NARROW else {}
+    return np.dtype([(name, wide.get(name, dtype[name])) for name in dtype.names])
 
 
 def to_units(metres):

@@ -12,11 +12,12 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from .driven_pass import Pass
-from .passes import LEVEL, TURN_REACH, moving_rows, split_into_passes, thin_by_distance
+from .passes import LEVEL, LONGEST, TURN_REACH, moving_rows, split_into_passes, thin_by_distance
 from .reference_line import EXTENSION, JUNCTION, NODE, continued, reference_nodes, track_line
 from .trajectory import clean_trajectory
 
 CORRIDOR = 25.0    # m either side
+FARTHEST_CORRIDOR = 200.0     # m beyond the track that no point with a place lies: the widest corridor, and the ends of a road
 JOIN_DISTANCE = 12.0          # m between two passes over one carriageway
 JOIN_REACH = 15.0             # m at most, where the lanes of one drift apart
 JOIN_ANGLE = np.radians(30.0)
@@ -138,6 +139,11 @@ class RoadFrame:
     def passes_of(self, road):
         return [p for p in self.passes if p.road == road]
 
+    @property
+    def farthest(self):
+        """Metres of x or y from the origin beyond which no point can have a place."""
+        return max(max(np.abs(p.x).max(), np.abs(p.y).max()) for p in self.passes) + FARTHEST_CORRIDOR
+
     def to_local(self, x, y, z=None):
         """Map coordinates to local ones."""
         local = np.asarray(x, float) - self.origin[0], np.asarray(y, float) - self.origin[1]
@@ -194,7 +200,7 @@ def build_frame(trajectory):
     """Roads and passes of a trajectory.
 
     The drive is cut into passes; the longest becomes the reference of the first
-    road, lengthened by passes that go on where it ends; what runs within 12 m of
+    road, lengthened by passes that go on where it ends, up to LONGEST; what runs within 12 m of
     it and parallel, either way, is a further pass over the same road; what is
     left makes the next road.
     """
@@ -256,7 +262,7 @@ def _grow_road(number, track, turning, moved, driven, waiting):
         for rows in _longest_first(rest, driven):
             if _length(rows, driven) >= JOIN_LENGTH and _ends_near(line, track, rows):
                 longer = continued(line, _line_of(track, turning, rows))
-                if longer is not None:
+                if longer is not None and np.hypot(*np.diff(longer[:, :2], axis=0).T).sum() <= LONGEST:
                     line = longer
                     break
         else:

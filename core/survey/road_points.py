@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from .chosen_points import ChosenPoints
-from .points import ROAD_POINT, Points, joined
+from .points import ROAD_POINT, Points, joined, point_dtype
 from .section_store import SectionStore
 
 
 def _store_like(store):
-    return SectionStore(ROAD_POINT, store.section_length, store.memory_limit)
+    return SectionStore(store.dtype, store.section_length, store.memory_limit)
 
 
 @dataclass
@@ -42,7 +42,8 @@ class RoadPoints:
 
         The points stay in the survey's store, which lives as long as the road points and is closed with them.
         """
-        store = ChosenPoints(survey.store, ROAD_POINT, ("half_width", "covered"), dict(corrected=np.nan, cluster=0))
+        dtype = point_dtype(ROAD_POINT, np.inf if survey.store.dtype["x"] == np.int64 else 0.0)
+        store = ChosenPoints(survey.store, dtype, ("half_width", "covered"), dict(corrected=np.nan, cluster=0))
         return cls(store, np.asarray(survey.frame.origin, float), survey.crs, moves=survey.moves)
 
     def close(self):
@@ -73,4 +74,4 @@ class RoadPoints:
     def all_points(self):
         """Every point in one structured array, road by road and section by section (for sets known to be small: paint)."""
         parts = [self.store.section(road, number) for road, number in self.all_sections()]
-        return Points(np.asarray(joined(parts, ROAD_POINT)))
+        return Points(np.asarray(joined(parts, self.store.dtype)))

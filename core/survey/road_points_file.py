@@ -4,15 +4,16 @@ import numpy as np
 
 from ..errors import RoadExtractionError
 from ..progress import Progress
-from .new_laz import new_laz
+from .new_laz import new_laz, scale_for
 from .pass_moves import PassMoves
 from .point_cloud import BLOCK, open_cloud, read_blocks
-from .points import ROAD_POINT, UNIT
+from .points import ROAD_POINT, UNIT, point_dtype
 from .road_points import RoadPoints
 from .section_store import SectionStore
 
 ROAD_CLASS = 11  # ASPRS: road surface
 SCALE = UNIT
+FARTHEST_MOVE = 10.0  # m: no pass is moved so far
 
 # Stations and offsets are stored as integers of 0.1 mm, so that what is read
 # back is to the bit what was passed on in memory.
@@ -27,7 +28,8 @@ NEEDED = ("road", "pass", "station_m", "offset_m", "half_width")
 def write_road_points(road_points, path, progress=Progress()):
     """Write road points as LAS 1.4 class 11 in road order; the file appears whole or not at all.
 
-    Coordinates are those that were measured; how passes were moved is kept beside them and done again on reading.
+    Coordinates are those that were measured, to 0.1 mm, or to 1 mm where they lie more than 214 km from the origin and to 1 cm beyond
+    2,147 km; how passes were moved is kept beside them and done again on reading.
     `path` ends in .laz or .las. Raises RoadExtractionError where it cannot be written.
     """
     sections = road_points.all_sections()
@@ -42,7 +44,7 @@ def _header(road_points):
     import laspy
 
     header = laspy.LasHeader(point_format=6, version="1.4")
-    header.scales = np.full(3, SCALE)
+    header.scales = np.full(3, scale_for(_farthest(road_points)))
     header.offsets = np.asarray(road_points.origin, float)
     # The time values are handed on as they came
     header.global_encoding.gps_time_type = laspy.header.GpsTimeType.STANDARD
@@ -61,6 +63,20 @@ def _header(road_points):
     return header
 
 
+def _farthest(road_points):
+    """Metres of x or y of any point from the origin; of points whose x and y have 32 bits what these can hold."""
+    if road_points.store.dtype["x"] == np.int32:
+        return 0.0
+    ends = [int(np.abs(road_points.store.section(road, number)[name]).max(initial=0))
+            for road, number in road_points.all_sections() for name in "xy"]
+    return max(ends, default=0) * UNIT + FARTHEST_MOVE
+
+
+def _whole(units, share):
+    """Units of 0.1 mm in those of a file, of which one unit is a share."""
+    return units if abs(share - 1.0) < 1e-12 else np.rint(units * share)
+
+
 def _record(road_points, road, number, header):
     import laspy
 
@@ -68,7 +84,7 @@ def _record(road_points, road, number, header):
     out = laspy.ScaleAwarePointRecord.zeros(len(records), header=header)
     off = (0, 0, 0) if road_points.moves is None else road_points.moves.units(records)
     for name, moved in zip("xyz", off):
-        out.array[name.upper()] = records[name] - moved
+        out.array[name.upper()] = _whole(records[name] - moved, SCALE / header.scales[0])
     out["gps_time"] = records["time"]
     out["intensity"] = records["intensity"]
     out["point_source_id"] = records["source"]
@@ -102,12 +118,15 @@ def read_road_points(path, progress=Progress()):
                 f"{path} lacks the extra field(s) {', '.join(missing)} that tell where on the road a point lies. "
                 "Give it the road points written by “Extract road surface” or a stage after it.")
         origin, scales, total = np.asarray(header.offsets, float), np.asarray(header.scales), header.point_count
+        # where the file says its points lie; 32 bits of x and y reach beyond where they change to 64
+        farthest = max((np.abs(np.r_[header.mins, header.maxs][[0, 1, 3, 4]] - origin[[0, 1, 0, 1]])).max(), 0.0) if total else 0.0
+        dtype = point_dtype(ROAD_POINT, farthest)
         crs, moves = header.parse_crs(), PassMoves.of_records(header.vlrs)
     has_corrected, has_cluster = "intensity_corrected" in names, "cluster" in names
-    store = SectionStore(ROAD_POINT)
+    store = SectionStore(dtype)
     done = 0
     for block in read_blocks(path, BLOCK):
-        records = np.zeros(len(block), ROAD_POINT)
+        records = np.zeros(len(block), dtype)
         # another program may have rewritten the file with its own scale
         for _axis, (name, scale) in enumerate(zip("xyz", scales)):
             raw = np.asarray(block[name.upper()])

@@ -12,7 +12,7 @@ from .cloud_blocks import CloudReaders
 from .crs import check_projected, crs_note, parse_crs, reproject_trajectory
 from .pass_fitting import fit_passes
 from .point_cloud import BLOCK, read_headers
-from .points import SURVEY_POINT, UNIT, Points
+from .points import SURVEY_POINT, UNIT, Points, point_dtype
 from .reading import SurveyReader
 from .road_frame import CORRIDOR, build_frame
 from .scanners import numbers_by_value
@@ -140,7 +140,7 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
                       "trajectory the passes are mixed: whatever they differ by blurs the map. Export both with gps_time, or process "
                       "the files of each drive with its own part of the trajectory.")
     _check_extent(files, frame, crs, trajectory.crs)
-    store = SectionStore(SURVEY_POINT, settings.section_length, settings.memory_limit)
+    store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length, settings.memory_limit)
     reader = SurveyReader(frame, store, settings.corridor, has_time, week_ends)
     again = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
     reader.read(files, settings.block, progress.part(0.0, READING) if again else progress)

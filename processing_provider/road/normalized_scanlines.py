@@ -70,7 +70,8 @@ class NormalizedScanlines(LanewrightAlgorithm):
         survey = open_survey_of(call, progress.part(0.0, 0.5))
         points = nullcontext()
         if call.wants("RESAMPLED_POINTS"):
-            points = ResampledPoints(call.new_file("RESAMPLED_POINTS"), survey.frame.origin, survey.crs, call.settings(POINT_KNOBS))
+            points = ResampledPoints(call.new_file("RESAMPLED_POINTS"), survey.frame.origin, survey.crs, call.settings(POINT_KNOBS),
+                                     survey.frame.farthest)
         layer = call.settings(LAYER_KNOBS) if call.wants("SCANLINES") else None
         with points as opened:
             scanlines, _ = write_scanlines(survey, call.settings(SCANLINE_KNOBS), layer, opened, progress.part(0.5, 1.0))

@@ -78,6 +78,30 @@ def test_driving_lines_run_in_the_lanes_the_way_they_are_driven(sample, road_map
         assert ends[1] > ends[0]
 
 
+def test_the_same_street_again_a_thousand_kilometres_on_gives_the_same_map(sample, cloud, road_map, tmp_path):
+    """One survey of two towns: the map of each is that of the street alone, and the image leaves out what lies between."""
+    east, later = 1_000_000.0, 4000.0
+    there = laspy.read(cloud)
+    there.points.offsets = there.header.offsets = there.header.offsets + [east, 0.0, 0.0]
+    there.gps_time = np.asarray(there.gps_time) + later
+    there.write(tmp_path / "there.laz")
+    here = sample.trajectory
+    off = dict(time=later, x=east)
+    both = replace(here, **{name: np.r_[getattr(here, name), getattr(here, name) + off.get(name, 0.0)]
+                            for name in ("time", "x", "y", "z", "roll", "pitch", "heading")})
+    found = make_road_map([cloud, tmp_path / "there.laz"], both, tmp_path / "image.tif")
+    assert found.survey_facts["outside"] == 2 * road_map.survey_facts["outside"]
+    assert len(found.road_points) == 2 * len(road_map.road_points)
+    for name in LAYERS:
+        expected = [shapely.get_coordinates(g, include_z=True) for g in getattr(road_map, name).geometries]
+        geometries = getattr(found, name).geometries
+        for first, shift in ((0, 0.0), (1, east)):
+            town = [shapely.get_coordinates(g, include_z=True) for g in geometries if (g.centroid.x > sample.settings.origin[0] + east / 2) == first]
+            assert len(town) == len(expected) > 0, name
+            np.testing.assert_allclose(np.concatenate(town) - [shift, 0.0, 0.0], np.concatenate(expected), rtol=0, atol=1e-3, err_msg=name)
+    assert (tmp_path / "image.tif").stat().st_size < 20e6
+
+
 def test_tiles_in_any_order_give_the_same_map(sample, cloud, road_map, tmp_path):
     whole = laspy.read(cloud)
     half = np.asarray(whole.x) > np.median(whole.x)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import RoadExtractionError
-from ...survey.new_laz import new_laz
+from ...survey.new_laz import new_laz, scale_for
 from ...survey.points import UNIT
 
 EXTRA = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", None), ("scanner", "uint8", "Scanner", None),
@@ -50,14 +50,17 @@ def resampled(lines, spacing):
 
 
 class ResampledPoints:
-    """A LAZ or LAS file of points along scanlines, written as they come; it appears whole or not at all."""
+    """A LAZ or LAS file of points along scanlines, written as they come; it appears whole or not at all.
 
-    def __init__(self, path, origin, crs, settings=ResamplingSettings()):
+    Points lie at most `farthest` metres of x or y from the origin; beyond 214 km coordinates are to 1 mm.
+    """
+
+    def __init__(self, path, origin, crs, settings=ResamplingSettings(), farthest=0.0):
         import laspy
 
         self.path, self.settings = str(path), settings
         self._header = laspy.LasHeader(point_format=6, version="1.4")
-        self._header.scales, self._header.offsets = np.full(3, UNIT), np.asarray(origin, float)
+        self._header.scales, self._header.offsets = np.full(3, scale_for(farthest)), np.asarray(origin, float)
         self._header.generating_software = "Lanewright"
         self._header.add_extra_dims([
             laspy.ExtraBytesParams(name=name, type=kind, description=text,
@@ -85,7 +88,7 @@ class ResampledPoints:
         x, y = frame.road(road).to_map(s, d)
         out = laspy.ScaleAwarePointRecord.zeros(len(line), header=self._header)
         for name, values in zip("XYZ", (x, y, z)):
-            out.array[name] = np.rint(values / UNIT)
+            out.array[name] = np.rint(values / self._header.scales[0])
         out["intensity"] = np.clip(np.rint(intensity), 0, 65535)
         out["return_number"] = out["number_of_returns"] = np.ones(len(line), np.uint8)
         out["point_source_id"] = lines.scanner[line] + 1
