@@ -3,9 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 
 from ..errors import RoadExtractionError
 from .dash_rows import in_rows
+from .near_pairs import near_pairs
 from .shapes import ALONG
 
 NOT_PAINT = ""
@@ -141,18 +144,21 @@ def zebra_stripes(column, shortest=STRIPE_LENGTH[0]):
     if len(rows) < STRIPES:
         return result
     s, d = ((column[low][rows] + column[high][rows]) / 2 for low, high in (("s0", "s1"), ("d0", "d1")))
-    ds, dd = s - s[:, None], d - d[:, None]
     turn, length = column["direction"][rows], column["length"][rows]
-    # on a crossing askew each stripe begins somewhat farther than the one before
-    middle = (turn + turn[:, None]) / 2
-    ahead, pitch = ds * np.cos(middle) + dd * np.sin(middle), np.abs(dd * np.cos(middle) - ds * np.sin(middle))
-    shared = (length + length[:, None]) / 2 - np.abs(ahead) > 0.5 * np.minimum(length, length[:, None])
-    # the bars of hatching follow each other along the road
-    across = ((np.abs(dd) > np.abs(ds)) | (np.abs(middle) <= ALONG)) & (np.abs(turn - turn[:, None]) <= PARALLEL)
-    beside = shared & across & (pitch >= STRIPE_PITCH[0]) & (pitch <= STRIPE_PITCH[1])
-    from scipy.sparse.csgraph import connected_components
-
-    count, group = connected_components(beside, directed=False)
+    beside = [np.empty((0, 2), np.intp)]
+    for a, b in near_pairs(s, s, s, s, np.hypot(STRIPE_LENGTH[1], STRIPE_PITCH[1])):
+        ds, dd = s[b] - s[a], d[b] - d[a]
+        # on a crossing askew each stripe begins somewhat farther than the one before
+        middle = (turn[b] + turn[a]) / 2
+        ahead, pitch = ds * np.cos(middle) + dd * np.sin(middle), np.abs(dd * np.cos(middle) - ds * np.sin(middle))
+        shared = (length[b] + length[a]) / 2 - np.abs(ahead) > 0.5 * np.minimum(length[b], length[a])
+        # the bars of hatching follow each other along the road
+        across = ((np.abs(dd) > np.abs(ds)) | (np.abs(middle) <= ALONG)) & (np.abs(turn[b] - turn[a]) <= PARALLEL)
+        found = shared & across & (pitch >= STRIPE_PITCH[0]) & (pitch <= STRIPE_PITCH[1])
+        beside.append(np.column_stack([a, b])[found])
+    beside = np.concatenate(beside)
+    graph = coo_matrix((np.ones(len(beside), bool), (beside[:, 0], beside[:, 1])), shape=(len(rows),) * 2)
+    count, group = connected_components(graph, directed=False)
     size = np.bincount(group, minlength=count)
     result[rows] = size[group] >= STRIPES
     return result
@@ -162,13 +168,10 @@ def _has_partner(column, line):
     """Lines with another line beside them, a decimetre or two away over most of their length."""
     rows = np.flatnonzero(line)
     result = np.zeros(len(line), bool)
-    if len(rows) < 2:
-        return result
     s0, s1, d = column["s0"][rows], column["s1"][rows], column["offset"][rows]
-    overlap = np.minimum(s1[:, None], s1) - np.maximum(s0[:, None], s0)
-    near = np.abs(d[:, None] - d) <= DOUBLE
-    np.fill_diagonal(near, False)
-    result[rows] = (near & (overlap > 0.5 * (s1 - s0)[:, None])).any(axis=1)
+    for a, b in near_pairs(s0, s1, s0, s1):
+        overlap = np.minimum(s1[a], s1[b]) - np.maximum(s0[a], s0[b])
+        result[rows[a[(a != b) & (np.abs(d[a] - d[b]) <= DOUBLE) & (overlap > 0.5 * (s1 - s0)[a])]]] = True
     return result
 
 
@@ -177,15 +180,16 @@ def _beyond_the_edge_line(column, line, room):
     short = column["along"] & (column["s1"] - column["s0"] > column["d1"] - column["d0"])
     rows, lines = np.flatnonzero(short & (room < RIM)), np.flatnonzero(line)
     result = np.zeros(len(short), bool)
-    if not len(rows) or not len(lines):
-        return result
-    outward = np.sign(column["offset"][rows])[:, None] * (column["offset"][rows][:, None] - column["offset"][lines])
-    overlap = np.minimum(column["s1"][rows][:, None], column["s1"][lines]) - np.maximum(column["s0"][rows][:, None], column["s0"][lines])
+    s0, s1, d, length = (column[name] for name in ("s0", "s1", "offset", "length"))
     # a double line is as long on either side
-    on_edge = room[rows] < column["width"][rows] / 2 + TOUCHING_EDGE
-    longer = column["length"][lines] > (np.where(on_edge, 1.0, LONGER) * column["length"][rows])[:, None]
-    reach = np.where(room[rows] < AT_RIM, NO_LANE, BEYOND)[:, None]
-    result[rows] = ((outward > 0.1) & (outward < reach) & (overlap > 0) & longer).any(axis=1)
+    on_edge = room < column["width"] / 2 + TOUCHING_EDGE
+    longest = np.where(on_edge, 1.0, LONGER) * length
+    reach = np.where(room < AT_RIM, NO_LANE, BEYOND)
+    for a, b in near_pairs(s0[rows], s1[rows], s0[lines], s1[lines]):
+        a, b = rows[a], lines[b]
+        outward = np.sign(d[a]) * (d[a] - d[b])
+        overlap = np.minimum(s1[a], s1[b]) - np.maximum(s0[a], s0[b])
+        result[a[(outward > 0.1) & (outward < reach[a]) & (overlap > 0) & (length[b] > longest[a])]] = True
     return result
 
 
@@ -193,23 +197,28 @@ def _outlines(column, kinds):
     """What looked like a sign, and is the outline of hatching: a bar runs into it."""
     kinds = np.array(kinds, dtype=object)
     bars, rows = np.flatnonzero(kinds == "hatch"), np.flatnonzero(kinds == "symbol")
-    touch = np.ones((len(rows), len(bars)), bool)
-    for low, high in (("s0", "s1"), ("d0", "d1")):
-        touch &= (column[low][rows][:, None] < column[high][bars] + TOUCHING) & (column[high][rows][:, None] > column[low][bars] - TOUCHING)
-    return rows[touch.any(axis=1)]
+    touched = np.zeros(len(kinds), bool)
+    for a, b in near_pairs(column["s0"][rows], column["s1"][rows], column["s0"][bars], column["s1"][bars], TOUCHING):
+        a, b = rows[a], bars[b]
+        touch = np.ones(len(a), bool)
+        for low, high in (("s0", "s1"), ("d0", "d1")):
+            touch &= (column[low][a] < column[high][b] + TOUCHING) & (column[high][a] > column[low][b] - TOUCHING)
+        touched[a[touch]] = True
+    return np.flatnonzero(touched)
 
 
 def _lone_bars(column, kinds):
     """What looked like a bar of hatching and has no other bar near it."""
     rows = np.flatnonzero(np.array([kind == "hatch" for kind in kinds], bool))
-    away = np.zeros((len(rows), len(rows)))
-    for low, high in (("s0", "s1"), ("d0", "d1")):
-        first, last = column[low][rows], column[high][rows]
-        away = np.maximum(away, np.maximum(first[:, None], first) - np.minimum(last[:, None], last))
-    near = away < BAR_APART
-    np.fill_diagonal(near, False)
-    single = column["s1"][rows] - column["s0"][rows] < HATCHED_AREA
-    return rows[~near.any(axis=1) & single]
+    first, last = column["s0"][rows], column["s1"][rows]
+    single = last - first < HATCHED_AREA
+    for a, b in near_pairs(first, last, first, last, BAR_APART):
+        away = np.zeros(len(a))
+        for low, high in (("s0", "s1"), ("d0", "d1")):
+            low, high = column[low][rows], column[high][rows]
+            away = np.maximum(away, np.maximum(low[a], low[b]) - np.minimum(high[a], high[b]))
+        single[a[(a != b) & (away < BAR_APART)]] = False
+    return rows[single]
 
 
 def _line_kind(shape, room, double):

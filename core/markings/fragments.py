@@ -10,6 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from .classes import STRIPE_WIDTH, columns_of, zebra_stripes
+from .near_pairs import near_pairs
 
 WORN_GAP, OVERLAP, SAME_LINE = 0.9, 0.2, 0.08  # m along, along, across
 BAR_THICK = 0.18, 0.90   # m along the road of a stop line's pieces
@@ -81,11 +82,12 @@ def _bars(column):
 def _stripes(column):
     """(P, 2) the stripes of a crossing, and what lies before or after them between their sides."""
     s0, s1, d0, d1 = (column[name] for name in ("s0", "s1", "d0", "d1"))
-    order = np.argsort(s0, kind="stable")
-    begins, longest, found = s0[order], (s1 - s0).max(), [np.empty((0, 2), np.int64)]
     # of a stripe askew the sides are not those of its box
-    for a in np.flatnonzero(zebra_stripes(column, STRIPE_PIECE) & (d1 - d0 <= STRIPE_WIDTH[1])):
-        b = order[np.searchsorted(begins, s0[a] - STRIPE_GAP - longest):np.searchsorted(begins, s1[a] + STRIPE_GAP)]
-        inside = (b != a) & (s1[b] >= s0[a] - STRIPE_GAP) & (d0[b] >= d0[a] - SAME_SIDES / 2) & (d1[b] <= d1[a] + SAME_SIDES / 2)
-        found.append(np.column_stack([np.full(inside.sum(), a), b[inside]]))
+    stripes = np.flatnonzero(zebra_stripes(column, STRIPE_PIECE) & (d1 - d0 <= STRIPE_WIDTH[1]))
+    found = [np.empty((0, 2), np.int64)]
+    for a, b in near_pairs(s0[stripes], s1[stripes], s0, s1, STRIPE_GAP):
+        a = stripes[a]
+        inside = (b != a) & (s1[b] >= s0[a] - STRIPE_GAP) & (s0[b] < s1[a] + STRIPE_GAP) \
+            & (d0[b] >= d0[a] - SAME_SIDES / 2) & (d1[b] <= d1[a] + SAME_SIDES / 2)
+        found.append(np.column_stack([a, b])[inside])
     return np.concatenate(found)
