@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 from spoken import complaints
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).resolve().parents[2]
 QGIS_PROCESS = str(ROOT / "tools" / "qgis_process")
 

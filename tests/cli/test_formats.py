@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 from osgeo import ogr
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).resolve().parents[2]
 QGIS_PROCESS = str(ROOT / "tools" / "qgis_process")
 POSTGRES = sorted(Path("/usr/lib/postgresql").glob("*/bin"))[-1:]

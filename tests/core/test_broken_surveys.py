@@ -11,6 +11,8 @@ from lanewright.core.errors import RoadExtractionError
 from lanewright.core.road_map import make_road_map
 from lanewright.core.survey.trajectory import clean_trajectory
 
+pytestmark = pytest.mark.slow
+
 ONE_SENTENCE = 700  # characters: what was seen, what was needed, what to try
 
 

@@ -10,6 +10,8 @@ from lanewright.core.progress import Progress
 from lanewright.core.road_map import RoadMapSettings, make_road_map
 from lanewright.core.stages import NAMES
 
+pytestmark = pytest.mark.slow
+
 SHORT, LONG = 60.0, 180.0   # m
 
 

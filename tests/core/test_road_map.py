@@ -14,6 +14,8 @@ from lanewright.core.errors import Cancelled
 from lanewright.core.road_map import RoadMapSettings, make_road_map
 from lanewright.core.survey.survey import SurveySettings, open_survey
 
+pytestmark = pytest.mark.slow
+
 LAYERS = ("edges", "surface", "markings", "marking_lines", "driving_lines")
 
 

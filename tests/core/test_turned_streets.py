@@ -9,6 +9,8 @@ from lanewright.core.assess.polygons import compare_polygons
 from lanewright.core.road_map import make_road_map
 from lanewright.core.survey.trajectory import Trajectory
 
+pytestmark = pytest.mark.slow
+
 ABOUT = np.array([610_450.0, 2_710_220.0])
 TURN = np.radians(37.0)
 OTHER = {"left": "right", "right": "left"}

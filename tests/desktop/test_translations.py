@@ -6,6 +6,7 @@ import sys
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
+import pytest
 from lanewright.processing_provider.texts import TRANSLATIONS, install_translator, remove_translator, tr
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -59,6 +60,7 @@ def test_a_german_qgis_shows_german_and_an_unknown_language_english(qgis_app):
     assert tr("Point clouds") == "Point clouds"
 
 
+@pytest.mark.slow
 def test_a_german_qgis_process_speaks_german(tmp_path):
     """Labels are made when the plugin is imported, so this is asked of a program of its own."""
     settings = tmp_path / "profiles" / "default" / "QGIS" / "QGIS3.ini"

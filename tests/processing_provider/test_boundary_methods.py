@@ -3,6 +3,8 @@
 import pytest
 from osgeo import ogr
 
+pytestmark = pytest.mark.slow
+
 ogr.UseExceptions()
 
 

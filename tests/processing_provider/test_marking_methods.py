@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 from osgeo import gdal, ogr
 
+pytestmark = pytest.mark.slow
+
 gdal.UseExceptions()
 ogr.UseExceptions()
 

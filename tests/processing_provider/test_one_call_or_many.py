@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 from osgeo import gdal, ogr
 
+pytestmark = pytest.mark.slow
+
 gdal.UseExceptions()
 LAYERS = ("ROAD_EDGES", "ROAD_SURFACE", "MARKINGS", "MARKING_LINES", "DRIVING_LINES", "CURVE_ELEMENTS")
 FILES = {"ROAD_POINTS": "road_points.laz", "INTENSITY_IMAGE": "image.tif"}

@@ -29,6 +29,7 @@ def measured(tmp_path_factory):
     return folder, figures_of(folder / "short", quick=True)
 
 
+@pytest.mark.slow
 def test_a_made_survey_is_found_and_says_that_it_is_simulated(measured):
     folder, figures = measured
     assert [path.name for path in surveys_in(folder)] == ["short"]
@@ -36,6 +37,7 @@ def test_a_made_survey_is_found_and_says_that_it_is_simulated(measured):
     assert read_case(folder / "short").seen is not None
 
 
+@pytest.mark.slow
 def test_every_method_is_measured(measured):
     _, figures = measured
     assert set(figures["boundaries"]) == {"profiles", "scanlines", "both"}
@@ -45,6 +47,7 @@ def test_every_method_is_measured(measured):
     assert figures["boundaries"]["profiles"]["total"] == figures["whole"]["boundaries"]["total"]
 
 
+@pytest.mark.slow
 def test_the_page_sets_published_figures_beside_ours_and_survives_json(measured):
     _, figures = measured
     text = page(json.loads(json.dumps([figures])), samples=True)
@@ -73,6 +76,7 @@ def test_truth_of_another_kind_is_read(tmp_path):
     assert case.truth.has == {"boundaries", "markings"}
 
 
+@pytest.mark.slow
 def test_the_truth_itself_scores_full_marks(measured):
     folder, _ = measured
     case = read_case(folder / "short")
@@ -82,6 +86,7 @@ def test_the_truth_itself_scores_full_marks(measured):
     assert driving["recall"]["5"] == pytest.approx(100) and driving["miscoding"]["5"] == pytest.approx(0)
 
 
+@pytest.mark.slow
 def test_paint_beyond_the_judged_area_costs_nothing_and_beside_the_road_it_does(measured):
     folder, _ = measured
     case = read_case(folder / "short")

@@ -21,6 +21,7 @@ def scatter(values):
     return np.std(values) / np.mean(values)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("by_turn", [False, True])
 def test_unequal_beams_are_told_apart_and_made_alike(by_turn):
     points, frame = spun(by_turn=by_turn)
@@ -30,6 +31,7 @@ def test_unequal_beams_are_told_apart_and_made_alike(by_turn):
     assert scatter(found.value) < 0.45 * scatter(found.intensity.astype(float))
 
 
+@pytest.mark.slow
 def test_paint_stays_brighter_than_asphalt_when_beams_are_made_alike():
     points, frame = spun(hatching)
     found = correct_intensity(points, frame)[0].all_points()
@@ -42,12 +44,14 @@ def test_beams_that_are_alike_already_are_left_alone():
     assert Beams.of(points, frame, 1) is None
 
 
+@pytest.mark.slow
 def test_the_beams_do_not_depend_on_the_length_of_sections():
     results = [correct_intensity(*spun(section_length=length))[0].all_points() for length in (20.0, 7.0)]
     by_place = [np.lexsort((p.y, p.x, p.time)) for p in results]
     np.testing.assert_array_equal(results[0].value[by_place[0]], results[1].value[by_place[1]])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("paint", [None, hatching])
 def test_a_hatched_island_under_unequal_beams_is_found_and_grey_asphalt_is_not(tmp_path, paint):
     pytest.importorskip("osgeo.gdal")

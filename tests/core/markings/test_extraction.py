@@ -116,6 +116,7 @@ def test_a_pale_repair_in_a_lane_without_paint_is_road_and_a_line_across_it_is_p
     assert np.count_nonzero(strip(27, 32, 0.1, 0.25)(paint.s, paint.d)) > 0.9 * 5 * 0.15 * 1500
 
 
+@pytest.mark.slow
 def test_noisy_multi_beam_intensities_show_bars_of_paint_and_stay_silent_without(tmp_path):
     bar = strip(30, 34, 1.0, 1.3)
     s, d = strewn(80, 4, -4, 3000)
@@ -162,6 +163,7 @@ def test_neither_the_order_of_points_nor_the_length_of_sections_matters(tmp_path
     assert_same_points(plain, other)
 
 
+@pytest.mark.slow
 def test_where_points_crowd_some_of_them_tell_how_all_lie(tmp_path, monkeypatch):
     """Of 12 000 points a metre every fourth tells how wide the bins are."""
     line = strip(5, 75, 1.0, 1.15)
@@ -188,6 +190,7 @@ def test_paint_before_and_after_a_stretch_without_points_is_found_by_any_number_
     assert line(usual.s, usual.d).mean() > 0.97 and line(usual.s, usual.d).sum() > 0.9 * on_line
 
 
+@pytest.mark.slow
 def test_the_mask_lies_on_the_image_and_covers_the_paint(tmp_path):
     line = strip(10, 70, 1.0, 1.15)
     frame = drive(radius=80.0)

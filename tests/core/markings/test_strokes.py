@@ -101,6 +101,7 @@ def test_a_patch_of_lighter_asphalt_that_fades_out_is_no_paint(street):
     assert found_of(PATCH, street) == 0
 
 
+@pytest.mark.slow
 def test_the_length_of_sections_does_not_change_what_is_found(street):
     places = [np.sort(points.x * 1e4 + points.y) for points in (street[1], everything_and_found(7.0)[1])]
     np.testing.assert_array_equal(*places)

@@ -38,6 +38,7 @@ def test_where_there_is_no_curb_none_is_invented(ground):
     assert len(found(street(**ground))) == 0
 
 
+@pytest.mark.slow
 def test_a_rough_verge_is_not_a_curb():
     rng = np.random.default_rng(8)
     x, y, z, time = street(curb=0.0)
@@ -57,6 +58,7 @@ def test_ghosts_below_the_road_do_not_matter():
     np.testing.assert_allclose(points[:, 1], 3.5, atol=0.01)
 
 
+@pytest.mark.slow
 def test_a_scanner_with_two_centimetres_of_noise_finds_the_curb_and_nothing_else():
     curbs = found(street(curb=0.12, noise=0.02, lines=0.03))
     for side, offset in (("left", 3.5), ("right", -3.5)):
@@ -65,6 +67,7 @@ def test_a_scanner_with_two_centimetres_of_noise_finds_the_curb_and_nothing_else
         np.testing.assert_allclose(points[:, 1], offset, atol=0.03)
 
 
+@pytest.mark.slow
 def test_a_low_curb_among_the_rings_of_a_spinning_scanner_is_found_and_nothing_else():
     curbs = found(ringed_street(), drive=driven(36.0))
     for side, offset in (("left", 4.5), ("right", -4.5)):
@@ -74,6 +77,7 @@ def test_a_low_curb_among_the_rings_of_a_spinning_scanner_is_found_and_nothing_e
         np.testing.assert_allclose(np.median(points[:, 4]), 0.08, atol=0.015)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ground", [dict(curb=0.0), dict(curb=0.02), dict(curb=0.10, ramp=0.8)], ids=["level", "seam", "ramp"])
 def test_rings_of_a_spinning_scanner_are_no_curbs(ground):
     assert len(found(ringed_street(**ground), drive=driven(36.0))) == 0

@@ -90,6 +90,7 @@ def test_points_are_held_profile_by_profile():
     np.testing.assert_array_equal(held[clear], expected[clear])
 
 
+@pytest.mark.slow
 def test_corners_are_the_same_to_a_millimetre_with_the_level_strip_left_out():
     survey = survey_of_scan(scanned(pulses=400_000.0, noise=0.002))
     whole = curbs_from_scanlines(SurveyScanlines(survey))

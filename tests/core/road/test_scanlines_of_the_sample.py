@@ -6,6 +6,8 @@ from lanewright.core.road.scanlines.scanlines import Scanlines
 from lanewright.core.road.scanlines.section_planes import ScanlineSettings, all_scanlines
 from lanewright.core.survey.survey import open_survey
 
+pytestmark = pytest.mark.slow
+
 USUAL = dict(length=60.0, pulse_rate=100_000.0, rotation_rate=100.0, speed_kmh=30.0)
 
 

@@ -12,6 +12,8 @@ from lanewright.core.road.boundaries import BoundarySettings, draw_boundaries, f
 from lanewright.core.road.scanlines.source import SurveyScanlines
 from lanewright.core.survey.survey import open_survey
 
+pytestmark = pytest.mark.slow
+
 ROTATION = 100.0
 TOLERANCE = 0.10
 

@@ -57,6 +57,7 @@ def test_the_curb_goes_round_the_corner_into_the_side_street(radius):
     assert {row["side"] for row in edges.rows if row["kind"] != "main"} == {"left"}
 
 
+@pytest.mark.slow
 def test_a_dense_scan_with_centimetres_of_noise_shows_the_corner():
     ground = side_street()
     edges = edges_of(scan(ground, noise=0.02, spacing=0.035))

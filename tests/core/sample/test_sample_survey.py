@@ -35,6 +35,7 @@ def above_ground(sample, points):
     return points["z"] - sample.settings.origin[2] - sample.scene.height(points["station"], points["offset"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", ["street", "rural", "urban"])
 def test_without_noise_every_ground_point_lies_on_the_true_surface(scene):
     sample = survey(scene, length=130.0)
@@ -129,6 +130,7 @@ def test_a_country_road_has_no_curb():
     assert len(labelled(sample.points(noise=False), "curb face", "curb stone", "sidewalk")) == 0
 
 
+@pytest.mark.slow
 def test_parked_cars_hide_the_curb_and_open_kerbside_shows_it():
     sample = survey(length=80.0, pulse_rate=200_000.0)
     points = sample.points(noise=False)

@@ -128,6 +128,7 @@ def test_paint_lies_in_the_georeferenced_image_where_camera_and_polynomial_put_i
     assert on > max(beside) + 50
 
 
+@pytest.mark.slow
 def test_a_long_road_is_shown_from_its_beginning(street):
     camera = make_sample_survey(SampleSettings(length=2000.0)).camera
     assert camera.stations == (0.0, 150.0)

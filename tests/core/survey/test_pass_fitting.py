@@ -127,6 +127,7 @@ def test_drives_half_a_metre_apart_are_warned_of_and_not_moved():
     assert "more than 30 cm" in heard.warned[0]
 
 
+@pytest.mark.slow
 def test_the_fit_does_not_depend_on_where_sections_are_cut():
     one, other = twice(left=0.05, up=0.02), twice(left=0.05, up=0.02, section_length=7.0)
     fit_passes(one)

@@ -269,6 +269,7 @@ def test_any_encoding_and_line_ending(tmp_path, encoding, ending):
     assert_same(read_trajectory(path), street())
 
 
+@pytest.mark.slow
 def test_half_a_million_rows_cost_a_few_times_what_cutting_them_costs(tmp_path):
     """Not a Python loop over rows; in processor seconds, beside the same machine's own."""
     row = "318204000.123456,500123.4567,5400123.4567,101.2345,0.012345,0.012345,91.234567\n"
