@@ -25,14 +25,13 @@ from .morphology import morphology
 from .point_segments import SegmentSettings, points_in_segments
 from .road_cells import RoadCells, cell_numbers, in_cells
 from .road_grid import CELL, RoadGrid
+from .scatter import Scatter
 from .strokes import Witnesses, stroke_cells, views
-from .thresholds import FEWEST, asphalt_bins, bin_edges, scatter_of, split_bins
+from .thresholds import FEWEST, asphalt_bins, bin_edges, split_bins
 
 RIM = 0.60        # m from the rim of the road where gutters end and asphalt is asphalt
-NOISY = 0.40      # of asphalt's level: single points that scatter more are averaged (multi-beam scanners)
 METHODS = ("multi-threshold", "intensity-peaks", "point-segments")
 WINDOW = 500      # cells: thresholds are taken from 20 m of road
-STREWN = 100_000  # points of a window: where there are twice as many, evenly strewn ones tell whether single ones scatter
 MOST = 300_000    # points of a window: where there are twice as many, evenly strewn ones tell how they lie
 HALO = 100        # cells: 4 m about a window in which rims and runs are still looked at
 
@@ -120,19 +119,13 @@ def _extract_from_points(road_points, settings, progress):
 def _extract(road_points, image, frame, settings, progress, burn):
     kept = RoadPoints.empty_like(road_points)
     roads = road_points.roads()
+    windows = [(road, window) for road in roads for window in _windows(road_points, road)]
+    scatter = Scatter.of(lambda road, window: _window(road_points, road, window), windows, progress.part(0.0, 0.1))
+    progress.say(scatter.line(WINDOW * CELL * UNIT))
     for k, road in enumerate(roads):
-        part = progress.part(k / len(roads), (k + 1) / len(roads))
-        look = _Look(road_points, image, frame, road, settings, burn is not None)
-        windows = look.windows()
-        # a scanner is noisy or it is not: every fourth window tells
-        scatter = [value for value in in_order(look.scatter, [w for w in windows if w % 4 == 0] or windows, part.part(0.0, 0.1))
-                   if value is not None]
-        if scatter and float(np.median(scatter)) > NOISY:
-            progress.say(f"Intensities scatter by {100 * np.median(scatter):.0f} % about asphalt: paint is sought in averages "
-                         "over a decimetre, as strokes and rows of dashes; other markings are not seen.")
-            painted = in_order(look.strokes, windows, part.part(0.1, 1.0))
-        else:
-            painted = in_order(look.paint, windows, part.part(0.1, 1.0))
+        part = progress.part(0.1 + 0.9 * k / len(roads), 0.1 + 0.9 * (k + 1) / len(roads))
+        look = _Look(road_points, image, frame, road, settings, burn is not None, scatter.averaged(road))
+        painted = in_order(look.find, look.windows(), part)
         sections = _Sections(kept.store, road)
         for records, x, y in painted:
             sections.add(records)
@@ -140,6 +133,17 @@ def _extract(road_points, image, frame, settings, progress, burn):
                 burn(x, y)
         sections.finish()
     return kept
+
+
+def _windows(road_points, road):
+    """Numbers of the windows of a road."""
+    start, end = road_points.store.span(road)
+    return range(int(np.floor(start / UNIT / CELL / WINDOW)), int(np.floor(end / UNIT / CELL / WINDOW)) + 1)
+
+
+def _window(road_points, road, window):
+    """Points of a window."""
+    return road_points.window(road, window * WINDOW * CELL * UNIT, (window + 1) * WINDOW * CELL * UNIT)
 
 
 class _Sections:
@@ -173,27 +177,21 @@ class _Look:
     A window is painted when the level of those beside it is known; till then what was seen of it is kept.
     """
 
-    def __init__(self, road_points, image, frame, road, settings, masked=False):
+    def __init__(self, road_points, image, frame, road, settings, masked=False, averaged=()):
+        """`averaged` are the windows whose points are noisy: paint is sought in averages there, and they tell no other window's thresholds."""
         self.road_points, self.image, self.frame, self.road, self.settings = road_points, image, frame, road, settings
-        self.masked = masked
-        start, end = road_points.store.span(road)
-        self.first, self.last = int(np.floor(start / UNIT / CELL / WINDOW)), int(np.floor(end / UNIT / CELL / WINDOW))
+        self.masked, self.averaged = masked, averaged
+        windows = _windows(road_points, road)
+        self.first, self.last = windows[0], windows[-1]
         # by window; what several threads ask for is looked at by one
         self._pieces, self._bins, self._seen, self._turns, self._piece_turns = {}, {}, {}, {}, {}
 
     def windows(self):
         return list(range(self.first, self.last + 1))
 
-    def scatter(self, window):
-        """Spread of the intensity of single points about asphalt in a window, as a share of its level; None without asphalt.
-
-        It is taken of the intensities as measured, scanner by scanner, in squares
-        that each scanner sees from one distance.
-        """
-        points = self._points(window * WINDOW, (window + 1) * WINDOW)
-        if len(points) < FEWEST:
-            return None
-        return scatter_of(points[::max(len(points) // STREWN, 1)])
+    def find(self, window):
+        """Records of one window that lie on paint; local x, y of the mask's pixels where one is asked for."""
+        return self.strokes(window) if window in self.averaged else self.paint(window)
 
     def _points(self, first, last):
         return self.road_points.window(self.road, first * CELL * UNIT, last * CELL * UNIT)
@@ -220,7 +218,7 @@ class _Look:
         """Bins of asphalt and Otsu's splits of one window; an empty list where there is nothing to see."""
         with self._turns.setdefault(window, threading.Lock()):
             if window not in self._bins:
-                seen = self._look(window)
+                seen = None if window in self.averaged else self._look(window)
                 self._bins[window] = [] if seen is None else self._bins_of(window, seen)
                 self._seen[window] = seen
             return self._bins[window]
@@ -258,7 +256,7 @@ class _Look:
         return painted_pixels(own, (grid.first + HALO, grid.low), self.image, self.frame.origin, self.frame.road(self.road))
 
     def paint(self, window):
-        """Records of one window that lie on paint; local x, y of the mask's pixels where one is asked for."""
+        """What `find` gives, by thresholds on the image."""
         levels = self._levels(window)
         # those beside have been looked at for the levels
         seen, parts = self._seen.pop(window), self._pieces.pop(window)
@@ -274,7 +272,7 @@ class _Look:
         return self._handed_out(parts, grid, mask, least)
 
     def strokes(self, window):
-        """The same where single points are noisy: what is as bright as paint must have its shape too."""
+        """What `find` gives where single points are noisy: what is as bright as paint must have its shape too."""
         first, last = window * WINDOW, (window + 1) * WINDOW
         if not len(self._points(first, last)):
             return self._nothing()

@@ -12,15 +12,13 @@ import cv2
 import numpy as np
 
 from ..survey.points import UNIT
-from ..survey.sorting import ascending, order_by, quantile_in_order, quantiles
+from ..survey.sorting import ascending, quantile_in_order, quantiles
 
 NARROWEST, WIDEST = 0.75, 3.0  # m, limits of the bin width
 FEWEST = 500          # cells of a bin, below which it joins its neighbour
 LEVELS = 256          # histogram levels of Otsu's method
 COARSE = 5            # cells: the background is known in squares of 20 cm
 AROUND = 11           # squares: and taken from 2.2 m about each
-SQUARE = 1.0          # m
-FEWEST_IN_SQUARE = 30  # points of one scanner
 LOWER = 0.5 - 0.3413  # quantile one standard deviation below the median of a normal distribution
 
 
@@ -105,29 +103,6 @@ def asphalt(values):
             break
         count = kept
     return median, spread
-
-
-def scatter_of(points):
-    """How much single points scatter about asphalt, as a share of its level: the median over squares of 1 m.
-
-    The lower half of a square tells it, which paint is not in. None where no square has enough points.
-    """
-    value = points.intensity
-    side = int(round(SQUARE / UNIT))
-    square = np.zeros(len(value), np.int32)
-    # another pass is another distance
-    for key in (points.records["s"] // side, points.records["d"] // side, points.scanner, points.pass_number):
-        low, high = int(key.min()), int(key.max())
-        square *= high - low + 1
-        square += key.astype(np.int32) - low
-    order = order_by(value, square)
-    value = value[order].astype(float)
-    starts = np.flatnonzero(np.r_[True, np.diff(square[order]) != 0])
-    count = np.diff(np.r_[starts, len(value)])
-    starts, count = starts[count >= FEWEST_IN_SQUARE], count[count >= FEWEST_IN_SQUARE]
-    median, low = value[starts + count // 2], value[starts + (LOWER * count).astype(np.int64)]
-    lit = median > 0
-    return float(np.median(1.0 - low[lit] / median[lit])) if lit.any() else None
 
 
 def otsu(values):

@@ -8,6 +8,11 @@ from lanewright.core.markings import extraction
 from lanewright.core.markings.extraction import MarkingSettings, extract_markings
 from lanewright.core.markings.image import IntensityImage, write_intensity_image
 from lanewright.core.progress import Progress
+from lanewright.core.survey.points import ROAD_POINT, to_units
+from lanewright.core.survey.road_frame import build_frame
+from lanewright.core.survey.road_points import RoadPoints
+from lanewright.core.survey.section_store import SectionStore
+from lanewright.core.survey.trajectory import Trajectory
 from painted_streets import ASPHALT, assert_same_points, drive, records_at, road_points, shuffled, street, strewn, strip
 
 gdal = pytest.importorskip("osgeo.gdal")
@@ -133,13 +138,16 @@ def test_noisy_multi_beam_intensities_show_bars_of_paint_and_stay_silent_without
 
 
 class Listener(Progress):
-    """Keeps what a user is warned of."""
+    """Keeps what a user is told and warned of."""
 
     def __init__(self):
-        self.warnings = []
+        self.warnings, self.said = [], []
 
     def warn(self, text):
         self.warnings.append(text)
+
+    def say(self, text):
+        self.said.append(text)
 
     def part(self, first, last):
         return self
@@ -208,3 +216,61 @@ def test_the_mask_lies_on_the_image_and_covers_the_paint(tmp_path):
 def test_settings_without_sense_are_refused(wrong):
     with pytest.raises(RoadExtractionError):
         MarkingSettings(**wrong)
+
+
+def noisy_bar(frame, road, start, end, scanner, noisy, seed=3):
+    """Records of a road with a bar of paint from station 30 to 34, seen by a quiet or a noisy scanner."""
+    s, d = strewn(end - start, 4, -4, 1200, seed)
+    s = s + start
+    level = np.where(BAR(s, d), 2.2 * ASPHALT, ASPHALT)
+    scatter = np.random.default_rng(seed + 1).normal(0, 0.55 if noisy else 0.08, len(s))
+    records = records_at(frame, s, d, np.abs(level + scatter * ASPHALT), 4.0)
+    x, y = frame.road(road).to_map(records["s"] * 1e-4, records["d"] * 1e-4)
+    records["x"], records["y"] = to_units(x), to_units(y)
+    records["scanner"] = scanner
+    return records
+
+
+BAR = strip(30, 34, 1.0, 1.3)
+
+
+def found_and_said(tiles, frame, folder):
+    """Paint of road 0 before station 55, and the sentences about scatter; `tiles` are pairs of road and records."""
+    points, listener = RoadPoints(SectionStore(ROAD_POINT, 20.0), frame.origin), Listener()
+    for road, records in tiles:
+        points.store.append(road, records)
+    write_intensity_image(points, folder / "image.tif")
+    found = extract_markings(points, IntensityImage.open(folder / "image.tif"), frame, progress=listener)
+    paint = found.window(0, 0, 55)
+    return paint, [text for text in listener.said if "scatter about asphalt" in text]
+
+
+@pytest.mark.parametrize("noisy", [True, False], ids=["noisy", "quiet"])
+def test_a_tile_beside_of_another_scanner_leaves_the_method_on_this_street_as_it_is(tmp_path, noisy):
+    frame = drive(190)
+    street_ = noisy_bar(frame, 0, 0, 80, 0, noisy)
+    alone, (said,) = found_and_said([(0, street_)], frame, tmp_path)
+    beside = noisy_bar(frame, 0, 80, 180, 1, not noisy, seed=8)
+    both, (said_of_both,) = found_and_said([(0, np.concatenate([street_, beside]))], frame, tmp_path)
+    on_bar = np.count_nonzero(BAR(street_["s"] * 1e-4, street_["d"] * 1e-4))
+    assert np.count_nonzero(BAR(alone.s, alone.d)) > 0.8 * on_bar
+    if noisy:
+        assert_same_points(np.asarray(alone.records), np.asarray(both.records))
+    else:
+        assert abs(len(both) - len(alone)) < 0.02 * len(alone)
+    assert ("averages" in said) == noisy and "scanner 0" in said and "scanner 1" not in said
+    assert "Along " in said_of_both and "scanner 0" in said_of_both and "scanner 1" in said_of_both
+
+
+@pytest.mark.parametrize("noisy", [True, False], ids=["noisy", "quiet"])
+def test_another_road_of_another_scanner_leaves_the_method_on_this_street_as_it_is(tmp_path, noisy):
+    s = np.arange(0.0, 90.0, 0.1)
+    frame = build_frame(Trajectory(np.r_[s / 10, s / 10 + 500], np.r_[s, s] + 500_000, np.repeat([5_400_000.0, 5_400_060.0], len(s)),
+                                   np.full(2 * len(s), 102.0)))
+    assert len(frame.roads) == 2
+    street_, other = noisy_bar(frame, 0, 0, 79.9, 0, noisy), noisy_bar(frame, 1, 0, 79.9, 1, not noisy, seed=8)
+    alone, _ = found_and_said([(0, street_)], frame, tmp_path)
+    both, (said,) = found_and_said([(0, street_), (1, other)], frame, tmp_path)
+    assert len(alone) > 500 and abs(len(both) - len(alone)) < 0.02 * len(alone)
+    # one scatters by half of asphalt's level, the other by a twelfth
+    assert "Along 80 of 160 m" in said
