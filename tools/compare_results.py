@@ -38,12 +38,13 @@ AT_ONCE = 1_000_000  # points or cells
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
 
-def compare_folders(first, second, tolerance=0.0):
+def compare_folders(first, second, tolerance=0.0, only=()):
     """What differs between the files of two folders.
 
     Parameters
     ----------
     tolerance : float; coordinates (m), cells, attributes and dimensions may differ by so much and count as the same
+    only : names of folders within the two; nothing else is compared. Empty: everything
 
     Returns
     -------
@@ -52,6 +53,8 @@ def compare_folders(first, second, tolerance=0.0):
     first, second = Path(first), Path(second)
     found = {}
     for path in sorted(_files(first) | _files(second)):
+        if only and path.parts[0] not in only:
+            continue
         if not (second / path).exists():
             found[path] = ["only in the first folder"]
         elif not (first / path).exists():
@@ -336,13 +339,18 @@ def main(arguments=None):
     parser.add_argument("second", type=Path)
     parser.add_argument("--tolerance", type=float, default=0.0,
                         help="coordinates (m), cells, attributes and dimensions may differ by so much (default: 0, all must be the same)")
+    parser.add_argument("--only", default="", metavar="NAME,NAME", help="these folders within the two alone, such as those of some surveys")
     options = parser.parse_args(arguments)
     for folder in (options.first, options.second):
         if not folder.is_dir():
             parser.error(f"{folder} is not a folder.")
     if not options.tolerance >= 0:
         parser.error(f"--tolerance is {options.tolerance}; it must be 0 or more.")
-    found = compare_folders(options.first, options.second, options.tolerance)
+    only = [name for name in options.only.split(",") if name]
+    found = compare_folders(options.first, options.second, options.tolerance, only)
+    for name in only:
+        if not any(path.parts[0] == name for path in found):
+            parser.error(f"Neither {options.first} nor {options.second} holds results in a folder {name}.")
     if not found:
         parser.error(f"{options.first} and {options.second} hold no files.")
     words = Counter()

@@ -246,6 +246,17 @@ def test_a_file_that_is_missing_or_damaged_is_named(results, capsys):
     assert "cannot be read" in lines[0] and "cannot be read" in lines[3]
 
 
+def test_some_surveys_alone_are_compared(results, capsys):
+    shutil.copytree(results[0] / "street", results[0] / "avenue")
+    folders = [str(folder) for folder in results]
+    assert main(folders) == 1
+    assert main([*folders, "--only", "street"]) == 0
+    assert main([*folders, "--only", "street,avenue"]) == 1
+    with pytest.raises(SystemExit) as ended:
+        main([*folders, "--only", "lane"])
+    assert ended.value.code == 2 and "holds results in a folder lane" in capsys.readouterr().err
+
+
 def test_nothing_to_compare_is_not_the_same(results, tmp_path):
     (tmp_path / "empty").mkdir()
     for first, second in ((tmp_path / "empty", tmp_path / "empty"), (results[0], tmp_path / "nowhere")):
