@@ -13,6 +13,7 @@ from scipy.spatial import cKDTree
 from ..errors import RoadExtractionError
 from ..parallel import in_order
 from ..survey.points import UNIT, Points, chosen
+from .cells import occupied
 from .thresholds import asphalt, otsu
 
 FEWEST = 200  # points of a segment that has a threshold of its own
@@ -132,7 +133,9 @@ def dense_enough(records, own, settings):
         return keep
     places = np.c_[records["s"], records["d"]] * UNIT
     rows = np.flatnonzero(own)
-    count = cKDTree(places).query_ball_point(places[rows], settings.radius, return_length=True) - 1
+    # points at one place have the same neighbours: of a cloud with every point many times each place is asked for once
+    asked, member = occupied(records["s"].take(rows), records["d"].take(rows))
+    count = cKDTree(places).query_ball_point(asked * UNIT, settings.radius, return_length=True).take(member) - 1
     segment = _segments(records, settings)[rows]
     for number in np.unique(segment):
         here = np.flatnonzero(segment == number)

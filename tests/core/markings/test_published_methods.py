@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lanewright.core.errors import RoadExtractionError
+from lanewright.core.markings import point_segments
 from lanewright.core.markings.extraction import MarkingSettings, extract_markings
 from lanewright.core.markings.image import IntensityImage, write_intensity_image
 from lanewright.core.markings.intensity_peaks import PeakSettings, chained, peaks_of
@@ -107,6 +108,23 @@ def test_bright_points_strewn_over_asphalt_are_not_dense_enough():
     on_line = (kept["d"] > 12_000) & (kept["d"] < 13_500)
     assert on_line.mean() > 0.95
     assert np.count_nonzero(on_line) > 0.85 * np.count_nonzero((bright["d"] > 12_000) & (bright["d"] < 13_500))
+
+
+def test_points_at_one_place_are_asked_for_once_and_judged_as_when_each_is_asked(monkeypatch):
+    bright = np.repeat(street(FRAME, [strip(0, 80, 1.2, 1.35)], length=2.0, density=300), 25)
+    own, asked = np.arange(len(bright)) % 3 > 0, []
+
+    class Tree(point_segments.cKDTree):
+        def query_ball_point(self, places, *args, **kwargs):
+            asked.append(len(places))
+            return super().query_ball_point(places, *args, **kwargs)
+
+    monkeypatch.setattr(point_segments, "cKDTree", Tree)
+    once = dense_enough(bright, own, SegmentSettings())
+    monkeypatch.setattr(point_segments, "occupied", lambda s, d: (np.stack([s, d], axis=1), np.arange(len(s))))
+    each = dense_enough(bright, own, SegmentSettings())
+    np.testing.assert_array_equal(once, each)
+    assert asked == [len(bright) // 25, own.sum()] and 0 < once.sum() < own.sum()
 
 
 def test_each_segment_has_a_threshold_of_its_own_between_asphalt_and_paint():
