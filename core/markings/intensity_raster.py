@@ -17,6 +17,7 @@ AT_ONCE = 4 * TILE**2   # px that are read in one piece to be sampled
 KEPT = 32 * TILE**2     # px that GDAL may keep of what a thread has read
 COMPRESSING = 2     # threads
 DISPLAY_LONGEST = 2000  # px of the reduced image from which the stretch is taken
+SPARSE_STEP = 16        # px from one of them to the next at the most, where few tiles of a large image hold data
 
 
 class IntensityImage:
@@ -82,6 +83,11 @@ class IntensityImage:
         known = np.isfinite(data) if nodata is None else np.isfinite(data) & (data != np.float32(nodata))
         values[r0 - row:r1 - row, c0 - column:c1 - column] = np.where(known, data, np.nan)
         return values
+
+    @gdal_exceptions()
+    def tiles(self):
+        """[(column, row)] of the first pixels of all tiles that may hold data, row by row."""
+        return filled_tiles(self._dataset(0))
 
     def read_window(self, bounds):
         """The pixels that a box of the map touches.
@@ -184,6 +190,32 @@ def _open_raster(path):
             f"{path} cannot be read as an image ({problem}). Give the GeoTIFF written by “Intensity image”.") from problem
 
 
+def filled_tiles(dataset):
+    """[(column, row)] of the first pixels of all tiles of a GDAL dataset that may hold data, row by row.
+
+    What lies between two towns is left out of the file: it is halved until the rest is empty or a tile, not read.
+    """
+    from osgeo import gdal
+
+    band, width, height = dataset.GetRasterBand(1), dataset.RasterXSize, dataset.RasterYSize
+    waiting, found = [(0, 0, -(-width // TILE), -(-height // TILE))], []
+    while waiting:
+        c0, r0, c1, r1 = waiting.pop()
+        column, row = c0 * TILE, r0 * TILE
+        flags, _ = band.GetDataCoverageStatus(column, row, min(c1 * TILE, width) - column, min(r1 * TILE, height) - row)
+        if not flags & gdal.GDAL_DATA_COVERAGE_STATUS_DATA:
+            continue
+        if c1 - c0 == r1 - r0 == 1:
+            found.append((row, column))
+        elif c1 - c0 >= r1 - r0:
+            middle = (c0 + c1) // 2
+            waiting += [(c0, r0, middle, r1), (middle, r0, c1, r1)]
+        else:
+            middle = (r0 + r1) // 2
+            waiting += [(c0, r0, c1, middle), (c0, middle, c1, r1)]
+    return [(column, row) for row, column in sorted(found)]
+
+
 class NewGeoTiff:
     """The one band of a GeoTIFF that is being written; nobody else holds its dataset, so that `close` ends it."""
 
@@ -268,25 +300,26 @@ def write_display_image(image_path, path, progress=Progress()):
     image = IntensityImage.open(image_path)
     low, high = _stretch(image)
     with new_geotiff(path, image.width, image.height, image.geotransform, image.crs, byte=True, nodata=0) as picture:
-        rows = range(0, image.height, TILE)
-        for row in rows:
-            for column in range(0, image.width, TILE):
-                width, height = min(TILE, image.width - column), min(TILE, image.height - row)
-                values = image.read_pixels(column, row, width, height)
-                known = np.isfinite(values)
-                if known.any():
-                    grey = 1 + np.rint(254 * np.clip((values - low) / max(high - low, 1e-9), 0, 1))
-                    picture.write(column, row, np.where(known, grey, 0).astype(np.uint8))
-            progress.at(min(row + TILE, image.height) / image.height)
+        for column, row in image.tiles():
+            width, height = min(TILE, image.width - column), min(TILE, image.height - row)
+            values = image.read_pixels(column, row, width, height)
+            known = np.isfinite(values)
+            if known.any():
+                grey = 1 + np.rint(254 * np.clip((values - low) / max(high - low, 1e-9), 0, 1))
+                picture.write(column, row, np.where(known, grey, 0).astype(np.uint8))
+            progress.at(row / image.height)
+    progress.at(1.0)
 
 
 def _stretch(image):
     """1st and 99.5th percentile of an image, taken from every n-th pixel."""
-    step = max(1, max(image.width, image.height) // DISPLAY_LONGEST)
+    tiles = image.tiles()
+    # where most of a large image is empty, as many pixels as of a small one that is full
+    filled = int(np.sqrt(len(tiles))) * TILE // DISPLAY_LONGEST
+    step = max(1, min(max(image.width, image.height) // DISPLAY_LONGEST, max(filled, SPARSE_STEP)))
     parts = [np.empty(0, np.float32)]
-    for row in range(0, image.height, TILE):
-        for column in range(0, image.width, TILE):
-            values = image.read_pixels(column, row, TILE, TILE)[::step, ::step]
-            parts.append(values[np.isfinite(values)])
+    for column, row in tiles:
+        values = image.read_pixels(column, row, TILE, TILE)[::step, ::step]
+        parts.append(values[np.isfinite(values)])
     values = np.concatenate(parts)
     return tuple(np.percentile(values, [1.0, 99.5])) if len(values) else (0.0, 1.0)

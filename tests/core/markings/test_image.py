@@ -9,7 +9,7 @@ from lanewright.core.errors import RoadExtractionError
 from lanewright.core.markings.image import ImageSettings, IntensityImage, write_display_image, write_intensity_image
 from lanewright.core.markings.image_cover import check_image_shows
 from lanewright.core.markings.mask import marking_mask
-from lanewright.core.survey.points import ROAD_POINT, UNIT, to_units
+from lanewright.core.survey.points import ROAD_POINT, UNIT, point_dtype, to_units
 from lanewright.core.survey.road_points import RoadPoints
 from lanewright.core.survey.section_store import SectionStore
 
@@ -230,6 +230,48 @@ def test_the_display_image_shows_paint_brighter_than_asphalt_and_nothing_as_noth
     shown = IntensityImage.open(tmp_path / "d.tif")
     values = shown.sample(np.array([5.0, 5.0, 5.0]), np.array([1.0, 0.0, 20.0]), ORIGIN)
     assert values[0] > values[1] + 100 and np.isnan(values[2])
+
+
+def test_an_image_of_two_towns_a_thousand_kilometres_apart_is_only_as_large_as_the_towns(tmp_path):
+    from lanewright.core.report.background import grey_background
+
+    here = painted_street(length=10.0)
+    kind = point_dtype(ROAD_POINT, 1e6)
+    points = RoadPoints(SectionStore(kind), ORIGIN, "")
+    for road, east in ((0, 0.0), (1, 1e6)):
+        records = here.astype(kind)
+        records["x"] += int(east / UNIT)
+        points.store.append(road, records)
+    write_intensity_image(points, tmp_path / "i.tif")
+    image, alone = IntensityImage.open(tmp_path / "i.tif"), image_of(here, tmp_path / "alone.tif")
+    assert image.width > 25_000_000 and len(image.tiles()) <= 4 and (tmp_path / "i.tif").stat().st_size < 5e6
+    x, y = np.linspace(1.0, 9.0, 60), np.linspace(-2.5, 2.5, 60)
+    for east in (0.0, 1e6):
+        np.testing.assert_allclose(image.sample(x + east, y, ORIGIN), alone.sample(x, y, ORIGIN), rtol=1e-4)
+    assert np.isnan(image.sample(np.full(3, 5e5), np.array([-1.0, 0.0, 1.0]), ORIGIN)).all()
+
+    write_display_image(tmp_path / "i.tif", tmp_path / "d.tif")
+    values = IntensityImage.open(tmp_path / "d.tif").sample(np.array([5.0, 5.0, 1e6 + 5.0, 1e6 + 5.0]), np.array([1.0, 0.0, 1.0, 0.0]), ORIGIN)
+    assert values[0] > values[1] + 100 and values[2] > values[3] + 100
+    grey, _ = grey_background(tmp_path / "i.tif", longest=1000)
+    assert grey[:, 0].all() and grey[:, -1].all() and not grey[:, 1:-1].any(), "both towns, and nothing between"
+
+
+def test_a_report_shows_the_same_background_when_only_tiles_with_data_are_read(tmp_path, monkeypatch):
+    from lanewright.core.report import background
+
+    image_of(painted_street(length=40.96), tmp_path / "i.tif", ImageSettings(cell_size=0.02))
+    whole, extent = background.grey_background(tmp_path / "i.tif", longest=100)
+    monkeypatch.setattr(background, "LONGEST", 0)
+    tiles, again = background.grey_background(tmp_path / "i.tif", longest=100)
+    assert extent == again and whole.shape == tiles.shape
+    assert (np.abs(whole.astype(int) - tiles) <= 25).mean() > 0.9
+
+
+def test_tiles_with_data_are_told_row_by_row(tmp_path):
+    image = image_of(painted_street(length=45.0), tmp_path / "i.tif")
+    every = [(column, row) for row in range(0, image.height, 512) for column in range(0, image.width, 512)]
+    assert image.tiles() == every and len(every) > 2
 
 
 def test_the_file_carries_crs_tiles_and_nodata_and_no_unfinished_one_is_left(tmp_path):
