@@ -11,6 +11,8 @@ from qgis.core import (
     QgsProcessingParameterString,
 )
 
+from ..core.setting import limits_of
+
 DECIMALS = 3  # millimetres; QGIS would show six
 
 
@@ -28,7 +30,8 @@ class Knob:
     """One field of a core Settings class as a parameter.
 
     `unit` is what the label ends with: m, s, °, %, points, or "" for a count or ratio
-    that the label explains itself. `choices` makes it a list of words.
+    that the label explains itself. `choices` makes it a list of words. A number has the limits of the
+    core; where the dialog also takes a multiple of it, its maximum is so many `times` the core's.
     """
 
     name: str
@@ -37,8 +40,7 @@ class Knob:
     label: str
     help: str
     choices: tuple = ()
-    minimum: float = None
-    maximum: float = None
+    times: float = 1.0
     advanced: bool = False
 
     def default(self):
@@ -61,10 +63,9 @@ class Knob:
             whole = isinstance(default, int)
             kind = QgsProcessingParameterNumber.Type.Integer if whole else QgsProcessingParameterNumber.Type.Double
             limits = {}
-            if self.minimum is not None:
-                limits["minValue"] = self.minimum
-            if self.maximum is not None:
-                limits["maxValue"] = self.maximum
+            if (owner := settings_class(self.settings)) is not None:
+                found = limits_of(owner, self.field)
+                limits = dict(minValue=found.lowest, maxValue=found.maximum * self.times)
             parameter = QgsProcessingParameterNumber(self.name, self.label, kind, default, **limits)
             if not whole:
                 parameter.setMetadata({"widget_wrapper": {"decimals": DECIMALS}})

@@ -13,7 +13,7 @@ SURVEY_KNOBS = (
         "CORRIDOR", SURVEY, "corridor", tr("Corridor either side of the trajectory (m)"),
         tr("Points farther out are left unread. Wider reaches the far side of a broad avenue, but takes longer and "
            "brings in the neighbouring street."),
-        minimum=5.0, maximum=100.0, advanced=True,
+        advanced=True,
     ),
     Knob(
         "SCANNER_FIELD", SURVEY, "scanner_field", tr("Field that tells the scanners apart"),

@@ -13,6 +13,7 @@ import shapely
 
 from ..errors import RoadExtractionError
 from ..progress import Progress
+from ..setting import check_limits, limits_of, setting
 from .lines import checked_tolerances
 from .places import Places, Segments, pieces_of, places_along, runs_of, single_lines
 from .rates import NAN, Errors, Rates
@@ -31,21 +32,18 @@ class BoundarySettings:
     """How boundaries are judged."""
 
     tolerances: tuple = (0.05, 0.10, 0.20)   # m
-    tolerance: float = 0.10                  # m, the one that intervals are drawn for
-    interval: float = 2.0                    # m along the trajectory or the reference
+    tolerance: float = setting(0.10, 0.001, 2.0, "The tolerance", "m")  # the one that intervals are drawn for
+    interval: float = setting(2.0, 0.5, 100.0, "The interval", "m")  # along the trajectory or the reference
     coverage: float = 0.5                    # share of an interval that lines must cover
     agreement: float = 0.8                   # share of these that must lie within the tolerance
-    corridor: float = 30.0                   # m either side of the trajectory
+    corridor: float = setting(30.0, 1.0, 200.0, "The corridor", "m")  # either side of the trajectory
 
     def __post_init__(self):
-        object.__setattr__(self, "tolerances", checked_tolerances(self.tolerances, self.tolerance, 2.0))
-        if not 0.5 <= self.interval <= 100:
-            raise RoadExtractionError(f"The interval is {self.interval} m; it must be between 0.5 and 100 m.")
+        check_limits(self)
+        object.__setattr__(self, "tolerances", checked_tolerances(self.tolerances, self.tolerance, limits_of(self, "tolerance").maximum))
         for name in ("coverage", "agreement"):
             if not 0 < getattr(self, name) <= 1:
                 raise RoadExtractionError(f"The share {name} is {getattr(self, name)}; it must be above 0 and at most 1.")
-        if not 1 <= self.corridor <= 200:
-            raise RoadExtractionError(f"The corridor is {self.corridor} m; it must be between 1 and 200 m.")
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..errors import RoadExtractionError
 from ..progress import Progress
+from ..setting import check_limits, setting
 from .places import Places, Segments, pieces_of, places_along, runs_of, single_lines
 from .rates import NAN, Errors
 
@@ -22,13 +23,13 @@ class LineSettings:
     """How two sets of lines are compared."""
 
     tolerances: tuple = (0.05, 0.10, 0.15, 0.20)  # m, half-widths of the buffer
-    tolerance: float = 0.10                       # m, the one that pieces are drawn for
-    max_angle: float = 15.0                       # degrees between the directions of two lines that may match; 90 = any
+    tolerance: float = setting(0.10, 0.001, ASSOCIATED, "The tolerance", "m")  # the one that pieces are drawn for
+    # between the directions of two lines that may match; 90 = any
+    max_angle: float = setting(15.0, 1.0, 90.0, "The largest angle between matching lines", "°")
 
     def __post_init__(self):
+        check_limits(self)
         object.__setattr__(self, "tolerances", checked_tolerances(self.tolerances, self.tolerance, ASSOCIATED))
-        if not 0 < self.max_angle <= 90:
-            raise RoadExtractionError(f"The largest angle between matching lines is {self.max_angle}°; it must be above 0° and at most 90°.")
 
 
 def checked_tolerances(tolerances, one, largest):

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..errors import RoadExtractionError
 from ..progress import Progress
+from ..setting import check_limits, setting
 from .cells import TILE, Burner, Seen, tile_bounds, tiles_of
 from .rates import Rates
 
@@ -18,24 +19,19 @@ BLOCK = 16  # cells a side: what is summed up for the chart along the road
 class MarkingAccuracySettings:
     """How markings are judged."""
 
-    cell_size: float = 0.04     # m
+    cell_size: float = setting(0.04, 0.005, 1.0, "The cell size", "m")
     tolerances: tuple = (0, 1)  # cells by which the other side is widened
-    tolerance: int = 1          # the one that objects are judged and drawn with
-    found_share: float = 0.5    # share of an object's cells that makes it found, or right
-    line_width: float = 0.15    # m of lines that tell no width of their own
+    tolerance: int = setting(1, 0, 10, "The tolerance", "cells")  # the one that objects are judged and drawn with
+    found_share: float = setting(0.5, 0.01, 1.0, "The share that makes an object found")  # share of an object's cells that makes it found, or right
+    line_width: float = setting(0.15, 0.01, 10.0, "The width of lines", "m")  # of lines that tell no width of their own
 
     def __post_init__(self):
-        if not 0.005 <= self.cell_size <= 1:
-            raise RoadExtractionError(f"The cell size is {self.cell_size} m; it must be between 0.005 and 1 m.")
+        check_limits(self)
         tolerances = tuple(sorted({0, self.tolerance, *self.tolerances}))
         if any(t != int(t) or not 0 <= t <= 10 for t in tolerances):
             said = ", ".join(f"{t:g}" for t in tolerances)
             raise RoadExtractionError(f"The tolerances are {said}; give whole numbers of cells from 0 to 10, such as 0, 1.")
         object.__setattr__(self, "tolerances", tuple(int(t) for t in tolerances))
-        if not 0 < self.found_share <= 1:
-            raise RoadExtractionError(f"The share that makes an object found is {self.found_share}; it must be above 0 and at most 1.")
-        if not 0.01 <= self.line_width <= 10:
-            raise RoadExtractionError(f"The width of lines is {self.line_width} m; it must be between 0.01 and 10 m.")
 
 
 @dataclass(frozen=True)

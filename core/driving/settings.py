@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from ..errors import RoadExtractionError
+from ..setting import check_limits, setting
 
 NARROWEST = 2.2  # m between the lines of a lane
 WIDEST = 5.0
@@ -23,23 +24,15 @@ class DrivingSettings:
     shortest : shorter driving lines are not worth a line
     """
 
-    lane_width: float = 3.5
-    line_distance: float = 0.0
+    lane_width: float = setting(3.5, NARROWEST, WIDEST, "The lane width", "m", "to take the width from the lines themselves")
+    line_distance: float = setting(0.0, 0.3, WIDEST, "The distance from a line", "m", "for half a lane")
     traffic_side: str = "automatic"
-    max_bridge: float = 20.0
-    max_inferred: float = 60.0
-    shortest: float = 8.0
+    max_bridge: float = setting(20.0, 0.0, 200.0, "The longest gap of all lines that is bridged", "m")
+    max_inferred: float = setting(60.0, 0.0, 500.0, "The longest gap beside another line that is closed", "m")
+    shortest: float = setting(8.0, 0.0, 200.0, "The shortest driving line", "m")
 
     def __post_init__(self):
-        if self.lane_width and not NARROWEST <= self.lane_width <= WIDEST:
-            raise RoadExtractionError(
-                f"The lane width is {self.lane_width} m; lanes are {NARROWEST} to {WIDEST} m wide. "
-                "Set 0 to take the width from the lines themselves.")
-        if self.line_distance and not 0.3 <= self.line_distance <= WIDEST:
-            raise RoadExtractionError(
-                f"The distance from a line is {self.line_distance} m; it must be 0.3 to {WIDEST} m, or 0 for half a lane.")
+        check_limits(self)
         if self.traffic_side not in SIDES:
             raise RoadExtractionError(
                 f"There is no traffic side called {self.traffic_side!r}. Choose one of {', '.join(SIDES)}.")
-        if min(self.max_bridge, self.max_inferred, self.shortest) < 0:
-            raise RoadExtractionError("Lengths of gaps and lines must not be negative.")

@@ -13,10 +13,10 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from ..curves.fit import median
-from ..errors import RoadExtractionError
 from ..features import Features
 from ..progress import Progress
 from ..schemas import MARKINGS
+from ..setting import check_limits, setting
 from ..survey.points import UNIT, Points, joined
 from ..survey.sorting import order_by
 from . import polygons
@@ -44,15 +44,12 @@ class ClusterSettings:
     classes : when a cluster is a line
     """
 
-    distance: float = 0.20
-    min_points: int = 8
+    distance: float = setting(0.20, 0.02, 2.0, "The clustering distance", "m")
+    min_points: int = setting(8, 1, 100000, "The least number of points of a marking")
     classes: ClassSettings = field(default_factory=ClassSettings)
 
     def __post_init__(self):
-        if not 0.02 <= self.distance <= 2.0:
-            raise RoadExtractionError(f"The clustering distance is {self.distance} m; it must be between 0.02 and 2 m.")
-        if self.min_points < 1:
-            raise RoadExtractionError(f"A marking has at least {self.min_points} points; the number must be 1 or more.")
+        check_limits(self)
 
 
 def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress=Progress()):

@@ -13,6 +13,7 @@ import numpy as np
 from ..errors import RoadExtractionError
 from ..parallel import in_order
 from ..progress import Progress
+from ..setting import check_limits, setting
 from ..survey.points import UNIT, Points, chosen, joined
 from ..survey.road_points import RoadPoints
 from .averages import Averages
@@ -52,25 +53,24 @@ class MarkingSettings:
     """
 
     method: str = "multi-threshold"
-    separation: float = 4.0
+    separation: float = setting(4.0, 0.5, 20.0, "The distance of paint from asphalt", "spreads")
     lowest: float = 3.0
     highest: float = 8.0
     alone: float = 5.0
     faint: float = 3.0
-    close: float = 0.20
-    shortest: float = 0.20
+    close: float = setting(0.20, 0.0, 2.0, "The gap that is closed along the road", "m")
+    shortest: float = setting(0.20, 0.0, 2.0, "The shortest run of paint", "m")
     peaks: PeakSettings = field(default_factory=PeakSettings)
     segments: SegmentSettings = field(default_factory=SegmentSettings)
 
     def __post_init__(self):
+        check_limits(self)
         if self.method not in METHODS:
             raise RoadExtractionError(f"The method {self.method!r} is not known; use one of {', '.join(METHODS)}.")
         if not 1.0 <= self.lowest <= self.highest:
             raise RoadExtractionError(
                 f"The threshold lies between {self.lowest} and {self.highest} spreads above asphalt; the first must be at "
                 "least 1 and not above the second.")
-        if min(self.close, self.shortest) < 0:
-            raise RoadExtractionError("Lengths along the road must be 0 m or more.")
 
 
 def extract_markings(road_points, image, frame, settings=MarkingSettings(), progress=Progress(), mask_path=None):

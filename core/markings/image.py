@@ -7,6 +7,7 @@ import numpy as np
 from ..errors import RoadExtractionError
 from ..parallel import in_order
 from ..progress import Progress
+from ..setting import check_limits, setting
 from ..survey.points import UNIT
 from ..survey.sorting import quantiles
 from .intensity_raster import NODATA, TILE, IntensityImage, new_geotiff, write_display_image
@@ -33,20 +34,13 @@ class ImageSettings:
     radius_cells : how far a point reaches, in cells
     """
 
-    cell_size: float = 0.04
-    power: float = 2.0
-    beta: float = 0.5
-    radius_cells: float = 2.0
+    cell_size: float = setting(0.04, 0.005, 10.0, "The cell size", "m")
+    power: float = setting(2.0, 0.1, 10.0, "The power of the distance")
+    beta: float = setting(0.5, 0.0, 1.0, "The weight of brightness")
+    radius_cells: float = setting(2.0, 0.71, 10.0, "The search radius", "cells")
 
     def __post_init__(self):
-        if not 0.005 <= self.cell_size <= 10.0:
-            raise RoadExtractionError(f"The cell size is {self.cell_size} m; it must be between 0.005 and 10 m.")
-        if not 0.0 < self.power <= 10.0:
-            raise RoadExtractionError(f"The power of the distance is {self.power}; it must be above 0 and at most 10.")
-        if not 0.0 <= self.beta <= 1.0:
-            raise RoadExtractionError(f"The weight of brightness is {self.beta}; it must be between 0 and 1.")
-        if not 0.71 <= self.radius_cells <= 10.0:
-            raise RoadExtractionError(f"The search radius is {self.radius_cells} cells; it must be between 0.71 and 10 cells.")
+        check_limits(self)
 
 
 def write_intensity_image(road_points, path, settings=ImageSettings(), progress=Progress()):

@@ -17,6 +17,7 @@ from scipy.spatial import cKDTree
 
 from ..errors import RoadExtractionError
 from ..parallel import in_order
+from ..setting import check_limits, setting
 from ..survey.points import UNIT, Points, chosen
 
 WINDOW = 20.0     # m of station looked at together
@@ -39,27 +40,21 @@ class PeakSettings:
     shortest : m, least length of a chain
     """
 
-    profile_length: float = 0.20
-    prominence: float = 7.0
-    narrowest: float = 0.08
-    widest: float = 0.35
-    jump: float = 0.15
-    gap: float = 0.60
-    shortest: float = 1.0
+    profile_length: float = setting(0.20, 0.02, 2.0, "The length of a profile", "m")
+    prominence: float = setting(7.0, 0.5, 100.0, "The prominence of a peak")
+    narrowest: float = setting(0.08, 0.0, 1.95, "The narrowest line", "m")
+    widest: float = setting(0.35, 0.02, 2.0, "The widest line", "m")
+    jump: float = setting(0.15, 0.01, 1.0, "The shift between profiles", "m")
+    gap: float = setting(0.60, 0.02, 10.0, "The gap along a line", "m")
+    shortest: float = setting(1.0, 0.0, 50.0, "The shortest line", "m")
 
     def __post_init__(self):
-        if not 0.02 <= self.profile_length <= 2.0:
-            raise RoadExtractionError(f"The length of a profile is {self.profile_length} m; it must be between 0.02 and 2 m.")
-        if not self.prominence > 0:
-            raise RoadExtractionError(f"The prominence of a peak is {self.prominence}; it must be above 0.")
-        if not 0 <= self.narrowest < self.widest <= 2.0:
-            raise RoadExtractionError(f"Peaks are {self.narrowest} to {self.widest} m wide; the first must be below the second, "
-                                      "and both between 0 and 2 m.")
-        if not self.jump > 0 or not self.gap >= self.profile_length:
-            raise RoadExtractionError(f"Peaks are chained over {self.jump} m across and {self.gap} m along; the first must be "
-                                      f"above 0 and the second at least the length of a profile ({self.profile_length} m).")
-        if self.shortest < 0:
-            raise RoadExtractionError(f"The shortest line is {self.shortest} m; it must be 0 m or more.")
+        check_limits(self)
+        if not self.narrowest < self.widest:
+            raise RoadExtractionError(f"Peaks are {self.narrowest} to {self.widest} m wide; the first must be below the second.")
+        if self.gap < self.profile_length:
+            raise RoadExtractionError(f"Peaks are chained over {self.gap} m along the road; it must be at least the length of a "
+                                      f"profile ({self.profile_length} m).")
 
 
 def points_on_peaks(road_points, road, settings, progress):

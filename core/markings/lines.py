@@ -12,6 +12,7 @@ from ..errors import RoadExtractionError
 from ..features import Features
 from ..progress import Progress
 from ..schemas import MARKING_LINES
+from ..setting import check_limits, setting
 from ..survey.points import joined
 from . import line_choice
 from .line_shape import shapes_of
@@ -31,20 +32,19 @@ class LineSettings:
     """
 
     curve: str = "automatic"
-    degree: int = 2
-    max_gap: float = 13.0
-    max_bridge: float = 30.0
-    min_paint: float = 4.0
+    degree: int = setting(2, 0, 9, "The polynomial's degree")
+    max_gap: float = setting(13.0, 0.1, 100.0, "The longest gap that is linked", "m")
+    max_bridge: float = setting(30.0, 0.1, 200.0, "The longest gap that is bridged", "m")
+    min_paint: float = setting(4.0, 0.0, 100.0, "The least paint of a line", "m")
 
     def __post_init__(self):
+        check_limits(self)
         if self.curve not in CURVES:
             raise RoadExtractionError(f"There is no curve called {self.curve!r}. Choose one of {', '.join(CURVES)}.")
-        if not 0 <= self.degree <= 9:
-            raise RoadExtractionError(f"The polynomial's degree is {self.degree}; it must be between 0 and 9.")
-        if not 0 < self.max_gap <= self.max_bridge:
+        if self.max_gap > self.max_bridge:
             raise RoadExtractionError(
-                f"Gaps are linked up to {self.max_gap} m and bridged up to {self.max_bridge} m; both must be above 0 m "
-                "and the second not below the first.")
+                f"Gaps are linked up to {self.max_gap} m and bridged up to {self.max_bridge} m; the second must not "
+                "be below the first.")
 
 
 def fit_marking_lines(clustered_points, markings, frame, settings=LineSettings(), progress=Progress()):

@@ -14,6 +14,7 @@ import numpy as np
 from ..errors import RoadExtractionError
 from ..parallel import in_order
 from ..progress import Progress
+from ..setting import check_limits, setting
 from ..survey.points import UNIT, chosen
 from ..survey.road_points import RoadPoints
 from .crowds import may_be_lonely
@@ -39,15 +40,12 @@ class OutlierSettings:
         neighbours stand as far apart as they do: worn and far paint
     """
 
-    neighbours: int = 20
-    std_ratio: float = 1.0
+    neighbours: int = setting(20, 1, 1000, "The number of neighbours")
+    std_ratio: float = setting(1.0, 0.0, 20.0, "The standard deviation ratio")
     scope: str = "windows"
 
     def __post_init__(self):
-        if self.neighbours < 1:
-            raise RoadExtractionError(f"Outliers are judged by {self.neighbours} neighbours; at least 1 is needed.")
-        if self.std_ratio < 0:
-            raise RoadExtractionError(f"The standard deviation ratio is {self.std_ratio}; it must be 0 or more.")
+        check_limits(self)
         if self.scope not in SCOPES:
             raise RoadExtractionError(f"The scope {self.scope!r} is not known; use one of {', '.join(SCOPES)}.")
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..errors import RoadExtractionError
 from ..parallel import in_order
+from ..setting import check_limits, setting
 from ..survey.points import UNIT, Points, chosen
 from .cells import occupied
 from .thresholds import asphalt, otsu
@@ -29,19 +29,13 @@ class SegmentSettings:
     radius : m about a bright point in which its bright neighbours are counted
     """
 
-    length: float = 10.0
-    width: float = 1.0
-    separation: float = 3.0
-    radius: float = 0.12
+    length: float = setting(10.0, 0.5, 200.0, "The length of a segment", "m")
+    width: float = setting(1.0, 0.1, 50.0, "The width of a segment", "m")
+    separation: float = setting(3.0, 0.0, 50.0, "The distance of paint from asphalt", "spreads")
+    radius: float = setting(0.12, 0.01, 1.0, "The radius in which neighbours are counted", "m")
 
     def __post_init__(self):
-        if not (0.5 <= self.length <= 200.0 and 0.1 <= self.width <= 50.0):
-            raise RoadExtractionError(f"A segment is {self.length} m long and {self.width} m wide; it must be 0.5 to 200 m long "
-                                      "and 0.1 to 50 m wide.")
-        if not self.separation >= 0:
-            raise RoadExtractionError(f"Paint lies {self.separation} spreads above asphalt; it must be 0 or more.")
-        if not 0.01 <= self.radius <= 1.0:
-            raise RoadExtractionError(f"Neighbours are counted within {self.radius} m; it must be between 0.01 and 1 m.")
+        check_limits(self)
 
 
 def points_in_segments(road_points, road, settings, progress):

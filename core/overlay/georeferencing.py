@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 
 from ..errors import RoadExtractionError
+from ..setting import check_limits, setting
 from .control_points import CONTROL, ControlPoints
 from .polynomial import FEWEST, LINE, WEAK, Fit, fit_polynomial, fit_shift, spread, weakness
 from .source_image import SourceImage
@@ -22,17 +23,17 @@ _RING = 200       # places along the outline of the image
 class GeoreferenceSettings:
     """How the image is placed and drawn."""
 
-    order: int = 2                       # of the polynomial; 0 is a shift
-    pixel_size: float = 0.0              # m, of the result (and of the image, for a shift without rough position); 0 as the image
+    order: int = setting(2, 0, 3, "The order of the polynomial")  # of the polynomial; 0 is a shift
+    # of the result (and of the image, for a shift without rough position); 0 as the image
+    pixel_size: float = setting(0.0, 0.0, 999.0, "The pixel size", "m")
     extrapolation: str = "automatic"     # what becomes of the image outside the hull: automatic leaves it out at order 3
     resampling: str = "bilinear"
     check_disabled: bool = False         # disabled points count as check points
 
     def __post_init__(self):
+        check_limits(self)
         if self.order not in (0, 1, 2, 3):
             raise RoadExtractionError(f"The order of the polynomial is {self.order}; it must be 0 (shift), 1, 2 or 3.")
-        if not 0.0 <= self.pixel_size < 1000.0:
-            raise RoadExtractionError(f"The pixel size is {self.pixel_size:g} m; it must be above 0 m, or 0 for that of the image.")
         for name, known in (("extrapolation", EXTRAPOLATIONS), ("resampling", RESAMPLINGS)):
             if getattr(self, name) not in known:
                 raise RoadExtractionError(f"{name.capitalize()} {getattr(self, name)!r} is not known. Choose one of: {', '.join(known)}.")

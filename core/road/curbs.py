@@ -11,6 +11,7 @@ from ..features import Features
 from ..parallel import in_order
 from ..progress import Progress
 from ..schemas import CURB_POINTS
+from ..setting import check_limits, setting
 from .nearest_pass import name_passes
 from .profiles.averaged_steps import AVERAGE, find_averaged_steps
 from .profiles.chains import NOISY, choose_along, curb_chains, link_chains, long_enough
@@ -47,28 +48,19 @@ class CurbSettings:
     min_height, max_height : m, road to top of curb
     """
 
-    block_length: float = 0.0
-    profile_width: float = 0.25
-    point_spacing: float = 0.025
-    layer_jump: float = 0.05
-    slope: float = 60.0
-    min_height: float = 0.05
-    max_height: float = 0.35
+    block_length: float = setting(0.0, 0.25, 10.0, "The block length", "m", "for automatic")
+    profile_width: float = setting(0.25, 0.05, 2.0, "The profile width", "m")
+    point_spacing: float = setting(0.025, 0.01, 0.1, "The point spacing", "m")
+    layer_jump: float = setting(0.05, 0.01, 0.5, "The layer jump", "m")
+    slope: float = setting(60.0, 10.0, 89.0, "The slope", "°")
+    min_height: float = setting(0.05, 0.01, 0.95, "The minimum curb height", "m")
+    max_height: float = setting(0.35, 0.02, 1.0, "The maximum curb height", "m")
 
     def __post_init__(self):
-        if self.block_length != 0 and not 0.25 <= self.block_length <= 10.0:
-            raise RoadExtractionError(f"The block length is {self.block_length} m; it must be between 0.25 and 10 m, or 0 for automatic.")
-        if not 0.05 <= self.profile_width <= 2.0:
-            raise RoadExtractionError(f"The profile width is {self.profile_width} m; it must be between 0.05 and 2 m.")
-        if not 0.01 <= self.point_spacing <= 0.1:
-            raise RoadExtractionError(f"The point spacing is {self.point_spacing} m; it must be between 0.01 and 0.1 m.")
-        if not 0.0 < self.layer_jump <= 0.5:
-            raise RoadExtractionError(f"The layer jump is {self.layer_jump} m; it must be above 0 and at most 0.5 m.")
-        if not 10.0 <= self.slope < 90.0:
-            raise RoadExtractionError(f"The slope is {self.slope}°; it must be at least 10° and less than 90°.")
-        if not 0.01 <= self.min_height < self.max_height <= 1.0:
-            raise RoadExtractionError(f"Curbs from {self.min_height} m to {self.max_height} m were asked for; the minimum "
-                                      "must be at least 0.01 m, the maximum above it and at most 1 m.")
+        check_limits(self)
+        if not self.min_height < self.max_height:
+            raise RoadExtractionError(f"Curbs from {self.min_height} m to {self.max_height} m were asked for; the maximum "
+                                      "must be above the minimum.")
 
 
 def detect_curbs(survey, settings=CurbSettings(), progress=Progress(), turned=True, crowds=None):

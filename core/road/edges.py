@@ -7,11 +7,11 @@ import shapely
 from scipy.interpolate import splev, splprep, splrep
 from scipy.ndimage import median_filter
 
-from ..errors import RoadExtractionError
 from ..features import Features
 from ..parallel import go_on
 from ..progress import Progress
 from ..schemas import ROAD_EDGES, of_main_curb
+from ..setting import check_limits, setting
 from .nearest_pass import name_passes
 from .turned.edges import draw_turned, turned_lines
 
@@ -36,14 +36,11 @@ class EdgeSettings:
     fallback_width : m from edge to edge of a road drawn where no curb was found; 0 draws none
     """
 
-    max_gap: float = 15.0
-    fallback_width: float = 0.0
+    max_gap: float = setting(15.0, 0.0, 100.0, "The longest bridged gap", "m")
+    fallback_width: float = setting(0.0, 2.0, 50.0, "The fallback width", "m", "for none")
 
     def __post_init__(self):
-        if not 0.0 <= self.max_gap <= 100.0:
-            raise RoadExtractionError(f"The longest bridged gap is {self.max_gap} m; it must be between 0 and 100 m.")
-        if self.fallback_width != 0 and not 2.0 <= self.fallback_width <= 50.0:
-            raise RoadExtractionError(f"The fallback width is {self.fallback_width} m; it must be between 2 and 50 m, or 0 for none.")
+        check_limits(self)
 
 
 def fit_road_edges(curb_points, frame, settings=EdgeSettings(), progress=Progress()):

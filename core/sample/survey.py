@@ -15,6 +15,7 @@ import numpy as np
 
 from ..errors import RoadExtractionError
 from ..progress import Progress
+from ..setting import check_limits, setting
 from ..survey.trajectory import Trajectory
 from . import truth
 from .camera import camera_over
@@ -32,7 +33,7 @@ _START_TIME = (_SURVEY_DAY - datetime(1980, 1, 6)) / timedelta(seconds=1) + 18.0
 _PAUSE = 55.0        # s between two passes
 _PULSES = 50_000     # per block
 _RANGE_NOISE = 0.005
-_VERGE_NOISE = 0.02  # m, blades of grass above the ground
+_VERGE_NOISE = 0.02  # blades of grass above the ground
 _LOST, _STRAY = 0.004, 0.00015
 
 POINT = np.dtype([("x", "f8"), ("y", "f8"), ("z", "f8"), ("time", "f8"), ("intensity", "u2"), ("scanner", "u1"),
@@ -44,30 +45,24 @@ class SampleSettings:
     """What is surveyed and how densely."""
 
     scene: str = "street"          # street, rural or urban
-    length: float = 120.0          # m of road
-    seed: int = 1
-    speed_kmh: float = 50.0        # of the vehicle
-    pulse_rate: float = 300_000.0  # pulses per second of each scanner
-    rotation_rate: float = 200.0   # lines per second of each scanner
-    mount_yaw: float = 45.0        # degrees of the scanners' planes from straight across, one turned either way
-    radius: float = 120.0          # m, of the bends
-    curb_height: float = 0.13      # m
-    gutter: float = 0.0            # m, width of a concrete gutter along the curbs
-    reach: float = 18.0            # m, points further from the road's axis are left out
+    length: float = setting(120.0, 20.0, 20000.0, "Sample survey: length", "m")  # m of road
+    seed: int = setting(1, 0, 2**31 - 1, "Sample survey: seed")
+    speed_kmh: float = setting(50.0, 5.0, 120.0, "Sample survey: speed", "km/h")  # of the vehicle
+    pulse_rate: float = setting(300_000.0, 5000.0, 2000000.0, "Sample survey: pulse rate", "Hz")  # pulses per second of each scanner
+    rotation_rate: float = setting(200.0, 10.0, 400.0, "Sample survey: rotation rate", "Hz")  # lines per second of each scanner
+    # of the scanners' planes from straight across, one turned either way
+    mount_yaw: float = setting(45.0, 0.0, 60.0, "Sample survey: mount yaw", "°")
+    radius: float = setting(120.0, 60.0, 5000.0, "Sample survey: radius", "m")  # of the bends
+    curb_height: float = setting(0.13, 0.04, 0.3, "Sample survey: curb height", "m")
+    gutter: float = setting(0.0, 0.0, 1.0, "Sample survey: gutter", "m")  # width of a concrete gutter along the curbs
+    reach: float = setting(18.0, 12.0, 24.0, "Sample survey: reach", "m")  # points further from the road's axis are left out
     crs: str = "EPSG:32650"
     origin: tuple = (610400.0, 2710200.0, 20.0)  # map coordinates of the road's beginning, whole metres
 
     def __post_init__(self):
+        check_limits(self)
         if self.scene not in SCENES:
             raise RoadExtractionError(f"There is no sample scene {self.scene!r}. Choose one of: {', '.join(SCENES)}.")
-        for name, low, high, unit in (
-                ("length", 20, 20_000, "m"), ("seed", 0, 2**31, ""), ("speed_kmh", 5, 120, "km/h"), ("pulse_rate", 5_000, 2e6, "Hz"),
-                ("rotation_rate", 10, 400, "Hz"), ("mount_yaw", 0, 60, "°"), ("radius", 60, 5_000, "m"), ("curb_height", 0.04, 0.30, "m"),
-                ("gutter", 0, 1, "m"), ("reach", 12, 24, "m")):
-            value = getattr(self, name)
-            if not low <= value <= high:
-                raise RoadExtractionError(
-                    f"Sample survey: {name.replace('_', ' ')} is {value:g}; it must be from {low:g} to {high:g} {unit}".rstrip() + ".")
 
 
 def make_sample_survey(settings=None, progress=None):

@@ -7,6 +7,7 @@ from scipy.spatial import cKDTree
 
 from ..errors import RoadExtractionError
 from ..progress import Progress
+from ..setting import check_limits, setting
 from .crs import check_metric, horizontal, parse_crs, reproject_trajectory
 from .inspected_drive import inspect_drive
 from .point_cloud import BLOCK, read_blocks, read_headers
@@ -25,13 +26,11 @@ MOST_CELLS = 40_000_000  # of the density raster
 class InspectionSettings:
     """Edges of the cells that density is counted in, metres."""
 
-    cell_size: float = 1.0
-    cube_size: float = 1.0
+    cell_size: float = setting(1.0, 0.05, 100.0, "The density cell", "m")
+    cube_size: float = setting(1.0, 0.05, 100.0, "The density cube", "m")
 
     def __post_init__(self):
-        for name, value in (("cell", self.cell_size), ("cube", self.cube_size)):
-            if not 0.05 <= value <= 100.0:
-                raise RoadExtractionError(f"The density {name} is {value} m; it must be between 0.05 and 100 m.")
+        check_limits(self)
 
 
 @dataclass

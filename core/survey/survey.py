@@ -6,6 +6,7 @@ import numpy as np
 
 from ..errors import RoadExtractionError
 from ..progress import Progress
+from ..setting import check_limits, setting
 from .block_points import ABOVE, BELOW, carried_on
 from .clock_check import check_clock
 from .cloud_blocks import CloudReaders
@@ -35,7 +36,7 @@ class SurveySettings:
     fit_passes : whether passes over one road that lie apart are laid on each other
     """
 
-    corridor: float = CORRIDOR
+    corridor: float = setting(CORRIDOR, 5.0, 100.0, "The corridor", "m")
     scanner_field: str = "automatic"
     time: str = "automatic"
     crs: str = ""
@@ -45,8 +46,7 @@ class SurveySettings:
     block: int = BLOCK
 
     def __post_init__(self):
-        if not 5.0 <= self.corridor <= 100.0:
-            raise RoadExtractionError(f"The corridor is {self.corridor} m; it must be between 5 and 100 m either side of the trajectory.")
+        check_limits(self)
 
 
 @dataclass

@@ -23,15 +23,15 @@ BOUNDARY = "assess.boundaries:BoundarySettings"
 BOUNDARY_KNOBS = (
     Knob(
         "TOLERANCE", BOUNDARY, "tolerance", tr("Tolerance of the layer and of the numbers (m)"),
-        tr("The tolerance for which intervals are drawn and numbers returned; the report has all of them."), minimum=0.001, maximum=2.0,
+        tr("The tolerance for which intervals are drawn and numbers returned; the report has all of them."),
     ),
     Knob(
         "INTERVAL", BOUNDARY, "interval", tr("Length of an interval (m)"),
-        tr("Longer lets a short error pass or spoil more of the road; published figures use 2."), minimum=0.5, maximum=100.0, advanced=True,
+        tr("Longer lets a short error pass or spoil more of the road; published figures use 2."), advanced=True,
     ),
     Knob(
         "CORRIDOR", BOUNDARY, "corridor", tr("Corridor either side of the trajectory (m)"),
-        tr("What lies farther out belongs to no road and is left out; the report tells how much."), minimum=1.0, maximum=200.0, advanced=True,
+        tr("What lies farther out belongs to no road and is left out; the report tells how much."), advanced=True,
     ),
 )
 

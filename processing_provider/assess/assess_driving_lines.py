@@ -17,12 +17,12 @@ LINE_KNOBS = (
     Knob(
         "TOLERANCE", LINES, "tolerance", tr("Tolerance of the layer and of the numbers (m)"),
         tr("The tolerance for which pieces are drawn and numbers returned, of the same kind as the others; the report has all of them."),
-        minimum=0.001, maximum=1.5,
+        times=2.0,  # total widths are halved
     ),
     Knob(
         "MAX_ANGLE", LINES, "max_angle", tr("Largest angle between lines that match (°)"),
         tr("Smaller keeps lines that cross from matching; 90 lets any direction match. The way a line is drawn does not matter."),
-        minimum=1.0, maximum=90.0, advanced=True,
+        advanced=True,
     ),
 )
 

@@ -14,19 +14,19 @@ PAINTED = [QgsProcessing.SourceType.TypeVectorPolygon, QgsProcessing.SourceType.
 MARKING_KNOBS = (
     Knob(
         "TOLERANCE", MARKINGS, "tolerance", tr("Tolerance of objects and of the layer (cells)"),
-        tr("Objects are judged and numbers ending in TOLERANT returned with this tolerance; the report has all of them."), minimum=0, maximum=10,
+        tr("Objects are judged and numbers ending in TOLERANT returned with this tolerance; the report has all of them."),
     ),
     Knob(
         "CELL_SIZE", MARKINGS, "cell_size", tr("Cell size (m)"),
-        tr("Smaller weighs the rims of markings more and takes longer; published figures use 0.04."), minimum=0.005, maximum=1.0, advanced=True,
+        tr("Smaller weighs the rims of markings more and takes longer; published figures use 0.04."), advanced=True,
     ),
     Knob(
         "LINE_WIDTH", MARKINGS, "line_width", tr("Width of lines (m)"),
-        tr("How wide paint is where a layer of lines has no field width_m or width."), minimum=0.01, maximum=10.0, advanced=True,
+        tr("How wide paint is where a layer of lines has no field width_m or width."), advanced=True,
     ),
     Knob(
         "FOUND_SHARE", MARKINGS, "found_share", tr("Share of an object that makes it found (0-1)"),
-        tr("Higher asks for more of an object before it counts as found, or as right."), minimum=0.01, maximum=1.0, advanced=True,
+        tr("Higher asks for more of an object before it counts as found, or as right."), advanced=True,
     ),
 )
 

@@ -13,12 +13,11 @@ DRIVING_KNOBS = (
         "LANE_WIDTH", DRIVING, "lane_width", tr("Lane width, 0 = as seen on the road (m)"),
         tr("Where only the outer lines are painted, the number of lanes follows from their distance and this width. "
            "Wider makes fewer lanes."),
-        minimum=0.0, maximum=5.0,
     ),
     Knob(
         "LINE_DISTANCE", DRIVING, "line_distance", tr("Distance from a line without partner, 0 = half a lane (m)"),
         tr("How far beside a painted line the driving line runs where the lane has no second line."),
-        minimum=0.0, maximum=10.0, advanced=True,
+        advanced=True,
     ),
     Knob(
         "TRAFFIC_SIDE", DRIVING, "traffic_side", tr("Side of traffic"),
@@ -28,16 +27,16 @@ DRIVING_KNOBS = (
     ),
     Knob(
         "MAX_BRIDGE", DRIVING, "max_bridge", tr("Longest gap of all lines bridged (m)"),
-        tr("Longer leads lanes through wider crossings; shorter leaves them open."), minimum=0.0, maximum=200.0, advanced=True,
+        tr("Longer leads lanes through wider crossings; shorter leaves them open."), advanced=True,
     ),
     Knob(
         "MAX_INFERRED", DRIVING, "max_inferred", tr("Longest gap beside other lines closed (m)"),
         tr("Where another line of the road goes on, a lane is led along it through a gap up to this length."),
-        minimum=0.0, maximum=500.0, advanced=True,
+        advanced=True,
     ),
     Knob(
         "SHORTEST", DRIVING, "shortest", tr("Shortest driving line (m)"),
-        tr("Shorter keeps stubs at the ends of the survey."), minimum=0.0, maximum=200.0, advanced=True,
+        tr("Shorter keeps stubs at the ends of the survey."), advanced=True,
     ),
 )
 

@@ -12,11 +12,10 @@ CLUSTER_KNOBS = (
     Knob(
         "DISTANCE", CLUSTERS, "distance", tr("Distance that joins points (m)"),
         tr("Larger joins worn paint into one marking, but also neighbouring markings; smaller keeps them apart."),
-        minimum=0.02, maximum=2.0,
     ),
     Knob(
         "MIN_POINTS", CLUSTERS, "min_points", tr("Fewest points of a marking (points)"),
-        tr("Fewer keeps tiny remains of paint, and specks that are none."), minimum=1, maximum=100000, advanced=True,
+        tr("Fewer keeps tiny remains of paint, and specks that are none."), advanced=True,
     ),
 )
 

@@ -22,15 +22,15 @@ MARKING_KNOBS = (
         "SEPARATION", EXTRACTION, "separation", tr("Multi-threshold: least distance of paint from asphalt (σ)"),
         tr("How many spreads of asphalt the paint of a strip must lie above it before the strip counts as painted. Lower "
            "finds fainter paint, but also gutters, patches and noise."),
-        minimum=0.5, maximum=20.0, advanced=True,
+        advanced=True,
     ),
     Knob(
         "SHORTEST_PAINT", EXTRACTION, "shortest", tr("Multi-threshold: shortest run of paint along the road (m)"),
-        tr("Longer removes specks, but also worn remains of dashes."), minimum=0.0, maximum=2.0, advanced=True,
+        tr("Longer removes specks, but also worn remains of dashes."), advanced=True,
     ),
     Knob(
         "CLOSE", EXTRACTION, "close", tr("Multi-threshold: gap in paint closed along the road (m)"),
-        tr("Longer joins worn paint, but also neighbouring bars and letters."), minimum=0.0, maximum=2.0, advanced=True,
+        tr("Longer joins worn paint, but also neighbouring bars and letters."), advanced=True,
     ),
 )
 
@@ -38,36 +38,36 @@ PEAK_KNOBS = (
     Knob(
         "PROFILE_LENGTH", PEAKS, "profile_length", tr("Intensity peaks: length of a profile (m)"),
         tr("Longer holds more points and less noise, but blurs lines that are not parallel to the road. It should hold a "
-           "scan line or two."), minimum=0.02, maximum=2.0, advanced=True,
+           "scan line or two."), advanced=True,
     ),
     Knob(
         "PROMINENCE", PEAKS, "prominence", tr("Intensity peaks: least prominence of a peak (MAD)"),
         tr("How far a peak must rise above both its feet, in median absolute deviations of its profile. Lower finds fainter "
-           "and worn lines, but also seams and noise."), minimum=0.5, maximum=100.0, advanced=True,
+           "and worn lines, but also seams and noise."), advanced=True,
     ),
     Knob(
         "NARROWEST", PEAKS, "narrowest", tr("Intensity peaks: narrowest line (m)"),
         tr("Narrower peaks are no lines. Lower finds worn lines, but also cracks filled with light sealant."),
-        minimum=0.0, maximum=2.0, advanced=True,
+        advanced=True,
     ),
     Knob(
         "WIDEST", PEAKS, "widest", tr("Intensity peaks: widest line (m)"),
         tr("Broader peaks are no lines. Higher finds broad lines and zebra bars, but also pale repairs and gutters."),
-        minimum=0.02, maximum=2.0, advanced=True,
+        advanced=True,
     ),
     Knob(
         "JUMP", PEAKS, "jump", tr("Intensity peaks: shift between profiles (m)"),
         tr("How far across a peak may lie from the last one of its line. Larger follows slanting lines, but also joins "
-           "what only happens to lie near."), minimum=0.01, maximum=1.0, advanced=True,
+           "what only happens to lie near."), advanced=True,
     ),
     Knob(
         "PEAK_GAP", PEAKS, "gap", tr("Intensity peaks: gap along a line (m)"),
         tr("Longer follows worn lines, but also joins specks. At least the length of a profile."),
-        minimum=0.02, maximum=10.0, advanced=True,
+        advanced=True,
     ),
     Knob(
         "SHORTEST_LINE", PEAKS, "shortest", tr("Intensity peaks: shortest line (m)"),
-        tr("Longer removes specks, but also short and worn dashes."), minimum=0.0, maximum=50.0, advanced=True,
+        tr("Longer removes specks, but also short and worn dashes."), advanced=True,
     ),
 )
 
@@ -75,22 +75,22 @@ SEGMENT_KNOBS = (
     Knob(
         "SEGMENT_LENGTH", SEGMENTS, "length", tr("Point segments: length of a segment (m)"),
         tr("Longer holds more asphalt and steadies the threshold, but averages over patches and worn stretches."),
-        minimum=0.5, maximum=200.0, advanced=True,
+        advanced=True,
     ),
     Knob(
         "SEGMENT_WIDTH", SEGMENTS, "width", tr("Point segments: width of a segment (m)"),
         tr("Narrower is scanned more alike, but may hold little asphalt beside the paint."),
-        minimum=0.1, maximum=50.0, advanced=True,
+        advanced=True,
     ),
     Knob(
         "SEGMENT_SEPARATION", SEGMENTS, "separation", tr("Point segments: least distance of paint from asphalt (σ)"),
         tr("How many spreads of asphalt the bright points of a segment must lie above the rest before it counts as "
-           "painted. Lower finds fainter paint, but takes patches and noise for it."), minimum=0.0, maximum=50.0, advanced=True,
+           "painted. Lower finds fainter paint, but takes patches and noise for it."), advanced=True,
     ),
     Knob(
         "NEIGHBOUR_RADIUS", SEGMENTS, "radius", tr("Point segments: radius in which bright points are counted (m)"),
         tr("Larger suits sparse surveys; smaller keeps narrow paint beside asphalt."),
-        minimum=0.01, maximum=1.0, advanced=True,
+        advanced=True,
     ),
 )
 

@@ -18,21 +18,20 @@ LINE_KNOBS = (
     Knob(
         "DEGREE", LINES, "degree", tr("Degree of the polynomial (0-9)"),
         tr("Used with polynomial only. Higher follows more bends, but swings between its points."),
-        minimum=0, maximum=9,
     ),
     Knob(
         "LINK_GAP", LINES, "max_gap", tr("Longest gap between dashes linked (m)"),
         tr("Longer links dashes that stand far apart, but also lines that end and begin anew."),
-        minimum=0.1, maximum=100.0, advanced=True,
+        advanced=True,
     ),
     Knob(
         "LINK_BRIDGE", LINES, "max_bridge", tr("Longest gap linked by rhythm (m)"),
         tr("Up to here a line goes on where its own rhythm of dashes or a line beside it carries over; flagged as bridged."),
-        minimum=0.1, maximum=200.0, advanced=True,
+        advanced=True,
     ),
     Knob(
         "MIN_PAINT", LINES, "min_paint", tr("Least paint of a line (m)"),
-        tr("Less makes lines of short remains, and of marks that are none."), minimum=0.0, maximum=100.0, advanced=True,
+        tr("Less makes lines of short remains, and of marks that are none."), advanced=True,
     ),
 )
 

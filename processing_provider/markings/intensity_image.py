@@ -11,20 +11,19 @@ IMAGE_KNOBS = (
     Knob(
         "CELL_SIZE", IMAGE, "cell_size", tr("Cell size (m)"),
         tr("Smaller shows narrow lines more sharply while the cloud is dense enough; larger fills gaps and makes smaller files."),
-        minimum=0.01, maximum=1.0,
     ),
     Knob(
         "POWER", IMAGE, "power", tr("Power of the distance (0-9)"),
-        tr("Higher lets the nearest point decide, lower averages more."), minimum=0.0, maximum=9.0, advanced=True,
+        tr("Higher lets the nearest point decide, lower averages more."), advanced=True,
     ),
     Knob(
         "BETA", IMAGE, "beta", tr("Share of the weight that follows brightness (0-1)"),
         tr("0 is plain inverse distance; higher lets bright points count more and fattens paint by up to half a cell."),
-        minimum=0.0, maximum=1.0, advanced=True,
+        advanced=True,
     ),
     Knob(
         "RADIUS_CELLS", IMAGE, "radius_cells", tr("Reach of a point (cells)"),
-        tr("Larger fills sparse far pixels, but blurs."), minimum=0.5, maximum=20.0, advanced=True,
+        tr("Larger fills sparse far pixels, but blurs."), advanced=True,
     ),
 )
 

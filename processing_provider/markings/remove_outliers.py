@@ -11,12 +11,10 @@ OUTLIER_KNOBS = (
     Knob(
         "NEIGHBOURS", OUTLIERS, "neighbours", tr("Nearest points looked at (points)"),
         tr("More judges by a wider neighbourhood and removes small clumps too; fewer removes single points only."),
-        minimum=1, maximum=1000,
     ),
     Knob(
         "STD_RATIO", OUTLIERS, "std_ratio", tr("Allowed distance above the mean (σ)"),
         tr("Smaller removes more, first where points are sparse; larger keeps far paint, and some noise with it."),
-        minimum=0.0, maximum=20.0,
     ),
     Knob(
         "SCOPE", OUTLIERS, "scope", tr("Statistics over"),

@@ -18,13 +18,11 @@ GEOREFERENCE_KNOBS = (
         tr("0 only shifts an image that already has a rough position; 1 also turns, scales and shears it (3 points or more), 2 also "
            "bends it (6), 3 bends it twice (10). Higher follows the points more closely and runs away faster outside them: "
            "watch the leave-one-out error, which falls only as long as the order is worth it."),
-        minimum=0, maximum=3,
     ),
     Knob(
         "PIXEL_SIZE", GEOREFERENCE, "pixel_size", tr("Pixel size (m)"),
         tr("Of the result; 0 keeps that of the image. Smaller makes a larger file, not a sharper image. A shift (order 0) of an image "
            "without position takes this as the image's own pixel size, north up."),
-        minimum=0.0, maximum=999.0,
     ),
     Knob(
         "EXTRAPOLATION", GEOREFERENCE, "extrapolation", tr("Outside the control points"),

@@ -9,55 +9,55 @@ from ..texts import tr
 SCANLINE_BOUNDARIES = "road.scanlines.boundaries:ScanlineBoundarySettings"
 
 
-def knob(name, field, label, text, minimum, maximum, advanced=False):
-    return Knob(name, SCANLINE_BOUNDARIES, field, label, text, minimum=minimum, maximum=maximum, advanced=advanced)
+def knob(name, field, label, text, advanced=False):
+    return Knob(name, SCANLINE_BOUNDARIES, field, label, text, advanced=advanced)
 
 
 SHARED_KNOBS = (
     knob(
         "SEARCH_WIDTH", "search_width", tr("Search width across a step (m)"),
-        tr("The height must change within this width. Wider finds rounded and bevelled curbs, but also ramps."), 0.04, 0.5, True,
+        tr("The height must change within this width. Wider finds rounded and bevelled curbs, but also ramps."), True,
     ),
     knob(
         "SENSOR_HEIGHT", "sensor_height", tr("Trajectory above the road, 0 = from the data (m)"),
-        tr("Give it where little road was scanned under the vehicle; otherwise the data know better."), 0.0, 10.0, True,
+        tr("Give it where little road was scanned under the vehicle; otherwise the data know better."), True,
     ),
     knob(
         "CLIPPING_HEIGHT", "clipping_height", tr("Height above the road that is looked at (m)"),
-        tr("Higher keeps curbs on steeply banked roads, but also low walls and the sills of cars."), 0.05, 2.0, True,
+        tr("Higher keeps curbs on steeply banked roads, but also low walls and the sills of cars."), True,
     ),
     knob(
         "DISTANCE_ACROSS", "distance_across", tr("Reach of a plane across the road (m)"),
         tr("Points this far to either side of a step give its planes. Longer is steadier, shorter keeps to narrow gutters "
-           "and curb stones."), 0.15, 2.0, True,
+           "and curb stones."), True,
     ),
     knob(
         "DISTANCE_ALONG", "distance_along", tr("Reach of a plane along the road (m)"),
-        tr("Longer is steadier where points are sparse, shorter follows sharp corners."), 0.1, 2.0, True,
+        tr("Longer is steadier where points are sparse, shorter follows sharp corners."), True,
     ),
     knob(
         "RANSAC_DISTANCE", "ransac_distance", tr("Points of a plane lie within (m)"),
-        tr("Larger for noisy scanners; where points scatter more, 1.5 sigma of the plane is taken anyway."), 0.001, 0.1, True,
+        tr("Larger for noisy scanners; where points scatter more, 1.5 sigma of the plane is taken anyway."), True,
     ),
     knob(
         "VERTICAL_ANGLE", "vertical_angle", tr("Least angle of a curb face's normal from the vertical (°)"),
-        tr("90 is upright. Lower accepts bevelled and mountable curbs (40 for a slope of 45°), but also banks."), 20.0, 90.0, True,
+        tr("90 is upright. Lower accepts bevelled and mountable curbs (40 for a slope of 45°), but also banks."), True,
     ),
     knob(
         "HORIZONTAL_ANGLE", "horizontal_angle", tr("Largest angle of road's and sidewalk's normal from the vertical (°)"),
-        tr("Larger accepts sloping ground behind the curb."), 1.0, 45.0, True,
+        tr("Larger accepts sloping ground behind the curb."), True,
     ),
 )
 
 BOUNDARY_KNOBS = (
     knob(
         "MIN_HEIGHT", "min_height", tr("Least height of a step (m)"),
-        tr("Lower finds dropped curbs, but also tar seams and the edges of manholes."), 0.01, 0.5,
+        tr("Lower finds dropped curbs, but also tar seams and the edges of manholes."),
     ),
     *SHARED_KNOBS,
     knob(
         "MAX_GAP", "max_gap", tr("Longest gap connected (m)"),
-        tr("Corners farther apart along the road are not joined. Longer passes driveways and parked cars, and says so."), 0.0, 100.0,
+        tr("Corners farther apart along the road are not joined. Longer passes driveways and parked cars, and says so."),
     ),
 )
 
@@ -65,7 +65,7 @@ BOUNDARY_KNOBS = (
 DOOR_KNOBS = (
     knob(
         "SCANLINE_MIN_HEIGHT", "min_height", tr("Least height of a step on scanlines (m)"),
-        tr("Lower finds dropped curbs, but also tar seams. Profiles have a minimum curb height of their own."), 0.01, 0.5, True,
+        tr("Lower finds dropped curbs, but also tar seams. Profiles have a minimum curb height of their own."), True,
     ),
     *SHARED_KNOBS,
 )

@@ -13,38 +13,33 @@ CURB_KNOBS = (
         "BLOCK_LENGTH", CURBS, "block_length", tr("Block length along the road, 0 = automatic (m)"),
         tr("Automatic takes 0.5 m in sharp curves and up to 2 m on straights. Shorter follows a bend more closely but "
            "has fewer points to go by."),
-        minimum=0.0, maximum=10.0,
     ),
     Knob(
         "PROFILE_WIDTH", CURBS, "profile_width", tr("Profile width along the road (m)"),
         tr("Wider finds curbs far from the scanner, where points are sparse, but blurs them in bends."),
-        minimum=0.02, maximum=2.0,
     ),
     Knob(
         "POINT_SPACING", CURBS, "point_spacing", tr("Cell across the road (m)"),
         tr("Finer places the curb more exactly; coarser fills gaps in sparse clouds, but misses low curbs."),
-        minimum=0.005, maximum=0.2, advanced=True,
+        advanced=True,
     ),
     Knob(
         "LAYER_JUMP", CURBS, "layer_jump", tr("Height gap between layers (m)"),
         tr("Points of a cell this far apart in height belong to different things: the road and a car above it. Smaller "
            "cuts the curb off grass and cars, but also splits noisy ground."),
-        minimum=0.01, maximum=0.5, advanced=True,
+        advanced=True,
     ),
     Knob(
         "SLOPE", CURBS, "slope", tr("Smallest slope of the curb face (°)"),
         tr("Lower accepts bevelled and worn curbs, but also verges and ramps."),
-        minimum=10.0, maximum=89.0,
     ),
     Knob(
         "MIN_HEIGHT", CURBS, "min_height", tr("Minimum curb height (m)"),
         tr("Lower finds dropped curbs at driveways, but also tar seams and gutters."),
-        minimum=0.01, maximum=1.0,
     ),
     Knob(
         "MAX_HEIGHT", CURBS, "max_height", tr("Maximum curb height (m)"),
         tr("Higher accepts platforms and low walls as the road's edge."),
-        minimum=0.02, maximum=2.0,
     ),
 )
 

@@ -13,12 +13,11 @@ SURFACE_KNOBS = (
         "MAX_WIDTH", SURFACE, "max_width", tr("Farthest surface from the trajectory (m)"),
         tr("On a side without an edge the surface grows outward while it stays smooth, at most this far. Wider reaches "
            "the far lanes of a broad road, but also yards and forecourts."),
-        minimum=0.5, maximum=100.0,
     ),
     Knob(
         "HEIGHT_TOLERANCE", SURFACE, "height_tolerance", tr("Height about the road's own surface (m)"),
         tr("Wider keeps noisy points and ruts, but also the feet of cars and curbs; where the scanner's noise allows, less is taken."),
-        minimum=0.01, maximum=1.0, advanced=True,
+        advanced=True,
     ),
 )
 

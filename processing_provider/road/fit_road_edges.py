@@ -12,13 +12,12 @@ EDGE_KNOBS = (
     Knob(
         "MAX_GAP", EDGES, "max_gap", tr("Longest gap bridged (m)"),
         tr("Longer carries the edge past rows of parked cars, flagged as bridged; shorter breaks it there."),
-        minimum=0.0, maximum=200.0,
     ),
     Knob(
         "FALLBACK_WIDTH", EDGES, "fallback_width", tr("Assumed road width where no curb is seen, 0 = none (m)"),
         tr("0 draws no edge where none was found. A width draws one at half of it either side of the road's reference "
            "line, flagged as inferred."),
-        minimum=0.0, maximum=100.0, advanced=True,
+        advanced=True,
     ),
 )
 

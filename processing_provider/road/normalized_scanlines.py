@@ -14,32 +14,29 @@ SCANLINE_KNOBS = (
     Knob(
         "INTERVAL", PLANES, "interval", tr("Interval of section planes along the road (m)"),
         tr("Smaller gives more scanlines, and more of them than were measured where scan lines lie far apart; larger is quicker."),
-        minimum=0.01, maximum=10.0,
     ),
     Knob(
         "CORRIDOR", PLANES, "corridor", tr("Corridor either side of the road's reference line (m)"),
         tr("Wider reaches the far side of a broad avenue, but takes longer."),
-        minimum=5.0, maximum=100.0,
     ),
     Knob(
         "ROTATION_FREQUENCY", PLANES, "rotation_frequency", tr("Scan lines of each scanner, 0 = from the data (per second)"),
         tr("The data know it well. Give it where they are said to show no regular scan lines although the scanner has a rotating "
            "mirror; the direction of rotation is found anyway."),
-        minimum=0.0, maximum=400.0, advanced=True,
+        advanced=True,
     ),
 )
 LAYER_KNOBS = (
     Knob(
         "SIMPLIFY", "road.scanlines.layer:ScanlineLayerSettings", "simplify", tr("Deviation allowed in thinning the scanlines (m)"),
         tr("Larger draws and writes faster and shows less of the surface; 0 keeps every vertex."),
-        minimum=0.0, maximum=1.0,
     ),
 )
 POINT_KNOBS = (
     Knob(
         "RESAMPLED_SPACING", "road.scanlines.resampling:ResamplingSettings", "spacing", tr("Spacing of resampled points along a scanline (m)"),
         tr("Smaller gives more points, without more being known of the surface."),
-        minimum=0.005, maximum=5.0, advanced=True,
+        advanced=True,
     ),
 )
 

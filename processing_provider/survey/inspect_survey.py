@@ -9,12 +9,12 @@ INSPECTION = "survey.inspection:InspectionSettings"
 INSPECTION_KNOBS = (
     Knob(
         "CELL_SIZE", INSPECTION, "cell_size", tr("Cell of the density raster (m)"),
-        tr("Smaller shows single scan lines, larger the broad picture."), minimum=0.05, maximum=100.0, advanced=True,
+        tr("Smaller shows single scan lines, larger the broad picture."), advanced=True,
     ),
     Knob(
         "CUBE_SIZE", INSPECTION, "cube_size", tr("Cube that the density in space is counted in (m)"),
         tr("1 gives points per cubic metre as they are published; smaller ones follow surfaces more closely."),
-        minimum=0.05, maximum=100.0, advanced=True,
+        advanced=True,
     ),
 )
 

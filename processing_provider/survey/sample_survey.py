@@ -20,42 +20,40 @@ SAMPLE_KNOBS = (
     Knob(
         "LENGTH", SAMPLE, "length", tr("Length of the road (m)"),
         tr("Longer takes longer to make and to work through, in proportion."),
-        minimum=20.0, maximum=20000.0,
     ),
     Knob(
         "SEED", SAMPLE, "seed", tr("Seed of the random numbers (whole number)"),
         tr("Another seed gives another street with other cars, wear and noise; the same seed gives the same points."),
-        minimum=0, maximum=2**31 - 1,
     ),
     Knob(
         "SPEED", SAMPLE, "speed_kmh", tr("Speed of the vehicle (km/h)"),
-        tr("Faster spreads the scan lines wider apart."), minimum=5.0, maximum=120.0, advanced=True,
+        tr("Faster spreads the scan lines wider apart."), advanced=True,
     ),
     Knob(
         "PULSE_RATE", SAMPLE, "pulse_rate", tr("Pulses of each scanner (per second)"),
-        tr("More gives a denser cloud and a larger file."), minimum=5000.0, maximum=2e6, advanced=True,
+        tr("More gives a denser cloud and a larger file."), advanced=True,
     ),
     Knob(
         "ROTATION_RATE", SAMPLE, "rotation_rate", tr("Scan lines of each scanner (per second)"),
-        tr("More brings the lines closer together, with fewer points on each."), minimum=10.0, maximum=400.0, advanced=True,
+        tr("More brings the lines closer together, with fewer points on each."), advanced=True,
     ),
     Knob(
         "MOUNT_YAW", SAMPLE, "mount_yaw", tr("Scanners' planes turned from straight across (°)"),
         tr("0 scans straight across the road; more sees the faces of things from ahead and behind, one scanner either way."),
-        minimum=0.0, maximum=60.0, advanced=True,
+        advanced=True,
     ),
     Knob(
         "RADIUS", SAMPLE, "radius", tr("Radius of the bends (m)"), tr("Smaller makes sharper bends."),
-        minimum=60.0, maximum=5000.0, advanced=True,
+        advanced=True,
     ),
     Knob(
         "CURB_HEIGHT", SAMPLE, "curb_height", tr("Height of the curbs (m)"), tr("Lower is harder to find."),
-        minimum=0.04, maximum=0.3, advanced=True,
+        advanced=True,
     ),
     Knob(
         "GUTTER", SAMPLE, "gutter", tr("Width of a concrete gutter along the curbs (m)"),
         tr("A gutter is as bright as paint and is not to be taken for it; 0 leaves it out."),
-        minimum=0.0, maximum=1.0, advanced=True,
+        advanced=True,
     ),
 )
 

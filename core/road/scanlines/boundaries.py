@@ -19,6 +19,7 @@ from ...features import Features
 from ...parallel import in_order
 from ...progress import Progress
 from ...schemas import CURB_POINTS
+from ...setting import check_limits, setting
 from ..curbs import MERGE_ACROSS, MERGE_UP, VEHICLE_HALF, block_edges, block_numbers, hidden_points
 from ..nearest_pass import name_passes
 from ..profiles.chains import choose_along, curb_chains, link_chains, long_enough
@@ -49,38 +50,25 @@ class ScanlineBoundarySettings:
     max_gap : m between corners that are connected
     """
 
-    search_width: float = 0.10
-    sensor_height: float = 0.0
-    clipping_height: float = 0.45
-    min_height: float = 0.03
-    distance_across: float = 0.50
-    distance_along: float = 0.40
-    ransac_distance: float = 0.005
-    vertical_angle: float = 60.0
-    horizontal_angle: float = 20.0
-    max_gap: float = 2.5
+    search_width: float = setting(0.10, 0.04, 0.5, "The search width", "m")
+    sensor_height: float = setting(0.0, 0.0, 10.0, "The sensor height", "m")
+    clipping_height: float = setting(0.45, 0.05, 2.0, "The clipping height", "m")
+    min_height: float = setting(0.03, 0.01, 0.5, "The minimum height", "m")
+    distance_across: float = setting(0.50, 0.15, 2.0, "The distance across", "m")
+    distance_along: float = setting(0.40, 0.1, 2.0, "The distance along", "m")
+    ransac_distance: float = setting(0.005, 0.001, 0.1, "The RANSAC distance", "m")
+    vertical_angle: float = setting(60.0, 20.0, 90.0, "The vertical angle", "°")
+    horizontal_angle: float = setting(20.0, 1.0, 45.0, "The horizontal angle", "°")
+    max_gap: float = setting(2.5, 0.0, 100.0, "The longest connected gap", "m")
 
     def __post_init__(self):
-        def check(name, value, least, most, unit):
-            if not least <= value <= most:
-                raise RoadExtractionError(f"{name} is {value} {unit}; it must be between {least} and {most} {unit}.")
-
-        check("The search width", self.search_width, 0.04, 0.5, "m")
-        check("The sensor height", self.sensor_height, 0.0, 10.0, "m")
-        check("The minimum height", self.min_height, 0.01, 0.5, "m")
-        check("The clipping height", self.clipping_height, 0.05, 2.0, "m")
+        check_limits(self)
         if self.clipping_height <= self.min_height:
             raise RoadExtractionError(f"The clipping height is {self.clipping_height} m and the minimum height {self.min_height} m; "
                                       "the clipping height must be above the minimum height.")
-        check("The distance across", self.distance_across, 0.15, 2.0, "m")
-        check("The distance along", self.distance_along, 0.1, 2.0, "m")
-        check("The RANSAC distance", self.ransac_distance, 0.001, 0.1, "m")
-        check("The vertical angle", self.vertical_angle, 20.0, 90.0, "°")
-        check("The horizontal angle", self.horizontal_angle, 1.0, 45.0, "°")
         if self.vertical_angle <= self.horizontal_angle:
             raise RoadExtractionError(f"The vertical angle is {self.vertical_angle}° and the horizontal angle {self.horizontal_angle}°; "
                                       "the vertical angle must be above the horizontal one.")
-        check("The longest connected gap", self.max_gap, 0.0, 100.0, "m")
 
 
 def curbs_from_scanlines(source, settings=ScanlineBoundarySettings(), block_length=0.0, progress=Progress()):

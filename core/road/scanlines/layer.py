@@ -8,6 +8,7 @@ import shapely
 from ...errors import RoadExtractionError
 from ...progress import Progress
 from ...schemas import SCANLINES
+from ...setting import check_limits, setting
 from ...survey.scan_lattice import find_lattice
 from .scanlines import Scanlines
 from .section_planes import ScanlineSettings, all_scanlines
@@ -20,11 +21,10 @@ SHORTEST = 0.10    # m: pieces of leaves and railings are left out of the layer
 class ScanlineLayerSettings:
     """How scanlines are written. simplify : m that a thinned line may lie beside the measured one; 0 = not thinned."""
 
-    simplify: float = 0.002
+    simplify: float = setting(0.002, 0.0, 1.0, "The simplification", "m")
 
     def __post_init__(self):
-        if not 0.0 <= self.simplify <= 1.0:
-            raise RoadExtractionError(f"The simplification is {self.simplify} m; it must be between 0 and 1 m.")
+        check_limits(self)
 
 
 def write_scanlines(survey, settings=ScanlineSettings(), layer=None, points=None, progress=Progress()):

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...errors import RoadExtractionError
+from ...setting import check_limits, setting
 from ...survey.new_laz import new_laz, scale_for
 from ...survey.points import UNIT
 
@@ -16,11 +16,10 @@ EXTRA = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", None), ("s
 class ResamplingSettings:
     """spacing : m between points along a scanline"""
 
-    spacing: float = 0.05
+    spacing: float = setting(0.05, 0.005, 5.0, "The point spacing", "m")
 
     def __post_init__(self):
-        if not 0.005 <= self.spacing <= 5.0:
-            raise RoadExtractionError(f"The point spacing is {self.spacing} m; it must be between 0.005 and 5 m.")
+        check_limits(self)
 
 
 def resampled(lines, spacing):

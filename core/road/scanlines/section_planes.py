@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...errors import RoadExtractionError
 from ...parallel import in_order
 from ...progress import Progress
+from ...setting import check_limits, setting
 from ...survey.scan_lattice import find_lattice, scanner_runs
 from ..profiles.sides import SECTION
 from .chains import PlaneVertices, increasing, plane_order
@@ -35,18 +35,12 @@ class ScanlineSettings:
     rotation_frequency : Hz, scan lines per second of each scanner; 0 = from the data
     """
 
-    interval: float = 0.10
-    corridor: float = 15.0
-    rotation_frequency: float = 0.0
+    interval: float = setting(0.10, 0.01, 10.0, "The interval", "m")
+    corridor: float = setting(15.0, 5.0, 100.0, "The corridor", "m")
+    rotation_frequency: float = setting(0.0, 5.0, 400.0, "The rotation frequency", "Hz", "to take it from the data")
 
     def __post_init__(self):
-        for name, value, least, most, unit in (("The interval", self.interval, 0.01, 10.0, "m"),
-                                               ("The corridor", self.corridor, 5.0, 100.0, "m")):
-            if not least <= value <= most:
-                raise RoadExtractionError(f"{name} is {value} {unit}; it must be between {least} and {most} {unit}.")
-        if self.rotation_frequency and not 5.0 <= self.rotation_frequency <= 400.0:
-            raise RoadExtractionError(f"The rotation frequency is {self.rotation_frequency} Hz; it must be 0 (from the data) "
-                                      "or between 5 and 400 Hz.")
+        check_limits(self)
 
 
 def scanlines_of(survey, road, start, end, settings=ScanlineSettings(), lattice=None):

@@ -9,6 +9,7 @@ from ...features import Features
 from ...parallel import in_order
 from ...progress import Progress
 from ...schemas import ROAD_SURFACE
+from ...setting import check_limits, setting
 from ...survey.points import UNIT
 from ...survey.road_frame import CORRIDOR
 from ...survey.road_points import RoadPoints
@@ -34,15 +35,11 @@ class SurfaceSettings:
         where the scanner's noise allows, less is taken
     """
 
-    max_width: float = 17.0
-    height_tolerance: float = 0.15
+    max_width: float = setting(17.0, 0.5, 100.0, "The farthest surface from the trajectory", "m")
+    height_tolerance: float = setting(0.15, 0.01, 1.0, "The height tolerance", "m")
 
     def __post_init__(self):
-        if not 0.5 <= self.max_width <= 100.0:
-            raise RoadExtractionError(
-                f"The farthest surface from the trajectory is {self.max_width} m; it must be between 0.5 and 100 m.")
-        if not 0.01 <= self.height_tolerance <= 1.0:
-            raise RoadExtractionError(f"The height tolerance is {self.height_tolerance} m; it must be between 0.01 and 1 m.")
+        check_limits(self)
 
 
 @dataclass

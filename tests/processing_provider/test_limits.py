@@ -1,0 +1,79 @@
+"""A dialog offers what the core accepts, to the last number, and nothing beyond."""
+
+import pytest
+from lanewright.core.errors import RoadExtractionError
+from lanewright.processing_provider.catalogue import ALGORITHMS
+from lanewright.processing_provider.knobs import Knob, settings_class
+
+# Settings that are compared with each other: what another one must be beside an extreme one
+BESIDE = {
+    ("CurbSettings", "min_height"): {"max_height": 1.0},
+    ("CurbSettings", "max_height"): {"min_height": 0.01},
+    ("ScanlineBoundarySettings", "min_height"): {"clipping_height": 2.0},
+    ("ScanlineBoundarySettings", "clipping_height"): {"min_height": 0.01},
+    ("ScanlineBoundarySettings", "vertical_angle"): {"horizontal_angle": 1.0},
+    ("PeakSettings", "narrowest"): {"widest": 2.0},
+    ("PeakSettings", "widest"): {"narrowest": 0.0},
+    ("PeakSettings", "profile_length"): {"gap": 10.0},
+    ("PeakSettings", "gap"): {"profile_length": 0.02},
+    ("LineSettings", "max_gap"): {"max_bridge": 200.0},
+    ("LineSettings", "max_bridge"): {"max_gap": 0.1},
+}
+
+
+@pytest.fixture(scope="module")
+def numbers(provider):
+    """(algorithm, Knob, parameter) of every number in every dialog that is a setting of the core."""
+    found, build = [], Knob.parameter
+    with pytest.MonkeyPatch.context() as patch:
+        for algorithm in ALGORITHMS:
+            def recorded(knob, algorithm=algorithm):
+                parameter = build(knob)
+                if parameter.type() == "number":
+                    found.append((algorithm.ID, knob, parameter.clone()))
+                return parameter
+
+            patch.setattr(Knob, "parameter", recorded)
+            algorithm().create()
+    return found
+
+
+def settings_with(knob, value):
+    owner = settings_class(knob.settings)
+    beside = BESIDE.get((owner.__name__, knob.field), {})
+    return owner(**{knob.field: value}, **{name: other for name, other in beside.items() if name in owner.__dataclass_fields__})
+
+
+def beyond(parameter, value, way):
+    return value + way * (1 if parameter.dataType() == parameter.Type.Integer else max(abs(value), 1.0) * 1e-3)
+
+
+def test_dialogs_have_numbers(numbers):
+    assert len(numbers) > 60 and len({algorithm for algorithm, *_ in numbers}) > 12
+
+
+def test_the_core_accepts_the_extremes_that_a_dialog_offers(numbers):
+    refused = []
+    for algorithm, knob, parameter in numbers:
+        for value, times in ((parameter.minimum(), 1.0), (parameter.maximum(), knob.times)):
+            assert parameter.checkValueIsAcceptable(value)
+            try:
+                settings_with(knob, type(knob.default())(value / times))
+            except RoadExtractionError as error:
+                refused.append((algorithm, knob.name, value, str(error)))
+    assert not refused
+
+
+def test_what_lies_beyond_is_refused_by_the_dialog_and_the_core(numbers):
+    accepted = []
+    for algorithm, knob, parameter in numbers:
+        for end, way, times in ((parameter.minimum(), -1, 1.0), (parameter.maximum(), 1, knob.times)):
+            value = beyond(parameter, end, way)
+            if parameter.checkValueIsAcceptable(value):
+                accepted.append((algorithm, knob.name, value, "dialog"))
+            try:
+                settings_with(knob, type(knob.default())(value / times))
+                accepted.append((algorithm, knob.name, value, "core"))
+            except RoadExtractionError as error:
+                assert "it must be" in str(error), str(error)
+    assert not accepted
