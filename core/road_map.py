@@ -6,12 +6,14 @@ memory; nothing but the intensity image, which is one of the results, goes to di
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from .assess.curvature import marking_curvature
 from .driving.lines import DrivingSettings, driving_lines
 from .features import Features
 from .markings.clusters import ClusterSettings, cluster_markings
 from .markings.extraction import MarkingSettings, extract_markings
-from .markings.image import ImageSettings, IntensityImage, write_intensity_image
+from .markings.image import ImageSettings, IntensityImage, check_fits, write_intensity_image
 from .markings.intensity import IntensitySettings, correct_intensity
 from .markings.line_names import named_by_lines
 from .markings.lines import LineSettings, fit_marking_lines
@@ -120,6 +122,9 @@ def _map_of(survey, image_path, settings, stages):
     """The map of an open survey, whose store the road points keep."""
     extent = Extent(survey.store.count / 1e6, sum(road.length for road in survey.frame.roads) / 1e3)
     stages.know(extent, () if survey.has_intensity else PAINT)
+    if survey.has_intensity:
+        # before hours of work, not after
+        check_fits(*_span(survey), settings.image)
     found = stages.run("curbs", "Detecting curbs …", find_curb_points, survey, settings.boundaries)
     boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, found, survey.frame, settings.edges)
     road_points, surface = stages.run("surface", "Extracting the road surface …", extract_road_surface,
@@ -140,6 +145,13 @@ def _map_of(survey, image_path, settings, stages):
                                 "asphalt: no markings, marking lines or driving lines were made.")
         stages.progress.warn(result.without_paint)
     return result
+
+
+def _span(survey):
+    """Metres east and north over which the sections lie that have points."""
+    places = [survey.frame.road(road).to_map(np.array(survey.store.sections(road)) * survey.store.section_length, 0.0)
+              for road in survey.store.roads()]
+    return tuple(float(np.ptp(np.concatenate(axis))) for axis in zip(*places))
 
 
 def _density(points, store, progress, done):

@@ -84,10 +84,7 @@ def write_intensity_image(road_points, path, settings=ImageSettings(), progress=
     steps = {piece: step for *_, steps in found for piece, step in steps.items()}
     c0, c1 = min(e[0] for e in pieces.values()), max(e[1] for e in pieces.values()) + 1
     r0, r1 = min(e[2] for e in pieces.values()), max(e[3] for e in pieces.values()) + 1
-    if -(-(c1 - c0) // TILE) * -(-(r1 - r0) // TILE) > MOST_TILES:
-        raise RoadExtractionError(
-            f"The road points span {(c1 - c0) * settings.cell_size / 1000:.1f} by {(r1 - r0) * settings.cell_size / 1000:.1f} km, "
-            f"too far for an image with {settings.cell_size} m cells. Use a larger cell size, or split the survey.")
+    check_fits((c1 - c0) * settings.cell_size, (r1 - r0) * settings.cell_size, settings)
     grid = _Grid(settings, c0, r1 - 1, c1 - c0, r1 - r0)
     limits = {window: limits for window, (limits, *_) in zip(windows, found)}
     tiles = {}
@@ -108,6 +105,20 @@ def write_intensity_image(road_points, path, settings=ImageSettings(), progress=
                 # compressed by another thread while the next tiles are made
                 image.flush()
     progress.say(f"Intensity image: {grid.width:,} x {grid.height:,} cells of {settings.cell_size:g} m.")
+
+
+def check_fits(width, height, settings):
+    """Refuse an image of so many metres east and north that has too many tiles for one file.
+
+    Raises
+    ------
+    RoadExtractionError
+    """
+    side = TILE * settings.cell_size
+    if np.ceil(width / side) * np.ceil(height / side) > MOST_TILES:
+        raise RoadExtractionError(
+            f"The road points span {width / 1000:.1f} by {height / 1000:.1f} km, "
+            f"too far for an image with {settings.cell_size} m cells. Use a larger cell size, or split the survey.")
 
 
 def _window_numbers(road_points, road):

@@ -10,7 +10,7 @@ import shapely
 from lanewright.core import road_map as chain
 from lanewright.core.assess.lines import compare_lines
 from lanewright.core.assess.polygons import compare_polygons
-from lanewright.core.errors import Cancelled
+from lanewright.core.errors import Cancelled, RoadExtractionError
 from lanewright.core.road_map import RoadMapSettings, make_road_map
 from lanewright.core.survey.survey import SurveySettings, open_survey
 
@@ -102,6 +102,22 @@ def test_the_same_street_again_a_thousand_kilometres_on_gives_the_same_map(sampl
             assert len(town) == len(expected) > 0, name
             np.testing.assert_allclose(np.concatenate(town) - [shift, 0.0, 0.0], np.concatenate(expected), rtol=0, atol=1e-3, err_msg=name)
     assert (tmp_path / "image.tif").stat().st_size < 20e6
+
+
+def test_towns_too_far_apart_for_one_image_are_refused_before_anything_is_detected(sample, cloud, tmp_path, monkeypatch):
+    """300 km east and 300 km north at 4 cm: more tiles than one file holds."""
+    there = laspy.read(cloud)
+    there.points.offsets = there.header.offsets = there.header.offsets + [3e5, 3e5, 0.0]
+    there.gps_time = np.asarray(there.gps_time) + 4000.0
+    there.write(tmp_path / "there.laz")
+    here = sample.trajectory
+    off = dict(time=4000.0, x=3e5, y=3e5)
+    both = replace(here, **{name: np.r_[getattr(here, name), getattr(here, name) + off.get(name, 0.0)]
+                            for name in ("time", "x", "y", "z", "roll", "pitch", "heading")})
+    monkeypatch.setattr(chain, "find_curb_points", None)
+    with pytest.raises(RoadExtractionError, match=r"span 300\.\d by 300\.\d km.*larger cell size"):
+        make_road_map([cloud, tmp_path / "there.laz"], both, tmp_path / "image.tif")
+    assert not (tmp_path / "image.tif").exists()
 
 
 def test_tiles_in_any_order_give_the_same_map(sample, cloud, road_map, tmp_path):
