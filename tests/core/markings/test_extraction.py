@@ -274,3 +274,27 @@ def test_another_road_of_another_scanner_leaves_the_method_on_this_street_as_it_
     assert len(alone) > 500 and abs(len(both) - len(alone)) < 0.02 * len(alone)
     # one scatters by half of asphalt's level, the other by a twelfth
     assert "Along 80 of 160 m" in said
+
+
+def test_a_noisy_scanner_that_measured_forty_metres_of_a_quiet_street_is_known_there(tmp_path):
+    """None of the windows that usually tell lies in its 40 m."""
+    frame = drive(90)
+    quiet = noisy_bar(frame, 0, 0, 79.9, 0, noisy=False)
+    outside = quiet[(quiet["s"] < to_units(20)) | (quiet["s"] >= to_units(60))]
+    paint, (said,) = found_and_said([(0, np.concatenate([outside, noisy_bar(frame, 0, 20, 59.9, 1, noisy=True, seed=8)]))], frame, tmp_path)
+    assert "8 % (scanner 0)" in said and "(scanner 1)" in said and "Along 40 of 80 m" in said
+    assert BAR(paint.s, paint.d).mean() > 0.75
+
+
+@pytest.mark.parametrize("method", extraction.METHODS)
+def test_points_without_a_corrected_intensity_among_corrected_ones_hide_no_paint(tmp_path, method):
+    line = strip(10, 70, 1.0, 1.15)
+    records = street(FRAME, [line])
+    records["corrected"] = records["intensity"]
+    records["corrected"][::7] = np.nan
+    points = road_points(records, FRAME)
+    points.has_corrected = True
+    write_intensity_image(points, tmp_path / "image.tif")
+    paint = extract_markings(points, IntensityImage.open(tmp_path / "image.tif"), FRAME, MarkingSettings(method=method)).all_points()
+    assert line(paint.s, paint.d).mean() > 0.9
+    assert 0.1 < np.isnan(paint.corrected).mean() < 0.2
