@@ -9,7 +9,8 @@ export QT_QPA_PLATFORM=offscreen
 export XDG_RUNTIME_DIR="$LANEWRIGHT_BUILD/run"
 export QGIS_CUSTOM_CONFIG_PATH="$LANEWRIGHT_BUILD/profile"
 export QGIS_PLUGINPATH="$LANEWRIGHT_BUILD/plugins"
-export PYTHONDONTWRITEBYTECODE=1
+unset PYTHONDONTWRITEBYTECODE
+export PYTHONPYCACHEPREFIX="$LANEWRIGHT_BUILD/pycache"
 [ -d /usr/share/proj ] && export PROJ_DATA=/usr/share/proj
 # numpy's threads gain nothing on these arrays and cost a core each.
 export OMP_NUM_THREADS="${OMP_NUM_THREADS:-1}" OPENBLAS_NUM_THREADS="${OPENBLAS_NUM_THREADS:-1}"

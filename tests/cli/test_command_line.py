@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -22,14 +23,10 @@ def qgis_process(*arguments, folder, **options):
 
 
 @pytest.fixture(scope="session")
-def survey(tmp_path_factory):
+def survey(sample_survey, tmp_path_factory):
     """A folder with a small sample survey: s.laz, drive.gpkg and drive.csv."""
     folder = tmp_path_factory.mktemp("survey")
-    run = qgis_process(
-        "run", "lanewright:samplesurvey", "--LENGTH=30", "--PULSE_RATE=60000", "--ROTATION_RATE=100", "--POINT_CLOUD=s.laz",
-        "--TRAJECTORY=drive.gpkg", folder=folder,
-    )
-    assert run.returncode == 0, run.stderr
+    shutil.copytree(sample_survey(LENGTH=30, PULSE_RATE=60000, ROTATION_RATE=100), folder, dirs_exist_ok=True)
     subprocess.run(
         ["ogr2ogr", "-f", "CSV", "-sql", "SELECT time, ST_X(geom) x, ST_Y(geom) y, ST_Z(geom) z FROM drive", "drive.csv", "drive.gpkg"],
         cwd=folder, check=True, capture_output=True,
@@ -63,15 +60,12 @@ def test_another_python_first_on_the_path_is_not_taken_for_that_of_qgis(tmp_path
     assert "lanewright:roadmap\t" in run.stdout, run.stderr
 
 
-def test_paths_are_those_of_the_folder_one_calls_from(survey):
-    assert (survey / "s.laz").exists() and (survey / "drive.gpkg").exists()
-
-
-def test_the_same_sample_is_made_again(survey, tmp_path):
+def test_the_same_sample_is_made_again_in_the_folder_one_calls_from(survey, tmp_path):
     qgis_process(
         "run", "lanewright:samplesurvey", "--LENGTH=30", "--PULSE_RATE=60000", "--ROTATION_RATE=100", "--POINT_CLOUD=s.laz",
         "--TRAJECTORY=drive.gpkg", folder=tmp_path,
     )
+    assert (tmp_path / "drive.gpkg").exists()
     first, second = (laspy.read(folder / "s.laz") for folder in (survey, tmp_path))
     assert first.points.array.tobytes() == second.points.array.tobytes()
 
@@ -268,16 +262,12 @@ def test_a_trajectory_file_that_is_not_there_is_named(survey, tmp_path):
 
 
 @pytest.fixture(scope="session")
-def street(tmp_path_factory):
-    """A sample survey dense enough for the whole chain, its cloud in two files."""
+def street(sample_survey, tmp_path_factory):
+    """A sample survey dense enough for the whole chain, its cloud in two files too."""
     folder = tmp_path_factory.mktemp("street")
-    run = qgis_process(
-        "run", "lanewright:samplesurvey", "--LENGTH=50", "--PULSE_RATE=100000", "--POINT_CLOUD=all.laz", "--TRAJECTORY=drive.gpkg",
-        folder=folder,
-    )
-    assert run.returncode == 0, run.stderr
+    shutil.copytree(sample_survey(LENGTH=40, PULSE_RATE=120000), folder, dirs_exist_ok=True)
     for name, first in (("odd.laz", 1), ("even.laz", 0)):
-        cloud = laspy.read(folder / "all.laz")
+        cloud = laspy.read(folder / "s.laz")
         cloud.points = cloud.points[np.arange(first, len(cloud.points), 2)]
         cloud.write(str(folder / name))
     return folder
@@ -295,7 +285,7 @@ def test_the_readme_command_makes_driving_lines(street, tmp_path):
 def test_the_model_file_runs_without_a_desktop(street, tmp_path):
     results = ("road_edges", "road_surface", "markings", "marking_lines", "driving_lines", "curve_elements")
     run = qgis_process(
-        "run", str(ROOT / "resources" / "models" / "road_map.model3"), f"--POINT_CLOUDS={street / 'all.laz'}",
+        "run", str(ROOT / "resources" / "models" / "road_map.model3"), f"--POINT_CLOUDS={street / 's.laz'}",
         f"--TRAJECTORY={street / 'drive.gpkg'}", "--road_points=road.laz", "--intensity_image=image.tif",
         *(f"--{name}={name}.gpkg" for name in results), folder=tmp_path,
     )
@@ -313,7 +303,7 @@ def feature_count(path):
 
 
 def test_without_intensity_edges_are_drawn_and_markings_say_why_not(street, tmp_path):
-    cloud = laspy.read(street / "all.laz")
+    cloud = laspy.read(street / "s.laz")
     cloud.intensity = np.zeros(len(cloud.points), np.uint16)
     cloud.write(str(tmp_path / "dark.laz"))
     run = qgis_process(
@@ -333,7 +323,7 @@ def test_without_intensity_edges_are_drawn_and_markings_say_why_not(street, tmp_
 
 def test_a_road_without_paint_gives_empty_layers_stage_by_stage(street, tmp_path):
     road = qgis_process(
-        "run", "lanewright:roadmap", f"--POINT_CLOUDS={street / 'all.laz'}", f"--TRAJECTORY={street / 'drive.gpkg'}",
+        "run", "lanewright:roadmap", f"--POINT_CLOUDS={street / 's.laz'}", f"--TRAJECTORY={street / 'drive.gpkg'}",
         "--ROAD_POINTS=road.laz", folder=tmp_path,
     )
     assert road.returncode == 0, road.stderr

@@ -27,11 +27,10 @@ def run(*arguments, folder):
 
 
 @pytest.fixture(scope="module")
-def survey(tmp_path_factory):
+def survey(sample_survey, tmp_path_factory):
     """A folder with spaces and umlauts in its name, and a short street in it."""
     folder = tmp_path_factory.mktemp("Straße 7 – Süd")
-    run("lanewright:samplesurvey", "--LENGTH=40", "--PULSE_RATE=100000", "--POINT_CLOUD=s.laz", "--TRAJECTORY=drive.gpkg", folder=folder)
-    return folder
+    return Path(shutil.copytree(sample_survey(LENGTH=40, PULSE_RATE=120000), folder, dirs_exist_ok=True))
 
 
 def boundaries(survey, folder, destination, trajectory="drive.gpkg"):

@@ -29,12 +29,8 @@ def run(*arguments, folder, **environment):
 
 
 @pytest.fixture(scope="module")
-def survey(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("survey")
-    code, _, err = run("lanewright:samplesurvey", "--LENGTH=60", "--PULSE_RATE=150000", "--POINT_CLOUD=s.laz", "--TRAJECTORY=drive.gpkg",
-                       folder=folder)
-    assert code == 0, err
-    return folder
+def survey(sample_survey):
+    return sample_survey(LENGTH=60, PULSE_RATE=150000)
 
 
 def road_map(survey):

@@ -9,13 +9,8 @@ ogr.UseExceptions()
 
 
 @pytest.fixture(scope="module")
-def survey(provider, tmp_path_factory):
-    import processing
-
-    folder = tmp_path_factory.mktemp("survey")
-    return processing.run("lanewright:samplesurvey", {
-        "LENGTH": 50, "PULSE_RATE": 120000, "POINT_CLOUD": str(folder / "s.laz"), "TRAJECTORY": str(folder / "drive.gpkg"),
-    })
+def survey(sample_survey):
+    return sample_survey(LENGTH=40, PULSE_RATE=120000)
 
 
 def edges_of(path):

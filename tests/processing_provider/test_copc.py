@@ -5,15 +5,12 @@ from qgis.core import QgsPointCloudLayer, QgsProviderRegistry, QgsVectorLayer
 
 
 @pytest.fixture(scope="module")
-def survey(provider, tmp_path_factory):
+def survey(sample_survey, tmp_path_factory):
     """A sample street as LAZ and as COPC: (LAZ, COPC, trajectory)."""
-    import processing
     from copc_files import write_copc
 
     folder = tmp_path_factory.mktemp("copc")
-    made = processing.run("lanewright:samplesurvey", {
-        "LENGTH": 30, "PULSE_RATE": 60000, "ROTATION_RATE": 100, "POINT_CLOUD": str(folder / "street.laz"),
-        "TRAJECTORY": str(folder / "drive.gpkg")})
+    made = sample_survey(LENGTH=30, PULSE_RATE=60000, ROTATION_RATE=100)
     return made["POINT_CLOUD"], write_copc(made["POINT_CLOUD"], folder / "street.copc.laz", in_a_node=20_000), made["TRAJECTORY"]
 
 

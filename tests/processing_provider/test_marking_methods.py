@@ -12,13 +12,12 @@ ogr.UseExceptions()
 
 
 @pytest.fixture(scope="module")
-def road(provider, tmp_path_factory):
+def road(sample_survey, tmp_path_factory):
     """Road points, image and trajectory of a street of 40 m."""
     import processing
 
-    folder = tmp_path_factory.mktemp("survey")
-    survey = processing.run("lanewright:samplesurvey", {
-        "LENGTH": 40, "PULSE_RATE": 120000, "POINT_CLOUD": str(folder / "s.laz"), "TRAJECTORY": str(folder / "drive.gpkg")})
+    folder = tmp_path_factory.mktemp("road")
+    survey = sample_survey(LENGTH=40, PULSE_RATE=120000)
     given = {"ROAD_POINTS": str(folder / "road.laz"), "INTENSITY_IMAGE": str(folder / "image.tif"), "TRAJECTORY": survey["TRAJECTORY"]}
     processing.run("lanewright:roadmap", {
         "POINT_CLOUDS": [survey["POINT_CLOUD"]], "TRAJECTORY": survey["TRAJECTORY"],

@@ -15,13 +15,11 @@ ogr.UseExceptions()
 
 
 @pytest.fixture(scope="module")
-def made(provider, tmp_path_factory):
+def made(sample_survey, tmp_path_factory):
     import processing
 
     folder = tmp_path_factory.mktemp("scanlines")
-    survey = processing.run("lanewright:samplesurvey", {
-        "LENGTH": 30, "PULSE_RATE": 60000, "POINT_CLOUD": str(folder / "s.laz"), "TRAJECTORY": str(folder / "drive.gpkg"),
-    })
+    survey = sample_survey(LENGTH=30, PULSE_RATE=60000)
     return processing.run("lanewright:normalizedscanlines", {
         "POINT_CLOUDS": [survey["POINT_CLOUD"]], "TRAJECTORY": survey["TRAJECTORY"], "INTERVAL": 0.5, "CRS": "EPSG:32650",
         "SCANLINES": str(folder / "lines.gpkg"), "RESAMPLED_POINTS": str(folder / "even.laz"),

@@ -13,13 +13,8 @@ FILES = {"ROAD_POINTS": "road_points.laz", "INTENSITY_IMAGE": "image.tif"}
 
 
 @pytest.fixture(scope="module")
-def survey(provider, tmp_path_factory):
-    import processing
-
-    folder = tmp_path_factory.mktemp("survey")
-    return processing.run("lanewright:samplesurvey", {
-        "LENGTH": 80, "RADIUS": 60, "PULSE_RATE": 120000, "POINT_CLOUD": str(folder / "s.laz"), "TRAJECTORY": str(folder / "drive.gpkg"),
-    })
+def survey(sample_survey):
+    return sample_survey(LENGTH=80, RADIUS=60, PULSE_RATE=120000)
 
 
 def destinations(folder):
