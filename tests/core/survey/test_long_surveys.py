@@ -118,6 +118,7 @@ def test_the_road_surface_of_both_towns_is_the_same(survey):
     assert areas[0] == pytest.approx(areas[1], rel=1e-3) and areas[0] > 800.0
 
 
+@pytest.mark.slow
 def test_a_road_of_a_thousand_kilometres_keeps_the_points_at_both_its_ends(tmp_path):
     """One drive without a pause, straight on; what is longer than 200 km goes on as another road."""
     length, speed = 1_000_000.0, 25.0
