@@ -20,8 +20,8 @@ from qgis.core import (
     QgsProcessingParameterRasterLayer,
 )
 
-from ..core.errors import Cancelled, RoadExtractionError
-from ..core.parallel import heard
+from ..core.common.errors import Cancelled, RoadExtractionError
+from ..core.common.parallel import heard
 from .call import Call
 from .dependencies import missing_packages
 from .progress import FeedbackProgress

@@ -11,7 +11,7 @@ from qgis.core import (
     QgsProcessingParameterRasterDestination,
 )
 
-from ..core.errors import RoadExtractionError
+from ..core.common.errors import RoadExtractionError
 from .destinations import ReplacedFiles, UnfinishedFiles, check_suffix, check_writable, destination_path
 from .embedded_style import embed_style
 from .input_files import close_database, input_files, written_over
@@ -70,7 +70,7 @@ class Call:
         """The trajectory as the core takes it, from a layer, a table or a file; `crs` overrules what it says."""
         path = trajectory_path(self.parameters.get(name))
         if path is not None:
-            from ..core.survey.trajectory_file import read_trajectory
+            from ..core.survey.trajectory.reader import read_trajectory
 
             return read_trajectory(existing_file(str(path), self.label(name)), crs)
         source = self.source(name)
@@ -92,8 +92,8 @@ class Call:
             return None
         from osgeo import gdal
 
-        from ..core.gdal_errors import gdal_exceptions
-        from ..core.survey.crs import parse_crs, same_place
+        from ..core.io.crs import parse_crs, same_place
+        from ..core.io.gdal_errors import gdal_exceptions
 
         path = self.raster(name)
         with gdal_exceptions():

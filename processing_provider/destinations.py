@@ -16,7 +16,7 @@ from qgis.core import (
     QgsVectorFileWriter,
 )
 
-from ..core.errors import RoadExtractionError
+from ..core.common.errors import RoadExtractionError
 from .texts import tr
 
 SHAPEFILE = (".shp", ".shx", ".dbf", ".prj", ".cpg", ".qix", ".sbn", ".sbx")

@@ -11,7 +11,7 @@ from qgis.core import (
     QgsProcessingParameterString,
 )
 
-from ..core.setting import limits_of
+from ..core.common.setting import limits_of
 
 DECIMALS = 3  # millimetres; QGIS would show six
 

@@ -16,8 +16,8 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import QMetaType
 
-from ..core.errors import Cancelled, RoadExtractionError
-from ..core.features import Features, Field
+from ..core.common.errors import Cancelled, RoadExtractionError
+from ..core.common.features import Features, Field
 from .texts import tr
 
 WKB_TYPES = {

@@ -1,8 +1,7 @@
 """QGIS's progress bar and log as the listener that the core speaks to."""
 
-from ..core.errors import Cancelled
-from ..core.progress import Progress
-from ..core.remaining_time import RemainingTime
+from ..core.common.errors import Cancelled
+from ..core.common.progress import Progress, RemainingTime
 from .texts import tr
 
 

@@ -2,11 +2,11 @@
 
 from dataclasses import replace
 
-from ..core.errors import RoadExtractionError
+from ..core.common.errors import RoadExtractionError
 from .knobs import Knob
 from .texts import tr
 
-SURVEY = "survey.survey:SurveySettings"
+SURVEY = "survey.open_survey:SurveySettings"
 
 SURVEY_KNOBS = (
     Knob(
@@ -39,8 +39,8 @@ SURVEY_KNOBS = (
 
 def survey_inputs(call, progress):
     """Paths of POINT_CLOUDS, and TRAJECTORY brought to the clouds' CRS."""
-    from ..core.survey.crs import reproject_trajectory
-    from ..core.survey.point_cloud import read_headers
+    from ..core.io.crs import reproject_trajectory
+    from ..core.survey.las.reader import read_headers
 
     paths = call.point_clouds()
     clouds = next((header.crs for header in read_headers(paths) if header.crs), "") or call.crs()
@@ -49,7 +49,7 @@ def survey_inputs(call, progress):
 
 def open_survey_of(call, progress):
     """The survey of POINT_CLOUDS and TRAJECTORY."""
-    from ..core.survey.survey import open_survey
+    from ..core.survey.open_survey import open_survey
 
     paths, trajectory = survey_inputs(call, progress)
     return open_survey(paths, trajectory, call.settings(SURVEY_KNOBS, crs=call.crs()), progress)
@@ -60,9 +60,9 @@ def frame_of(call, crs, progress, road_points=None, layers=None):
 
     `layers` (parameter name to Features) and the road points must have been made with this trajectory.
     """
-    from ..core.survey.belonging import check_features_on_roads, check_road_points_on_roads
-    from ..core.survey.crs import reproject_trajectory
-    from ..core.survey.road_frame import build_frame
+    from ..core.io.crs import reproject_trajectory
+    from ..core.survey.consistency import check_features_on_roads, check_road_points_on_roads
+    from ..core.survey.frame.road_frame import build_frame
 
     trajectory = reproject_trajectory(call.trajectory(), crs)
     has_time = trajectory.has_time
@@ -80,7 +80,7 @@ def frame_of(call, crs, progress, road_points=None, layers=None):
 
 def _on_clock_of(road_points, trajectory, progress):
     """The trajectory in the points' time system, and whether the points have time at all."""
-    from ..core.survey.time_systems import align_time
+    from ..core.survey.trajectory.time_systems import align_time
 
     first, last = float("inf"), float("-inf")
     for road, number in road_points.all_sections():
@@ -99,7 +99,7 @@ def _on_clock_of(road_points, trajectory, progress):
 
 def road_points_of(call, name, progress):
     """A LAZ file made by Extract road surface or Correct intensity, as RoadPoints."""
-    from ..core.survey.road_points_file import read_road_points
+    from ..core.survey.road_points_las import read_road_points
 
     return read_road_points(call.cloud(name), progress)
 
@@ -119,8 +119,8 @@ def bright_road_points_of(call, name, progress):
 
 def paint_of(call, name, progress):
     """A LAZ file of marking points; a road without paint gives one without points, and that is a result too."""
-    from ..core.survey.point_cloud import open_cloud
-    from ..core.survey.road_points import RoadPoints
+    from ..core.survey.las.reader import open_cloud
+    from ..core.survey.store.road_points import RoadPoints
 
     with open_cloud(call.cloud(name)) as reader:
         if reader.header.point_count:
@@ -134,9 +134,9 @@ def paint_of(call, name, progress):
 
 def imported_trajectory(call, progress):
     """INPUT in TARGET_CRS (or the clouds' CRS) and, with POINT_CLOUDS given, on the clouds' clock."""
-    from ..core.survey.crs import reproject_trajectory
-    from ..core.survey.point_cloud import read_headers
-    from ..core.survey.survey import match_clocks
+    from ..core.io.crs import reproject_trajectory
+    from ..core.survey.las.reader import read_headers
+    from ..core.survey.open_survey import match_clocks
 
     trajectory = call.trajectory("INPUT", call.crs("INPUT_CRS"))
     headers = read_headers(call.point_clouds()) if call.parameters.get("POINT_CLOUDS") else []

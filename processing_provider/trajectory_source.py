@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 from qgis.core import QgsCoordinateReferenceSystem, QgsVectorLayer, QgsWkbTypes
 
-from ..core.errors import RoadExtractionError
+from ..core.common.errors import RoadExtractionError
 from .layers import crs_text
 from .texts import tr
 
@@ -39,7 +39,7 @@ def accept_trajectory_file(algorithm, parameters, context):
 
 def read_trajectory_source(source, label, crs="", heights_needed=True):
     """A point layer, line layer or table as the core's Trajectory (not yet cleaned); without heights, where none are needed, all are 0."""
-    from ..core.survey.trajectory_file import trajectory_from_columns
+    from ..core.survey.trajectory.reader import trajectory_from_columns
 
     kind = QgsWkbTypes.geometryType(source.wkbType())
     if kind == QgsWkbTypes.GeometryType.LineGeometry:
@@ -103,7 +103,7 @@ def _table_columns(source, label):
 
 def _roles(source):
     """Role to field name, by the same words as for files."""
-    from ..core.survey.trajectory_columns import columns_by_role
+    from ..core.survey.trajectory.columns import columns_by_role
 
     return columns_by_role([field.name() for field in source.fields()])
 
@@ -119,8 +119,8 @@ def trajectory_features(trajectory):
     """A cleaned trajectory as a point layer, each row with its road, pass and station where it has one."""
     import shapely
 
-    from ..core.features import Features
-    from ..core.schemas import TRAJECTORY
+    from ..core.common.features import Features
+    from ..core.common.schemas import TRAJECTORY
 
     placed = [(None, None, None)] * len(trajectory)
     if not QgsCoordinateReferenceSystem.fromWkt(trajectory.crs).isGeographic():
@@ -137,7 +137,7 @@ def trajectory_features(trajectory):
 
 def _road_pass_station(trajectory):
     """(road, pass, station) of every row; None in stretches too short to be a pass."""
-    from ..core.survey.road_frame import build_frame
+    from ..core.survey.frame.road_frame import build_frame
 
     found = [(None, None, None)] * len(trajectory)
     for driven in build_frame(trajectory).passes:

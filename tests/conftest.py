@@ -12,6 +12,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = "lanewright"
 
+sys.path.insert(0, str(ROOT / "tests" / "streets"))  # streets and surveys that several tests build
+
 if os.environ.get("LANEWRIGHT_WITHOUT_QGIS"):
     sys.modules["qgis"] = None  # every import of it fails
 

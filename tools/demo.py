@@ -92,12 +92,12 @@ def percent(share):
 def accuracy():
     """Print how far the result is from the truth of the sample survey."""
     load()
-    from lanewright.core.assess.lines import compare_lines
-    from lanewright.core.assess.polygons import compare_polygons
+    from lanewright.core.assess.driving_lines import compare_lines
+    from lanewright.core.assess.markings import assess_markings
 
     area = road_area()
     edges = compare_lines(geometries(PACKAGE, "road_edges")[0], _curbs(), area=area)
-    paint = compare_polygons(geometries(PACKAGE, "markings")[0], geometries(TRUTH, "markings")[0], area=area)
+    paint = assess_markings(geometries(PACKAGE, "markings")[0], geometries(TRUTH, "markings")[0], area=area).tolerant
     lanes = compare_lines(geometries(PACKAGE, "driving_lines")[0], geometries(TRUTH, "driving_lines")[0], area=area)
     print("\nAgainst the truth of the sample survey (simulated data):")
     print(f"  road edges     complete {percent(edges.completeness[0.10])}, right {percent(edges.correctness[0.10])} "

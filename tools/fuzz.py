@@ -25,9 +25,8 @@ MEMORY = 6 * 1024**3   # bytes
 def seeds(folder):
     """Whole files of every kind, by the reader they are for."""
     import laspy
-    from lanewright.core.survey.cloud_blocks import CloudReaders
-    from lanewright.core.survey.point_cloud import read_blocks, read_header
-    from lanewright.core.survey.trajectory_file import read_trajectory
+    from lanewright.core.survey.las.reader import CloudReaders, read_blocks, read_header
+    from lanewright.core.survey.trajectory.reader import read_trajectory
     from pyproj import CRS
 
     def cloud(path):
@@ -78,7 +77,7 @@ def copc_file(folder, las):
 
 def points_files():
     """Control points as the georeferencer saves them, with and without a header, and as tables."""
-    from lanewright.core.overlay.control_point_file import read_control_points
+    from lanewright.core.overlay.control_points import read_control_points
     from lanewright.core.overlay.source_image import SourceImage
 
     def points(path):
@@ -134,7 +133,7 @@ def main():
     parser.add_argument("--keep", type=Path, default=Path("build/fuzz"))
     options = parser.parse_args()
     load()
-    from lanewright.core.errors import RoadExtractionError
+    from lanewright.core.common.errors import RoadExtractionError
 
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     options.keep.mkdir(parents=True, exist_ok=True)

@@ -41,7 +41,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
     load()
-    from lanewright.core.errors import RoadExtractionError
+    from lanewright.core.common.errors import RoadExtractionError
     from lanewright.core.sample.survey import SCENES, SampleSettings, make_sample_survey
 
     default = SampleSettings()

@@ -49,8 +49,8 @@ def thinned(cloud, keep):
 def measure(survey, sample, interval):
     """F1 and the errors of scanline boundaries against the sample's truth."""
     from lanewright.core.assess.boundaries import assess_boundaries
-    from lanewright.core.road.edges import fit_road_edges
-    from lanewright.core.road.scanlines.boundaries import curbs_from_scanlines
+    from lanewright.core.road.edges.fit import fit_road_edges
+    from lanewright.core.road.scanlines.detect import curbs_from_scanlines
     from lanewright.core.road.scanlines.section_planes import ScanlineSettings
     from lanewright.core.road.scanlines.source import SurveyScanlines
 
@@ -66,7 +66,7 @@ def measure(survey, sample, interval):
 
 def rows_of(folder, length):
     """[(speed, kept, interval, figures)] of every variation."""
-    from lanewright.core.survey.survey import open_survey
+    from lanewright.core.survey.open_survey import open_survey
 
     rows = []
     for speed in SPEEDS:

@@ -20,9 +20,9 @@ def lanes_in_the_image(image_path, control_points):
     image_path : of the UAV image, without a place on the map
     control_points : (geometries, rows) of its control point layer
     """
-    from lanewright.core.features import Features
+    from lanewright.core.common.features import Features
     from lanewright.core.overlay.control_points import control_points as points_of
-    from lanewright.core.overlay.georeferencing import georeference
+    from lanewright.core.overlay.georeference import georeference
     from lanewright.core.overlay.source_image import open_image
     from lanewright.core.sample.survey import make_sample_survey
 
@@ -45,7 +45,7 @@ def _as_seen(places, survey, polynomial):
 
 def comparison(result, reference, truth, area):
     """Lines of text: recall and miscoding within each tolerance, against what the image shows and against the truth."""
-    from lanewright.core.assess.lines import compare_lines
+    from lanewright.core.assess.driving_lines import compare_lines
 
     over_image, exact = (compare_lines(result, lines, TOLERANCES, area=area) for lines in (reference, truth))
     image_alone = compare_lines(reference, truth, TOLERANCES)

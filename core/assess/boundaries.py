@@ -11,13 +11,12 @@ from dataclasses import dataclass, field
 import numpy as np
 import shapely
 
-from ..errors import RoadExtractionError
-from ..progress import Progress
-from ..setting import check_limits, limits_of, setting
-from .lines import checked_tolerances
-from .places import Places, Segments, pieces_of, places_along, runs_of, single_lines
-from .rates import NAN, Errors, Rates
-from .stationing import AlongReference, AlongTrajectory, Stations
+from ..common.errors import RoadExtractionError
+from ..common.progress import Progress
+from ..common.setting import check_limits, limits_of, setting
+from .driving_lines import checked_tolerances
+from .matching import AlongReference, AlongTrajectory, Places, Segments, Stations, pieces_of, places_along, runs_of, single_lines
+from .metrics import NAN, Errors, Rates
 
 SIDES = {1: "left", -1: "right", 0: ""}
 BIN = 0.1               # m of station in which a line is there or not

@@ -6,8 +6,8 @@ import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
-from ..parallel import go_on
-from .places import Segments, single_lines
+from ..common.parallel import go_on
+from .matching import Segments, single_lines
 
 KERNEL = 0.2         # m, radius of the neighbourhood, as the driving-line thesis has it
 TRIED = 1800         # marking points, spread evenly, that are looked at for being beside a line,

@@ -3,11 +3,11 @@
 import numpy as np
 import shapely
 
-from ..features import Features
-from ..progress import Progress
-from ..schemas import ASSESSED_BOUNDARIES, ASSESSED_DRIVING_LINES, ASSESSED_MARKINGS
+from ..common.features import Features
+from ..common.progress import Progress
+from ..common.schemas import ASSESSED_BOUNDARIES, ASSESSED_DRIVING_LINES, ASSESSED_MARKINGS
 from .boundaries import SIDES, interval_lines
-from .lines import ASSOCIATED
+from .driving_lines import ASSOCIATED
 
 TOLD = 100  # rows between two looks at Cancel
 

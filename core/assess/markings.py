@@ -5,11 +5,11 @@ from dataclasses import dataclass, field
 import cv2
 import numpy as np
 
-from ..errors import RoadExtractionError
-from ..progress import Progress
-from ..setting import check_limits, setting
-from .cells import TILE, Burner, Seen, tile_bounds, tiles_of
-from .rates import Rates
+from ..common.errors import RoadExtractionError
+from ..common.progress import Progress
+from ..common.setting import check_limits, setting
+from .burn import TILE, Burner, Seen, tile_bounds, tiles_of
+from .metrics import Rates
 
 HIT, MISSED, FALSE, MISSED_BESIDE, FALSE_BESIDE = 1, 2, 3, 4, 5  # values of the outcome raster
 BLOCK = 16  # cells a side: what is summed up for the chart along the road

@@ -4,10 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import RoadExtractionError
-from .curve import TabledCurve
-from .fit import Fit, checked
-from .together import minimise
+from ..common.errors import RoadExtractionError
+from .base import Fit, TabledCurve, checked
+from .batched_lsq import minimise
 
 LEAST_TURN = np.radians(60.0)  # on a shorter arc an ellipse cannot be told from a circle
 

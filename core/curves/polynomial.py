@@ -4,10 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import RoadExtractionError
-from .arcs import chord
-from .curve import TabledCurve
-from .fit import Fit, checked, robust_weights
+from ..common.errors import RoadExtractionError
+from .base import Fit, TabledCurve, checked, robust_weights
+from .line_circle import chord
 
 
 @dataclass(frozen=True)

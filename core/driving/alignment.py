@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..curves.choice import HOPELESS, choose_each
-from ..curves.curve import Arc
-from ..curves.segments import cuts_of
-from ..curves.transitions import fit_clothoids
-from .boundaries import STEP
-from .track import BRIDGED
+from ..curves.base import Arc
+from ..curves.clothoid import fit_clothoids
+from ..curves.model_selection import HOPELESS, choose_each
+from ..curves.segmentation import cuts_of
+from .cross_section import STEP
+from .lane_tracking import BRIDGED
 
 PARALLEL = 0.06     # m: 95 % of a lane's places are nearer than this to a parallel of the others
 LEAST_SHARED = 10.0  # m that a lane must share with others to be compared

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .boundaries import STEP
+from .cross_section import STEP
 
 SAME_RUN = 30.0     # m: where a centre line pauses for less, the divide goes on from end to end
 MOSTLY = 0.6

@@ -3,10 +3,10 @@
 import numpy as np
 from scipy.ndimage import gaussian_filter1d, median_filter
 
-from ..parallel import in_order
-from ..survey.points import UNIT
-from ..survey.sorting import order_by
-from .boundaries import STEP
+from ..common.order_statistics import order_by
+from ..common.parallel import in_order
+from ..survey.store.records import UNIT
+from .cross_section import STEP
 
 REACH = 0.3        # m either side of the driving line
 LEAST_POINTS = 3

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from .boundaries import DOUBLE, STEP
+from .cross_section import DOUBLE, STEP
+from .lane_tracking import BRIDGED, INFERRED, MEASURED, Track
 from .settings import NARROWEST, USUAL, WIDEST
-from .track import BRIDGED, INFERRED, MEASURED, Track
 
 TRUSTED = 40.0     # m of measured length that make a line as good as any other
 SQUEEZE = 0.5      # what two lines too near for a lane between them cost, in lines

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from ..errors import RoadExtractionError
-from ..setting import check_limits, setting
+from ..common.errors import RoadExtractionError
+from ..common.setting import check_limits, setting
 
 NARROWEST = 2.2  # m between the lines of a lane
 WIDEST = 5.0

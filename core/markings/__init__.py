@@ -1,1 +1,4 @@
-"""What is painted: intensity, image, thresholds, outliers, clusters, lines."""
+"""What is painted.
+
+In: road points and the intensity image. Out: markings as polygons (`paint`, then `objects`) and marking lines (`lines`).
+"""

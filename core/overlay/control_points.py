@@ -5,12 +5,177 @@ Pixel and line count from the outer corner of the first pixel, whose middle is
 that is recognised and turned.
 """
 
+import csv
+import re
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
-from ..errors import RoadExtractionError
-from .columns import as_number, find_columns, guess_columns
+from ..common.errors import RoadExtractionError
+
+# Which column of a table of control points is which, by their names or, without names, by the image's size.
+
+NAMES = {
+    "pixel": "pixel pixelx sourcex srcx column col sample px imagex imgx imx xpixel ximage xsource u".split(),
+    "line": "line pixely sourcey srcy row py imagey imgy imy ypixel yimage ysource v".split(),
+    "easting": "mapx easting east e geox worldx utme xmap xworld rechtswert rw".split(),
+    "northing": "mapy northing north n geoy worldy utmn ymap yworld hochwert hw".split(),
+    "height": "mapz z h geoz height elevation elev altitude alt".split(),
+    "name": "name point id pointid label gcp gcpname gcpid number no nr".split(),
+    "enable": "enable enabled active use used".split(),
+    "role": "role type".split(),
+    "check": "check ischeck checkpoint".split(),
+}
+NEEDED = ("pixel", "line", "easting", "northing")
+
+
+def find_columns(names, what):
+    """{meaning: index} of the columns of a table with a header.
+
+    Bare `x`, `y` are map coordinates, unless those have names of their own.
+
+    Raises
+    ------
+    RoadExtractionError
+        If one of pixel, line, easting, northing has no column.
+    """
+    plain = [re.sub(r"[^a-z]", "", re.sub(r"\(.*?\)|\[.*?\]", "", str(name).lower())) for name in names]
+    found = {}
+    for key, aliases in NAMES.items():
+        places = [plain.index(alias) for alias in aliases if alias in plain]
+        if places:
+            found[key] = places[0]
+    for bare, keys in (("x", ("easting", "pixel")), ("y", ("northing", "line"))):
+        free = [key for key in keys if key not in found]
+        if bare in plain and free:
+            found[free[0]] = plain.index(bare)
+    missing = [key for key in NEEDED if key not in found]
+    if missing:
+        raise RoadExtractionError(
+            f"{what} has the columns {', '.join(map(str, names))}; {' and '.join(missing)} cannot be told among them. "
+            "Name the columns pixel, line, easting, northing.")
+    return found
+
+
+def guess_columns(rows, image, what):
+    """{meaning: index} of a table without names: two columns lie in the image, two beside them on the map.
+
+    Raises
+    ------
+    RoadExtractionError
+        If both orders, or none, would do.
+    """
+    width = min(len(row) for row in rows)
+    values = np.array([[as_number(field) for field in row[:width]] for row in rows])
+    fits = []
+    for start in (0, 1):  # a point's name may come first
+        if start + 4 > width or not np.isfinite(values[:, start:start + 4]).all():
+            continue
+        first, second = values[:, start:start + 2], values[:, start + 2:start + 4]
+        for order, pair, other in ((("pixel", "line", "easting", "northing"), first, second),
+                                   (("easting", "northing", "pixel", "line"), second, first)):
+            inside, elsewhere = (image.holds(p[:, 0], np.abs(p[:, 1]), 1.0).all() for p in (pair, other))
+            if inside and not elsewhere:
+                fits.append({**{key: start + k for k, key in enumerate(order)}, **({"name": 0} if start else {}),
+                             **_enable(values, start + 4)})
+    if len(fits) != 1:
+        raise RoadExtractionError(
+            f"The columns of {what} have no names, and their numbers do not tell which are pixel and line in an image of "
+            f"{image.width} by {image.height}. Put a line above them: pixel,line,easting,northing.")
+    return fits[0]
+
+
+def _enable(values, column):
+    """The georeferencer's fifth column where there is one, of zeros and ones."""
+    return {"enable": column} if column < values.shape[1] and np.isin(values[:, column], (0, 1)).all() else {}
+
+
+def as_number(value):
+    """The number that a field holds, NaN where it is none."""
+    try:
+        return float(str(value).strip().replace(",", "."))
+    except ValueError:
+        return np.nan
+
+
+# Control points from a file: QGIS's `.points` in its old and new forms, or CSV with any delimiter.
+
+LARGEST = 20_000_000  # bytes; a table of control points is a few thousand
+
+
+def read_control_points(path, image, crs=""):
+    """ControlPoints of a file.
+
+    Parameters
+    ----------
+    path : `.points` of QGIS's georeferencer (a line "#CRS: ..." or none; mapX, mapY, sourceX,
+        sourceY or pixelX, pixelY; commas or, from QGIS 1, tabs), or a CSV or TXT table
+    image : SourceImage that the points belong to
+    crs : WKT of the map coordinates where the file names none
+
+    Raises
+    ------
+    RoadExtractionError
+        If the file cannot be read or its columns cannot be told.
+    """
+    lines, named = _lines(path)
+    delimiter = _delimiter(lines)
+    rows = [[field.strip() for field in row] for row in csv.reader(lines, delimiter=delimiter, skipinitialspace=True)]
+    rows = [[field for field in row if field] if delimiter == " " else row for row in rows]
+    rows = [row for row in rows if any(row)]
+    header = None
+    if rows and sum(as_number(field) == as_number(field) for field in rows[0]) < 2:
+        header, rows = rows[0], rows[1:]
+    return control_points(header, rows, image, str(path), _wkt(named, path) or crs)
+
+
+def _lines(path):
+    """The lines of the table, and the CRS named above it."""
+    try:
+        if Path(path).stat().st_size > LARGEST:
+            raise RoadExtractionError(f"{path} is too large for a table of control points. Was the image chosen in its place?")
+        data = Path(path).read_bytes()
+    except OSError as problem:
+        raise RoadExtractionError(
+            f"{path} cannot be read ({problem.strerror or problem}). Check the path and the rights to read it.") from problem
+    if b"\0" in data and data[:2] not in (b"\xff\xfe", b"\xfe\xff"):
+        raise RoadExtractionError(f"{path} is no text. Control points are read from a .points or CSV file.")
+    text = data.decode("utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig", "replace")
+    named, lines = "", []
+    for line in text.splitlines():
+        bare = line.strip()
+        if bare.startswith("#"):
+            words = bare.lstrip("# ")
+            if words.lower().startswith("crs:"):
+                named = words[4:].strip()
+                continue
+            # A header may be written as a comment
+            if _delimiter([words]) == " " or not any(word.strip().lower().replace("_", "") in NAMES["easting"] + NAMES["pixel"]
+                                                     for word in words.split(_delimiter([words]))):
+                continue
+            bare = words
+        if bare:
+            lines.append(bare)
+    return lines, named
+
+
+def _delimiter(lines):
+    """Of the first line that has one; a comma beside semicolons or tabs is a decimal sign."""
+    first = next(iter(lines), "")
+    return next((mark for mark in (";", "\t", ",") if mark in first), " ")
+
+
+def _wkt(named, path):
+    from ..io.crs import parse_crs
+
+    if not named:
+        return ""
+    try:
+        return parse_crs(named).to_wkt()
+    except RoadExtractionError as problem:
+        raise RoadExtractionError(f"{path} names a CRS that is not understood: {named[:60]!r}. "
+                                  "Correct its first line (#CRS: EPSG:number) or remove it and give the CRS.") from problem
 
 CONTROL, CHECK, DISABLED = "control", "check", "disabled"
 _OFF = ("0", "false", "no", "off", "n", "f")

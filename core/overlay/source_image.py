@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import RoadExtractionError
-from ..gdal_errors import gdal_exceptions
+from ..common.errors import RoadExtractionError
+from ..io.gdal_errors import gdal_exceptions
 
 _NOWHERE = (0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 

@@ -3,11 +3,11 @@
 import cv2
 import numpy as np
 
-from ..gdal_errors import gdal_exceptions
+from ..io.crs import horizontal, parse_crs
+from ..io.gdal_errors import gdal_exceptions
 from ..overlay.control_points import CHECK, CONTROL, DISABLED
-from ..overlay.warping import drawn_area, output_grid
-from ..survey.crs import horizontal, parse_crs
-from .map_picture import png
+from ..overlay.warp import drawn_area, output_grid
+from .map_figure import png
 from .page import Page
 
 LONGEST = 1300    # pixels of the picture

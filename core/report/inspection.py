@@ -5,8 +5,8 @@ from datetime import datetime, timedelta
 import cv2
 import numpy as np
 
-from ..survey.crs import horizontal, parse_crs
-from .map_picture import png
+from ..io.crs import horizontal, parse_crs
+from .map_figure import png
 from .page import Page
 
 LONGEST = 1400  # pixels

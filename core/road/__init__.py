@@ -1,1 +1,4 @@
-"""Where the road is: profiles, curbs, edges, surface."""
+"""Where the road is.
+
+In: a `Survey`. Out: curb points, road edges, road points and the outline of the surface.
+"""

@@ -1,1 +1,1 @@
-"""A made survey with known truth, for the demo and the tests."""
+"""A simulated survey with known truth, for the demo, the tests and for trying settings."""

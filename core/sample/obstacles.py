@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .scene import LABEL
+from .street import LABEL
 
 
 @dataclass(frozen=True)

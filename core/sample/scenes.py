@@ -2,12 +2,9 @@
 
 import numpy as np
 
-from .axis import RoadAxis, winding_road
-from .cross_section import ditch, sidewalk
 from .obstacles import Car, Crown, Post, car_bodies
 from .paint import Paint, PaintedFigure, PaintedLine, hatching, rectangle, straight_arrow, turn_arrow, zebra_bars
-from .scene import LABEL, Lane, Scene
-from .texture import Texture
+from .street import LABEL, Lane, RoadAxis, Scene, Texture, ditch, sidewalk, winding_road
 
 _MODULE = 120.0  # m after which a street's furniture repeats
 _RUN_IN = 70.0   # m of road before station 0

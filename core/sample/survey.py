@@ -13,18 +13,16 @@ from datetime import date, datetime, timedelta
 
 import numpy as np
 
-from ..errors import RoadExtractionError
-from ..progress import Progress
-from ..setting import check_limits, setting
-from ..survey.trajectory import Trajectory
-from . import truth
-from .camera import camera_over
-from .casting import OBSTACLE, cast
-from .drive import Drive
-from .intensity import brightness_of, label_hits, received
-from .scanner import butterfly
-from .scene import LABEL
+from ..common.errors import RoadExtractionError
+from ..common.progress import Progress
+from ..common.setting import check_limits, setting
+from ..sample import truth
+from ..survey.trajectory.trajectory import Trajectory
+from .orthophoto import camera_over
+from .scanner import OBSTACLE, brightness_of, butterfly, cast, label_hits, received
 from .scenes import build_scene
+from .street import LABEL
+from .vehicle import Drive
 
 SCENES = ("street", "rural", "urban")
 _SURVEY_DAY = datetime(2025, 5, 14, 2, 30)
@@ -77,7 +75,7 @@ def make_sample_survey(settings=None, progress=None):
     RoadExtractionError
         If the CRS is not understood, geographic or not in metres.
     """
-    from ..survey.crs import check_metric, parse_crs
+    from ..io.crs import check_metric, parse_crs
 
     settings = settings or SampleSettings()
     crs = parse_crs(settings.crs)

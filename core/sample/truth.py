@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ..features import Features, Field
-from ..schemas import DRIVING_LINES, END, HEIGHT, LENGTH, PART, ROAD, SIDE, STATION, WIDTH
+from ..common.features import Features, Field
+from ..common.schemas import DRIVING_LINES, END, HEIGHT, LENGTH, PART, ROAD, SIDE, STATION, WIDTH
 
 _STEP = 0.25      # m between vertices along the road
 _DROPPED = 0.05   # m, a curb lower than this is a dropped one

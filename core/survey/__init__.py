@@ -1,1 +1,4 @@
-"""What was measured: point clouds, trajectory, passes, the road frame, the section store."""
+"""What was measured.
+
+In: point cloud files and a trajectory. Out: a `Survey`, whose points lie in the road frame, in a bounded section store.
+"""

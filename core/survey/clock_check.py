@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..progress import Progress
+from ..common.progress import Progress
 
 NEAR_TRACK = 2.0     # m either side of the vehicle's own track
 NEAREST = 6.5        # m along the road: mirrors and spinning scanners see road nearer than this in each of their turns

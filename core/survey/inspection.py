@@ -5,16 +5,16 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..errors import RoadExtractionError
-from ..progress import Progress
-from ..setting import check_limits, setting
-from .crs import check_metric, horizontal, parse_crs, reproject_trajectory
-from .inspected_drive import inspect_drive
-from .point_cloud import BLOCK, read_blocks, read_headers
+from ..common.errors import RoadExtractionError
+from ..common.progress import Progress
+from ..common.setting import check_limits, setting
+from ..io.crs import check_metric, horizontal, parse_crs, reproject_trajectory
+from .frame.road_frame import build_frame
+from .las.reader import BLOCK, read_blocks, read_headers
+from .open_survey import SurveySettings, match_clocks
 from .scanners import ScannerCensus
-from .sensor_height import NEAR_TRACK
-from .survey import SurveySettings, match_clocks
-from .trajectory import clean_trajectory
+from .sensor_height import AROUND, NEAR_TRACK, height_above
+from .trajectory.trajectory import clean_trajectory
 
 NEAR = 25.0        # m from the trajectory that counts as measured from it
 SAMPLED = 50       # every how manyth point the distance to the trajectory is taken of
@@ -266,3 +266,60 @@ def _judge_trajectory(found, wkt, has_time, progress):
     if not found.near_share:
         found.notes.append(
             f"No point lies within {NEAR:.0f} m of the trajectory. Check that both belong to one survey and use one CRS.")
+
+
+# What the drive was: roads, passes, speed, and how high the sensor rode above the road.
+
+PROFILE_STEP = 2.0  # m of driving between the heights of the profile
+
+
+@dataclass(frozen=True)
+class InspectedDrive:
+    """Findings about a trajectory; metres and seconds.
+
+    roads : length of each road
+    passes : rows of (number, road, direction, first station, last station, first time, last time)
+    driven : metres driven, standstills' tremble left out
+    sensor_height : metres from the trajectory down to the road, None where too few points lie on the track
+    profile : (M, 3) metres driven, map height of the trajectory, map height of the road (NaN where unseen)
+    """
+
+    roads: list
+    passes: list
+    driven: float
+    sensor_height: float
+    profile: np.ndarray
+
+
+def inspect_drive(trajectory, rows, heights):
+    """An InspectedDrive.
+
+    Parameters
+    ----------
+    trajectory : Trajectory, cleaned and in the clouds' CRS
+    rows, heights : (N,) for points on the vehicle's track, the trajectory row next to each and its map height
+    """
+    frame = build_frame(trajectory)
+    passes = [(p.number, p.road, p.direction, *(p.span if p.direction > 0 else p.span[::-1]), float(p.time[0]), float(p.time[-1]))
+              for p in frame.passes]
+    driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(trajectory.x), np.diff(trajectory.y)))]
+    drops = trajectory.z[rows] - heights
+    height = height_above(drops)
+    profile = _profile(driven, trajectory.z, driven[rows], heights, drops, height)
+    return InspectedDrive([road.length for road in frame.roads], passes,
+                          float(sum(abs(last - first) for *_, first, last, _, _ in passes)), height, profile)
+
+
+def _profile(driven, track_z, at, heights, drops, height):
+    """Heights of track and road every PROFILE_STEP of driving."""
+    places = np.arange(0.0, driven[-1] + PROFILE_STEP, PROFILE_STEP)
+    road = np.full(len(places), np.nan)
+    if height is not None:
+        near = np.abs(drops - height) < AROUND
+        cell = np.rint(at[near] / PROFILE_STEP).astype(np.int64)
+        order = np.lexsort((heights[near], cell))
+        cell, z = cell[order], heights[near][order]
+        starts = np.flatnonzero(np.r_[True, np.diff(cell) > 0]) if len(cell) else np.empty(0, np.int64)
+        counts = np.diff(np.r_[starts, len(cell)])
+        road[cell[starts]] = z[starts + counts // 2]
+    return np.c_[places, np.interp(places, driven, track_z), road]

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..errors import RoadExtractionError
+from ..common.errors import RoadExtractionError
 
 MOST_SCANNERS = 8
 MOST_POINTS = 0.8   # share of the points whose numbers interleave where numbers tell scanners

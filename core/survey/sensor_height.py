@@ -4,7 +4,7 @@ import threading
 
 import numpy as np
 
-from .points import UNIT, to_units
+from .store.records import UNIT, to_units
 
 NEAR_TRACK = 1.5       # m either side of the vehicle's own track: road, not sidewalk
 DEFAULT_HEIGHT = 2.6   # m, where too few points lie on the track

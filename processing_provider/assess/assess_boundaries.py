@@ -1,6 +1,6 @@
 """Road boundaries against a reference."""
 
-from ...core.schemas import ASSESSED_BOUNDARIES
+from ...core.common.schemas import ASSESSED_BOUNDARIES
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob, settings_class
 from ..texts import tr
@@ -75,10 +75,9 @@ class AssessBoundaries(LanewrightAlgorithm):
 
     def work(self, call, progress):
         from ...core.assess.boundaries import assess_boundaries
-        from ...core.assess.common_ground import check_kind, check_overlap, common_crs, in_crs
+        from ...core.assess.inputs import along_the_road_only, bottoms_only, check_kind, check_overlap, check_reference, common_crs, in_crs
         from ...core.assess.layers import boundary_layer
-        from ...core.assess.reference import along_the_road_only, bottoms_only, check_reference
-        from ...core.report.assessment_boundaries import boundary_report
+        from ...core.report.assessment import boundary_report
 
         settings = call.settings(BOUNDARY_KNOBS, tolerances=tolerances(call))
         warnings = []

@@ -4,13 +4,13 @@ from dataclasses import replace
 
 from qgis.core import QgsProcessingParameterEnum
 
-from ...core.schemas import ASSESSED_DRIVING_LINES
+from ...core.common.schemas import ASSESSED_DRIVING_LINES
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob, settings_class
 from ..texts import tr
 from .inputs import add_area, add_tolerances, area_of, found_numbers, frame_of_drive, layer_name, layer_of, shares_of, tolerances
 
-LINES = "assess.lines:LineSettings"
+LINES = "assess.driving_lines:LineSettings"
 WIDTHS = ("half-width", "total-width")
 
 LINE_KNOBS = (
@@ -68,12 +68,11 @@ class AssessDrivingLines(LanewrightAlgorithm):
             self.add_number(name, label)
 
     def work(self, call, progress):
-        from ...core.assess.common_ground import check_kind, check_overlap, common_crs, in_crs
+        from ...core.assess.driving_lines import match_lines
+        from ...core.assess.inputs import check_kind, check_overlap, check_reference, common_crs, in_crs
         from ...core.assess.layers import driving_line_layer
-        from ...core.assess.lines import match_lines
-        from ...core.assess.reference import check_reference
-        from ...core.assess.stationing import stations_of_match
-        from ...core.report.assessment_driving import driving_report
+        from ...core.assess.matching import stations_of_match
+        from ...core.report.assessment import driving_report
 
         settings = self._settings(call)
         warnings = []
@@ -115,7 +114,7 @@ class AssessDrivingLines(LanewrightAlgorithm):
 
 
 def _numbers(accuracy, tolerance):
-    from ...core.assess.rates import f1_of
+    from ...core.assess.metrics import f1_of
 
     complete, correct = 100 * accuracy.completeness[tolerance], 100 * accuracy.correctness[tolerance]
     return {

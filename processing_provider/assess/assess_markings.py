@@ -2,7 +2,7 @@
 
 from qgis.core import QgsProcessing, QgsProcessingParameterMapLayer, QgsProcessingParameterString
 
-from ...core.schemas import ASSESSED_MARKINGS
+from ...core.common.schemas import ASSESSED_MARKINGS
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob, settings_class
 from ..texts import tr
@@ -75,12 +75,10 @@ class AssessMarkings(LanewrightAlgorithm):
             self.add_number(name, label)
 
     def work(self, call, progress):
-        from ...core.assess.common_ground import check_overlap, common_crs, in_crs
+        from ...core.assess.burn import OutcomeRaster
+        from ...core.assess.inputs import check_overlap, check_paint, classes_of, common_crs, in_crs, painted_polygons
         from ...core.assess.layers import marking_layer
         from ...core.assess.markings import assess_markings
-        from ...core.assess.outcome_raster import OutcomeRaster
-        from ...core.assess.painted import classes_of, painted_polygons
-        from ...core.assess.reference import check_paint
 
         settings = call.settings(MARKING_KNOBS, tolerances=tolerances(call))
         warnings = []
@@ -116,8 +114,8 @@ class AssessMarkings(LanewrightAlgorithm):
         return numbers
 
     def _report(self, call, accuracy, layer, frame, image, warnings):
-        from ...core.assess.stationing import stations_of_blocks
-        from ...core.report.assessment_markings import marking_report
+        from ...core.assess.matching import stations_of_blocks
+        from ...core.report.assessment import marking_report
 
         station, along = stations_of_blocks(accuracy.blocks, frame)
         names = layer_name(call, "INPUT"), layer_name(call, "REFERENCE")

@@ -12,7 +12,7 @@ from qgis.core import (
     QgsWkbTypes,
 )
 
-from ...core.errors import RoadExtractionError
+from ...core.common.errors import RoadExtractionError
 from ..call import existing_file
 from ..layers import crs_text
 from ..texts import tr
@@ -96,7 +96,7 @@ def layer_and_excluded(call, name):
 def _read(source, label, each=lambda feature: None):
     import shapely
 
-    from ...core.assess.common_ground import AssessedLayer
+    from ...core.assess.inputs import AssessedLayer
 
     names = [field.name() for field in source.fields()]
     layer = AssessedLayer(label, [], [], crs_text(source.sourceCrs() if hasattr(source, "sourceCrs") else source.crs()))
@@ -126,8 +126,7 @@ def _plain(value):
 
 def painted_of(call, name, progress):
     """(AssessedLayer of polygons and lines, whether it was a raster) of a vector or raster layer."""
-    from ...core.assess.common_ground import AssessedLayer
-    from ...core.assess.painted import polygons_of_raster
+    from ...core.assess.inputs import AssessedLayer, polygons_of_raster
 
     layer = call.algorithm.parameterAsLayer(call.parameters, name, call.context)
     if layer is None:
@@ -143,8 +142,8 @@ def painted_of(call, name, progress):
 
 def frame_of_drive(call, crs):
     """The road frame of TRAJECTORY in the CRS; None where it was not given. Heights are not needed."""
-    from ...core.survey.crs import reproject_trajectory
-    from ...core.survey.road_frame import build_frame
+    from ...core.io.crs import reproject_trajectory
+    from ...core.survey.frame.road_frame import build_frame
 
     trajectory = call.trajectory(heights_needed=False)
     if trajectory is None:
@@ -156,7 +155,7 @@ def area_of(call, crs, warn):
     """The union of AREA's polygons in the CRS; None where it was not given."""
     import shapely
 
-    from ...core.assess.common_ground import check_kind, in_crs
+    from ...core.assess.inputs import check_kind, in_crs
 
     layer = layer_of(call, "AREA")
     if layer is None:

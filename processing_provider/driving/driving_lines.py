@@ -1,6 +1,6 @@
 """Driving lines and their curve elements."""
 
-from ...core.schemas import CURVE_ELEMENTS, DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES
+from ...core.common.schemas import CURVE_ELEMENTS, DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob
 from ..survey_input import frame_of, road_points_of
@@ -62,7 +62,7 @@ class DrivingLines(LanewrightAlgorithm):
         self.add_sink("CURVE_ELEMENTS", tr("Curve elements"), fields=CURVE_ELEMENTS, geometry="None", optional=True)
 
     def work(self, call, progress):
-        from ...core.driving.lines import driving_lines
+        from ...core.driving.driving_lines import driving_lines
 
         marking_lines = call.features("MARKING_LINES", MARKING_LINES, "LineStringZ")
         markings = call.features("MARKINGS", MARKINGS, "PolygonZ")

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 from qgis.core import QgsProcessingParameterBoolean
 
-from ...core.errors import RoadExtractionError
-from ...core.features import Features
-from ...core.schemas import CURB_POINTS, CURVE_ELEMENTS, DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES, ROAD_SURFACE
+from ...core.common.errors import RoadExtractionError
+from ...core.common.features import Features
+from ...core.common.schemas import CURB_POINTS, CURVE_ELEMENTS, DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES, ROAD_SURFACE
 from ..algorithm import LanewrightAlgorithm
 from ..markings.cluster_markings import CLUSTER_KNOBS
 from ..markings.correct_intensity import INTENSITY_KNOBS
@@ -83,8 +83,8 @@ class RoadMap(LanewrightAlgorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ...core.road_map import RoadMapSettings, make_road_map
-        from ...core.survey.road_points_file import write_road_points
+        from ...core.pipeline.road_map import RoadMapSettings, make_road_map
+        from ...core.survey.road_points_las import write_road_points
 
         settings = RoadMapSettings(
             correct=call.flag("CORRECT_INTENSITY"),

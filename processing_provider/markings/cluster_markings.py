@@ -1,12 +1,12 @@
 """Paint gathered into markings."""
 
-from ...core.schemas import MARKINGS
+from ...core.common.schemas import MARKINGS
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob
 from ..survey_input import frame_of, paint_of
 from ..texts import tr
 
-CLUSTERS = "markings.clusters:ClusterSettings"
+CLUSTERS = "markings.objects.cluster:ClusterSettings"
 
 CLUSTER_KNOBS = (
     Knob(
@@ -33,8 +33,8 @@ class ClusterMarkings(LanewrightAlgorithm):
         self.add_laz("CLUSTERED_POINTS", tr("Clustered points"), tr("The points with the extra field cluster."))
 
     def work(self, call, progress):
-        from ...core.markings.clusters import cluster_markings
-        from ...core.survey.road_points_file import write_road_points
+        from ...core.markings.objects.cluster import cluster_markings
+        from ...core.survey.road_points_las import write_road_points
 
         points = paint_of(call, "MARKING_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, points.crs, progress, points)

@@ -5,7 +5,7 @@ from ..knobs import Knob
 from ..survey_input import bright_road_points_of, frame_of
 from ..texts import tr
 
-INTENSITY = "markings.intensity:IntensitySettings"
+INTENSITY = "intensity.correction:IntensitySettings"
 
 INTENSITY_KNOBS = (
     Knob(
@@ -31,8 +31,8 @@ class CorrectIntensity(LanewrightAlgorithm):
         self.add_report()
 
     def work(self, call, progress):
-        from ...core.markings.intensity import correct_intensity
-        from ...core.survey.road_points_file import write_road_points
+        from ...core.intensity.correction import correct_intensity
+        from ...core.survey.road_points_las import write_road_points
 
         road_points = bright_road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, road_points.crs, progress, road_points)

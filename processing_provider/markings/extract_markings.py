@@ -5,9 +5,9 @@ from ..knobs import Knob
 from ..survey_input import bright_road_points_of, frame_of
 from ..texts import tr
 
-EXTRACTION = "markings.extraction:MarkingSettings"
-PEAKS = "markings.intensity_peaks:PeakSettings"
-SEGMENTS = "markings.point_segments:SegmentSettings"
+EXTRACTION = "markings.paint.extract:MarkingSettings"
+PEAKS = "markings.paint.peaks:PeakSettings"
+SEGMENTS = "markings.paint.point_segments:SegmentSettings"
 
 MARKING_KNOBS = (
     Knob(
@@ -112,10 +112,10 @@ class ExtractMarkings(LanewrightAlgorithm):
         )
 
     def work(self, call, progress):
-        from ...core.markings.extraction import extract_markings
-        from ...core.markings.image import IntensityImage
-        from ...core.markings.image_cover import check_image_shows
-        from ...core.survey.road_points_file import write_road_points
+        from ...core.intensity.coverage import check_image_shows
+        from ...core.intensity.image import IntensityImage
+        from ...core.markings.paint.extract import extract_markings
+        from ...core.survey.road_points_las import write_road_points
 
         road_points = bright_road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, road_points.crs, progress, road_points)

@@ -1,12 +1,12 @@
 """Markings as curves."""
 
-from ...core.schemas import MARKING_LINES, MARKINGS
+from ...core.common.schemas import MARKING_LINES, MARKINGS
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob
 from ..survey_input import frame_of, paint_of
 from ..texts import tr
 
-LINES = "markings.lines:LineSettings"
+LINES = "markings.lines.fit:LineSettings"
 
 LINE_KNOBS = (
     Knob(
@@ -53,8 +53,7 @@ class FitMarkingLines(LanewrightAlgorithm):
                               "centre line looks like any other."))
 
     def work(self, call, progress):
-        from ...core.markings.line_names import named_by_lines
-        from ...core.markings.lines import fit_marking_lines
+        from ...core.markings.lines.fit import fit_marking_lines, named_by_lines
 
         markings = call.features("MARKINGS", MARKINGS, "PolygonZ")
         points = paint_of(call, "CLUSTERED_POINTS", progress.part(0.0, 0.2))

@@ -5,7 +5,7 @@ from ..knobs import Knob
 from ..survey_input import bright_road_points_of
 from ..texts import tr
 
-IMAGE = "markings.image:ImageSettings"
+IMAGE = "intensity.image:ImageSettings"
 
 IMAGE_KNOBS = (
     Knob(
@@ -47,8 +47,8 @@ class IntensityImage(LanewrightAlgorithm):
         )
 
     def work(self, call, progress):
-        from ...core.markings.image import write_intensity_image
-        from ...core.markings.intensity_raster import write_display_image
+        from ...core.intensity.image import write_intensity_image
+        from ...core.io.geotiff import write_display_image
 
         road_points = bright_road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
         path = call.new_file("INTENSITY_IMAGE")

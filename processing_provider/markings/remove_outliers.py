@@ -5,7 +5,7 @@ from ..knobs import Knob
 from ..survey_input import paint_of
 from ..texts import tr
 
-OUTLIERS = "markings.outliers:OutlierSettings"
+OUTLIERS = "markings.objects.outliers:OutlierSettings"
 
 OUTLIER_KNOBS = (
     Knob(
@@ -36,8 +36,8 @@ class RemoveOutliers(LanewrightAlgorithm):
         self.add_laz("OUTPUT", tr("Marking points without outliers"))
 
     def work(self, call, progress):
-        from ...core.markings.outliers import remove_outliers
-        from ...core.survey.road_points_file import write_road_points
+        from ...core.markings.objects.outliers import remove_outliers
+        from ...core.survey.road_points_las import write_road_points
 
         points = paint_of(call, "INPUT", progress.part(0.0, 0.3))
         settings = call.settings(OUTLIER_KNOBS)

@@ -2,7 +2,7 @@
 
 from qgis.core import Qgis, QgsWkbTypes
 
-from ...core.errors import RoadExtractionError
+from ...core.common.errors import RoadExtractionError
 from ..layers import crs_text
 from ..texts import tr
 

@@ -2,14 +2,14 @@
 
 from qgis.core import QgsProcessingParameterCrs, QgsProcessingParameterFile
 
-from ...core.errors import RoadExtractionError
-from ...core.schemas import RESIDUALS
+from ...core.common.errors import RoadExtractionError
+from ...core.common.schemas import RESIDUALS
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob
 from ..texts import tr
 from .control_point_layer import read_control_point_layer
 
-GEOREFERENCE = "overlay.georeferencing:GeoreferenceSettings"
+GEOREFERENCE = "overlay.georeference:GeoreferenceSettings"
 POINTS_FILTER = "Control points (*.points *.csv *.txt *.POINTS *.CSV *.TXT);;All files (*.*)"
 
 GEOREFERENCE_KNOBS = (
@@ -93,10 +93,9 @@ class GeoreferenceImage(LanewrightAlgorithm):
             self.add_number(name, label)
 
     def work(self, call, progress):
-        from ...core.overlay.georeferencing import georeference
-        from ...core.overlay.residuals import residual_vectors
+        from ...core.overlay.georeference import georeference, residual_vectors
         from ...core.overlay.source_image import open_image
-        from ...core.overlay.warping import draw_image
+        from ...core.overlay.warp import draw_image
         from ...core.report.georeferencing import georeferencing_report
 
         image = open_image(call.raster("IMAGE"))
@@ -122,8 +121,8 @@ class GeoreferenceImage(LanewrightAlgorithm):
 
 def _control_points(call, image, progress):
     """From the layer or the file, whichever was given."""
-    from ...core.overlay.control_point_file import read_control_points
-    from ...core.survey.crs import horizontal, parse_crs, same_place
+    from ...core.io.crs import horizontal, parse_crs, same_place
+    from ...core.overlay.control_points import read_control_points
 
     given = call.crs()
     path = call.algorithm.parameterAsFile(call.parameters, "GCP_FILE", call.context)

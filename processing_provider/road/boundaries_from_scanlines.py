@@ -1,12 +1,12 @@
 """Corners and boundary lines from normalized scanlines."""
 
-from ...core.schemas import CURB_POINTS, ROAD_EDGES, SCANLINES
+from ...core.common.schemas import CURB_POINTS, ROAD_EDGES, SCANLINES
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob
 from ..survey_input import frame_of
 from ..texts import tr
 
-SCANLINE_BOUNDARIES = "road.scanlines.boundaries:ScanlineBoundarySettings"
+SCANLINE_BOUNDARIES = "road.scanlines.detect:ScanlineBoundarySettings"
 
 
 def knob(name, field, label, text, advanced=False):
@@ -90,9 +90,8 @@ class BoundariesFromScanlines(LanewrightAlgorithm):
                       geometry="LineStringZ", optional=True)
 
     def work(self, call, progress):
-        from ...core.road.scanlines.boundaries import CORNER_BLOCK, curbs_from_scanlines
+        from ...core.road.scanlines.detect import CORNER_BLOCK, boundary_lines, curbs_from_scanlines
         from ...core.road.scanlines.layer import scanlines_from_features
-        from ...core.road.scanlines.lines import boundary_lines
         from ...core.road.scanlines.source import LayerScanlines
 
         settings = call.settings(BOUNDARY_KNOBS)

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from ...core.schemas import ROAD_EDGES
+from ...core.common.schemas import ROAD_EDGES
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob
 from ..survey_input import SURVEY_KNOBS, open_survey_of
@@ -13,7 +13,7 @@ from .fit_road_edges import EDGE_KNOBS
 from .normalized_scanlines import SCANLINE_KNOBS
 
 METHOD_KNOB = Knob(
-    "BOUNDARY_METHOD", "road.boundaries:BoundarySettings", "method", tr("Boundary method"),
+    "BOUNDARY_METHOD", "road.detect_boundaries:BoundarySettings", "method", tr("Boundary method"),
     tr("Profiles looks for the curb in slices across the road; scanlines meets the planes of road, curb face and sidewalk; both "
        "lets the two check each other: at every place the one that measures better is drawn, agree_cm says how far apart they are, "
        "and it takes as long as the two together."),
@@ -39,7 +39,7 @@ class DetectBoundaries(LanewrightAlgorithm):
         self.add_sink("ROAD_EDGES", tr("Road edges"), fields=ROAD_EDGES, geometry="LineStringZ")
 
     def work(self, call, progress):
-        from ...core.road.boundaries import BoundarySettings, draw_boundaries, find_curb_points
+        from ...core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 
         settings = BoundarySettings(call.knob(METHOD_KNOB), call.settings(CURB_KNOBS), call.settings(DOOR_KNOBS),
                                     call.settings(PLANE_KNOBS))

@@ -1,12 +1,12 @@
 """Curb points on profiles across the driven road."""
 
-from ...core.schemas import CURB_POINTS
+from ...core.common.schemas import CURB_POINTS
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob
 from ..survey_input import SURVEY_KNOBS, open_survey_of
 from ..texts import tr
 
-CURBS = "road.curbs:CurbSettings"
+CURBS = "road.profiles.detect:CurbSettings"
 
 CURB_KNOBS = (
     Knob(
@@ -63,7 +63,7 @@ class DetectCurbs(LanewrightAlgorithm):
         )
 
     def work(self, call, progress):
-        from ...core.road.curbs import detect_curbs
+        from ...core.road.profiles.detect import detect_curbs
 
         survey = open_survey_of(call, progress.part(0.0, 0.5))
         settings = call.settings(CURB_KNOBS)

@@ -1,12 +1,12 @@
 """The points and the outline of the road surface."""
 
-from ...core.schemas import ROAD_EDGES, ROAD_SURFACE
+from ...core.common.schemas import ROAD_EDGES, ROAD_SURFACE
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob
 from ..survey_input import SURVEY_KNOBS, open_survey_of
 from ..texts import tr
 
-SURFACE = "road.surface.extraction:SurfaceSettings"
+SURFACE = "road.surface.extract:SurfaceSettings"
 
 SURFACE_KNOBS = (
     Knob(
@@ -43,9 +43,9 @@ class ExtractRoadSurface(LanewrightAlgorithm):
         self.add_sink("ROAD_SURFACE", tr("Road surface"), fields=ROAD_SURFACE, geometry="PolygonZ", optional=True)
 
     def work(self, call, progress):
-        from ...core.road.surface.extraction import extract_road_surface
-        from ...core.survey.belonging import check_features_on_roads
-        from ...core.survey.road_points_file import write_road_points
+        from ...core.road.surface.extract import extract_road_surface
+        from ...core.survey.consistency import check_features_on_roads
+        from ...core.survey.road_points_las import write_road_points
 
         edges = call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ")
         survey = open_survey_of(call, progress.part(0.0, 0.5))

@@ -1,12 +1,12 @@
 """Road edges as smooth lines through curb points."""
 
-from ...core.schemas import CURB_POINTS, ROAD_EDGES
+from ...core.common.schemas import CURB_POINTS, ROAD_EDGES
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob
 from ..survey_input import frame_of
 from ..texts import tr
 
-EDGES = "road.edges:EdgeSettings"
+EDGES = "road.edges.fit:EdgeSettings"
 
 EDGE_KNOBS = (
     Knob(
@@ -34,7 +34,7 @@ class FitRoadEdges(LanewrightAlgorithm):
         self.add_sink("ROAD_EDGES", tr("Road edges"), fields=ROAD_EDGES, geometry="LineStringZ")
 
     def work(self, call, progress):
-        from ...core.road.edges import fit_road_edges
+        from ...core.road.edges.fit import fit_road_edges
 
         curb_points = call.features("CURB_POINTS", CURB_POINTS, "PointZ")
         frame = frame_of(call, curb_points.crs, progress, layers={"CURB_POINTS": curb_points})

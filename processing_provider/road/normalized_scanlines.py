@@ -2,7 +2,7 @@
 
 from contextlib import nullcontext
 
-from ...core.schemas import SCANLINES
+from ...core.common.schemas import SCANLINES
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob
 from ..survey_input import SURVEY_KNOBS, open_survey_of

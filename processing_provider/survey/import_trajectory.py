@@ -2,7 +2,7 @@
 
 from qgis.core import QgsProcessing, QgsProcessingParameterCrs, QgsProcessingParameterFeatureSource, QgsProcessingParameterMultipleLayers
 
-from ...core.schemas import TRAJECTORY
+from ...core.common.schemas import TRAJECTORY
 from ..algorithm import LanewrightAlgorithm
 from ..survey_input import SURVEY_KNOBS, imported_trajectory
 from ..texts import tr
@@ -46,7 +46,7 @@ class ImportTrajectory(LanewrightAlgorithm):
         self.add_number("ROWS", tr("Positions"))
 
     def work(self, call, progress):
-        from ...core.survey.trajectory import clean_trajectory
+        from ...core.survey.trajectory.trajectory import clean_trajectory
 
         trajectory = clean_trajectory(imported_trajectory(call, progress))
         for note in trajectory.notes:

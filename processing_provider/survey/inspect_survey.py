@@ -46,8 +46,8 @@ class InspectSurvey(LanewrightAlgorithm):
 
     def work(self, call, progress):
         from ...core.report.inspection import inspection_report
-        from ...core.survey.density_raster import write_density
         from ...core.survey.inspection import NEAR, inspect_survey
+        from ...core.survey.point_density import write_density
 
         found = inspect_survey(
             call.point_clouds(), call.trajectory(), call.settings(INSPECTION_KNOBS), call.crs(), progress.part(0.0, 0.95)

@@ -2,7 +2,7 @@
 
 from qgis.core import QgsProcessingParameterCrs
 
-from ...core.schemas import CONTROL_POINTS, TRAJECTORY
+from ...core.common.schemas import CONTROL_POINTS, TRAJECTORY
 from ..algorithm import LanewrightAlgorithm
 from ..knobs import Knob
 from ..texts import tr
@@ -99,11 +99,11 @@ class SampleSurvey(LanewrightAlgorithm):
         count = survey.write_cloud(call.new_file("POINT_CLOUD"), progress.part(0.1, 0.9 if call.wants("UAV_IMAGE") else 1.0))
         progress.say(tr("Sample survey: {count} points along {length:.0f} m of road.").format(count=count, length=settings.length))
         if call.wants("UAV_IMAGE"):
-            from ...core.sample.orthoimage import write_uav_image
+            from ...core.sample.orthophoto import write_uav_image
 
             write_uav_image(survey, call.new_file("UAV_IMAGE"), progress.part(0.9, 1.0))
         if call.wants("UAV_GCPS"):
-            from ...core.sample.control_marks import uav_control_points
+            from ...core.sample.orthophoto import uav_control_points
 
             call.layer("UAV_GCPS", uav_control_points(survey))
         call.layer("TRAJECTORY", trajectory_features(survey.trajectory))

@@ -1,11 +1,7 @@
 """Makes the writer of COPC files importable here, and sample surveys through Processing."""
 
-import sys
-from pathlib import Path
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "core" / "survey"))
 
 
 @pytest.fixture(scope="session")

@@ -4,7 +4,7 @@ import os
 from pathlib import Path
 
 import pytest
-from lanewright.core.errors import RoadExtractionError
+from lanewright.core.common.errors import RoadExtractionError
 from lanewright.processing_provider.destinations import ReplacedFiles, UnfinishedFiles, check_suffix, check_writable, destination_path
 
 

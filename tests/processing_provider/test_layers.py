@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.errors import Cancelled, RoadExtractionError
-from lanewright.core.features import Features
-from lanewright.core.schemas import CURVE_ELEMENTS, ROAD_EDGES
+from lanewright.core.common.errors import Cancelled, RoadExtractionError
+from lanewright.core.common.features import Features
+from lanewright.core.common.schemas import CURVE_ELEMENTS, ROAD_EDGES
 from lanewright.processing_provider.layers import WKB_TYPES, crs_text, keeps_aliases, qgis_fields, read_features, write_features
 from qgis.core import QgsCoordinateReferenceSystem, QgsFeatureSink, QgsProcessingContext, QgsProcessingFeedback, QgsProcessingUtils, QgsVectorLayer
 

@@ -1,7 +1,7 @@
 """A dialog offers what the core accepts, to the last number, and nothing beyond."""
 
 import pytest
-from lanewright.core.errors import RoadExtractionError
+from lanewright.core.common.errors import RoadExtractionError
 from lanewright.processing_provider.catalogue import ALGORITHMS
 from lanewright.processing_provider.knobs import Knob, settings_class
 

@@ -3,9 +3,9 @@
 import laspy
 import numpy as np
 import pytest
+from lanewright.core.common.schemas import SCANLINES
 from lanewright.core.road.scanlines.layer import scanlines_from_features
-from lanewright.core.schemas import SCANLINES
-from lanewright.core.survey.road_frame import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.processing_provider.layers import read_features
 from lanewright.processing_provider.trajectory_source import read_trajectory_source
 from osgeo import ogr

@@ -4,8 +4,8 @@ import gc
 import weakref
 
 import pytest
-from lanewright.core.errors import Cancelled, RoadExtractionError
-from lanewright.core.remaining_time import RemainingTime
+from lanewright.core.common.errors import Cancelled, RoadExtractionError
+from lanewright.core.common.progress import RemainingTime
 from lanewright.processing_provider.progress import FeedbackProgress, time_left
 from qgis.core import QgsApplication, QgsProcessingContext, QgsProcessingFeedback
 

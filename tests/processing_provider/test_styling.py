@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.schemas import CONTROL_POINTS, DRIVING_LINES, MARKING_LINES, MARKINGS, RESIDUALS, ROAD_EDGES
+from lanewright.core.common.schemas import CONTROL_POINTS, DRIVING_LINES, MARKING_LINES, MARKINGS, RESIDUALS, ROAD_EDGES
 from lanewright.processing_provider.embedded_style import embed_style
 from lanewright.processing_provider.layers import qgis_fields
 from lanewright.processing_provider.styling import LOOKS, STYLES, Styler, apply_style, group_of, style_on_load

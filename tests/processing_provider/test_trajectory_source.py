@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.errors import RoadExtractionError
+from lanewright.core.common.errors import RoadExtractionError
 from lanewright.processing_provider.trajectory_source import read_trajectory_source, trajectory_features, trajectory_path
 from qgis.core import QgsFeature, QgsGeometry, QgsVectorLayer
 

@@ -15,8 +15,8 @@ from accuracy.chain import STAGES, swapped  # noqa: E402
 from accuracy.figures import figures_of  # noqa: E402
 from accuracy.page import page  # noqa: E402
 from accuracy.surveys import _make_sample, read_case, surveys_in  # noqa: E402
-from lanewright.core.features import Features, Field  # noqa: E402
-from lanewright.core.road.profiles.corners import Steps  # noqa: E402
+from lanewright.core.common.features import Features, Field  # noqa: E402
+from lanewright.core.road.common.corners import Steps  # noqa: E402
 from lanewright.core.sample.survey import SampleSettings  # noqa: E402
 from make_sample import write_layers  # noqa: E402
 
@@ -105,10 +105,10 @@ def test_what_an_ablation_switches_off_is_there_to_be_switched_off(ablation):
 
 
 def test_a_step_is_back_in_its_place_after_an_error():
-    from lanewright.core.markings import levels
+    from lanewright.core.markings.paint import asphalt_level as levels
 
     before = levels.gutter_cells
-    with pytest.raises(ValueError), swapped("markings.levels", "gutter_cells", None):
+    with pytest.raises(ValueError), swapped("markings.paint.asphalt_level", "gutter_cells", None):
         assert levels.gutter_cells is None
         raise ValueError
     assert levels.gutter_cells is before

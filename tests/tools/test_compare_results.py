@@ -10,7 +10,7 @@ gdal = pytest.importorskip("osgeo.gdal")
 
 import compare_results  # noqa: E402
 from compare_results import compare_folders, main  # noqa: E402
-from lanewright.core.features import Features, Field  # noqa: E402
+from lanewright.core.common.features import Features, Field  # noqa: E402
 from make_sample import write_layers  # noqa: E402
 from osgeo import ogr, osr  # noqa: E402
 from pyproj import CRS  # noqa: E402

@@ -3,10 +3,10 @@
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from lanewright.core.driving.lines import driving_lines
-from lanewright.core.road.profiles.chains import Chain
-from lanewright.core.road.surface.extraction import extract_road_surface
-from lanewright.core.road_map import RoadMapSettings
+from lanewright.core.driving.driving_lines import driving_lines
+from lanewright.core.pipeline.road_map import RoadMapSettings
+from lanewright.core.road.common.tracking import Chain
+from lanewright.core.road.surface.extract import extract_road_surface
 
 from .chain import set_in
 
@@ -55,30 +55,30 @@ def _driving_alone(work, settings):
 
 ABLATIONS = (
     Ablation("Curbs: the step nearest the vehicle on each profile, instead of chains along the road", "curbs", swaps=(
-        ("road.curbs", "curb_chains", nearest_steps), ("road.curbs", "choose_along", _whole),
-        ("road.curbs", "long_enough", lambda chosen, *_: chosen))),
+        ("road.profiles.detect", "curb_chains", nearest_steps), ("road.profiles.detect", "choose_along", _whole),
+        ("road.profiles.detect", "long_enough", lambda chosen, *_: chosen))),
     Ablation("Edges: curb points far off the others are kept", "edges", swaps=(
-        ("road.edges", "without_outliers", lambda points: points),)),
+        ("road.edges.fit", "without_outliers", lambda points: points),)),
     Ablation("Surface: its limits are grown from the ground alone, without road edges", "surface", stages=dict(surface=_surface_alone)),
     Ablation("Intensity: no correction", "intensity", replace(DEFAULT, correct=False)),
     Ablation("Intensity: beams of spinning scanners are not made alike", "intensity", swaps=(
-        ("markings.intensity", "Beams", _NoBeams),), needs_beams=True),
+        ("intensity.correction", "Beams", _NoBeams),), needs_beams=True),
     Ablation("Image: bright points count no more than dark ones (plain inverse distance)", "image", set_in(DEFAULT, "image", beta=0.0)),
     Ablation("Thresholds: concrete gutters are not told from paint", "markings", swaps=(
-        ("markings.levels", "gutter_cells", lambda z, rim: np.zeros(z.shape, bool)),)),
+        ("markings.paint.asphalt_level", "gutter_cells", lambda z, rim: np.zeros(z.shape, bool)),)),
     Ablation("Thresholds: no local level of asphalt (wheel tracks, seams)", "markings", swaps=(
-        ("markings.levels", "background", lambda z, even: np.float32(0.0)),)),
+        ("markings.paint.asphalt_level", "background", lambda z, even: np.float32(0.0)),)),
     Ablation("Thresholds: bright repairs are not told from paint", "markings", swaps=(
-        ("markings.levels", "patch_level", lambda z, bright: np.float32(0.0)),)),
+        ("markings.paint.asphalt_level", "patch_level", lambda z, bright: np.float32(0.0)),)),
     Ablation("Thresholds: no least run along or across the road", "markings", set_in(DEFAULT, "markings", close=0.0, shortest=0.0)),
     Ablation("Outliers: one limit for the whole survey (PCL), not one per window", "outliers", set_in(DEFAULT, "outliers", scope="all")),
     Ablation("Outliers: none removed", "outliers", stages=dict(outliers=_keep_all)),
     Ablation("Clusters: markings that touch are not taken apart", "clusters", swaps=(
-        ("markings.clusters", "split_compounds", lambda records, labels: labels),)),
+        ("markings.objects.cluster", "split_compounds", lambda records, labels: labels),)),
     Ablation("Clusters: pieces of worn lines are not joined", "clusters", swaps=(
-        ("markings.clusters", "join_fragments", lambda shapes, width: np.arange(len(shapes))),)),
+        ("markings.objects.cluster", "join_fragments", lambda shapes, width: np.arange(len(shapes))),)),
     Ablation("Lines: gaps longer than 13 m are not bridged", "lines", set_in(DEFAULT, "lines", max_bridge=DEFAULT.lines.max_gap)),
     Ablation("Lines: strays beside a line are not dropped", "lines", swaps=(
-        ("markings.lines", "without_strays", lambda line, drift: line),)),
+        ("markings.lines.fit", "without_strays", lambda line, drift: line),)),
     Ablation("Driving lines: from marking lines alone, without road edges and hatching", "driving", stages=dict(driving=_driving_alone)),
 )

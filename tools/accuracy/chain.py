@@ -5,16 +5,16 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from importlib import import_module
 
-from lanewright.core.driving.lines import driving_lines
-from lanewright.core.markings.clusters import cluster_markings
-from lanewright.core.markings.extraction import extract_markings
-from lanewright.core.markings.image import IntensityImage, write_intensity_image
-from lanewright.core.markings.intensity import correct_intensity
-from lanewright.core.markings.lines import fit_marking_lines
-from lanewright.core.markings.outliers import remove_outliers
-from lanewright.core.road.boundaries import draw_boundaries, find_curb_points
-from lanewright.core.road.surface.extraction import extract_road_surface
-from lanewright.core.road_map import RoadMapSettings
+from lanewright.core.driving.driving_lines import driving_lines
+from lanewright.core.intensity.correction import correct_intensity
+from lanewright.core.intensity.image import IntensityImage, write_intensity_image
+from lanewright.core.markings.lines.fit import fit_marking_lines
+from lanewright.core.markings.objects.cluster import cluster_markings
+from lanewright.core.markings.objects.outliers import remove_outliers
+from lanewright.core.markings.paint.extract import extract_markings
+from lanewright.core.pipeline.road_map import RoadMapSettings
+from lanewright.core.road.detect_boundaries import draw_boundaries, find_curb_points
+from lanewright.core.road.surface.extract import extract_road_surface
 
 
 class Work:

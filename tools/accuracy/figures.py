@@ -5,13 +5,13 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-from lanewright.core.errors import RoadExtractionError
-from lanewright.core.markings.extraction import METHODS, extract_markings
-from lanewright.core.markings.image import IntensityImage
-from lanewright.core.road.boundaries import draw_boundaries
-from lanewright.core.road_map import RoadMapSettings
-from lanewright.core.survey.survey import open_survey
-from lanewright.core.survey.trajectory_file import read_trajectory
+from lanewright.core.common.errors import RoadExtractionError
+from lanewright.core.intensity.image import IntensityImage
+from lanewright.core.markings.paint.extract import METHODS, extract_markings
+from lanewright.core.pipeline.road_map import RoadMapSettings
+from lanewright.core.road.detect_boundaries import draw_boundaries
+from lanewright.core.survey.open_survey import open_survey
+from lanewright.core.survey.trajectory.reader import read_trajectory
 
 from . import judge
 from .ablations import ABLATIONS

@@ -15,8 +15,8 @@ from pathlib import Path
 
 import numpy as np
 import shapely
-from lanewright.core.markings.intensity_raster import new_geotiff
-from lanewright.core.sample.scene import CARRIAGEWAY
+from lanewright.core.io.geotiff import new_geotiff
+from lanewright.core.sample.street import CARRIAGEWAY
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 
 # What a truth layer may be called; the first is the name in the sample survey

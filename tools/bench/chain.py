@@ -3,10 +3,10 @@
 import time
 from pathlib import Path
 
-from lanewright.core.parallel import heard
-from lanewright.core.progress import Progress
-from lanewright.core.road_map import RoadMapSettings, make_road_map
-from lanewright.core.survey.trajectory_file import read_trajectory
+from lanewright.core.common.parallel import heard
+from lanewright.core.common.progress import Progress
+from lanewright.core.pipeline.road_map import RoadMapSettings, make_road_map
+from lanewright.core.survey.trajectory.reader import read_trajectory
 
 from .ours import peak_mib, timed
 from .prepare import prepared

@@ -44,12 +44,12 @@ def read(size):
 
 def placing(size):
     """Station and offset of points that are decoded already, from their raw coordinates and times."""
-    from lanewright.core.parallel import in_order
-    from lanewright.core.survey import reading
-    from lanewright.core.survey.placing import Placing
-    from lanewright.core.survey.point_cloud import BLOCK, read_blocks
-    from lanewright.core.survey.road_frame import CORRIDOR, build_frame
-    from lanewright.core.survey.trajectory_file import read_trajectory
+    from lanewright.core.common.parallel import in_order
+    from lanewright.core.survey import ingest as reading
+    from lanewright.core.survey.frame.projection import Placing
+    from lanewright.core.survey.frame.road_frame import CORRIDOR, build_frame
+    from lanewright.core.survey.las.reader import BLOCK, read_blocks
+    from lanewright.core.survey.trajectory.reader import read_trajectory
 
     blocks = [block for path in clouds_of("dense", size) for block in read_blocks(str(path), BLOCK, reading.LAYERS)]
     frame = build_frame(read_trajectory(trajectory_of("dense", size)))
@@ -67,10 +67,10 @@ def placing(size):
 
 def storing(size):
     """Points that are decoded already into the sections of the road frame, ready for the next stage."""
-    from lanewright.core.survey import reading
-    from lanewright.core.survey.point_cloud import BLOCK, read_blocks
-    from lanewright.core.survey.survey import open_survey
-    from lanewright.core.survey.trajectory_file import read_trajectory
+    from lanewright.core.survey import ingest as reading
+    from lanewright.core.survey.las.reader import BLOCK, read_blocks
+    from lanewright.core.survey.open_survey import open_survey
+    from lanewright.core.survey.trajectory.reader import read_trajectory
 
     clouds, trajectory = clouds_of("dense", size), read_trajectory(trajectory_of("dense", size))
     decoded = {str(path): list(read_blocks(str(path), BLOCK, reading.LAYERS)) for path in clouds}
@@ -97,9 +97,9 @@ def storing(size):
 
 def scanlines(size):
     """Normalized scanlines in memory, and the boundaries found on them, after the survey was read."""
-    from lanewright.core.road.boundaries import BoundarySettings, find_curb_points
-    from lanewright.core.survey.survey import open_survey
-    from lanewright.core.survey.trajectory_file import read_trajectory
+    from lanewright.core.road.detect_boundaries import BoundarySettings, find_curb_points
+    from lanewright.core.survey.open_survey import open_survey
+    from lanewright.core.survey.trajectory.reader import read_trajectory
 
     survey = open_survey(clouds_of("dense", size), read_trajectory(trajectory_of("dense", size)))
     for road in survey.store.roads():
@@ -111,8 +111,8 @@ def scanlines(size):
 
 def image_ours(size):
     """Road points of 50 m in memory to the 4 cm intensity image by inverse distance alone, as gdal_grid does it."""
-    from lanewright.core.markings.image import ImageSettings, write_intensity_image
-    from lanewright.core.survey.road_points_file import read_road_points
+    from lanewright.core.intensity.image import ImageSettings, write_intensity_image
+    from lanewright.core.survey.road_points_las import read_road_points
 
     points, target = read_road_points(prepared("strip.laz", size)), prepared("ours.tif", size)
     for key in points.all_sections():
@@ -123,7 +123,7 @@ def image_ours(size):
 
 def sor_ours(size):
     """Outliers of a million points by one limit for all, 20 neighbours."""
-    from lanewright.core.markings.outliers import OutlierSettings, remove_outliers
+    from lanewright.core.markings.objects.outliers import OutlierSettings, remove_outliers
 
     points = _paint(size)
     kept, seconds = timed(lambda: remove_outliers(points, OutlierSettings(scope="all")))
@@ -135,7 +135,7 @@ def sor_ours(size):
 
 def clusters_ours(size):
     """Which of a million points on paint belong together."""
-    from lanewright.core.markings.clusters import ClusterSettings, group
+    from lanewright.core.markings.objects.cluster import ClusterSettings, group
 
     points = _paint(size)
     (records, labels), seconds = timed(lambda: group(points, points.roads()[0], ClusterSettings.distance))
@@ -147,7 +147,7 @@ def clusters_ours(size):
 
 def _paint(size):
     """The prepared million, in memory and in order."""
-    from lanewright.core.survey.road_points_file import read_road_points
+    from lanewright.core.survey.road_points_las import read_road_points
 
     points = read_road_points(prepared("paint.laz", size))
     for key in points.all_sections():

@@ -22,8 +22,8 @@ def prepared(name, size):
 
 def prepare(size):
     """Make the files."""
-    from lanewright.core.markings.image import write_intensity_image
-    from lanewright.core.survey.road_points_file import write_road_points
+    from lanewright.core.intensity.image import write_intensity_image
+    from lanewright.core.survey.road_points_las import write_road_points
 
     folder = prepared("", size)
     folder.mkdir(parents=True, exist_ok=True)
@@ -41,11 +41,11 @@ def prepare(size):
 
 def _road_points(name, size):
     """The road surface's points, intensity corrected."""
-    from lanewright.core.markings.intensity import correct_intensity
-    from lanewright.core.road.boundaries import BoundarySettings, draw_boundaries, find_curb_points
-    from lanewright.core.road.surface.extraction import extract_road_surface
-    from lanewright.core.survey.survey import open_survey
-    from lanewright.core.survey.trajectory_file import read_trajectory
+    from lanewright.core.intensity.correction import correct_intensity
+    from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
+    from lanewright.core.road.surface.extract import extract_road_surface
+    from lanewright.core.survey.open_survey import open_survey
+    from lanewright.core.survey.trajectory.reader import read_trajectory
 
     survey = open_survey(clouds_of(name, size), read_trajectory(trajectory_of(name, size)))
     edges = draw_boundaries(find_curb_points(survey, BoundarySettings(method="profiles")), survey.frame).edges
@@ -54,7 +54,7 @@ def _road_points(name, size):
 
 
 def _part(road_points, records):
-    from lanewright.core.survey.road_points import RoadPoints
+    from lanewright.core.survey.store.road_points import RoadPoints
 
     part = RoadPoints.empty_like(road_points)
     part.store.append(road_points.roads()[0], records)

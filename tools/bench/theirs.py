@@ -41,7 +41,7 @@ def _unpack_pcl():
 
 def image_gdal(size):
     """gdal_grid's inverse distance in the cells of our image."""
-    from lanewright.core.markings.image import ImageSettings
+    from lanewright.core.intensity.image import ImageSettings
 
     radius = ImageSettings.radius_cells * ImageSettings.cell_size
     return gdal_grid.inverse_distance(prepared("strip.fgb", size), prepared("gdal.tif", size), prepared("strip.tif", size), radius,
@@ -49,13 +49,13 @@ def image_gdal(size):
 
 
 def sor_pcl(size):
-    from lanewright.core.markings.outliers import OutlierSettings
+    from lanewright.core.markings.objects.outliers import OutlierSettings
 
     return _outliers("pcl", size, *pcl.outliers(_places(size), OutlierSettings.neighbours, OutlierSettings.std_ratio))
 
 
 def sor_open3d(size):
-    from lanewright.core.markings.outliers import OutlierSettings
+    from lanewright.core.markings.objects.outliers import OutlierSettings
 
     return _outliers("open3d", size, *open3d_peer.outliers(_places(size), OutlierSettings.neighbours, OutlierSettings.std_ratio))
 
@@ -66,13 +66,13 @@ def _outliers(name, size, kept, seconds):
 
 
 def clusters_pcl(size):
-    from lanewright.core.markings.clusters import ClusterSettings
+    from lanewright.core.markings.objects.cluster import ClusterSettings
 
     return _clusters("pcl", size, *pcl.clusters(_plan(size), ClusterSettings.distance))
 
 
 def clusters_open3d(size):
-    from lanewright.core.markings.clusters import ClusterSettings
+    from lanewright.core.markings.objects.cluster import ClusterSettings
 
     return _clusters("open3d", size, *open3d_peer.clusters(_plan(size), ClusterSettings.distance))
 
@@ -94,7 +94,7 @@ def _places(size):
 
 def _plan(size):
     """(N, 3) station and offset, stretched until near is a circle: quicker for PCL than a condition on a wider search."""
-    from lanewright.core.markings.clusters import SQUEEZE, STRETCH
+    from lanewright.core.markings.objects.cluster import SQUEEZE, STRETCH
 
     paint = np.load(prepared("paint.npy", size))
     return np.c_[paint[:, 3:5] - paint[:, 3:5].mean(axis=0).round(), np.zeros(len(paint))] * [1 / STRETCH, SQUEEZE, 0.0]

@@ -1,1 +1,4 @@
-"""Profiles across the road, and the steps, corners and chains that are found in them."""
+"""Curbs by the method of the driving-line thesis.
+
+In: a `Survey`. Out: curb points found as steps on profiles across the road.
+"""

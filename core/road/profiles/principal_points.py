@@ -4,12 +4,12 @@ from contextlib import closing
 
 import numpy as np
 
-from ...features import Features
-from ...parallel import in_order
-from ...progress import Progress
-from ...schemas import HEIGHT, OFFSET, PASS, ROAD, SIDE, STATION
-from .crowds import Crowds
-from .sides import SIDES, Track, expected_height, profiles_beside, sections_of
+from ...common.features import Features
+from ...common.parallel import in_order
+from ...common.progress import Progress
+from ...common.schemas import HEIGHT, OFFSET, PASS, ROAD, SIDE, STATION
+from ..common.decimation import Crowds
+from ..common.sides import SIDES, Track, expected_height, profiles_beside, sections_of
 
 PRINCIPAL_POINTS = [ROAD, PASS, SIDE, STATION, OFFSET, HEIGHT]
 

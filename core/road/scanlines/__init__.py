@@ -1,1 +1,4 @@
-"""Normalized scanlines: the scan lattice as a mesh, cut by planes, and the curbs and boundaries found on them."""
+"""Curbs by the method of the scanline paper.
+
+In: a `Survey` or a layer of scanlines. Out: normalized scanlines, curb corners where planes meet, and boundary lines.
+"""

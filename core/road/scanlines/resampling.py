@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...setting import check_limits, setting
-from ...survey.new_laz import new_laz, scale_for
-from ...survey.points import UNIT
+from ...common.setting import check_limits, setting
+from ...survey.las.writer import new_laz, scale_for
+from ...survey.store.records import UNIT
 
 EXTRA = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", None), ("scanner", "uint8", "Scanner", None),
          ("station_m", "int32", "Station along the road", UNIT), ("offset_m", "int32", "Offset, left positive", UNIT)]
@@ -66,7 +66,7 @@ class ResampledPoints:
                                    **({} if scale is None else dict(scales=np.array([scale]), offsets=np.array([0.0]))))
             for name, kind, text, scale in EXTRA])
         if crs:
-            from ...survey.crs import parse_crs
+            from ...io.crs import parse_crs
 
             self._header.add_crs(parse_crs(crs))
         self.count = 0

@@ -13,14 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...parallel import in_order
-from ...progress import Progress
-from ...setting import check_limits, setting
-from ...survey.scan_lattice import find_lattice, scanner_runs
-from ..profiles.sides import SECTION
-from .chains import PlaneVertices, increasing, plane_order
-from .mesh import LINES_AHEAD, LONGEST_EDGE, LONGEST_RIB, Ribs, ribs_of, scan_lines, slanting_edges
-from .point_scanlines import LEAST_SLICE, point_scanlines
+from ...common.parallel import in_order
+from ...common.progress import Progress
+from ...common.setting import check_limits, setting
+from ...survey.lattice.scan_lattice import find_lattice, scanner_runs
+from ..common.sides import SECTION
+from .from_points import LEAST_SLICE, point_scanlines
+from .mesh import LINES_AHEAD, LONGEST_EDGE, LONGEST_RIB, PlaneVertices, Ribs, increasing, plane_order, ribs_of, scan_lines, slanting_edges
 from .scanlines import Scanlines
 
 FEWEST = 2  # vertices of a line

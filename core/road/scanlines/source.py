@@ -4,9 +4,9 @@ from functools import partial
 
 import numpy as np
 
-from ...errors import RoadExtractionError
-from ...progress import Progress
-from ...survey.scan_lattice import find_lattice
+from ...common.errors import RoadExtractionError
+from ...common.progress import Progress
+from ...survey.lattice.scan_lattice import find_lattice
 from ...survey.sensor_height import DEFAULT_HEIGHT, height_above
 from .grid import FAR
 from .section_planes import ScanlineSettings, runs_of

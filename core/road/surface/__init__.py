@@ -1,1 +1,4 @@
-"""The road surface: its points, its outline, and what stands on it."""
+"""The road surface.
+
+In: a `Survey` and road edges. Out: the points of the road and the outline of its surface.
+"""

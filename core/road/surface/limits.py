@@ -3,7 +3,7 @@
 import numpy as np
 import shapely
 
-from ...schemas import of_main_curb
+from ...common.schemas import of_main_curb
 
 OPENING = 30.0   # m of missing edge across which the road keeps the line from one end to the other
 BEYOND = 5.0     # m that an edge's offset holds on before its first and after its last vertex

@@ -3,7 +3,7 @@
 import numpy as np
 import shapely
 
-from .cells import COLUMN, ROW
+from .ground_grid import COLUMN, ROW
 
 SHORTEST = 5.0  # m: a shorter change of status is not drawn
 

@@ -5,9 +5,9 @@ from collections import Counter
 import numpy as np
 import pytest
 from lanewright.core.assess.boundaries import BoundarySettings, assess_boundaries, interval_lines
-from lanewright.core.errors import RoadExtractionError
-from lanewright.core.survey.road_frame import build_frame
-from lanewright.core.survey.trajectory import Trajectory
+from lanewright.core.common.errors import RoadExtractionError
+from lanewright.core.survey.frame.road_frame import build_frame
+from lanewright.core.survey.trajectory.trajectory import Trajectory
 from shapely import MultiLineString, reverse
 from shapely.affinity import translate
 from shapely.geometry import LineString, box

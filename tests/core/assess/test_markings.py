@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from lanewright.core.assess.inputs import polygons_of_raster, strips
 from lanewright.core.assess.markings import FALSE, FALSE_BESIDE, HIT, MISSED, MarkingAccuracySettings, assess_markings
-from lanewright.core.assess.painted import polygons_of_raster, strips
-from lanewright.core.errors import Cancelled, RoadExtractionError
-from lanewright.core.progress import Progress
+from lanewright.core.common.errors import Cancelled, RoadExtractionError
+from lanewright.core.common.progress import Progress
 from osgeo import gdal
 from shapely.affinity import translate
 from shapely.geometry import LineString, box

@@ -4,18 +4,15 @@ import json
 
 import numpy as np
 import pytest
-from lanewright.core.curves.arcs import fit_circle, fit_line
-from lanewright.core.curves.choice import curve_of, fit_curve
-from lanewright.core.curves.clothoid import Clothoid
-from lanewright.core.curves.concentric import fit_concentric
-from lanewright.core.curves.curve import Arc
+from lanewright.core.common.errors import RoadExtractionError
+from lanewright.core.curves.base import Arc
+from lanewright.core.curves.bspline import fit_spline
+from lanewright.core.curves.clothoid import Clothoid, fit_clothoid
 from lanewright.core.curves.ellipse import Ellipse, fit_ellipse
-from lanewright.core.curves.parallel import parallel_of_line, parallel_places
+from lanewright.core.curves.line_circle import fit_circle, fit_line
+from lanewright.core.curves.model_selection import curve_of, fit_curve
 from lanewright.core.curves.polynomial import fit_polynomial
-from lanewright.core.curves.segments import segment_line
-from lanewright.core.curves.spline import fit_spline
-from lanewright.core.curves.transitions import fit_clothoid
-from lanewright.core.errors import RoadExtractionError
+from lanewright.core.curves.segmentation import segment_line
 
 EVERY_CURVE = [
     Arc(12.0, -7.0, 0.7, 0.0, 60.0),
@@ -137,21 +134,6 @@ def test_a_spline_crosses_the_gaps_of_a_dashed_bend():
     assert np.abs(truth.foot(*fit.curve.sample(0.5).T)[1]).max() < 0.02
 
 
-def test_three_arcs_of_a_bend_share_their_centre():
-    """15 m arcs of R = 57, 60, 63.5 m: alone their radii scatter, together their distances hold."""
-    lines = [painted(Arc(0.0, -offset, 0.0, 1 / (60 + offset), 15.0 * (60 + offset) / 60), seed=3 + k)
-             for k, offset in enumerate((-3.0, 0.0, 3.5))]
-    found = fit_concentric(lines)
-    radii = [fit.curve.radius for fit in found.fits]
-    assert found.concentric
-    assert np.ptp([fit.curve.centre for fit in found.fits], axis=0).max() < 1e-6
-    assert np.diff(radii) == pytest.approx([3.0, 3.5], abs=0.02)
-    assert radii[1] == pytest.approx(60, rel=0.03)
-
-
-def test_arcs_of_two_bends_are_told_apart():
-    lines = [painted(Arc(0.0, 0.0, 0.0, 1 / 60, 40.0)), painted(Arc(0.0, -4.0, 0.0, 1 / 90, 40.0))]
-    assert not fit_concentric(lines).concentric
 
 
 def test_an_alignment_is_cut_into_its_elements():
@@ -198,20 +180,6 @@ def test_the_foot_of_a_point_gives_back_where_it_was_put():
         np.testing.assert_allclose(found_e, 3.0, atol=1e-6)
 
 
-def test_the_parallel_of_a_bend_keeps_its_distance():
-    bend = Arc(0.0, 0.0, 0.0, 1 / 60, 80.0)
-    beside = parallel_places(bend, 3.5)
-    np.testing.assert_allclose(bend.foot(*beside.T)[1], 3.5, atol=1e-9)
-    np.testing.assert_allclose(bend.parallel(3.5).foot(*beside.T)[1], 0.0, atol=1e-9)
-    assert bend.parallel(3.5).radius == pytest.approx(56.5)
-    traced = parallel_of_line(*bend.sample(0.5).T, 3.5)
-    np.testing.assert_allclose(bend.foot(*traced.T)[1], 3.5, atol=1e-3)
-
-
-def test_the_inner_parallel_of_a_tight_corner_does_not_turn_back():
-    corner = Arc(0.0, 0.0, 0.0, 1 / 2.0, 3.0)
-    assert len(parallel_places(corner, 3.5)) == 0
-    assert np.isnan(parallel_of_line(*corner.sample(0.1).T, 3.5)).all()
 
 
 @pytest.mark.parametrize("kind", ["line", "circle", "clothoid", "b-spline"])

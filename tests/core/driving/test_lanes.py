@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-from lanewright.core.driving.lines import DrivingSettings, driving_lines
-from lanewright.core.errors import RoadExtractionError
-from lanewright.core.features import Features
-from lanewright.core.schemas import MARKING_LINES, MARKINGS, ROAD_EDGES
-from lanewright.core.survey.points import ROAD_POINT, to_units
-from lanewright.core.survey.road_points import RoadPoints
-from lanewright.core.survey.section_store import SectionStore
+from lanewright.core.common.errors import RoadExtractionError
+from lanewright.core.common.features import Features
+from lanewright.core.common.schemas import MARKING_LINES, MARKINGS, ROAD_EDGES
+from lanewright.core.driving.driving_lines import DrivingSettings, driving_lines
+from lanewright.core.survey.store.records import ROAD_POINT, to_units
+from lanewright.core.survey.store.road_points import RoadPoints
+from lanewright.core.survey.store.section_store import SectionStore
 from lined_streets import EAST, HEIGHT, Street, middle
 from shapely import force_2d
 from shapely.geometry import LineString, Polygon

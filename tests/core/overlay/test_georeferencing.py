@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 from flown_images import HEIGHT, WIDTH, ground, image, measured
-from lanewright.core.errors import RoadExtractionError
+from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.overlay.control_points import control_points
-from lanewright.core.overlay.georeferencing import GeoreferenceSettings, georeference
-from lanewright.core.overlay.residuals import residual_vectors
+from lanewright.core.overlay.georeference import GeoreferenceSettings, georeference, residual_vectors
 
 
 def placed(order=2, points=None, seen=None, **more):

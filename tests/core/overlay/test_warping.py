@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 from flown_images import HEIGHT, WIDTH, chequered, measured
-from lanewright.core.errors import Cancelled, RoadExtractionError
-from lanewright.core.overlay.georeferencing import GeoreferenceSettings, georeference
+from lanewright.core.common.errors import Cancelled, RoadExtractionError
+from lanewright.core.common.progress import Progress
+from lanewright.core.overlay.georeference import GeoreferenceSettings, georeference
 from lanewright.core.overlay.source_image import open_image
-from lanewright.core.overlay.warping import draw_image, output_grid
-from lanewright.core.progress import Progress
+from lanewright.core.overlay.warp import draw_image, output_grid
 from osgeo import gdal
 
 RIMS = [(p, q) for p in (0, 150, 300, 450, 600) for q in (0, 130, 270, 400)]
@@ -64,7 +64,7 @@ def test_images_of_any_kind_get_an_alpha_band_of_their_own(driver, suffix, bands
 
 
 def test_a_large_image_stored_by_lines_is_drawn_like_any_other(tmp_path, monkeypatch):
-    from lanewright.core.overlay import warping
+    from lanewright.core.overlay import warp as warping
 
     before = gdal.GetCacheMax()
     monkeypatch.setattr(warping, "MEMORY", 500_000)

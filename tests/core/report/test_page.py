@@ -1,10 +1,10 @@
 """Reports: what a page says and how numbers read."""
 
 import numpy as np
-from lanewright.core.features import Features
-from lanewright.core.report.map_picture import draw_map, png
+from lanewright.core.common.features import Features
+from lanewright.core.common.schemas import ROAD_EDGES
+from lanewright.core.report.map_figure import draw_map, png
 from lanewright.core.report.page import Page, number
-from lanewright.core.schemas import ROAD_EDGES
 from shapely.geometry import LineString
 
 

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.report.road_map import _totals
-from lanewright.core.report.road_map_figures import _joined
+from lanewright.core.report.road_map import _joined, _totals
 from shapely.geometry import LineString, box
 
 

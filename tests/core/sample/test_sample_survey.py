@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from lanewright.core.errors import RoadExtractionError
-from lanewright.core.sample.scene import CARRIAGEWAY, LABEL
+from lanewright.core.common.errors import RoadExtractionError
+from lanewright.core.sample.street import CARRIAGEWAY, LABEL
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 
 GROUND = [LABEL[name] for name in ("road", "paint", "worn paint", "manhole", "gutter", "curb face", "curb stone",
@@ -176,7 +176,7 @@ def test_no_pulse_goes_through_a_car(street, true_points):
 
 
 def test_a_thing_in_the_way_takes_the_pulse_from_the_ground_behind_it(street):
-    from lanewright.core.sample.casting import OBSTACLE, cast, cast_ground
+    from lanewright.core.sample.scanner import OBSTACLE, cast, cast_ground
 
     drive = street.drives[0]
     origin, direction, times, _ = street.scanners[0].pulses(drive, np.arange(200, 240))
@@ -357,8 +357,8 @@ def test_a_folder_that_is_not_there_is_named_and_nothing_is_left(tmp_path):
 
 
 def test_cancelling_leaves_no_file(tmp_path):
-    from lanewright.core.errors import Cancelled
-    from lanewright.core.progress import Progress
+    from lanewright.core.common.errors import Cancelled
+    from lanewright.core.common.progress import Progress
 
     class Impatient(Progress):
         def at(self, fraction):

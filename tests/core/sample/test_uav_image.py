@@ -3,13 +3,12 @@
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.errors import RoadExtractionError
+from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.overlay.control_points import control_points
-from lanewright.core.overlay.georeferencing import GeoreferenceSettings, georeference
+from lanewright.core.overlay.georeference import GeoreferenceSettings, georeference
 from lanewright.core.overlay.source_image import open_image
-from lanewright.core.overlay.warping import draw_image
-from lanewright.core.sample.control_marks import uav_control_points
-from lanewright.core.sample.orthoimage import write_uav_image
+from lanewright.core.overlay.warp import draw_image
+from lanewright.core.sample.orthophoto import uav_control_points, write_uav_image
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 from osgeo import gdal
 

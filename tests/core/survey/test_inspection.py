@@ -3,10 +3,10 @@
 import laspy
 import numpy as np
 import pytest
-from lanewright.core.errors import RoadExtractionError
+from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.report.inspection import inspection_report
 from lanewright.core.survey.inspection import InspectionSettings, inspect_survey
-from lanewright.core.survey.trajectory import Trajectory
+from lanewright.core.survey.trajectory.trajectory import Trajectory
 
 WEST, SOUTH = 610400.0, 2710200.0
 

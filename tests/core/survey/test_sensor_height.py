@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from drives import ahead, bend, chain, drive
-from lanewright.core.survey.columns import Columns
-from lanewright.core.survey.points import SURVEY_POINT, to_units
-from lanewright.core.survey.road_frame import build_frame
+from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.sensor_height import HeightTally, Tracks, first_estimate
+from lanewright.core.survey.store.columns import Columns
+from lanewright.core.survey.store.records import SURVEY_POINT, to_units
 
 RIDES = 2.314  # m above the road
 

@@ -1,0 +1,140 @@
+"""Polygons burned into tiles of small cells, all on one grid through the origin of the map."""
+
+import numpy as np
+import shapely
+
+from ..io.gdal_errors import gdal_exceptions
+
+TILE = 2048  # cells a side
+
+
+class Burner:
+    """Rasterises numbered polygons tile by tile: a cell belongs to a polygon when its centre does."""
+
+    @gdal_exceptions()
+    def __init__(self, polygons):
+        from osgeo import ogr
+
+        self._source = ogr.GetDriverByName("Memory").CreateDataSource("polygons")
+        self._layer = self._source.CreateLayer("polygons", None, ogr.wkbUnknown)
+        self._layer.CreateField(ogr.FieldDefn("number", ogr.OFTInteger))
+        definition = self._layer.GetLayerDefn()
+        for number, wkb in enumerate(shapely.to_wkb(np.asarray(polygons, object), output_dimension=2), start=1):
+            feature = ogr.Feature(definition)
+            feature.SetField(0, number)
+            feature.SetGeometryDirectly(ogr.CreateGeometryFromWkb(wkb))
+            self._layer.CreateFeature(feature)
+
+    @gdal_exceptions()
+    def burn(self, bounds, shape):
+        """(rows, columns) int32 of polygon numbers from 1 on, 0 elsewhere; the later of two that overlap wins."""
+        from osgeo import gdal
+
+        rows, columns = shape
+        raster = gdal.GetDriverByName("MEM").Create("", columns, rows, 1, gdal.GDT_Int32)
+        size = (bounds[2] - bounds[0]) / columns
+        raster.SetGeoTransform((bounds[0], size, 0.0, bounds[3], 0.0, -size))
+        self._layer.SetSpatialFilterRect(*bounds)
+        # GDAL warns, tile by tile, that two layers without CRS match
+        gdal.PushErrorHandler("CPLQuietErrorHandler")
+        try:
+            gdal.RasterizeLayer(raster, [1], self._layer, options=["ATTRIBUTE=number"])
+        finally:
+            gdal.PopErrorHandler()
+        return np.frombuffer(raster.ReadRaster(), np.int32).reshape(shape)
+
+
+class Seen:
+    """Where a raster has data: what was never scanned can be judged neither right nor wrong."""
+
+    @gdal_exceptions()
+    def __init__(self, path):
+        from osgeo import gdal
+
+        self._raster = gdal.Open(str(path))
+        self._inverse = gdal.InvGeoTransform(self._raster.GetGeoTransform())
+
+    @gdal_exceptions()
+    def burn(self, bounds, shape):
+        """(rows, columns) bool: whether the raster's cell at each centre has a value."""
+        from osgeo import gdal
+
+        size = (bounds[2] - bounds[0]) / shape[1]
+        x = bounds[0] + (np.arange(shape[1]) + 0.5) * size
+        y = bounds[3] - (np.arange(shape[0]) + 0.5) * size
+        column = np.floor(self._inverse[0] + self._inverse[1] * x).astype(int)
+        row = np.floor(self._inverse[3] + self._inverse[5] * y).astype(int)
+        inside_c = (column >= 0) & (column < self._raster.RasterXSize)
+        inside_r = (row >= 0) & (row < self._raster.RasterYSize)
+        found = np.zeros(shape, bool)
+        if not inside_c.any() or not inside_r.any():
+            return found
+        column, row = column[inside_c], row[inside_r]
+        first, above = int(column.min()), int(row.min())
+        wide, high = int(column.max()) - first + 1, int(row.max()) - above + 1
+        band = self._raster.GetRasterBand(1)
+        data = np.frombuffer(band.ReadRaster(first, above, wide, high, buf_type=gdal.GDT_Float64), np.float64).reshape(high, wide)
+        known = np.isfinite(data)
+        if band.GetNoDataValue() is not None:
+            known &= data != band.GetNoDataValue()
+        found[np.ix_(inside_r, inside_c)] = known[np.ix_(row - above, column - first)]
+        return found
+
+
+def tiles_of(polygons, cell_size, margin):
+    """(column, row) of the tiles, counted from the map's origin, that polygons widened by `margin` cells touch, in order."""
+    side = TILE * cell_size
+    low, high = np.full((0, 2), 0), np.full((0, 2), 0)
+    if len(polygons):
+        bounds = shapely.bounds(np.asarray(polygons, object)) + margin * cell_size * np.array([-1, -1, 1, 1])
+        low, high = np.floor(bounds[:, :2] / side).astype(int), np.floor(bounds[:, 2:] / side).astype(int)
+    found = set()
+    for (a, b), (c, d) in zip(low.tolist(), high.tolist()):
+        found.update((column, row) for column in range(a, c + 1) for row in range(b, d + 1))
+    return sorted(found)
+
+
+def tile_bounds(tile, cell_size, margin=0):
+    """(min x, min y, max x, max y) of a tile with `margin` cells around it."""
+    side, more = TILE * cell_size, margin * cell_size
+    return tile[0] * side - more, tile[1] * side - more, (tile[0] + 1) * side + more, (tile[1] + 1) * side + more
+
+
+# Hits, misses and false alarms as a GeoTIFF.
+
+class OutcomeRaster:
+    """Takes the tiles that `assess_markings` gives and writes them; values are those of `markings`, 0 is no paint in either.
+
+    Parameters
+    ----------
+    path : of the .tif
+    polygons : result and reference together, whose extent the raster covers
+    """
+
+    @gdal_exceptions()
+    def __init__(self, path, polygons, cell_size, crs, margin=0):
+        from osgeo import gdal, osr
+
+        tiles = np.array(tiles_of(list(polygons), cell_size, margin) or [(0, 0)])
+        (self._west, south), (east, self._north) = tiles.min(axis=0), tiles.max(axis=0)
+        columns, rows = (east - self._west + 1) * TILE, (self._north - south + 1) * TILE
+        self._raster = gdal.GetDriverByName("GTiff").Create(
+            str(path), int(columns), int(rows), 1, gdal.GDT_Byte, ["TILED=YES", "COMPRESS=DEFLATE", "SPARSE_OK=TRUE", "BIGTIFF=IF_SAFER"])
+        x0, _, _, y1 = tile_bounds((self._west, self._north), cell_size)
+        self._raster.SetGeoTransform((x0, cell_size, 0.0, y1, 0.0, -cell_size))
+        if crs:
+            reference = osr.SpatialReference()
+            reference.ImportFromWkt(crs)
+            self._raster.SetProjection(reference.ExportToWkt())
+        band = self._raster.GetRasterBand(1)
+        band.SetNoDataValue(0)
+        band.SetDescription("1 hit, 2 missed, 3 false, 4 missed beside a hit, 5 false beside paint")
+
+    @gdal_exceptions()
+    def write(self, tile, values):
+        column, row = (tile[0] - self._west) * TILE, (self._north - tile[1]) * TILE
+        self._raster.GetRasterBand(1).WriteRaster(int(column), int(row), TILE, TILE, np.ascontiguousarray(values, np.uint8).tobytes())
+
+    @gdal_exceptions()
+    def close(self):
+        self._raster = None

@@ -1,0 +1,276 @@
+"""Marking lines as lateral positions d(s): what lanes are made of."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from ..curves.base import median
+
+STEP = 0.5                    # m of station between places where lanes are looked for
+OBLIQUE = np.tan(np.radians(25.0))  # a line that runs more across the road than this bounds no lane
+DOUBLE = 0.8                  # m: lines nearer than this are one boundary, a lane ends at the nearer one
+IN_LINE = 0.3                 # m across by which a line may jump where it goes on as another
+DASH_GAP = 9.5                # m that a dashed line may be silent at its ends before it is known to end
+
+
+@dataclass
+class Boundaries:
+    """All lines of one road on a common grid of stations.
+
+    s : (K,) stations; d, z : (L, K) offset and height of each line, NaN where it is not;
+    seen : (L, K) False where the line itself was bridged; numbers, kinds, patterns : per line, of its longest piece
+    drawn : (L, K) how it is drawn at each place, a row of `names`; -1 where that is not known
+    """
+
+    s: np.ndarray
+    d: np.ndarray
+    z: np.ndarray
+    seen: np.ndarray
+    numbers: list
+    kinds: list
+    patterns: list
+    drawn: np.ndarray
+    names: list
+
+    @property
+    def seen_length(self):
+        """(L,) metres of each line that were measured."""
+        return STEP * (self.seen & np.isfinite(self.d)).sum(1)
+
+
+def road_boundaries(marking_lines, frame):
+    """The lines of every road as d(s).
+
+    Parameters
+    ----------
+    marking_lines : Features MARKING_LINES; `road`, `line`, `kind`, `pattern` and
+        `status` are used where they are, so that lines drawn by hand serve as well
+    frame : RoadFrame
+
+    Returns
+    -------
+    dict of road number to Boundaries
+    """
+    rows, parts = [], []
+    for number, (geometry, row) in enumerate(marking_lines):
+        if geometry is None or geometry.is_empty:
+            continue
+        for part in getattr(geometry, "geoms", [geometry]):
+            rows.append((number, row))
+            parts.append(part)
+    pieces = {}
+    for (number, row), piece in zip(rows, _pieces(parts, [row for _, row in rows], frame)):
+        if piece is not None:
+            line = row.get("line")
+            pieces.setdefault(piece["road"], {}).setdefault((0, int(line)) if line is not None else (1, number), []).append(piece)
+    return {road: _on_grid(frame.roads[road], lines) for road, lines in sorted(pieces.items())}
+
+
+def _pieces(lines, rows, frame):
+    """Stations, offsets and heights of each of some lines, None of what bounds no lane."""
+    if not lines:
+        return []
+    # straight between far vertices on the map is not straight in the road's frame
+    x, y, z, counts = _vertices(shapely.segmentize(np.asarray(lines, object), STEP), frame)
+    bounds = np.cumsum(counts)[:-1]
+    known = [row.get("road") for row in rows]
+    roads = [int(road) if road is not None and 0 <= int(road) < len(frame.roads) else _road_of(frame, px, py)
+             for road, px, py in zip(known, np.split(x, bounds), np.split(y, bounds))]
+    of_place = np.repeat(roads, counts)
+    s, d = np.full((2, len(x)), np.nan)
+    for road in sorted(set(roads) - {-1}):
+        there = np.flatnonzero(of_place == road)
+        s[there], d[there] = frame.roads[road].locate(x[there], y[there])
+    return [_piece(road, row, *places) for road, row, *places in zip(roads, rows, *(np.split(v, bounds) for v in (s, d, z)))]
+
+
+def _vertices(lines, frame):
+    """Local x, y and z (NaN where there is none) of the vertices of lines, one after the other, and how many each has."""
+    places, owner = shapely.get_coordinates(lines, include_z=True, return_index=True)
+    x, y = frame.to_local(places[:, 0], places[:, 1])
+    return x, y, places[:, 2] - frame.origin[2], np.bincount(owner, minlength=len(lines))
+
+
+def _road_of(frame, x, y):
+    """The road that most places are nearest to, -1 where there is none."""
+    numbers, _, _ = frame.locate_nearest(x, y)
+    numbers = numbers[numbers >= 0]
+    return int(np.bincount(numbers).argmax()) if len(numbers) else -1
+
+
+def _piece(road, row, s, d, z):
+    good = np.isfinite(s)
+    if not good.all():
+        s, d, z = s[good], d[good], z[good]
+    if len(s) < 2:
+        return None
+    if s[-1] < s[0]:
+        s, d, z = s[::-1], d[::-1], z[::-1]
+    rising = np.append(True, s[1:] > np.maximum.accumulate(s)[:-1])
+    if not rising.all():
+        s, d, z = s[rising], d[rising], z[rising]
+    if len(s) < 2 or median(np.abs(np.diff(d)) / np.diff(s)) > OBLIQUE:
+        return None
+    return dict(road=road, s=s, d=d, z=z, kind=str(row.get("kind") or ""), pattern=str(row.get("pattern") or ""),
+                seen=str(row.get("status") or "measured") != "bridged")
+
+
+def _on_grid(road, lines):
+    first = np.ceil(min(p["s"][0] for pieces in lines.values() for p in pieces) / STEP)
+    last = np.floor(max(p["s"][-1] for pieces in lines.values() for p in pieces) / STEP)
+    s = STEP * np.arange(first, last + 1)
+    # the order of the layer's rows must not matter
+    order = sorted(lines, key=lambda key: (min(p["s"][0] for p in lines[key]), np.median(lines[key][0]["d"]), key))
+    d, z = np.full((2, len(order), len(s)), np.nan)
+    seen, drawn = np.zeros((len(order), len(s)), bool), np.full((len(order), len(s)), -1, np.int16)
+    names = sorted({p["pattern"] for pieces in lines.values() for p in pieces})
+    kinds, patterns = [], []
+    for k, key in enumerate(order):
+        pieces = sorted(lines[key], key=lambda p: (p["s"][0], p["s"][-1]))
+        for p in pieces:
+            # pieces of one line touch: the hair between two grid stations belongs to the line too
+            inside = slice(np.searchsorted(s, p["s"][0] - 1e-6), np.searchsorted(s, p["s"][-1] + 1e-6, side="right"))
+            d[k, inside] = np.interp(s[inside], p["s"], p["d"])
+            z[k, inside] = np.interp(s[inside], p["s"], p["z"])
+            seen[k, inside] |= p["seen"]
+            drawn[k, inside] = names.index(p["pattern"])
+        longest = max(pieces, key=lambda p: (p["seen"], p["s"][-1] - p["s"][0]))
+        kinds.append(longest["kind"])
+        patterns.append(longest["pattern"])
+    found, gaps = _joined(Boundaries(s, d, z, seen, [key[1] for key in order], kinds, patterns, drawn, names))
+    _even_doubles(found, _lead_over(found, gaps))
+    _lengthen_dashed(found)
+    return found
+
+
+def _joined(lines):
+    """Lines that go on as another line after at most a dash gap, in one row: a dashed line turns solid at a junction.
+
+    Returns the Boundaries, and of each gap that was closed the row, the stations (as columns) on both its sides and
+    whether the line is double there.
+    """
+    rows, gaps = list(range(len(lines.d))), []
+    ends = {k: np.flatnonzero(np.isfinite(lines.d[k])) for k in rows}
+    owner = dict(enumerate(rows))  # the line that a row ends as
+    rows = [k for k in rows if len(ends[k])]
+    # columns in which rows end and their offsets there, NaN where there is no row any more
+    end, at_end = np.zeros(len(lines.d), int), np.full(len(lines.d), np.nan)
+    end[rows] = [ends[k][-1] for k in rows]
+    at_end[rows] = lines.d[rows, end[rows]]
+    for k in sorted(rows, key=lambda k: (ends[k][0], k)):
+        last = ends[k][0]
+        away = np.abs(lines.d[k, last] - at_end)
+        gap = (last - end) * STEP
+        behind = np.flatnonzero((gap > 0) & (gap <= DASH_GAP) & (away <= IN_LINE))
+        if not len(behind):
+            continue
+        j = int(behind[np.argmin(away[behind])])
+        first = end[j]
+        gaps.append((j, first, last, *("double" in lines.patterns[owner[i]] for i in (j, k))))
+        owner[j] = owner[k]
+        gap = np.arange(first + 1, last)
+        for values in (lines.d, lines.z):
+            values[j, last:] = np.where(np.isfinite(values[k, last:]), values[k, last:], values[j, last:])
+            values[j, gap] = np.interp(gap, [first, last], values[j, [first, last]])
+        lines.seen[j, last:] |= lines.seen[k, last:]
+        lines.drawn[j, last:] = lines.drawn[k, last:]
+        # a gap of a dashed line is no gap
+        lines.seen[j, gap] = any(lines.patterns[i].startswith("dash") for i in (j, k))
+        end[j], at_end[j], at_end[k] = end[k], lines.d[j, end[k]], np.nan
+        rows.remove(k)
+    found = Boundaries(lines.s, lines.d[rows], lines.z[rows], lines.seen[rows], [lines.numbers[k] for k in rows],
+                       [lines.kinds[k] for k in rows], [lines.patterns[k] for k in rows], lines.drawn[rows], lines.names)
+    return found, [(rows.index(j), *gap) for j, *gap in gaps]
+
+
+def _lead_over(lines, gaps):
+    """Where a double line goes on as a single one, both of its lines lead over to it: lanes on either side end at that one.
+
+    Returns the ends of lines that were led on, as (row, 1 where it ended or -1 where it began).
+    """
+    reach, led = int(DASH_GAP / STEP), set()
+    for j, last, first, before, after in gaps:
+        if before == after:
+            continue
+        # from the double line's own end to where the single one begins, in whichever direction
+        own, other, step = (last, first, 1) if before else (first, last, -1)
+        for k in np.flatnonzero(["double" in pattern for pattern in lines.patterns]):
+            columns = np.flatnonzero(np.isfinite(lines.d[k]))
+            if k == j or not len(columns):
+                continue
+            end = columns[-1 if step > 0 else 0]
+            if not 0 <= (own - end) * step <= reach or abs(lines.d[k, end] - lines.d[j, end]) >= DOUBLE:
+                continue
+            beside, gap = np.arange(end + step, own + step, step), np.arange(own + step, other, step)
+            for values in (lines.d, lines.z):
+                apart = values[k, end] - values[j, end]
+                values[k, beside] = values[j, beside] + apart
+                values[k, gap] = values[j, gap] + apart * (other - gap) / (other - own)
+            for columns in (beside, gap):
+                lines.seen[k, columns] = lines.seen[j, columns]
+            led.add((int(k), step))
+    return led
+
+
+def _even_doubles(lines, led):
+    """The two lines of a double line begin and end together: the shorter goes on beside the longer, a dash gap at most.
+
+    Else a lane would reach for the farther of the two where the nearer is worn away.
+    """
+    present = np.isfinite(lines.d)
+    reach = int(DASH_GAP / STEP)
+    for k in np.flatnonzero(["double" in pattern for pattern in lines.patterns]):
+        columns = np.flatnonzero(present[k])
+        if not len(columns):
+            continue
+        for end, step in ((columns[-1], 1), (columns[0], -1)):
+            if (k, step) in led:
+                continue
+            beside = np.abs(np.where(present[:, end], lines.d[:, end], np.nan) - lines.d[k, end])
+            beside[k] = np.nan
+            twin = _nearest(beside < DOUBLE, beside)
+            if twin is None:
+                continue
+            ahead = end + step * np.arange(1, reach + 1)
+            ahead = ahead[(ahead >= 0) & (ahead < len(lines.s))]
+            go = present[twin, ahead] & ~present[k, ahead]
+            ahead = ahead[:len(go) if go.all() else int(np.argmin(go))]
+            for values in (lines.d, lines.z):
+                values[k, ahead] = values[twin, ahead] + (values[k, end] - values[twin, end])
+            lines.seen[k, ahead] = lines.seen[twin, ahead]
+
+
+def _lengthen_dashed(lines):
+    """A dashed line goes on by up to one gap where lines on both its sides do.
+
+    Where the last dash ends says nothing of where the line does: the next dash is only
+    missed after a gap's length.
+    """
+    present = np.isfinite(lines.d)
+    reach = int(DASH_GAP / STEP)
+    for k in np.flatnonzero([pattern.startswith("dash") for pattern in lines.patterns]):
+        columns = np.flatnonzero(present[k])
+        if len(columns) < 2:
+            continue
+        for end, step in ((columns[-1], 1), (columns[0], -1)):
+            others = present[:, end].copy()
+            others[k] = False
+            offsets = np.where(others, lines.d[:, end] - lines.d[k, end], np.nan)
+            left = _nearest(offsets > DOUBLE, np.abs(offsets))
+            right = _nearest(offsets < -DOUBLE, np.abs(offsets))
+            if left is None or right is None:
+                continue
+            ahead = end + step * np.arange(1, reach + 1)
+            ahead = ahead[(ahead >= 0) & (ahead < len(lines.s))]
+            go = present[left, ahead] & present[right, ahead] & lines.seen[left, ahead] & lines.seen[right, ahead]
+            ahead = ahead[:len(go) if go.all() else int(np.argmin(go))]
+            share = (lines.d[k, end] - lines.d[right, end]) / (lines.d[left, end] - lines.d[right, end])
+            lines.d[k, ahead] = lines.d[right, ahead] + share * (lines.d[left, ahead] - lines.d[right, ahead])
+            lines.z[k, ahead] = lines.z[right, ahead] + share * (lines.z[left, ahead] - lines.z[right, ahead])
+            lines.seen[k, ahead] = True
+
+
+def _nearest(which, distance):
+    rows = np.flatnonzero(which)
+    return rows[np.argmin(distance[rows])] if len(rows) else None

@@ -1,0 +1,1 @@
+"""Formats that several folders read or write: tables of numbers, coordinate reference systems, tiled GeoTIFFs."""

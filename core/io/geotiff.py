@@ -1,0 +1,325 @@
+"""The intensity image as a file: a tiled GeoTIFF that is written whole or not at all, and read in windows."""
+
+import os
+import threading
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+
+from ..common.errors import RoadExtractionError
+from ..common.progress import Progress
+from .gdal_errors import gdal_exceptions
+
+TILE = 512          # px, side of a tile of the file and of the work
+NODATA = -9999.0
+AT_ONCE = 4 * TILE**2   # px that are read in one piece to be sampled
+KEPT = 32 * TILE**2     # px that GDAL may keep of what a thread has read
+COMPRESSING = 2     # threads
+DISPLAY_LONGEST = 2000  # px of the reduced image from which the stretch is taken
+SPARSE_STEP = 16        # px from one of them to the next at the most, where few tiles of a large image hold data
+
+
+class IntensityImage:
+    """An intensity image opened for reading, by several threads if need be.
+
+    Attributes
+    ----------
+    path : of the file
+    geotransform : as GDAL has it, map coordinates
+    cell_size : metres
+    width, height : pixels
+    crs : WKT, "" where the file carries none
+    eight_bit : whether it is the picture for viewing
+    """
+
+    def __init__(self, path, geotransform, width, height, crs, eight_bit=False):
+        self.path = str(path)
+        self.geotransform = geotransform
+        self.cell_size = geotransform[1]
+        self.width, self.height = width, height
+        self.crs = crs
+        self.eight_bit = eight_bit
+        self._own = threading.local()  # GDAL's datasets serve one thread each
+
+    @classmethod
+    @gdal_exceptions()
+    def open(cls, path):
+        """Open an image.
+
+        Raises
+        ------
+        RoadExtractionError
+            If the file is missing, no raster, rotated, without square pixels, or in degrees.
+        """
+        dataset = _open_raster(path)
+        transform = dataset.GetGeoTransform(can_return_null=True)
+        if transform is None:
+            raise RoadExtractionError(f"{path} is a picture without a place on the map. Give the intensity image written by “Intensity image”.")
+        if transform[2] or transform[4] or abs(transform[1] + transform[5]) > 1e-6 * abs(transform[1]) or transform[1] <= 0:
+            raise RoadExtractionError(
+                f"{path} has pixels of {transform[1]:g} by {-transform[5]:g} map units or is rotated. "
+                "An intensity image has square pixels and north up: make it anew with “Intensity image”.")
+        crs = dataset.GetProjection() or ""
+        reference = dataset.GetSpatialRef()
+        if reference is not None and reference.IsGeographic():
+            raise RoadExtractionError(
+                f"{path} is in {reference.GetName()} (degrees). Markings are measured in metres: make the image anew "
+                "from road points in a projected CRS.")
+        eight_bit = dataset.GetRasterBand(1).DataType == 1  # GDT_Byte
+        return cls(path, transform, dataset.RasterXSize, dataset.RasterYSize, crs, eight_bit)
+
+    @gdal_exceptions()
+    def read_pixels(self, column, row, width, height):
+        """(height, width) float32 from a pixel on; NaN where there is no data or no image."""
+        values = np.full((height, width), np.nan, np.float32)
+        c0, c1 = max(column, 0), min(column + width, self.width)
+        r0, r1 = max(row, 0), min(row + height, self.height)
+        if c0 >= c1 or r0 >= r1:
+            return values
+        band = self._dataset((c1 - c0) * (r1 - r0)).GetRasterBand(1)
+        data = np.frombuffer(band.ReadRaster(c0, r0, c1 - c0, r1 - r0, buf_type=_float32()), np.float32).reshape(r1 - r0, c1 - c0)
+        nodata = band.GetNoDataValue()
+        known = np.isfinite(data) if nodata is None else np.isfinite(data) & (data != np.float32(nodata))
+        values[r0 - row:r1 - row, c0 - column:c1 - column] = np.where(known, data, np.nan)
+        return values
+
+    @gdal_exceptions()
+    def tiles(self):
+        """[(column, row)] of the first pixels of all tiles that may hold data, row by row."""
+        return filled_tiles(self._dataset(0))
+
+    def read_window(self, bounds):
+        """The pixels that a box of the map touches.
+
+        Parameters
+        ----------
+        bounds : (min x, min y, max x, max y), map coordinates
+
+        Returns
+        -------
+        (H, W) float32, row 0 in the north, NaN where there is no data; and the map
+        coordinates x, y of the outer (north-west) corner of pixel 0, 0.
+        """
+        left, _, _, top, _, _ = self.geotransform
+        x0, y0, x1, y1 = bounds
+        column, row = int(np.floor((x0 - left) / self.cell_size)), int(np.floor((top - y1) / self.cell_size))
+        width = max(int(np.ceil((x1 - left) / self.cell_size)) - column, 1)
+        height = max(int(np.ceil((top - y0) / self.cell_size)) - row, 1)
+        corner = left + column * self.cell_size, top - row * self.cell_size
+        return self.read_pixels(column, row, width, height), corner
+
+    def pixel_of(self, x, y, origin=(0.0, 0.0)):
+        """Column and row, (N,) float, of places; pixel 0 reaches from 0 to 1.
+
+        `origin` is what was subtracted from the map coordinates (frame.origin), nothing by default.
+        """
+        left, _, _, top, _, _ = self.geotransform
+        return (np.asarray(x, float) + (origin[0] - left)) / self.cell_size, \
+            ((top - origin[1]) - np.asarray(y, float)) / self.cell_size
+
+    def sample(self, x, y, origin=(0.0, 0.0), bilinear=False):
+        """Image values at places.
+
+        Parameters
+        ----------
+        x, y : (N,) map coordinates, or local ones with their `origin`
+        bilinear : between the centres of four pixels, else the pixel that a place lies in
+
+        Returns
+        -------
+        (N,) float32, NaN where there is no data; bilinear needs all four pixels.
+        """
+        column, row = self.pixel_of(x, y, origin)
+        if bilinear:
+            column, row = column - 0.5, row - 0.5
+        values = np.full(len(column), np.nan, np.float32)
+        if not len(values):
+            return values
+        floor_column, floor_row = np.floor(column), np.floor(row)
+        box = [int(end) for whole in (floor_column, floor_row) for end in (whole.min(), whole.max())]
+        if not bilinear and (box[1] - box[0] + 1) * (box[3] - box[2] + 1) <= AT_ONCE:
+            pixels = self.read_pixels(box[0], box[2], box[1] - box[0] + 1, box[3] - box[2] + 1)
+            floor_row -= box[2]
+            floor_row *= pixels.shape[1]
+            floor_row += floor_column
+            floor_row -= box[0]
+            return pixels.ravel().take(floor_row.astype(np.intp))
+        whole_column, whole_row = floor_column.astype(np.int64), floor_row.astype(np.int64)
+        inside = np.flatnonzero((whole_column >= -1) & (whole_row >= -1) & (whole_column < self.width) & (whole_row < self.height))
+        tile = (whole_row[inside] // TILE) * (self.width // TILE + 2) + whole_column[inside] // TILE
+        order = inside[np.argsort(tile, kind="stable")]
+        cuts = np.flatnonzero(np.diff(np.sort(tile, kind="stable"))) + 1
+        for rows in np.split(order, cuts) if len(order) else []:
+            c, r = whole_column[rows], whole_row[rows]
+            c0, r0 = int(c.min()), int(r.min())
+            pixels = self.read_pixels(c0, r0, int(c.max()) - c0 + 2, int(r.max()) - r0 + 2)
+            c, r = c - c0, r - r0
+            if bilinear:
+                u, v = column[rows] - whole_column[rows], row[rows] - whole_row[rows]
+                values[rows] = ((1 - v) * ((1 - u) * pixels[r, c] + u * pixels[r, c + 1])
+                                + v * ((1 - u) * pixels[r + 1, c] + u * pixels[r + 1, c + 1]))
+            else:
+                values[rows] = pixels[r, c]
+        return values
+
+    def _dataset(self, pixels):
+        """This thread's dataset, of which so many pixels are to be read; opened anew now and then, as GDAL keeps what was read."""
+        self._own.read = getattr(self._own, "read", 0) + pixels
+        if self._own.read > KEPT or not hasattr(self._own, "dataset"):
+            self._own.dataset = None  # or the old one's tiles would still be there while the new one is opened
+            self._own.dataset, self._own.read = _open_raster(self.path), pixels
+        return self._own.dataset
+
+
+def _float32():
+    from osgeo import gdal
+
+    return gdal.GDT_Float32
+
+
+def _open_raster(path):
+    from osgeo import gdal
+
+    if not Path(path).is_file():
+        raise RoadExtractionError(f"There is no file {path}. Give the intensity image written by “Intensity image”.")
+    try:
+        return gdal.Open(str(path))
+    except RuntimeError as problem:
+        raise RoadExtractionError(
+            f"{path} cannot be read as an image ({problem}). Give the GeoTIFF written by “Intensity image”.") from problem
+
+
+def filled_tiles(dataset):
+    """[(column, row)] of the first pixels of all tiles of a GDAL dataset that may hold data, row by row.
+
+    What lies between two towns is left out of the file: it is halved until the rest is empty or a tile, not read.
+    """
+    from osgeo import gdal
+
+    band, width, height = dataset.GetRasterBand(1), dataset.RasterXSize, dataset.RasterYSize
+    waiting, found = [(0, 0, -(-width // TILE), -(-height // TILE))], []
+    while waiting:
+        c0, r0, c1, r1 = waiting.pop()
+        column, row = c0 * TILE, r0 * TILE
+        flags, _ = band.GetDataCoverageStatus(column, row, min(c1 * TILE, width) - column, min(r1 * TILE, height) - row)
+        if not flags & gdal.GDAL_DATA_COVERAGE_STATUS_DATA:
+            continue
+        if c1 - c0 == r1 - r0 == 1:
+            found.append((row, column))
+        elif c1 - c0 >= r1 - r0:
+            middle = (c0 + c1) // 2
+            waiting += [(c0, r0, middle, r1), (middle, r0, c1, r1)]
+        else:
+            middle = (r0 + r1) // 2
+            waiting += [(c0, r0, c1, middle), (c0, middle, c1, r1)]
+    return [(column, row) for row, column in sorted(found)]
+
+
+class NewGeoTiff:
+    """The one band of a GeoTIFF that is being written; nobody else holds its dataset, so that `close` ends it."""
+
+    @gdal_exceptions()
+    def __init__(self, path, width, height, geotransform, crs, byte, nodata):
+        from osgeo import gdal
+
+        options = [f"BLOCKXSIZE={TILE}", f"BLOCKYSIZE={TILE}", "TILED=YES", "COMPRESS=DEFLATE", "SPARSE_OK=TRUE",
+                   "BIGTIFF=IF_SAFER", f"NUM_THREADS={COMPRESSING}"]
+        # intensities are too noisy to be told from those beside them: a predictor costs twice what it saves, and more to undo
+        options += ["PREDICTOR=2"] if byte else ["ZLEVEL=1"]
+        self._type, self._numbers = (gdal.GDT_Byte, np.uint8) if byte else (gdal.GDT_Float32, np.float32)
+        self._dataset = gdal.GetDriverByName("GTiff").Create(str(path), width, height, 1, self._type, options)
+        self._dataset.SetGeoTransform(geotransform)
+        if crs:
+            self._dataset.SetProjection(crs)
+        self._dataset.GetRasterBand(1).SetNoDataValue(nodata)
+
+    @gdal_exceptions()
+    def write(self, column, row, values):
+        """Write (H, W) pixels from one on; they are compressed by other threads once `flush` is called."""
+        height, width = values.shape
+        data = np.ascontiguousarray(values, self._numbers).tobytes()
+        self._dataset.GetRasterBand(1).WriteRaster(column, row, width, height, data, buf_type=self._type)
+
+    @gdal_exceptions()
+    def read(self, column, row, width, height):
+        """(height, width) pixels as written so far, a copy."""
+        data = self._dataset.GetRasterBand(1).ReadRaster(column, row, width, height, buf_type=self._type)
+        return np.frombuffer(data, self._numbers).reshape(height, width).copy()
+
+    @gdal_exceptions()
+    def flush(self):
+        """Hand what was written to the file, which compresses it beside the work that follows."""
+        self._dataset.GetRasterBand(1).FlushCache()
+
+    @gdal_exceptions()
+    def close(self):
+        """End the file; a file that is still open cannot be renamed on Windows."""
+        try:
+            self._dataset.FlushCache()
+        finally:
+            self.drop()
+
+    def drop(self):
+        """Let go of the file, finished or not."""
+        self._dataset = None
+
+
+@contextmanager
+def new_geotiff(path, width, height, geotransform, crs, byte=False, nodata=NODATA):
+    """A NewGeoTiff: tiled, DEFLATE, empty tiles left out; it takes its name when all went well.
+
+    Raises
+    ------
+    RoadExtractionError
+        If the file cannot be written.
+    """
+    path = Path(path)
+    unfinished = path.with_name(path.name + ".unfinished.tif")
+    image = None
+    try:
+        image = NewGeoTiff(unfinished, width, height, geotransform, crs, byte, nodata)
+        yield image
+        image.close()
+        os.replace(unfinished, path)
+        # statistics that a viewer kept beside yesterday's image are not those of this one
+        path.with_name(path.name + ".aux.xml").unlink(missing_ok=True)
+    except RuntimeError as problem:  # GDAL's own: the folder refuses, or the disk is full
+        raise RoadExtractionError(f"{path} cannot be written ({problem}). Choose another folder or free its space.") from problem
+    finally:
+        if image is not None:
+            image.drop()
+        unfinished.unlink(missing_ok=True)
+
+
+def write_display_image(image_path, path, progress=Progress()):
+    """Write an intensity image stretched to bytes 1 to 255, for viewers; 0 is no data.
+
+    The stretch runs from the 1st to the 99.5th percentile of the image.
+    """
+    image = IntensityImage.open(image_path)
+    low, high = _stretch(image)
+    with new_geotiff(path, image.width, image.height, image.geotransform, image.crs, byte=True, nodata=0) as picture:
+        for column, row in image.tiles():
+            width, height = min(TILE, image.width - column), min(TILE, image.height - row)
+            values = image.read_pixels(column, row, width, height)
+            known = np.isfinite(values)
+            if known.any():
+                grey = 1 + np.rint(254 * np.clip((values - low) / max(high - low, 1e-9), 0, 1))
+                picture.write(column, row, np.where(known, grey, 0).astype(np.uint8))
+            progress.at(row / image.height)
+    progress.at(1.0)
+
+
+def _stretch(image):
+    """1st and 99.5th percentile of an image, taken from every n-th pixel."""
+    tiles = image.tiles()
+    # where most of a large image is empty, as many pixels as of a small one that is full
+    filled = int(np.sqrt(len(tiles))) * TILE // DISPLAY_LONGEST
+    step = max(1, min(max(image.width, image.height) // DISPLAY_LONGEST, max(filled, SPARSE_STEP)))
+    parts = [np.empty(0, np.float32)]
+    for column, row in tiles:
+        values = image.read_pixels(column, row, TILE, TILE)[::step, ::step]
+        parts.append(values[np.isfinite(values)])
+    values = np.concatenate(parts)
+    return tuple(np.percentile(values, [1.0, 99.5])) if len(values) else (0.0, 1.0)

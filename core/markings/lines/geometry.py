@@ -1,0 +1,159 @@
+"""The course of one marking line in plan and height: places from its paint, a curve through them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...common.errors import RoadExtractionError
+from ...curves.base import Fit, median
+from ...curves.bspline import fit_splines, smooth_profiles
+from ...curves.model_selection import fit_curve, fit_curves
+
+FAINT = 3            # points that a place must have to count, where there are enough such places
+GUIDED_GAP = 4.0     # m: in a longer gap the curve is guided parallel to the other lines
+GUIDE = 2.0          # m between guiding places
+LEVEL = 3.0          # m at either side of a gap that say where the guide begins and ends
+HEIGHT_SMOOTHING = 3.0  # m
+STEP = 0.5           # m between vertices
+
+
+@dataclass
+class LineShape:
+    """A line that can be drawn between two stations.
+
+    fit : Fit of the curve; residuals belong to the places `s`
+    s : (K,) stations of the places
+    """
+
+    fit: Fit
+    s: np.ndarray
+    _station_to_u: tuple
+    _height: object
+
+    def u(self, s):
+        """Arc length on the curve at stations s, going on evenly beyond the ends."""
+        stations, lengths = self._station_to_u
+        inside = np.interp(s, stations, lengths)
+        return inside + np.minimum(s - stations[0], 0.0) + np.maximum(s - stations[-1], 0.0)
+
+    def draw(self, first, last):
+        """(M, 3) local places from station `first` to `last`, at most half a metre apart."""
+        ends = self.u(np.array([first, last]))
+        count = max(2, int(np.ceil((ends[1] - ends[0]) / STEP - 1e-9)) + 1)
+        u = np.linspace(ends[0], ends[1], count)
+        stations, lengths = self._station_to_u
+        s = np.interp(u, lengths, stations) + np.minimum(u - lengths[0], 0.0) + np.maximum(u - lengths[-1], 0.0)
+        return np.c_[self.fit.curve.at(u), self._height(s)]
+
+
+def shapes_of(lines, spans, road, drift, track_height, settings):
+    """The LineShapes of linked lines, fitted together.
+
+    Parameters
+    ----------
+    lines : list of Line
+    spans : (first, last) stations of each to be drawn, which may reach beyond the paint
+    road : Road
+    drift : Drift, how the painted lines of the road run together
+    track_height : function of stations (N,), height of the trajectory; the line's height is
+        smoothed as the difference to it, so that it goes on along the road's slope
+    settings : LineSettings
+
+    Returns
+    -------
+    list of LineShape, and how many could not take the wanted curve (automatic replaces it there)
+    """
+    if not lines:
+        return [], 0
+    courses = [_course(line, drift, span) for line, span in zip(lines, spans)]
+    s, d, own = (np.concatenate(parts) for parts in zip(*((course.s, course.d, course.own) for course in courses)))
+    bounds = np.cumsum([len(course.s) for course in courses])[:-1]
+    x, y = (np.split(values, bounds) for values in road.to_map(s, d))
+    measured = [(x[k][course.own], y[k][course.own]) for k, course in enumerate(courses)]
+    fits, replaced = _fitted(measured, settings)
+    # splines once more with the guides, which are no measurements and count in no choice
+    curved = [k for k, fit in enumerate(fits) if fit.curve.kind == "b-spline"]
+    along = [_along(road, courses[k].s, courses[k].d) for k in curved]
+    near = [None] * len(courses)
+    for k, t, guided in zip(curved, along, fit_splines([(x[k], y[k]) for k in curved], along)):
+        fits[k], near[k] = guided, guided.curve.u_of(t)
+    track = np.split(track_height(s[own]), np.cumsum([len(course.z) for course in courses])[:-1])
+    heights = smooth_profiles([(course.s[course.own], course.z - below) for course, below in zip(courses, track)], HEIGHT_SMOOTHING)
+    found = []
+    for k, (course, fit, height) in enumerate(zip(courses, fits, heights)):
+        u, e = fit.curve.foot(x[k], y[k], near[k])
+        if near[k] is not None:
+            fit = Fit(fit.curve, e[course.own], fit.parameters)
+        rising = np.maximum.accumulate(u)
+        keep = np.append(True, np.diff(rising) > 1e-6)
+        found.append(LineShape(fit, course.s[course.own], (course.s[keep], rising[keep]),
+                               lambda at, height=height: height(at) + track_height(at)))
+    return found, replaced
+
+
+@dataclass
+class _Course:
+    """Places of a line by station, and places that guide its curve where nothing is painted.
+
+    s, d : (N,) metres; own : (N,) True for the line's own places; z : heights of these
+    """
+
+    s: np.ndarray
+    d: np.ndarray
+    own: np.ndarray
+    z: np.ndarray
+
+
+def _course(line, drift, span):
+    s, d, z, weight = line.places()
+    strong = weight >= FAINT
+    if strong.sum() >= max(4, 0.5 * len(s)):
+        s, d, z = s[strong], d[strong], z[strong]
+    order = np.argsort(s, kind="stable")
+    s, d, z = s[order], d[order], z[order]
+    guide_s, guide_d = _guides(s, d - drift.at(s), drift, span)
+    order = np.argsort(np.concatenate([s, guide_s]), kind="stable")
+    return _Course(np.concatenate([s, guide_s])[order], np.concatenate([d, guide_d])[order], order < len(s), z)
+
+
+def _fitted(places, settings):
+    """Fits to a list of (x, y), and how many of them are not the wanted curve."""
+    if settings.curve == "automatic":
+        return fit_curves(places), 0
+    found, replaced = [], 0
+    for x, y in places:
+        try:
+            found.append(fit_curve(x, y, settings.curve, settings.degree))
+        except RoadExtractionError:
+            found.append(fit_curve(x, y, "automatic"))
+            replaced += 1
+    return found, replaced
+
+
+def _guides(s, level, drift, span):
+    """Places in long gaps and beyond the ends, where nothing is painted: parallel to the other lines."""
+    wide = np.flatnonzero(np.diff(s) > GUIDED_GAP)
+    gaps = zip(s[wide].tolist(), s[wide + 1].tolist())
+    stations, offsets = [], []
+    for a, b in gaps:
+        at = np.linspace(a, b, int(np.ceil((b - a) / GUIDE)) + 1)[1:-1]
+        start, stop = np.searchsorted(s, a, "right"), np.searchsorted(s, b)
+        before = median(level[np.searchsorted(s, a - LEVEL):start])
+        after = median(level[stop:np.searchsorted(s, b + LEVEL, "right")])
+        stations.append(at)
+        offsets.append(np.interp(at, [a, b], [before, after]) + drift.at(at))
+    for tip, end in ((s[0], span[0]), (s[-1], span[1])):
+        if abs(end - tip) > GUIDE / 4:
+            at = np.linspace(tip, end, int(np.ceil(abs(end - tip) / GUIDE)) + 1)[1:]
+            stations.append(at)
+            offsets.append(median(level[np.abs(s - tip) <= LEVEL]) + drift.at(at))
+    if not stations:
+        return np.empty(0), np.empty(0)
+    return np.concatenate(stations), np.concatenate(offsets)
+
+
+def _along(road, s, d):
+    """(N,) length along the line at each station: the inner side of a bend is shorter."""
+    middle = (s[1:] + s[:-1]) / 2
+    rate = np.maximum(1.0 - road.curvature(middle) * (d[1:] + d[:-1]) / 2, 0.1)
+    return np.r_[0.0, np.cumsum(np.maximum(np.diff(s), 1e-6) * rate)]

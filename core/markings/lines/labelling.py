@@ -1,0 +1,359 @@
+"""Which linked paint is a line, what kind of line it is, and how far it reaches."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from ...curves.base import median
+from ..objects.classify import LANE
+from .dash_pattern import LONGEST_DASH, Piece, merged, pieces, stretches
+from .linking import TWIN, Line
+
+# Which lines part the two directions of traffic, and which bound the road: what lines say of each other.
+
+TWO_LANES = 5.0      # m between the outer lines of a road of two lanes
+SAME_OFFSET = 0.25   # m: a lone dash this near the course of a dashed line is one of its dashes
+GOES_ON = 40.0       # m: over a junction, between a double line and the dashes that take its place
+ONE_LANE = 2.2, 5.5  # m of carriageway on either side of a line that is alone: a lane, with a gutter or a cycle lane
+
+
+def outer_lines_alone(chosen):
+    """Two solid lines with room for two lanes and no line between them are the road's edge lines.
+
+    The road's own edge is no help there: where there is no curb, a smooth verge may pass for carriageway.
+    """
+    solid = [one for one in chosen if not one.double and all(piece.pattern == "solid" for piece in one.pieces)]
+    pairs = [(one, other) for one in solid for other in solid
+             if TWO_LANES <= other.level - one.level and max(_shared(one, [other]), _shared(other, [one])) > 0.5]
+    for one, other in pairs:
+        between = [inner for inner in chosen if one.level + TWIN[1] < inner.level < other.level - TWIN[1]]
+        if not _shared(one, between) and not _shared(other, between):
+            one.kind = other.kind = "edge"
+
+
+def one_centre(chosen):
+    """A road has one centre line at a place.
+
+    Where it is double, solid lines beside it are lane lines; of two solid lines the
+    one nearer the middle of what is painted is the centre line. A dashed line on the
+    course of a centre line is that line's dashed part.
+    """
+    inner = [one for one in chosen if one.kind == "centre" and not one.double]
+    for one in inner:
+        if _shared(one, [other for other in chosen if other.double]) > 0.5:
+            one.kind = "lane"
+    rest = [one for one in inner if one.kind == "centre"]
+    for one in sorted(rest, key=lambda one: -_off_centre(one, chosen)):
+        if _shared(one, [other for other in rest if other is not one and other.kind == "centre"]) > 0.5:
+            one.kind = "lane"
+    central = [one for one in chosen if one.kind == "centre"]
+    for one in chosen:
+        if one.kind == "lane" and any(_on_course(one, other, central) for other in central) and not _shared(one, central):
+            one.kind = "centre"
+
+
+def _on_course(one, other, central):
+    """Whether a line lies where a centre line would go on; of a double line its middle counts, and only near its ends."""
+    if not other.double:
+        return abs(other.level - one.level) <= SAME_OFFSET
+    twins = [twin.level for twin in central if twin.double and abs(twin.level - other.level) <= TWIN[1] and _shared(other, [twin])]
+    apart = max(one.span[0] - other.span[1], other.span[0] - one.span[1])
+    return abs(float(np.mean(twins)) - one.level) <= SAME_OFFSET and apart <= GOES_ON
+
+
+def _shared(one, others):
+    """Share of a line's stations beside any of the others."""
+    first, last = one.span
+    together = max((min(last, other.span[1]) - max(first, other.span[0]) for other in others), default=0.0)
+    return max(together, 0.0) / max(last - first, 1e-6)
+
+
+def _off_centre(one, chosen):
+    """Metres between a line and the middle of the outermost lines beside it."""
+    beside = [other.level for other in chosen if _shared(one, [other]) > 0.3]
+    return abs(one.level - (max(beside) + min(beside)) / 2) if beside else 0.0
+
+
+def lone_centre(chosen, passes):
+    """A dashed line alone on its road, with room for one lane on either side, parts the two directions.
+
+    The lane that was driven is taken to reach as far beyond the vehicle as the line lies on
+    its other side; beyond the line the road's edge says how much room there is. Not
+    where one direction was driven on both sides: those are two lanes of a one-way road.
+
+    passes : the Passes of the road
+    """
+    for one in chosen:
+        others = [other for other in chosen if other is not one]
+        if one.kind != "lane" or _shared(one, others) > 0.5 or not ONE_LANE[0] <= one.room <= ONE_LANE[1]:
+            continue
+        beside = _driven_beside(one, passes)
+        driven = {way: {side for direction, side, _ in beside if direction == way} for way in (1, -1)}
+        if any(ONE_LANE[0] <= 2 * away <= ONE_LANE[1] for _, _, away in beside) and max(map(len, driven.values())) < 2:
+            one.kind = "centre"
+
+
+def _driven_beside(one, passes):
+    """[(direction, side of the line, metres away)] of the passes along a line."""
+    s, d, *_ = one.line.places()
+    found = []
+    for drive in passes:
+        there = (s >= drive.span[0]) & (s <= drive.span[1])
+        if there.mean() > 0.5:
+            away = float(np.median(drive.at_station(s[there])[0] - d[there]))
+            found.append((int(drive.direction), bool(away > 0), abs(away)))
+    return found
+
+SHARED = 0.6         # of a line's paint that must have its twin beside it in a double line
+TWIN_PAINT = 4.0     # m of paint: a shorter line beside another is its frayed edge, however short the other is there
+SLIVER = 0.35        # of a line's length: less paint beside a line than this is no second line but its frayed edge
+LONE_DASH = 1.5      # m
+LONG = 15.0          # m of paint: enough to bound a road by
+NEIGHBOUR = 8.0      # m across: a line this near starts and ends where this one does
+WIDE_LANE = 2.6      # m: a solid line with less room than this to the road edge bounds the road
+BAR = 4.0            # m along the road: what is called hatching and is longer is no single bar of it
+AT_BAR = 0.35        # m between the end of a bar and the outline
+BAR_PITCH = 3.0      # m from bar to bar along an outline
+BARS = 4             # that make an outline
+FEW_BARS = 2         # that tell which strands of an outline are its own
+
+
+@dataclass
+class Chosen:
+    """A line with its kind, its pieces by status and pattern, and the stations it is drawn between."""
+
+    line: object
+    kind: str
+    double: bool
+    pieces: list
+    width: float
+    level: float   # offset less the drift common to the road's lines, metres
+    room: float    # metres between the line and the road edge on its side
+
+    @property
+    def span(self):
+        return self.pieces[0].first, self.pieces[-1].last
+
+
+def crossings(markings, road, frame):
+    """(K, 4) first and last station, least and greatest offset of zebra crossings and stop lines of a road."""
+    return _extents(markings, road, frame, ("zebra", "stop"))
+
+
+def bars(markings, road, frame):
+    """(K, 4) the same of the bars of hatched areas."""
+    found = _extents(markings, road, frame, ("hatch",))
+    return found[found[:, 1] - found[:, 0] < BAR]
+
+
+def _extents(markings, road, frame, classes):
+    shown = [geometry for geometry, row in markings if row["road"] == road and row["class"] in classes]
+    places, owner = shapely.get_coordinates(np.asarray(shown, object), return_index=True)
+    s, d = frame.road(road).locate(*frame.to_local(places[:, 0], places[:, 1])) if len(places) else np.empty((2, 0))
+    known = np.isfinite(s)
+    s, d, owner = s[known], d[known], owner[known]
+    if not len(s):
+        return np.empty((0, 4))
+    starts = np.flatnonzero(np.r_[True, np.diff(owner) != 0])
+    return np.stack([end.reduceat(values, starts) for values in (s, d) for end in (np.minimum, np.maximum)], axis=1)
+
+
+def choose(lines, drift, crossed, min_paint, hatched=np.empty((0, 4)), passes=()):
+    """The lines worth drawing.
+
+    A line needs paint: `min_paint` metres of it, or two dashes of a rhythm, or one dash
+    on the course and of the length of a dashed line elsewhere on the road. What runs
+    close beside a much longer line is that line's frayed edge; what frames a hatched
+    area belongs to that area.
+
+    Parameters
+    ----------
+    lines : list of Line
+    drift : Drift
+    crossed : (K, 4) as `crossings` gives it
+    min_paint : metres
+    hatched : (K, 4) as `bars` gives it
+    passes : the drives over the road
+
+    Returns
+    -------
+    list of Chosen, by station
+    """
+    if not lines:
+        return []
+    parts = [stretches(line) for line in lines]
+    level = [_level(line, drift) for line in lines]
+    beats = [_beats(stretch) for stretch in parts]
+    painted_to = max(line.last for line in lines)
+    painted_from = min(line.first for line in lines)
+    frayed, double = _beside(lines, drift)
+    outside = _beyond_the_edge(lines, level)
+    found = []
+    for k, line in enumerate(lines):
+        lone = None
+        if not beats[k] and line.painted < LONGEST_DASH:
+            lone = _dash_of_another(k, lines, beats, level)
+        if frayed[k] or outside[k] or _frames_hatching(line, hatched) or not (line.painted >= min_paint or beats[k] or lone):
+            continue
+        kind = _kind(line, double[k], bool(beats[k]) or lone is not None)
+        drawn = pieces(parts[k])
+        if lone is not None:
+            drawn = [Piece(line.first, line.last, "measured", "dashed")]
+        neighbours = _painted_beside(k, lines, level)
+        drawn = _extended(drawn, parts[k], lone, (painted_from, painted_to), crossed, neighbours, line)
+        width = float(np.average([s.width for s in line.strands], weights=[s.length for s in line.strands]))
+        found.append(Chosen(line, kind, bool(double[k]), drawn, width, level[k], _room(line)))
+    outer_lines_alone(found)
+    one_centre(found)
+    lone_centre(found, passes)
+    return found
+
+
+def _painted_beside(k, lines, level):
+    """(M, 2) stations between which the lines beside line k are painted."""
+    near = [line for j, line in enumerate(lines) if j != k and abs(level[j] - level[k]) <= NEIGHBOUR]
+    return np.array([(strand.first, strand.last) for line in near for strand in line.strands]).reshape(-1, 2)
+
+
+def _level(line, drift):
+    s, d, *_ = line.places()
+    return median(d - drift.at(s))
+
+
+def _beats(parts):
+    return [part.rhythm for part in parts if part.rhythm]
+
+
+def _dash_of_another(k, lines, beats, level):
+    """The Rhythm of a dashed line elsewhere on the road, on whose course and of whose dash length line k is."""
+    if lines[k].painted < LONE_DASH or len(lines[k].strands) > 2:
+        return None
+    for j, rhythms in enumerate(beats):
+        apart = lines[j].last < lines[k].first or lines[j].first > lines[k].last
+        for beat in rhythms if apart and abs(level[j] - level[k]) <= SAME_OFFSET else ():
+            differs = abs(lines[k].last - lines[k].first - beat.dash)
+            if len(lines[j].strands) >= 3 and differs <= max(0.6, 0.25 * beat.dash):
+                return beat
+    return None
+
+
+def _beside(lines, drift):
+    """(N,) frayed: a sliver beside a longer line; (N,) double: one of two equal lines side by side."""
+    frayed, double = np.zeros(len(lines), bool), np.zeros(len(lines), bool)
+    tracks = []
+    for line in lines:
+        s, d, *_ = line.places()
+        cell = np.floor(s / 0.5).astype(np.int64)
+        cells, first = np.unique(cell, return_index=True)
+        tracks.append((cells, (d - drift.at(s))[first]))
+    for k in range(len(lines)):
+        for j in range(len(lines)):
+            if j == k or lines[j].first > lines[k].last or lines[j].last < lines[k].first:
+                continue
+            _, a, b = np.intersect1d(tracks[k][0], tracks[j][0], assume_unique=True, return_indices=True)
+            if len(a) < 3:
+                continue
+            away = median(np.abs(tracks[k][1][a] - tracks[j][1][b]))
+            share = len(a) / len(tracks[k][0])
+            if away <= TWIN[1] and share > SHARED:
+                # between two junctions both lines of a double are short, and one of them may go on farther beyond
+                twin = away >= TWIN[0] and lines[k].painted >= max(TWIN_PAINT, SHARED * _painted_there(lines[j], lines[k]))
+                if not twin and lines[k].painted < SLIVER * lines[j].painted and lines[k].painted < LONGEST_DASH:
+                    frayed[k] = True
+                elif away >= TWIN[0]:
+                    double[k] = True
+                    double[j] |= len(a) / len(tracks[j][0]) > SLIVER
+    return frayed, double
+
+
+def _painted_there(line, other):
+    """Metres of paint of those strands of a line that run beside another."""
+    return sum(strand.length for strand in line.strands if strand.last > other.first and strand.first < other.last)
+
+
+def _beyond_the_edge(lines, level):
+    """(N,) whether a fragment lies farther out than a long line that bounds the road there: gutter, verge or yard.
+
+    With less than a lane's room between the two, what is much shorter than the edge
+    line is no line of its own; farther out, what is short.
+    """
+    result = np.zeros(len(lines), bool)
+    bounds = [j for j, line in enumerate(lines)
+              if line.painted >= LONG and _votes(line).get("edge", 0.0) > 0.3 * line.painted]
+    for k, line in enumerate(lines):
+        for j in bounds:
+            # the vehicle drove between the edge lines
+            farther = np.sign(median(lines[j].places()[1])) * (level[k] - level[j])
+            shared = min(lines[j].last, line.last) - max(lines[j].first, line.first)
+            least = SLIVER * lines[j].painted if farther < LANE else 0.0
+            if j != k and farther > TWIN[0] and shared > 0.5 * (line.last - line.first) and line.painted < max(least, LONG):
+                result[k] = True
+    return result
+
+
+def hatching_borders(lines, hatched):
+    """Strands that frame hatched areas, of those lines that do so as a whole."""
+    return [strand for line in lines if len(line.strands) > 1 and _frames_hatching(line, hatched)
+            for strand in line.strands if _frames_hatching(Line([strand]), hatched, FEW_BARS)]
+
+
+def _frames_hatching(line, hatched, fewest=BARS):
+    """Whether bars end at a line along most of it; an edge line beside a hatched area goes on after it."""
+    s, d, *_ = line.places()
+    middle = hatched[:, :2].mean(axis=1)
+    at = np.interp(middle, s, d)
+    ends = np.minimum(np.abs(hatched[:, 2] - at), np.abs(hatched[:, 3] - at)) < AT_BAR
+    near = middle[ends & (middle > line.first) & (middle < line.last)]
+    if len(near) < fewest:
+        return False
+    steps = np.diff(np.sort(near))
+    return steps[steps < BAR_PITCH].sum() + BAR_PITCH > SHARED * (line.last - line.first)
+
+
+def _votes(line):
+    """Metres of paint by the class of its markings."""
+    votes = {}
+    for strand in line.strands:
+        for name, length in strand.classes.items():
+            votes[name] = votes.get(name, 0.0) + length
+    return votes
+
+
+def _room(line):
+    return float(np.average([s.room for s in line.strands], weights=[s.length for s in line.strands]))
+
+
+def _kind(line, double, dashed):
+    if double:
+        return "centre"
+    if _votes(line).get("edge", 0.0) > 0.5 * line.painted or _room(line) < (LANE if dashed else WIDE_LANE):
+        return "edge"
+    return "lane" if dashed else "centre"
+
+
+def _extended(drawn, parts, lone, painted, crossed, neighbours, line):
+    """A dashed line ends with a gap: its ends go on by one gap.
+
+    But not past the paint of the road, into a crossing, or past where the lines
+    beside it begin or end.
+    """
+    drawn = list(drawn)
+    before, after = lone or parts[0].rhythm, lone or parts[-1].rhythm
+    d = median(line.places()[1])
+    beside = crossed[(crossed[:, 2] <= d + 0.5) & (crossed[:, 3] >= d - 0.5)]
+    if before:
+        limit = line.first - before.gap
+        begun = neighbours[(neighbours[:, 0] > limit) & (neighbours[:, 0] <= line.first), 0]
+        running = ((neighbours[:, 0] <= limit) & (neighbours[:, 1] > limit + 1.0)).any()
+        start = max(limit, painted[0], *beside[beside[:, 1] < line.first + 0.5, 1],
+                    *(begun[:0] if running else begun[np.argsort(begun)[:1]]))
+        drawn.insert(0, Piece(min(start, line.first), line.first, "measured", "dashed"))
+    if after:
+        limit = line.last + after.gap
+        ended = neighbours[(neighbours[:, 1] < limit) & (neighbours[:, 1] >= line.last), 1]
+        running = ((neighbours[:, 1] >= limit) & (neighbours[:, 0] < limit - 1.0)).any()
+        end = min(limit, painted[1], *beside[beside[:, 0] > line.last - 0.5, 0],
+                  *(ended[:0] if running else ended[np.argsort(-ended)[:1]]))
+        drawn.append(Piece(line.last, max(end, line.last), "measured", "dashed"))
+    return merged(drawn)

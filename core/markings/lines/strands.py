@@ -1,0 +1,273 @@
+"""From paint points to strands: stretches of one painted line without a gap, traced as d(s)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+from ...common.order_statistics import order_by
+from ...curves.base import median, percentiles
+from ...survey.store.records import UNIT
+from ..objects.classify import LINES
+
+BIN = 5000             # units of 0.1 mm: 0.5 m of station in which runs of paint are told apart
+PLACE = 2500           # 0.25 m: one place of the line each, so that neighbouring places are nearly independent
+SPLIT = 600            # 6 cm across without paint separate two runs ...
+ONE_LINE = 2200        # ... unless together they are no wider than one worn line
+WIDEST = 3600          # 36 cm: wider is no line, or it is a double line whose middle is hazy
+PARTED = 6000          # 60 cm: where a mixed marking reaches farther across, it is hatching or a stop line there
+MIXED_SHORTEST = 2.0   # m of paint in a strand of a mixed marking
+LONGER_THAN_SYMBOLS = 9.0  # m: no arrow or letter is this long; a longer mixed marking has a line in it
+FEWEST = 3             # points in a run
+SHORTEST = 0.8         # m of paint in a strand
+REACH = 3              # bins that a strand may leap: 1.5 m of wear
+STEP, SLANT = 600, 400 # units: 6 cm, and 4 cm more per bin, that a strand may move across
+
+
+@dataclass
+class Strand:
+    """One stretch of painted line.
+
+    first, last : stations of its first and last point, metres
+    s, d, z : (K,) its places, one per 0.25 m of station; z local
+    weight : (K,) points in each place
+    width : metres
+    room : metres between the line and the road edge on its side
+    classes : dict, class of marking to painted length, metres
+    """
+
+    first: float
+    last: float
+    s: np.ndarray
+    d: np.ndarray
+    z: np.ndarray
+    weight: np.ndarray
+    width: float
+    room: float
+    classes: dict
+
+    @property
+    def length(self):
+        return self.last - self.first
+
+
+def line_paint(records, markings, road):
+    """The points that may belong to a painted line.
+
+    Those of markings of use keep; of other long markings (a line that touches a stop
+    line or a hatched area is clustered with it) those places where the marking is
+    no wider across than a double line.
+
+    Parameters
+    ----------
+    records : N points of one road with `cluster`
+    markings : Features MARKINGS
+    road : number
+
+    Returns
+    -------
+    records, and the class of each as an index into LINES, or len(LINES) for a mixed marking
+    """
+    kind, length = {}, {}
+    for row in markings.rows:
+        if row["road"] == road:
+            kind[row["cluster"]] = LINES.index(row["class"]) if row["use"] == "keep" and row["class"] in LINES else None
+            length[row["cluster"]] = row.get("length_m") or 0.0
+    known = sorted(kind)
+    if not known or not len(records):
+        return records[:0], np.empty(0, np.int64)
+    number = records["cluster"]
+    place = np.clip(np.searchsorted(known, number), 0, len(known) - 1)
+    listed = np.asarray(known)[place] == number
+    rank = np.array([len(LINES) if kind[k] is None else kind[k] for k in known])[place]
+    mixed_ones = np.array([kind[k] is None and length[k] > LONGER_THAN_SYMBOLS for k in known])[place]
+    is_line = listed & (rank < len(LINES))
+    mixed = listed & mixed_ones
+    keep = is_line | (mixed & _narrow_there(records, number, mixed))
+    return records[keep], rank[keep]
+
+
+def _narrow_there(records, number, mixed):
+    """Points of mixed markings in bins where the marking is narrow, and its neighbours are too."""
+    rows = np.flatnonzero(mixed)
+    result = np.zeros(len(records), bool)
+    if not len(rows):
+        return result
+    bins = records["s"][rows] // BIN
+    order = order_by(bins, number[rows])
+    rows, bins = rows[order], bins[order]
+    starts = np.flatnonzero(np.r_[True, (np.diff(bins) != 0) | (np.diff(number[rows]) != 0)])
+    across = records["d"][rows].astype(np.int64)
+    narrow = np.maximum.reduceat(across, starts) - np.minimum.reduceat(across, starts) <= PARTED
+    owner, at = number[rows][starts], bins[starts]
+    # the tip of a hatched area is narrow too: keep a metre away from what is wide
+    beside = np.zeros(len(starts), bool)
+    for shift in (-2, -1, 1, 2):
+        same = np.roll(owner, shift) == owner
+        beside |= same & (np.abs(np.roll(at, shift) - at) <= 2) & ~np.roll(narrow, shift)
+    group = np.cumsum(np.r_[False, np.diff(bins) != 0] | np.r_[False, np.diff(number[rows]) != 0])
+    result[rows] = (narrow & ~beside)[group]
+    return result
+
+
+def trace(records, rank):
+    """Strands of painted line among the points of one road.
+
+    Parameters
+    ----------
+    records : N points
+    rank : (N,) class of each point as `line_paint` gives it
+
+    Returns
+    -------
+    list of Strand, by station
+    """
+    if not len(records):
+        return []
+    across, bins = records["d"], records["s"] // BIN
+    order = order_by(across, bins)
+    run = _without_thin(_runs(bins[order], across[order].astype(np.int64)))
+    inside = np.flatnonzero(run >= 0)
+    if not len(inside):
+        return []
+    run, order = run[inside], order[inside]
+    starts = np.flatnonzero(np.append(True, run[1:] != run[:-1]))
+    node_d, width = _middle_and_width(across[order], starts)
+    label = _chains(bins[order[starts]], node_d, width <= WIDEST)
+    of_point = np.repeat(label, np.diff(np.append(starts, len(run))))
+    used = np.flatnonzero(of_point >= 0)
+    order = order[used]
+    return _strands([rank[order], *(records[name][order] for name in ("s", "d", "z", "half_width"))], of_point[used])
+
+
+def _runs(bins, across):
+    """(N,) number of the run of paint each point belongs to; points sorted by bin, then across."""
+    cut = np.r_[True, (np.diff(bins) != 0) | (np.diff(across) > SPLIT)]
+    starts = np.flatnonzero(cut)
+    for _ in range(8):
+        if len(starts) < 2:
+            break
+        last = np.r_[starts[1:], len(bins)] - 1
+        joins = (bins[starts[1:]] == bins[starts[:-1]]) & (across[last[1:]] - across[starts[:-1]] <= ONE_LINE)
+        # one join at a time per neighbourhood: the first of a row of joins
+        joins &= ~np.r_[False, joins[:-1]]
+        if not joins.any():
+            break
+        starts = np.delete(starts, np.flatnonzero(joins) + 1)
+    starts = _part_hazy_doubles(bins, across, starts)
+    run = np.zeros(len(bins), np.int64)
+    run[starts] = 1
+    return np.cumsum(run) - 1
+
+
+def _part_hazy_doubles(bins, across, starts):
+    """Where a run is as wide as a double line and thin in its middle, cut it there."""
+    last = np.r_[starts[1:], len(bins)] - 1
+    wide = np.flatnonzero(across[last] - across[starts] > 2600)
+    cuts = []
+    for k in wide:
+        values = across[starts[k]:last[k] + 1]
+        if len(values) < 4 * FEWEST:
+            continue
+        low, high = values[len(values) // 20], values[-1 - len(values) // 20]
+        third = (high - low) / 3
+        counts = [np.count_nonzero((values >= low + j * third) & (values < low + (j + 1) * third)) for j in range(3)]
+        if counts[1] < 0.5 * min(counts[0], counts[2]):
+            middle = values[(values >= low + third) & (values < low + 2 * third)]
+            edges = np.r_[low + third, middle, low + 2 * third]
+            gap = int(np.argmax(np.diff(edges)))
+            cuts.append(starts[k] + int(np.searchsorted(values, edges[gap], "right")))
+    return np.unique(np.r_[starts, cuts]).astype(np.int64)
+
+
+def _without_thin(run):
+    """-1 for the points of runs of too few points."""
+    return np.where(np.bincount(run)[run] >= FEWEST, run, -1)
+
+
+def _middle_and_width(across, starts):
+    """Middle between the outer eighths, and 95 % width, of sorted runs."""
+    count = np.diff(np.r_[starts, len(across)])
+    low, high = across[starts + count // 8], across[starts + count - 1 - count // 8]
+    outer = across[starts + count - 1 - count // 40] - across[starts + count // 40]
+    return (low.astype(float) + high) / 2, outer
+
+
+def _chains(node_bin, node_d, good):
+    """(M,) number of the chain of each run, -1 where it is in none."""
+    count = len(node_bin)
+    follows = np.full(count, -1)
+    preceded = np.zeros(count, bool)
+    span = float(np.ptp(node_d)) + 10 * BIN
+    for leap in range(1, REACH + 1):
+        open_end = np.flatnonzero(good & (follows < 0))
+        open_start = np.flatnonzero(good & ~preceded)
+        if not len(open_end) or not len(open_start):
+            break
+        a, b = _mutual(node_bin, node_d, open_end, open_start, leap, span)
+        near = np.abs(node_d[a] - node_d[b]) <= STEP + SLANT * leap
+        follows[a[near]] = b[near]
+        preceded[b[near]] = True
+    linked = np.flatnonzero(follows >= 0)
+    graph = coo_matrix((np.ones(len(linked), bool), (linked, follows[linked])), shape=(count, count))
+    label = connected_components(graph, directed=False)[1]
+    return np.where(good, label, -1)
+
+
+def _mutual(node_bin, node_d, ends, starts, leap, span):
+    """Pairs (end, start), `leap` bins apart, each the other's nearest across."""
+    def nearest(a, b, shift):
+        key_a, key_b = (node_bin[a] + shift) * span + node_d[a], node_bin[b] * span + node_d[b]
+        order = np.argsort(key_b, kind="stable")
+        spot = np.searchsorted(key_b[order], key_a)
+        best, gap = np.full(len(a), -1), np.full(len(a), np.inf)
+        for side in (-1, 0):
+            j = np.clip(spot + side, 0, len(b) - 1)
+            away = np.abs(key_b[order][j] - key_a)
+            closer = away < gap
+            best[closer], gap[closer] = order[j][closer], away[closer]
+        best[gap > 4 * STEP] = -1
+        return best
+
+    there, back = nearest(ends, starts, leap), nearest(starts, ends, -leap)
+    rows = np.flatnonzero(there >= 0)
+    rows = rows[back[there[rows]] == rows]
+    return ends[rows], starts[there[rows]]
+
+
+def _strands(columns, label):
+    """Strands of points that lie by bin, then across: columns rank, s, d, z and half width, (N,) each, and the chain of each point."""
+    place = columns[1] // PLACE
+    # within a place points keep their order, which is across
+    order = order_by(place, label)
+    label, place, columns = label[order], place[order], [column[order] for column in columns]
+    bounds = np.flatnonzero(np.r_[True, np.diff(label) != 0, True]) if len(label) else np.zeros(1, int)
+    found = []
+    for a, b in zip(bounds[:-1].tolist(), bounds[1:].tolist()):
+        strand = _strand(place[a:b], *(column[a:b] for column in columns))
+        mixed = strand.classes.get("mixed", 0.0) > 0.5 * strand.length
+        if strand.length >= (MIXED_SHORTEST if mixed else SHORTEST):
+            found.append(strand)
+    return sorted(found, key=lambda strand: (strand.first, strand.d[0]))
+
+
+def _strand(place, rank, along, across, height, half_width):
+    """A Strand of points sorted by place, then across; all columns (N,), lengths in units."""
+    starts = np.flatnonzero(np.append(True, place[1:] != place[:-1]))
+    count = np.diff(np.append(starts, len(place)))
+    middle, outer = _middle_and_width(across, starts)
+    # where a line runs into other paint it is wider than itself, and its middle is not its own
+    own = outer <= 1.5 * median(outer) + 400
+    if not own.all():
+        inside = np.repeat(own, count)
+        return _strand(*(column[inside] for column in (place, rank, along, across, height, half_width)))
+    first, last = float(along.min() * UNIT), float(along.max() * UNIT)
+    s, z = (np.add.reduceat(values, starts, dtype=np.int64) / count * UNIT for values in (along, height))
+    d = middle * UNIT
+    offset = across * UNIT
+    low, high = percentiles(offset - np.repeat(d, count), (2.5, 97.5))
+    room = median(half_width * 1e-3 - np.abs(offset))
+    share = np.bincount(rank, minlength=len(LINES) + 1) / len(rank) * (last - first)
+    classes = {name: float(share[k]) for k, name in enumerate(LINES + ("mixed",)) if share[k] > 0}
+    return Strand(first, last, s, d, z, count.astype(float), (high - low) / 0.95, room, classes)

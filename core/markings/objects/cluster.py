@@ -1,0 +1,232 @@
+"""Paint points to markings: which points belong together, and what they are.
+
+Conditional Euclidean clustering: two points belong together if they are near
+each other, and the condition is that near is measured in the road's own way:
+farther along the road, where scan lines lie apart and paint wears through, than
+across it, where a decimetre may separate the two lines of a double line.
+"""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+from ...common.features import Features
+from ...common.order_statistics import order_by
+from ...common.progress import Progress
+from ...common.schemas import MARKINGS
+from ...common.setting import check_limits, setting
+from ...curves.base import median
+from ...survey.store.records import UNIT, Points, joined
+from ..objects import outline as polygons
+from .classify import LINES, NOT_PAINT, ClassSettings, classify, contrast, too_pale
+from .connected_cells import components, occupied
+from .shape import CELL, measure
+from .split_merge import join_fragments, split_compounds
+
+WINDOW = 1250    # cells of 4 cm: 50 m of station are linked at a time
+FRAGMENT = 1     # points: the smallest worn rest that a line may be joined from
+STRIPS = LINES + ("zebra", "stop")  # drawn as even strips, the others cell by cell
+SQUARE_TO_ROAD = np.radians(5.0)  # stripes of a crossing that is more askew end askew to their run
+STRETCH = 2.5    # neighbours may be this times the distance apart along the road,
+SQUEEZE = 2.0    # and across it the distance over this
+
+
+@dataclass(frozen=True)
+class ClusterSettings:
+    """How points join, and how small a marking may be.
+
+    distance : m between points of one marking (twice as much along the road, half as much across it)
+    min_points : fewer are no marking
+    classes : when a cluster is a line
+    """
+
+    distance: float = setting(0.20, 0.02, 2.0, "The clustering distance", "m")
+    min_points: int = setting(8, 1, 100000, "The least number of points of a marking")
+    classes: ClassSettings = field(default_factory=ClassSettings)
+
+    def __post_init__(self):
+        check_limits(self)
+
+
+def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress=Progress()):
+    """Group paint points into markings with class, size and outline.
+
+    Parameters
+    ----------
+    marking_points : RoadPoints on paint
+    frame : RoadFrame
+
+    Returns
+    -------
+    MARKINGS : Features, one polygon a marking; one that wear or a shadow cut apart has
+        several, with one `cluster` number
+    clustered : RoadPoints with `cluster`, the number of the marking; 0 on what is no marking
+    """
+    markings = Features("PolygonZ", MARKINGS, crs=marking_points.crs)
+    clustered = replace(marking_points, store=marking_points.store.with_column("cluster"), has_cluster=True)
+    number, refused = 0, 0
+    roads = marking_points.roads()
+    for k, road in enumerate(roads):
+        part = progress.part(k / len(roads), (k + 1) / len(roads))
+        records, labels = group(marking_points, road, settings.distance, part.part(0, 0.4))
+        order, starts, _ = _by_cluster(split_compounds(records, labels), FRAGMENT)
+        records = records.take(order)
+        s, d = records["s"], records["d"]
+        pieces = [measure(s[a:b], d[a:b]) for a, b in zip(starts[:-1].tolist(), starts[1:].tolist())]
+        joins = join_fragments(pieces, settings.classes.max_width)
+        again, starts, labels = _by_cluster(_relabelled(records, starts, joins), settings.min_points)
+        records, order = records.take(again), order[again]
+        rows = list(zip(starts[:-1].tolist(), starts[1:].tolist()))
+        s, d = records["s"], records["d"]
+        alone = _alone(pieces, joins)
+        shapes = [alone.get(label) or measure(s[a:b], d[a:b]) for label, (a, b) in zip(labels.tolist(), rows)]
+        half_width, hidden = records["half_width"].astype(float), records["covered"]
+        half_widths = [median(half_width[a:b]) * 1e-3 for a, b in rows]
+        covered = [float(np.count_nonzero(hidden[a:b])) / (b - a) for a, b in rows]
+        kinds = classify(shapes, half_widths, settings.classes, covered)
+        if marking_points.has_corrected:
+            bright = contrast(Points(records).value, records["s"], starts)
+            kinds = [(NOT_PAINT, "other") if too_pale(share, kind) else (kind, use) for share, (kind, use) in zip(bright.tolist(), kinds)]
+        cluster = np.zeros(len(records), np.int32)
+        for i in sorted(range(len(rows)), key=lambda i: (shapes[i].s0, shapes[i].d0, shapes[i].s1)):
+            if kinds[i][0] == NOT_PAINT:
+                refused += 1
+                continue
+            number += 1
+            a, b = rows[i]
+            cluster[order[a:b]] = number
+            _add(markings, records[a:b], shapes[i], kinds[i], number, road, frame)
+            part.at(0.4 + 0.6 * number / max(len(rows), 1))
+        _put(clustered.store, road, cluster, marking_points)
+    progress.say(f"Markings: {number} found; {refused} clusters were left out as gutters, seams, covers, specks or the feet of what "
+                 "stands on the road.")
+    return markings, clustered
+
+
+def _put(store, road, cluster, points):
+    """Clusters of all points of a road, by station, into their sections."""
+    first = 0
+    for section in points.sections(road):
+        count = len(points.section(road, section))
+        store.put(road, section, cluster[first:first + count])
+        first += count
+
+
+def _alone(pieces, joins):
+    """The pieces that were joined to no other, by the number of their marking."""
+    count = np.bincount(joins, minlength=1)
+    return {number: piece for number, piece in zip(joins.tolist(), pieces) if count[number] == 1}
+
+
+def _relabelled(records, starts, number):
+    """Label of every record after joining; records of no cluster get labels of their own."""
+    labels = np.repeat(number, np.diff(starts))
+    rest = len(records) - len(labels)
+    return np.r_[labels, len(number) + np.arange(rest)]
+
+
+def group(marking_points, road, distance, progress=Progress()):
+    """Connected components of the points of one road.
+
+    Returns
+    -------
+    records : Columns of the N points of the road
+    labels : (N,) int component of each; its numbering follows station
+
+    Notes
+    -----
+    Points of one 4 cm cell are one member, at their mean place: points of dense
+    paint would otherwise have hundreds of neighbours each. Cells are fixed
+    in station, and windows are joined through the cells they share, so neither
+    window nor section length shows in the result.
+    """
+    start, end = marking_points.store.span(road)
+    reach = int(np.ceil(distance * STRETCH / (CELL * UNIT))) + 1
+    records, labels, links = [], [], []
+    shared_cells, shared_labels, count = np.empty((0, 2), np.int64), np.empty(0, np.int64), 0
+    windows = range(int(np.floor(start / UNIT / CELL / WINDOW)), int(np.floor(end / UNIT / CELL / WINDOW)) + 1)
+    for step, window in enumerate(windows):
+        first, last = window * WINDOW, (window + 1) * WINDOW
+        found = marking_points.window(road, (first - 1) * CELL * UNIT, (last + reach + 1) * CELL * UNIT).records
+        column = found["s"] // CELL
+        found = found[(column >= first) & (column < last + reach)]
+        cells, member, component = _components(found, distance)
+        component = component + count
+        count = component.max(initial=count - 1) + 1
+        links.append(_shared(shared_cells, shared_labels, cells, component))
+        beyond = cells[:, 0] >= last
+        shared_cells, shared_labels = cells[beyond], component[beyond]
+        own = found["s"] // CELL < last
+        records.append(found[own])
+        labels.append(component[member[own]])
+        progress.at((step + 1) / len(windows))
+    if not records:
+        return joined([], marking_points.store.dtype), np.empty(0, np.int64)
+    pairs = np.concatenate(links)
+    graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
+    _, merged = connected_components(graph, directed=False)
+    labels = np.concatenate(labels)
+    return joined(records, marking_points.store.dtype), merged[labels] if len(labels) else labels
+
+
+def _components(records, distance):
+    """Occupied cells, the cell of each point, and the component of each cell."""
+    cells, member = occupied(records["s"] // CELL, records["d"] // CELL)
+    size = np.bincount(member, minlength=len(cells))
+    # sums of integers are the same in any order
+    s, d = (np.bincount(member, records[name], len(cells)) for name in ("s", "d"))
+    places = np.stack([s / size / STRETCH, d / size * SQUEEZE], axis=1) * UNIT
+    return cells, member, components(cells, places, (CELL * UNIT / STRETCH, CELL * UNIT * SQUEEZE), distance)
+
+
+def _shared(cells, labels, others, other_labels):
+    """(K, 2) labels that two windows gave to the same cells."""
+    if not len(cells) or not len(others):
+        return np.empty((0, 2), np.int64)
+    low = min(cells[:, 1].min(), others[:, 1].min())
+    width = max(cells[:, 1].max(), others[:, 1].max()) - low + 1
+    keys, other_keys = (c[:, 0] * width + c[:, 1] - low for c in (cells, others))
+    _, a, b = np.intersect1d(keys, other_keys, assume_unique=True, return_indices=True)
+    return np.c_[labels[a], other_labels[b]]
+
+
+def _by_cluster(labels, fewest):
+    """Points of clusters large enough, one cluster after the other; those of the rest at the end.
+
+    Returns their order, the bounds of the clusters in it (one more than there are clusters), and the label of each.
+    """
+    if not len(labels):
+        return np.empty(0, np.intp), np.zeros(1, np.int64), np.empty(0, np.int32)
+    labels = labels.astype(np.int32, copy=False)
+    large = (np.bincount(labels) >= fewest)[labels]
+    order = order_by(labels, ~large)
+    labels = labels[order[:np.count_nonzero(large)]]
+    starts = np.flatnonzero(np.r_[True, labels[1:] != labels[:-1]]) if len(labels) else np.empty(0, np.int64)
+    return order, np.r_[starts, len(labels)], labels[starts]
+
+
+def _add(markings, records, shape, kind, number, road, frame):
+    if kind[0] in STRIPS and not (kind[0] == "zebra" and abs(shape.direction) > SQUARE_TO_ROAD):
+        drawn = polygons.band(records["s"], records["d"], shape)
+    else:
+        drawn = polygons.outline(*polygons.painted_cells(records["s"] * UNIT, records["d"] * UNIT))
+    places = np.stack([records["x"], records["y"], records["z"]], axis=1) * UNIT
+    scanned_from = _scanning_distance(records, frame)
+    for part in polygons.parts(drawn):
+        geometry = polygons.to_map(part, frame.road(road), frame.origin, places)
+        markings.add(geometry, road=int(road), cluster=number, use=kind[1], station_m=shape.s0, offset_m=shape.offset,
+                     length_m=shape.length, width_m=shape.width, elongation=shape.elongation, scan_m=scanned_from,
+                     area_m2=float(geometry.area), points=shape.points, **{"class": kind[0]})
+
+
+def _scanning_distance(records, frame):
+    """Median distance across the road from the track that scanned the marking."""
+    numbers, along, across = (records[name] for name in ("pass_number", "s", "d"))
+    away = np.empty(len(records))
+    for number in numbers[:1] if (numbers == numbers[0]).all() else np.unique(numbers):
+        rows = np.flatnonzero(numbers == number)
+        track = frame.passes[number].at_station(along[rows] * UNIT)[0]
+        away[rows] = np.abs(across[rows] * UNIT - track)
+    return median(away)

@@ -1,0 +1,418 @@
+"""The nearest neighbours of points, exactly, and the mean distance to them."""
+
+import math
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ...common.errors import RoadExtractionError
+from ...common.order_statistics import order_by
+from ...common.parallel import in_order
+from ...common.progress import Progress
+from ...common.setting import check_limits, setting
+from ...survey.store.records import UNIT, chosen
+from ...survey.store.road_points import RoadPoints
+
+# Which of many points cannot be far from their neighbours: told by the cells they lie in, before any neighbour is looked for.
+
+SIDE = 1.5     # times the usual distance: cells so large that three by three of them hold three times the neighbours asked for
+NOWHERE = 1e9  # m, where no distance is known
+ABOUT = 9      # cells about a point: where others are looked at to tell what is usual there
+CELLS = 8      # for every point at most about so many, however near to each other rounded or repeated points lie
+
+
+def may_be_lonely(records, k, looked, distances, limit, lonelier):
+    """The points that may lie farther from their k nearest others than a limit, and than is usual about them by a factor.
+
+    Parameters
+    ----------
+    records : Columns of N points
+    k : neighbours
+    looked : (M,) indices of points, evenly strewn
+    distances : (M,) m, their mean distances to their k nearest others
+    limit : m
+    lonelier : times the least of the distances known in the decimetres about a point
+
+    Returns
+    -------
+    ascending indices; of all other points it is certain that their mean distance is no more than the greater of both
+
+    Notes
+    -----
+    The mean distance to the k nearest is at most that to any k others or more, and so at most
+    the root of the mean square of these, which sums over cells give for every point::
+
+        n |p|² - 2 p · sum(q) + sum(|q|²)
+
+    This holds for cells of any size. They follow the usual distance down to a size that
+    leaves no more than `CELLS` of them for every point.
+    """
+    side = max(int(SIDE * np.median(distances) / UNIT), _least_side(records["s"], records["d"]))
+    (row, rows), (column, columns) = (_cells(records[name], side) for name in "sd")
+    cell = row * np.int32(columns) + column
+    places = [(records[name] - records[name][0]).astype(float) for name in "xyz"]
+    own = sum(place * place for place in places)
+
+    def about(values):
+        sums = np.bincount(cell, values, rows * columns).reshape(rows, columns)
+        return cv2.boxFilter(sums, -1, (3, 3), normalize=False, borderType=cv2.BORDER_CONSTANT).ravel().take(cell)
+
+    count = about(None)
+    squares = count * own + about(own)
+    for place in places:
+        squares -= 2.0 * place * about(place)
+    usual = np.full((rows, columns), NOWHERE, np.float32)
+    farthest_first = np.argsort(-distances, kind="stable")
+    usual.ravel()[cell[looked[farthest_first]]] = distances[farthest_first]
+    usual = cv2.erode(usual, np.ones((ABOUT, ABOUT), np.uint8), borderType=cv2.BORDER_CONSTANT, borderValue=NOWHERE).ravel().take(cell)
+    most = np.maximum(np.where(usual < NOWHERE, lonelier * usual, 0.0), limit) / UNIT
+    return np.flatnonzero((count <= k) | (squares > (count - 1) * most**2))
+
+
+def _least_side(s, d):
+    """The smallest side of cells, in units, of which there are at most about `CELLS` for every point."""
+    along, across = (int(units.max()) - int(units.min()) for units in (s, d))
+    most = CELLS * len(s)
+    return max(math.ceil(math.sqrt(along * across / most)), math.ceil(max(along, across) / most), 1)
+
+
+def _cells(units, side):
+    """(N,) int32 number of the cell of each coordinate, from 0, and how many cells there are."""
+    number = units // np.int32(side)
+    number -= number.min()
+    return number, int(number.max()) + 1
+
+PATCH = 11            # bits: points of one 0.2 m patch are asked for one after the other, in the processor's cache
+LEAF = 20             # points in a leaf of the tree
+EXACT = 1 << 24       # units (1.6 km): up to here float32 holds every integer
+TILE = 18             # bits: 26 m of map worked at together
+MARGIN = 10_000       # units: 1 m about a tile where neighbours are looked for
+COPIES = 32           # of points at one place are in a tree at least: more are left out where they cannot change a distance
+TOGETHER = 1 << 16    # points asked for at a time where only their distances are wanted
+SCATTER = np.uint32(2654435761)  # an odd number that scatters places over a table
+
+
+class Neighbours:
+    """Asks some points for the k nearest others.
+
+    Parameters
+    ----------
+    units : (N, 3) int32 of 0.1 mm
+    k : neighbours; fewer where there are no more
+
+    Attributes
+    ----------
+    most_at_place : int, the most points at one and the same place
+
+    Notes
+    -----
+    The tree is OpenCV's exact one, which works in float32. Points are integers
+    of 0.1 mm counted from their least, so up to 1.6 km nothing is rounded, and
+    beyond it a slower tree in float64 is taken.
+
+    Of points at the very same place the tree holds no more than can be among the k
+    nearest: a search would otherwise look at all of them, for each of them.
+    """
+
+    def __init__(self, units, k):
+        self.k = max(min(k, len(units) - 1), 0)
+        least = units.min(axis=0) if len(units) else 0
+        self._units = units - least
+        at_place = points_at_place(self._units)
+        self.most_at_place = int(at_place[0].max(initial=0))
+        self._rows = _without_needless(self._units, self.k, at_place)
+        if self.k and self._units.max() < EXACT:
+            places = self._units if self._rows is None else self._units.take(self._rows, axis=0)
+            self._places = places.astype(np.float32)  # the tree does not keep it alive
+            self._tree = cv2.flann_Index(self._places, dict(algorithm=4, leaf_max_size=LEAF))  # 4: one exact kd-tree
+
+    def __len__(self):
+        return len(self._units)
+
+    def of(self, rows):
+        """Mean distance of some points to their nearest others, and who these are.
+
+        Returns
+        -------
+        distances : (M,) metres; inf where a point has no neighbour at all. The point
+            itself is left out, a second point at the very same place is not (as in PCL).
+        farthest : (M,) metres, the distance to the last of them
+        nearest : (M, k) int32
+        """
+        if not self.k:
+            return np.full(len(rows), np.inf), np.full(len(rows), np.inf), np.empty((len(rows), 0), np.int32)
+        if not len(rows):
+            return np.empty(0), np.empty(0), np.empty((0, self.k), np.int32)
+        x, y = (self._units[:, axis].take(rows) >> PATCH for axis in (0, 1))
+        order = order_by(y, x)
+        nearest, distances = self._ask(rows.take(order))
+        back = np.empty_like(order)
+        back[order] = np.arange(len(order))
+        # each point is the first or, beside another at its place, one of the first of its own neighbours
+        means = distances.sum(axis=1, dtype=np.float64) * (UNIT / self.k)
+        return means.take(back), distances[:, -1].take(back) * UNIT, nearest[:, 1:].take(back, axis=0)
+
+    def distances(self, rows):
+        """Mean distance of some points to their nearest others, and the distance to the last of these, as in `of`: (M,) metres each."""
+        means, farthest = np.empty(len(rows)), np.empty(len(rows))
+        for first in range(0, len(rows), TOGETHER):
+            some = slice(first, first + TOGETHER)
+            means[some], farthest[some], _ = self.of(rows[some])
+        return means, farthest
+
+    def _ask(self, rows):
+        asked = self._units.take(rows, axis=0)
+        if self._units.max() < EXACT:
+            nearest, squares = self._tree.knnSearch(asked.astype(np.float32), self.k + 1, params={})
+            distances = np.sqrt(squares, out=squares)
+        else:
+            places = self._units if self._rows is None else self._units.take(self._rows, axis=0)
+            distances, nearest = cKDTree(places).query(asked, self.k + 1)
+        nearest = nearest if self._rows is None else self._rows.take(nearest)
+        return nearest.astype(np.int32, copy=False), distances
+
+
+def points_at_place(units):
+    """How many points lie at the very place of each.
+
+    Parameters
+    ----------
+    units : (N, 3) int32
+
+    Returns
+    -------
+    count : (N,) int32
+    rank : (N,) int32, how many of them come before the point
+    """
+    count, rank = np.ones(len(units), np.int32), np.zeros(len(units), np.int32)
+    if not len(units):
+        return count, rank
+    cell = np.zeros(len(units), np.uint32)
+    for axis in range(units.shape[1]):
+        cell ^= units[:, axis].astype(np.uint32)
+        cell *= SCATTER
+        cell ^= cell >> np.uint32(15)
+    cell >>= np.uint32(max(32 - len(units).bit_length() - 2, 8))
+    # only what shares a cell of the table can share a place
+    rows = np.flatnonzero(np.bincount(cell).take(cell) > 1)
+    if not len(rows):
+        return count, rank
+    order = rows.take(order_by(*(units[:, axis].take(rows) for axis in (2, 1, 0))))
+    ordered = units.take(order, axis=0)
+    first = np.flatnonzero(np.r_[True, (ordered[1:] != ordered[:-1]).any(axis=1)])
+    size = np.diff(np.r_[first, len(order)])
+    count[order] = np.repeat(size, size)
+    rank[order] = np.arange(len(order)) - np.repeat(first, size)
+    return count, rank
+
+
+def _without_needless(units, k, at_place=None):
+    """Indices of points, ascending: of each place the first k + 1, or a few more; None where these are all of them."""
+    most = max(k + 1, COPIES)
+    count, rank = points_at_place(units) if at_place is None else at_place
+    return np.flatnonzero(rank < most) if count.max(initial=0) > most else None
+
+
+def mean_distances(units, k, progress=Progress()):
+    """Mean distance of every point to its k nearest others, over any extent.
+
+    Parameters
+    ----------
+    units : (N, 3) int32 of 0.1 mm
+
+    Returns
+    -------
+    (N,) metres; inf where there is no other point
+    """
+    k = min(k, len(units) - 1)
+    if k < 1:
+        return np.full(len(units), np.inf)
+    means, unsettled = np.empty(len(units)), []
+    tiles = list(_tiles(units))
+    asked = in_order(lambda tile: Neighbours(units.take(tile[1], axis=0), k).distances(np.arange(tile[0])), tiles, progress)
+    for (own, rows), (distances, farthest) in zip(tiles, asked):
+        means[rows[:own]] = distances
+        # beyond the margin there may be nearer ones
+        unsettled.append(rows[:own][~(farthest <= MARGIN * UNIT) | (len(rows) <= k)])
+    unsettled = np.concatenate(unsettled)
+    if len(unsettled):
+        rows = _without_needless(units, k)
+        tree = cKDTree(units if rows is None else units.take(rows, axis=0))
+        means[unsettled] = tree.query(units[unsettled], k + 1)[0][:, 1:].mean(axis=1) * UNIT
+    return means
+
+
+def _tiles(units):
+    """Of each tile of the map, how many points it has, and the rows of these and of those within the margin about it."""
+    x, y = (units[:, axis] - units[:, axis].min() for axis in (0, 1))
+    column, row = x >> TILE, y >> TILE
+    order = order_by(row, column)
+    column, row = column[order], row[order]
+    starts = np.flatnonzero(np.r_[True, (column[1:] != column[:-1]) | (row[1:] != row[:-1])])
+    members = {(c, r): order[a:b] for c, r, a, b in zip(column[starts].tolist(), row[starts].tolist(), starts, [*starts[1:], len(order)])}
+    for (c, r), own in members.items():
+        parts = [own]
+        for beside in ((c + i, r + j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j):
+            rows = members.get(beside)
+            if rows is not None:
+                near = _within(x.take(rows), c) & _within(y.take(rows), r)
+                parts.append(rows[near])
+        yield len(own), np.concatenate(parts)
+
+
+def _within(values, tile):
+    return (values >= (tile << TILE) - MARGIN) & (values < (tile + 1 << TILE) + MARGIN)
+
+
+# Points far from their fellows: statistical outlier removal, exactly as PCL defines it.
+
+SCOPES = ("all", "windows")
+WINDOW = 20.0   # m of station that one limit is taken from
+BAND = 3.0      # m of offset likewise
+HALO = 2.0      # m of station beyond a window where neighbours are still looked for
+MOST = 1500     # points of a band from which its limit is taken; where there are twice as many, of evenly strewn ones
+FEWEST = 30     # points of a window that still have a spread worth the name
+LONELIER = 3.0  # times the distance that is usual among a point's own neighbours
+
+
+@dataclass(frozen=True)
+class OutlierSettings:
+    """How lonely a point may be.
+
+    neighbours : k, how many neighbours the mean distance is taken over
+    std_ratio : m, a point is removed beyond mean + m * standard deviation
+    scope : "all" takes mean and deviation over the whole input (PCL),
+        "windows" per 20 m of station and 3 m of offset, and spares points whose
+        neighbours stand as far apart as they do: worn and far paint
+    """
+
+    neighbours: int = setting(20, 1, 1000, "The number of neighbours")
+    std_ratio: float = setting(1.0, 0.0, 20.0, "The standard deviation ratio")
+    scope: str = "windows"
+
+    def __post_init__(self):
+        check_limits(self)
+        if self.scope not in SCOPES:
+            raise RoadExtractionError(f"The scope {self.scope!r} is not known; use one of {', '.join(SCOPES)}.")
+
+
+def within_spread(distances, std_ratio):
+    """(N,) bool: mean distance at most mu + m * sigma, sigma with n - 1 as in PCL."""
+    if len(distances) < 2:
+        return np.ones(len(distances), bool)
+    return ~(distances > distances.mean() + std_ratio * distances.std(ddof=1))
+
+
+def remove_outliers(points, settings=OutlierSettings(), progress=Progress()):
+    """Leave out points that lie apart from the others.
+
+    Parameters
+    ----------
+    points : RoadPoints
+
+    Returns
+    -------
+    RoadPoints with the same columns and fewer points
+
+    Notes
+    -----
+    d_i is the mean distance to the k nearest neighbours besides the point
+    itself; the point goes if d_i > mu + m * sigma [1]_. In windows with fewer
+    than 30 points nothing is removed: their spread says nothing, and they are
+    the worn and the far paint. In windows with thousands of points mu and sigma are those of
+    an evenly strewn share, and neighbours are looked for only where cells do not tell
+    that a point has enough of them near by.
+
+    References
+    ----------
+    .. [1] PCL 1.13, filters/impl/statistical_outlier_removal.hpp.
+    """
+    kept = RoadPoints.empty_like(points)
+    if settings.scope == "all":
+        _put(kept, points, _kept_of_all(points, settings, progress))
+    else:
+        windows = [(road, number) for road in points.roads() for number in _windows(*points.store.span(road))]
+        keep = list(in_order(lambda window: _kept_of_window(points, *window, settings), windows, progress))
+        _put(kept, points, np.concatenate([np.empty(0, bool), *keep]))
+    progress.say(f"Outliers: {len(points) - len(kept):,} of {len(points):,} points lay apart from the others and were left out.")
+    return kept
+
+
+def _windows(start, end):
+    return range(int(np.floor(start / WINDOW)), int(np.ceil(end / WINDOW)))
+
+
+def _put(kept, points, keep):
+    """The points of a mask, which goes through them road by road and by station."""
+    first = 0
+    for road, number in points.all_sections():
+        records = points.section(road, number).records
+        kept.store.put(road, number, chosen(records, keep[first:first + len(records)]))
+        first += len(records)
+
+
+def _kept_of_window(points, road, number, settings):
+    """(N,) bool of the points of a window, without those about it."""
+    records = points.window(road, number * WINDOW - HALO, (number + 1) * WINDOW + HALO).records
+    s = records["s"] * UNIT
+    own = np.flatnonzero((s >= number * WINDOW) & (s < (number + 1) * WINDOW))
+    neighbours = _Known(Neighbours(_units(records), settings.neighbours))
+    band = np.floor(records["d"].take(own) * UNIT / BAND)
+    lonely = [np.empty(0, np.intp)]
+    for value in np.unique(band):
+        rows = own[band == value]
+        if len(rows) >= FEWEST:
+            lonely.append(_lonely(records, rows, neighbours, settings))
+    lonely = np.concatenate(lonely)
+    lonely = lonely[neighbours.distances(lonely) > LONELIER * _usual(neighbours, lonely)]
+    keep = np.ones(len(own), bool)
+    keep[np.searchsorted(own, lonely)] = False
+    return keep
+
+
+def _lonely(records, rows, neighbours, settings):
+    """Those of some rows of a window, ascending, that lie beyond the spread of all of them."""
+    looked = np.arange(0, len(rows), max(len(rows) // MOST, 1))
+    distances = neighbours.distances(rows[looked])
+    limit = distances.mean() + settings.std_ratio * distances.std(ddof=1)
+    if len(looked) < len(rows):
+        # beside places of so many points some are far nearer to their neighbours than the evenly strewn ones show
+        lonelier = LONELIER if neighbours.neighbours.most_at_place <= max(settings.neighbours // 2, 1) else 0.0
+        rows = rows[may_be_lonely(records.take(rows), settings.neighbours, looked, distances, limit, lonelier)]
+    return rows[neighbours.distances(rows) > limit]
+
+
+class _Known:
+    """Mean distances of rows to their neighbours, each asked for once."""
+
+    def __init__(self, neighbours):
+        self.neighbours = neighbours
+        self._distances = np.full(len(neighbours), np.nan)
+
+    def distances(self, rows):
+        """(M,) metres of (M,) rows."""
+        new = rows[np.isnan(self._distances[rows])]
+        if len(new):
+            self._distances[new] = self.neighbours.distances(new)[0]
+        return self._distances[rows]
+
+
+def _usual(neighbours, rows):
+    """(M,) median of the distances of the neighbours of M rows."""
+    nearest = neighbours.neighbours.of(rows)[2]
+    others = np.unique(nearest)
+    neighbours.distances(others)
+    return np.median(neighbours.distances(nearest.ravel()).reshape(nearest.shape), axis=1)
+
+
+def _kept_of_all(points, settings, progress):
+    """(N,) bool of all points."""
+    sections = [points.section(*key).records for key in points.all_sections()]
+    units = np.concatenate([np.empty((0, 3), np.int32), *map(_units, sections)])
+    return within_spread(mean_distances(units, settings.neighbours, progress), settings.std_ratio)
+
+
+def _units(records):
+    return np.stack([records["x"], records["y"], records["z"]], axis=1)

@@ -1,0 +1,122 @@
+"""Outlines of markings: the cells that a cluster's points lie in, closed along the road.
+
+Points lie in scan lines a decimetre or more apart along the road and close
+together across it, and paint is worn through in places. So gaps are closed
+along the road, and much less across it, where the next stripe may begin.
+"""
+
+import numpy as np
+import shapely
+from scipy import ndimage
+from scipy.spatial import cKDTree
+
+from ...curves.base import medians
+from ...survey.store.records import UNIT
+from .shape import fill_gaps, middle
+
+CELL = 0.04          # m, in station and in offset
+CLOSE_ALONG = 0.40   # m of station over which a gap is closed
+CLOSE_ACROSS = 0.04  # m of offset likewise
+SMALLEST_HOLE = 0.02  # m2: smaller holes are wear, not shape
+STRAIGHT = 0.004     # m by which the outline of a strip may leave its middle line's curve
+SMALLEST_PART = 0.005  # m2: three cells
+OUTLINE = 0.025      # m by which a simplified outline may leave the cells
+VERTEX_SPACING = 1.0  # m of station between vertices: 2 mm of sagitta at R = 60 m
+HEIGHT_NEIGHBOURS = 8
+
+
+def band(s, d, shape):
+    """Outline of a strip: its middle line, as wide as the whole of it is.
+
+    Parameters
+    ----------
+    s, d : (N,) int, units of 0.1 mm
+    shape : Shape of an elongated cluster along the road, or in any straight direction
+
+    Returns
+    -------
+    shapely Polygon in (s, d)
+    """
+    c, n = (1.0, 0.0) if shape.along else (np.cos(shape.direction), np.sin(shape.direction))
+    u, v = (s, d) if shape.along else (np.rint(s * c + d * n).astype(np.int64), np.rint(d * c - s * n).astype(np.int64))
+    nodes, offsets = middle(u, v)
+    all_nodes = np.concatenate([[u.min()], nodes, [u.max()]])
+    offsets, nodes = np.interp(all_nodes, nodes, offsets) * UNIT, all_nodes * UNIT
+    keep = np.append(True, np.diff(nodes) > 1e-6)
+    nodes, offsets = nodes[keep], offsets[keep]
+    ring = np.stack([np.concatenate([nodes, nodes[::-1]]),
+                     np.concatenate([offsets - shape.width / 2, offsets[::-1] + shape.width / 2])], axis=1)
+    return shapely.simplify(shapely.Polygon(ring @ np.array([[c, n], [-n, c]])), STRAIGHT)
+
+
+def painted_cells(s, d):
+    """Cells covered by a cluster.
+
+    Parameters
+    ----------
+    s, d : (N,) metres
+
+    Returns
+    -------
+    mask : (A, B) bool, first axis along the road, second across it
+    first : (2,) int, the cell number of mask[0, 0]: it begins at first * CELL
+    """
+    cells = np.floor(np.c_[s, d] / CELL).astype(np.int64)
+    first = cells.min(axis=0) - 1
+    mask = np.zeros(cells.max(axis=0) - first + 2, bool)
+    mask[tuple((cells - first).T)] = True
+    mask = fill_gaps(mask, int(round(CLOSE_ALONG / CELL)), 0)
+    mask = fill_gaps(mask, int(round(CLOSE_ACROSS / CELL)), 1)
+    return _without_small_holes(mask), first
+
+
+def _without_small_holes(mask):
+    holes, count = ndimage.label(~mask)
+    if count > 1:
+        sizes = np.bincount(holes.ravel())
+        small = sizes * CELL**2 < SMALLEST_HOLE
+        small[0] = False
+        mask = mask | small[holes]
+    return mask
+
+
+def outline(mask, first):
+    """Shapely polygon or multipolygon in (s, d) of the cells that are on, its staircase smoothed."""
+    edges = np.diff(np.pad(mask, ((1, 1), (0, 0))).astype(np.int8), axis=0)
+    column, start = np.nonzero(edges.T == 1)
+    _, end = np.nonzero(edges.T == -1)
+    boxes = shapely.box((first[0] + start) * CELL, (first[1] + column) * CELL,
+                        (first[0] + end) * CELL, (first[1] + column + 1) * CELL)
+    # cells that touch at a corner only make one polygon after a hair of widening
+    shape = shapely.union_all(boxes, grid_size=0.001)
+    return shape.simplify(OUTLINE, preserve_topology=True)
+
+
+def parts(shape):
+    """The polygons of an outline that are large enough to be drawn, from the road's start on."""
+    pieces = [piece for piece in getattr(shape, "geoms", [shape]) if piece.area >= SMALLEST_PART]
+    return sorted(pieces, key=lambda piece: piece.bounds)
+
+
+def to_map(shape, road, origin, places):
+    """The outline in map coordinates with Z.
+
+    Parameters
+    ----------
+    shape : polygon in (s, d)
+    road : Road
+    origin : (3,) what local coordinates leave out
+    places : (N, 3) local x, y, z of the cluster's points
+
+    Returns
+    -------
+    shapely Polygon with Z: each vertex at the median height of the points nearest to it
+    """
+    shape = shapely.segmentize(shape, VERTEX_SPACING)
+    vertices = shapely.get_coordinates(shape)
+    x, y = road.to_map(vertices[:, 0], vertices[:, 1])
+    k = min(HEIGHT_NEIGHBOURS, len(places))
+    _, nearest = cKDTree(places[:, :2], balanced_tree=False, compact_nodes=False).query(np.c_[x, y], k)
+    z = medians(places[:, 2][nearest.reshape(len(x), k)])[:, 0]
+    lifted = shapely.force_3d(shape)
+    return shapely.set_coordinates(lifted, np.c_[x + origin[0], y + origin[1], z + origin[2]])

@@ -1,0 +1,154 @@
+"""The points of a window of the road in cells, gone through piece by piece: no array of all of them is made."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...survey.store.records import UNIT
+
+# A window of the road as an array: along the road and across it, so that a bend is straight.
+
+CELL = 400        # units of 0.1 mm: cells of 4 cm
+
+
+class RoadGrid:
+    """A window of the road in cells of 4 cm: rows along the road, columns across it."""
+
+    def __init__(self, first, last, low, high):
+        self.first, self.last, self.low, self.high = first, last, low, high
+
+    @property
+    def shape(self):
+        return self.last - self.first, self.high - self.low
+
+    def stations(self):
+        return (np.arange(self.first, self.last) + 0.5) * CELL * UNIT
+
+    def offsets(self):
+        return (np.arange(self.low, self.high) + 0.5) * CELL * UNIT
+
+    def read(self, image, frame, road):
+        """(rows, columns) float32 brightness, NaN where nothing was scanned."""
+        x, y = frame.road(road).to_map(self.stations()[:, None], self.offsets())
+        return np.asarray(image.sample(x.ravel(), y.ravel(), frame.origin), np.float32).reshape(self.shape)
+
+PIECE = 125        # cells: 5 m of road at a time
+AT_ONCE = 1 << 15  # points put into cells at a time: what fits the processor's cache
+
+
+@dataclass(frozen=True)
+class PieceOfRoad:
+    """The points of a few metres of road in cells.
+
+    grid : RoadGrid of these rows alone, as wide as the points lie
+    cell : (N,) int32 flat number in it of each point
+    occupied : (rows, columns) bool, cells that points lie in
+    half_width : (2, rows) uint16, mm to the road's edge on the left and on the right, 0 where no point says
+    offsets : (M,) int32, units of 0.1 mm, of an evenly strewn share of the points
+    """
+
+    grid: RoadGrid
+    cell: np.ndarray
+    occupied: np.ndarray
+    half_width: np.ndarray
+    offsets: np.ndarray
+
+    @classmethod
+    def of(cls, points, first, last, step=1):
+        """The points of rows `first` to before `last`; one of `step` tells the offsets."""
+        records = points.records
+        d = records["d"]
+        grid = RoadGrid(first, last, int(d.min()) // CELL - 1, int(d.max()) // CELL + 2)
+        number, occupied = np.empty(len(d), np.int32), np.zeros(grid.shape, bool)
+        for some, cell in cell_numbers(records, grid):
+            number[some] = cell
+            occupied.ravel()[cell] = True
+        return cls(grid, number, occupied, _half_widths(records, first, last), d[::step].copy())
+
+    def within(self, grid):
+        """Where this piece lies in a larger grid: slices of its rows and columns."""
+        mine = self.grid
+        return slice(mine.first - grid.first, mine.last - grid.first), slice(mine.low - grid.low, mine.high - grid.low)
+
+    def points_on(self, mask):
+        """Ascending indices of the points whose cells are on in (rows, columns) of a mask, and the numbers of their cells."""
+        mask, rows, cells = mask.ravel(), [], []
+        for k in range(0, len(self.cell), AT_ONCE):
+            cell = self.cell[k:k + AT_ONCE]
+            found = np.flatnonzero(mask.take(cell))
+            rows.append(found + k)
+            cells.append(cell.take(found))
+        return np.concatenate(rows), np.concatenate(cells)
+
+
+def in_cells(road_points, road, first, last, step=1):
+    """[PieceOfRoad] of the rows from `first` to before `last`."""
+    return [PieceOfRoad.of(points, begin, end, step) for begin, end, points in pieces(road_points, road, first, last)]
+
+
+@dataclass(frozen=True)
+class RoadCells:
+    """A window of the road in cells.
+
+    grid : RoadGrid
+    occupied : (rows, columns) bool, cells that points lie in
+    half_width : (2, rows) uint16, mm to the road's edge on the left and on the right, 0 where no point says
+    """
+
+    grid: RoadGrid
+    occupied: np.ndarray
+    half_width: np.ndarray
+
+    @classmethod
+    def of(cls, parts, first, last):
+        """RoadCells of the rows from `first` to before `last` of some PieceOfRoad; None where no point lies in them."""
+        parts = [part for part in parts if part.grid.first < last and part.grid.last > first]
+        if not parts:
+            return None
+        low, high = min(part.grid.low for part in parts), max(part.grid.high for part in parts)
+        occupied, half_width = np.zeros((last - first, high - low), bool), np.zeros((2, last - first), np.uint16)
+        for part in parts:
+            begin, end = max(part.grid.first, first), min(part.grid.last, last)
+            rows = slice(begin - part.grid.first, end - part.grid.first)
+            occupied[begin - first:end - first, part.grid.low - low:part.grid.high - low] = part.occupied[rows]
+            half_width[:, begin - first:end - first] = part.half_width[:, rows]
+        # a part may reach farther across beyond these rows
+        columns = np.flatnonzero(occupied.any(axis=0))
+        if not len(columns):
+            return None
+        begin, end = int(columns[0]) - 1, int(columns[-1]) + 2
+        return cls(RoadGrid(first, last, low + begin, low + end), np.ascontiguousarray(occupied[:, begin:end]), half_width)
+
+
+def pieces(road_points, road, first, last):
+    """Yield (first row, end, Points) of the rows of cells from `first` to before `last`, in order; those without points are left out."""
+    cuts = [first, *range((first // PIECE + 1) * PIECE, last, PIECE), last]
+    for begin, end in zip(cuts[:-1], cuts[1:]):
+        points = road_points.window(road, begin * CELL * UNIT, end * CELL * UNIT)
+        if len(points):
+            yield begin, end, points
+
+
+def cell_numbers(records, grid):
+    """Yield (slice of the records, (n,) int32 flat numbers of their cells in a grid), some thousand at a time."""
+    s, d = records["s"], records["d"]
+    width = np.int32(grid.shape[1])
+    for k in range(0, len(s), AT_ONCE):
+        some = slice(k, k + AT_ONCE)
+        cell = s[some] // np.int32(CELL)
+        cell -= np.int32(grid.first)
+        cell *= width
+        cell += d[some] // np.int32(CELL)
+        cell -= np.int32(grid.low)
+        yield some, cell
+
+
+def _half_widths(records, first, last):
+    """(2, rows) uint16 mm, the widest of each row of cells on the left and on the right."""
+    starts = np.searchsorted(records["s"], (np.arange(first, last + 1) * CELL).astype(np.int32))
+    found = np.zeros((2, last - first), np.uint16)
+    filled = np.flatnonzero(np.diff(starts))
+    if len(filled):
+        for row, beside in zip(found, (records["d"] > 0, records["d"] < 0)):
+            row[filled] = np.maximum.reduceat(records["half_width"] * beside, starts[filled])
+    return found

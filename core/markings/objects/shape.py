@@ -1,0 +1,193 @@
+"""Length, width and direction of a cluster, measured in the road frame from its points."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from ...common.order_statistics import order_by
+from ...curves.base import median, percentiles
+from ...survey.store.records import UNIT
+from .connected_cells import occupied
+
+CELL = 400          # units of 0.1 mm: 4 cm, the cells that areas and directions are taken from
+BIN = 5000          # units: 0.5 m of station that the run of a line is followed in
+RANGE = 95.0        # % of the points that the width spans; divided out again
+ALONG = np.radians(20.0)   # closer to the road's direction than this is "along" it
+ACROSS = np.radians(60.0)  # farther from it is "across"
+STEM, STEM_STEP = 9, 5  # cells: a stroke along the road is no broader (0.36 m), looked at every 20 cm
+BAR_GAPS = 10, 6    # cells along the road and across it: gaps between the scan lines on a bar
+SMALL, SMALL_GAPS = 1.2, (3, 1)  # m, and cells likewise of what is no longer than that: the strokes of a sign lie farther apart
+
+
+@dataclass(frozen=True)
+class Shape:
+    """What a cluster looks like in (s, d); metres, radians.
+
+    direction is 0 along the road, pi/2 across it, within (-pi/2, pi/2].
+    s0, s1, d0, d1 bound it; `offset` is the median offset, `area` that of its 4 cm cells;
+    `closed_area` is the area with the gaps between scan lines, of what runs across the road or is small (`area` of the rest);
+    `begin` and `finish` are the offsets of its middle line at s0 and s1 (the median for what is not along the road).
+    `stems` are the shares of its length, from s0 on and from s1 back, over which it is a single stroke.
+    """
+
+    s0: float
+    s1: float
+    d0: float
+    d1: float
+    offset: float
+    length: float
+    width: float
+    direction: float
+    area: float
+    points: int
+    begin: float
+    finish: float
+    closed_area: float
+    stems: tuple
+
+    @property
+    def elongation(self):
+        return self.length / max(self.width, 1e-3)
+
+    @property
+    def station(self):
+        return (self.s0 + self.s1) / 2
+
+    @property
+    def along(self):
+        """Whether it runs along the road."""
+        return abs(self.direction) <= ALONG
+
+    @property
+    def across(self):
+        """Whether it runs across the road."""
+        return abs(self.direction) > ACROSS
+
+
+def measure(s, d):
+    """The Shape of a cluster.
+
+    Parameters
+    ----------
+    s, d : (N,) int, station and offset in units of 0.1 mm (integers, so that the order of points does not matter)
+
+    Notes
+    -----
+    Width is the 95 % range across the local tangent, scaled to the full range of
+    evenly strewn points: a principal axis would call every bend wide.
+    """
+    cells, _ = occupied(s // CELL, d // CELL)
+    direction = _principal_direction(cells)
+    s0, s1, d0, d1 = s.min(), s.max(), d.min(), d.max()
+    if abs(direction) <= ALONG and s1 - s0 > 2 * BIN:
+        length = (s1 - s0) * UNIT
+        nodes, offsets = middle(s, d)
+        across = d - np.interp(s, nodes, offsets)
+        begin, finish = offsets[0] * UNIT, offsets[-1] * UNIT
+    else:
+        c, n = np.cos(direction), np.sin(direction)
+        along = s * c + d * n
+        length = np.ptp(along) * UNIT
+        across = d * c - s * n
+        begin = finish = median(d) * UNIT
+    if max(s1 - s0, d1 - d0) * UNIT <= SMALL:
+        closed = _closed(cells, SMALL_GAPS)
+    else:
+        closed = _closed(cells, BAR_GAPS) if abs(direction) > ACROSS else len(cells)
+    area, closed_area = (count * (CELL * UNIT) ** 2 for count in (len(cells), closed))
+    return Shape(s0 * UNIT, s1 * UNIT, d0 * UNIT, d1 * UNIT, median(d) * UNIT, float(length),
+                 spread(across) * UNIT, direction, area, len(s), float(begin), float(finish), closed_area,
+                 _stems(cells))
+
+
+def fill_gaps(mask, limit, axis=0):
+    """Close runs of at most `limit` cells that are off between two that are on, along one axis."""
+    if limit < 1:
+        return mask.copy()
+    length = limit + 1
+    size, behind = ((1, length), (0, length - 1)) if axis == 0 else ((length, 1), (length - 1, 0))
+    along = np.ones(size[::-1], np.uint8)
+    margin = [length, length, 0, 0] if axis == 0 else [0, 0, length, length]
+    # off beyond the rim, so that nothing is closed towards it
+    grown = cv2.dilate(cv2.copyMakeBorder(mask.astype(np.uint8), *margin, cv2.BORDER_CONSTANT, value=0), along, anchor=(0, 0))
+    closed = cv2.erode(grown, along, anchor=behind)
+    return closed[margin[0]:margin[0] + mask.shape[0], margin[2]:margin[2] + mask.shape[1]].astype(bool)
+
+
+def _closed(cells, gaps):
+    """How many cells there are when the gaps between scan lines are closed."""
+    low = cells.min(axis=0)
+    mask = np.zeros(cells.max(axis=0) - low + 1, bool)
+    mask[tuple((cells - low).T)] = True
+    for axis, limit in enumerate(gaps):
+        mask = fill_gaps(mask, limit, axis)
+    return int(mask.sum())
+
+
+def _stems(cells):
+    """Shares of the length, from either end, over which cells reach no farther across than a stroke; wear parts none."""
+    step = (cells[:, 0] - cells[:, 0].min()) // STEM_STEP
+    count = int(step.max()) + 1
+    low, high = np.full(count, np.inf), np.full(count, -np.inf)
+    np.minimum.at(low, step, cells[:, 1])
+    np.maximum.at(high, step, cells[:, 1])
+    broad = np.flatnonzero(high - low >= STEM)
+    return (float(broad[0]) / count, 1.0 - float(broad[-1] + 1) / count) if len(broad) else (1.0, 1.0)
+
+
+def spread(across):
+    """Full width of evenly strewn values from their 95 % range."""
+    low, high = percentiles(across, ((100 - RANGE) / 2, (100 + RANGE) / 2))
+    return (high - low) / (RANGE / 100)
+
+
+def _principal_direction(cells):
+    if len(cells) < 2:
+        return 0.0
+    x, y = (cells - cells[0]).T.astype(float)
+    x, y = x - x.mean(), y - y.mean()
+    angle = 0.5 * np.arctan2(2 * (x * y).sum(), (x * x).sum() - (y * y).sum())
+    return float(angle)
+
+
+def middle(s, d):
+    """The middle line of an elongated cluster.
+
+    Parameters
+    ----------
+    s, d : (N,) int, along and across it, units of 0.1 mm
+
+    Returns
+    -------
+    stations, offsets : (K,) float, nodes every 0.5 m, smoothed over 2.5 m
+    """
+    bins = (s - s.min()) // BIN
+    order = order_by(d, bins)
+    sorted_bins = bins[order]
+    starts = np.flatnonzero(np.append(True, sorted_bins[1:] != sorted_bins[:-1]))
+    ends = np.append(starts[1:], len(s))
+    count = ends - starts
+    # the middle between the outer eighths is steadier than a median where paint is worn on one side
+    low, high = d[order[starts + count // 8]], d[order[ends - 1 - count // 8]]
+    nodes = s.min() + (sorted_bins[starts] + 0.5) * BIN
+    weight = np.minimum(count, 30).astype(float)
+    return nodes, _smooth(nodes, (low + high) / 2, weight)
+
+
+def _smooth(nodes, values, weight):
+    """A straight line fitted to the five nodes about each, so that ends and slopes stay."""
+    if len(values) < 3:
+        return np.full(len(values), np.average(values, weights=weight))
+    reach = np.arange(-2, 3)
+    rows = np.arange(len(values))[:, None] + reach
+    inside = (rows >= 0) & (rows < len(values))
+    rows = np.clip(rows, 0, len(values) - 1)
+    x = nodes[rows] - nodes[:, None]
+    w = weight[rows] * inside * (np.abs(x) <= 2.6 * BIN)
+    y = values[rows]
+    sw, sx, sy = w.sum(1), (w * x).sum(1), (w * y).sum(1)
+    sxx, sxy = (w * x * x).sum(1), (w * x * y).sum(1)
+    spread_x = sw * sxx - sx * sx
+    steady = spread_x > 1e-6 * sw * sw * BIN**2
+    return np.where(steady, (sxx * sy - sx * sxy) / np.where(steady, spread_x, 1.0), sy / sw)

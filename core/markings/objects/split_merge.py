@@ -1,0 +1,216 @@
+"""Markings that touch taken apart: a stop line that runs into an edge line is two markings.
+
+A cluster joins whatever touches. Where it holds a strip that runs on along the
+road, or a bar that runs on across it, and something else beside it, the two are cut
+free, so that the line keeps its width and the rest its shape.
+"""
+
+import cv2
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from ...common.order_statistics import order_by
+from ...survey.store.records import UNIT
+from .classify import STRIPE_WIDTH, columns_of, zebra_stripes
+from .connected_cells import occupied
+from .near_pairs import near_pairs
+from .shape import CELL
+
+LEAST_ALONG = 5.0  # m of a strip
+LONG, BROADER = 9.0, 0.5  # m: no arrow or letter is so long; a line that is broader somewhere has something beside it
+RUN = 1.0          # m along the road that a strip does not break off; stop lines and hatching bars are shorter
+BAR = 2.0          # m across the road that a bar does not break off; no arrow or letter is as broad
+LEAST_BESIDE = 1.0  # m along the road: what is shorter is nothing but a bar
+PAINT_GAP = 0.24   # m across the road, closed; the stripes of a zebra crossing leave more
+SCAN_GAP = 0.40    # m between scan lines, closed
+CHUNK = 100.0      # m of road looked at together
+SMALLEST = 0.05    # m2: smaller left-overs are the frayed rim of the strip
+
+
+def split_compounds(records, labels):
+    """Give the parts of compound clusters labels of their own.
+
+    Parameters
+    ----------
+    records : N points of one road
+    labels : (N,) int, the cluster of each
+
+    Returns
+    -------
+    (N,) int labels; those of clusters that are not compound are unchanged
+    """
+    if not len(labels):
+        return labels
+    labels = labels.copy()
+    order = order_by(labels)
+    starts = np.flatnonzero(np.r_[True, np.diff(labels[order]) != 0])
+    following = int(labels.max()) + 1
+    along, across = records["s"].take(order), records["d"].take(order)
+    ranges = [np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts) for values in (along, across)]
+    large = (ranges[0] * UNIT >= LONG) & (ranges[1] * UNIT >= BROADER) \
+        | (ranges[0] * UNIT >= LEAST_BESIDE) & (ranges[1] * UNIT >= BAR)
+    for a, b in zip(starts[large], np.r_[starts[1:], len(order)][large]):
+        rows = order[a:b]
+        cells, member = occupied(along[a:b] // CELL, across[a:b] // CELL)
+        parts, count = _parts(cells)
+        if count > 1:
+            labels[rows] = following + parts[member]
+            following += count
+    return labels
+
+
+def _parts(cells):
+    """(K,) the part of every cell, numbered from 0, and how many parts there are."""
+    size = CELL * UNIT
+    parts, every = np.full(len(cells), -1), np.arange(len(cells))
+    count = _number_strips(parts, 0, cells, every[_in_runs(cells, SCAN_GAP, RUN)], SCAN_GAP, size, LEAST_ALONG)
+    rest, turned = np.flatnonzero(parts < 0), cells[:, ::-1]
+    # scan lines lie apart within a bar
+    count = _number_strips(parts, count, turned, rest[_in_runs(turned[rest], PAINT_GAP, BAR)], PAINT_GAP, SCAN_GAP, BAR)
+    if not count:
+        return np.zeros(len(cells), np.int64), 1
+    rest = np.flatnonzero(parts < 0)
+    pieces = _linked(cells[rest], SCAN_GAP / size, 3.0)
+    areas = np.bincount(pieces) * size**2 if len(pieces) else np.empty(0)
+    kept = areas >= SMALLEST
+    later = np.where(kept, count + np.cumsum(kept) - 1, -1)
+    parts[rest] = later[pieces]
+    lost = parts < 0
+    if lost.any():
+        owned = np.flatnonzero(~lost)
+        parts[lost] = parts[owned[cKDTree(cells[owned]).query(cells[lost])[1]]]
+    return parts, int(count + kept.sum())
+
+
+def _number_strips(parts, count, cells, rows, gap, gap_across, least):
+    """Number in `parts` the strips that the cells `rows` make, from `count` on; returns the next number.
+
+    cells : (K, 2) along the strips and across them; gap, gap_across : m between cells of one; least : m, its length
+    """
+    size = CELL * UNIT
+    strips = _linked(cells[rows], gap / size, gap_across / size)
+    number = strips.max(initial=-1) + 1
+    first, last = np.full(number, np.inf), np.full(number, -np.inf)
+    np.minimum.at(first, strips, cells[rows, 0])
+    np.maximum.at(last, strips, cells[rows, 0])
+    long = (last - first) * size >= least
+    parts[rows] = np.where(long, count + np.cumsum(long) - 1, -1)[strips]
+    return count + int(long.sum())
+
+
+def _in_runs(cells, longest_gap, shortest_run):
+    """(K,) whether a cell lies in a run of paint along the first axis; gaps are closed."""
+    if not len(cells):
+        return np.zeros(0, bool)
+    size = CELL * UNIT
+    # OpenCV moves what an even number of cells closes or opens
+    gap, run, chunk = round(longest_gap / size) // 2 * 2, round(shortest_run / size) | 1, int(CHUNK / size)
+    halo = 2 * (gap + run)
+    result = np.zeros(len(cells), bool)
+    numbers = np.floor_divide(cells[:, 0], chunk)
+    for number in np.unique(numbers):
+        first, last = number * chunk - halo, (number + 1) * chunk + halo
+        rows = np.flatnonzero((cells[:, 0] >= first) & (cells[:, 0] < last))
+        column, row = cells[rows, 0] - first, cells[rows, 1] - cells[rows, 1].min() + 1
+        mask = np.zeros((row.max() + 2, last - first), np.uint8)
+        mask[row, column] = 1
+        # a line may leave its row of cells by one: the road's frame is not the paint's
+        joined = cv2.dilate(cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((1, gap + 1), np.uint8)), np.ones((3, 1), np.uint8))
+        runs = cv2.morphologyEx(joined, cv2.MORPH_OPEN, np.ones((1, run), np.uint8))
+        own = numbers[rows] == number
+        result[rows[own]] = runs[row[own], column[own]] > 0
+    return result
+
+
+def _linked(cells, along, across):
+    """Connected components of cells no farther apart than `along` and `across` cells."""
+    if not len(cells):
+        return np.empty(0, np.int64)
+    pairs = cKDTree(cells / [along, across]).query_pairs(1.0, p=np.inf, output_type="ndarray")
+    graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(len(cells), len(cells)))
+    return connected_components(graph, directed=False)[1].astype(np.int64)
+
+
+# Pieces of one marking that wear has parted: lines along the road, stop lines across it, the stripes of a crossing.
+
+WORN_GAP, OVERLAP, SAME_LINE = 0.9, 0.2, 0.08  # m along, along, across
+BAR_THICK = 0.18, 0.90   # m along the road of a stop line's pieces
+BAR_PIECE, BAR_GAP = 0.8, 0.30  # m across: a row of shorter blocks is a give-way line, and its gaps are painted
+STRIPE_PIECE, STRIPE_GAP = 0.8, 0.7  # m along the road: what a stripe of a crossing has left at least, and what wear takes of it
+SAME_SIDES = 0.10        # m by which wear has moved an edge that two pieces share
+
+
+def join_fragments(shapes, max_width):
+    """Which pieces continue each other over a worn spot.
+
+    Parameters
+    ----------
+    shapes : list of N Shape
+    max_width : m, a line's
+
+    Returns
+    -------
+    (N,) int, the same number for pieces of one marking
+
+    Notes
+    -----
+    Narrow pieces along the road are joined where one begins up to 0.9 m after the end of
+    another on the same line; pieces of a bar across the road over 0.3 m where their
+    front and rear are the same; what is left of the stripes of a
+    crossing over 0.7 m within their sides.
+    """
+    if len(shapes) < 2:
+        return np.arange(len(shapes))
+    column = columns_of(shapes)
+    pairs = np.concatenate([_along(shapes, max_width), _bars(column), _stripes(column)])
+    graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(len(shapes),) * 2)
+    return connected_components(graph, directed=False)[1]
+
+
+def _along(shapes, max_width):
+    """(P, 2) narrow pieces, the second of which goes on where the first ends."""
+    narrow = np.array([k for k, shape in enumerate(shapes) if _narrow(shape, max_width)], np.int64)
+    if len(narrow) < 2:
+        return np.empty((0, 2), np.int64)
+    begins = np.array([(shapes[k].s0, shapes[k].begin) for k in narrow])
+    ends = np.array([(shapes[k].s1, shapes[k].finish) for k in narrow])
+    # a box of -0.2 to 0.9 m along and 8 cm either way across about each end
+    scale = np.array([(WORN_GAP + OVERLAP) / 2, SAME_LINE])
+    about = (ends + np.array([(WORN_GAP - OVERLAP) / 2, 0.0])) / scale
+    near = cKDTree(begins / scale).query_ball_point(about, 1.0, p=np.inf)
+    pairs = np.array([(a, b) for a, found in enumerate(near) for b in found if a != b], np.int64).reshape(-1, 2)
+    return narrow[pairs]
+
+
+def _narrow(shape, max_width):
+    return shape.width <= max_width and shape.along or shape.d1 - shape.d0 <= max_width
+
+
+def _bars(column):
+    """(P, 2) neighbouring pieces of bars across the road."""
+    s0, s1, d0, d1 = (column[name] for name in ("s0", "s1", "d0", "d1"))
+    thick, broad = s1 - s0, d1 - d0
+    rows = np.flatnonzero((thick >= BAR_THICK[0]) & (thick <= BAR_THICK[1]) & (broad >= BAR_GAP))
+    if len(rows) < 2:
+        return np.empty((0, 2), np.int64)
+    # nearly the same front and rear
+    pairs = cKDTree(np.column_stack([s0, s1])[rows]).query_pairs(SAME_SIDES, p=np.inf, output_type="ndarray").reshape(-1, 2)
+    a, b = rows[pairs].T
+    gap = np.maximum(d0[a], d0[b]) - np.minimum(d1[a], d1[b])
+    return np.column_stack([a, b])[(gap <= BAR_GAP) & (np.maximum(broad[a], broad[b]) >= BAR_PIECE)]
+
+
+def _stripes(column):
+    """(P, 2) the stripes of a crossing, and what lies before or after them between their sides."""
+    s0, s1, d0, d1 = (column[name] for name in ("s0", "s1", "d0", "d1"))
+    # of a stripe askew the sides are not those of its box
+    stripes = np.flatnonzero(zebra_stripes(column, STRIPE_PIECE) & (d1 - d0 <= STRIPE_WIDTH[1]))
+    found = [np.empty((0, 2), np.int64)]
+    for a, b in near_pairs(s0[stripes], s1[stripes], s0, s1, STRIPE_GAP):
+        a = stripes[a]
+        inside = (b != a) & (s1[b] >= s0[a] - STRIPE_GAP) & (s0[b] < s1[a] + STRIPE_GAP) \
+            & (d0[b] >= d0[a] - SAME_SIDES / 2) & (d1[b] <= d1[a] + SAME_SIDES / 2)
+        found.append(np.column_stack([a, b])[inside])
+    return np.concatenate(found)

@@ -1,0 +1,4 @@
+"""Paint told from asphalt.
+
+In: road points and the intensity image. Out: the points and the pixels that are paint.
+"""

@@ -1,0 +1,102 @@
+"""The mask of markings as a raster, in the pixels of the intensity image."""
+
+from contextlib import contextmanager
+
+import numpy as np
+
+from ...io.geotiff import new_geotiff
+from ...survey.store.records import UNIT
+from ..objects.outline import CELL, CLOSE_ALONG, painted_cells
+
+BLOCK = 2048  # px: cells are burnt in blocks of the image, so that a window in a bend takes no more than it touches
+WINDOW = 500  # cells: 20 m of station burnt at a time
+
+
+@contextmanager
+def marking_mask(path, image, origin):
+    """A function that burns local places into a byte GeoTIFF: 1 where a marking is, no data elsewhere.
+
+    Parameters
+    ----------
+    path : of the GeoTIFF; it appears when the block is left without an error
+    image : IntensityImage whose pixels the mask has
+    origin : what local coordinates leave out
+    """
+    with new_geotiff(path, image.width, image.height, image.geotransform, image.crs, byte=True, nodata=0) as mask:
+
+        def burn(x, y):
+            column, row = (np.floor(c).astype(np.int64) for c in image.pixel_of(x, y, origin))
+            inside = (column >= 0) & (row >= 0) & (column < image.width) & (row < image.height)
+            column, row = column[inside], row[inside]
+            block = row // BLOCK * (image.width // BLOCK + 1) + column // BLOCK
+            for number in np.unique(block):
+                c, r = column[block == number], row[block == number]
+                c0, r0, width, height = int(c.min()), int(r.min()), int(np.ptp(c)) + 1, int(np.ptp(r)) + 1
+                pixels = mask.read(c0, r0, width, height)
+                pixels[r - r0, c - c0] = 1
+                mask.write(c0, r0, pixels)
+
+        yield burn
+
+
+def pixel_centres(image, x, y, origin):
+    """The pixels that local places lie in.
+
+    Returns
+    -------
+    x, y : (M,) local centres of the pixels, each once
+    first : (M,) index of a place in each
+    """
+    column, row = (np.floor(c).astype(np.int64) for c in image.pixel_of(x, y, origin))
+    _, first = np.unique(row * (image.width + 1) + column, return_index=True)
+    left, size, _, top, _, _ = image.geotransform
+    return (left - origin[0]) + (column[first] + 0.5) * size, (top - origin[1]) - (row[first] + 0.5) * size, first
+
+
+def painted_pixels(cells, first, image, origin, road):
+    """The image's pixels whose centres lie in painted cells of a road.
+
+    Parameters
+    ----------
+    cells : (A, B) bool in (s, d), 4 cm each
+    first : cell numbers of cells[0, 0]: it begins at first * 4 cm
+    road : Road
+
+    Returns
+    -------
+    x, y : (M,) local centres of the pixels
+    """
+    row, column = np.nonzero(cells)
+    # four places a cell: pixels may be smaller than cells and lie askew to them
+    quarter = np.array([[-0.25, -0.25], [-0.25, 0.25], [0.25, -0.25], [0.25, 0.25]]) * CELL
+    s = ((first[0] + row + 0.5)[:, None] * CELL + quarter[:, 0]).ravel()
+    d = ((first[1] + column + 0.5)[:, None] * CELL + quarter[:, 1]).ravel()
+    x, y, near = pixel_centres(image, *road.to_map(s, d), origin)
+    s, d = road.locate(x, y, s[near], np.inf)
+    known = np.isfinite(s)
+    x, y, s, d = x[known], y[known], s[known], d[known]
+    row, column = (np.floor(c / CELL).astype(np.int64) - f for c, f in ((s, first[0]), (d, first[1])))
+    inside = (row >= 0) & (row < cells.shape[0]) & (column >= 0) & (column < cells.shape[1])
+    inside[inside] = cells[row[inside], column[inside]]
+    return x[inside], y[inside]
+
+
+def burn_points(burn, points, image, frame):
+    """Burn the cells that points lie in, gaps between scan lines closed.
+
+    Parameters
+    ----------
+    burn : of `marking_mask`
+    points : RoadPoints on paint
+    """
+    halo = int(np.ceil(CLOSE_ALONG / CELL)) + 1
+    for road in points.roads():
+        start, end = points.store.span(road)
+        for window in range(int(np.floor(start / CELL / WINDOW)), int(np.ceil(end / CELL / WINDOW))):
+            first, last = window * WINDOW, (window + 1) * WINDOW
+            found = points.window(road, (first - halo) * CELL, (last + halo) * CELL).records
+            if not len(found):
+                continue
+            cells, corner = painted_cells(found["s"] * UNIT, found["d"] * UNIT)
+            top, bottom = max(first - corner[0], 0), max(last - corner[0], 0)
+            burn(*painted_pixels(cells[top:bottom], (corner[0] + top, corner[1]), image, frame.origin, frame.road(road)))

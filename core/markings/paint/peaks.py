@@ -1,0 +1,184 @@
+"""Paint as peaks of intensity in profiles across the road, chained along it: linear markings only.
+
+The road is sliced by the trajectory; in every profile a painted line stands out as a
+narrow peak of I(d), and what is paint goes on as a peak in the profiles before and
+after. What runs across the road or is broad (stop lines, zebra crossings, most of an
+arrow) is no narrow peak and is not found: the method was made for lines.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage
+from scipy.signal import find_peaks
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from ...common.errors import RoadExtractionError
+from ...common.parallel import in_order
+from ...common.setting import check_limits, setting
+from ...survey.store.records import UNIT, Points, chosen
+
+WINDOW = 20.0     # m of station looked at together
+CELL = 200        # units of 0.1 mm: a profile has one value every 2 cm
+SMOOTH = 5        # cells of the running median
+UNSEEN = 5        # cells without points that are bridged; beyond them the profile is taken for asphalt
+FLATTEST = 0.005  # of the profile's level: intensities in whole numbers can have a deviation of 0
+TOLD = 0.6        # of the profiles along a chain that must show the peak
+
+
+@dataclass(frozen=True)
+class PeakSettings:
+    """When a peak of intensity across the road is a painted line.
+
+    profile_length : m of road that one profile is averaged over
+    prominence : deviations (MAD of the profile) that a peak must rise above both its feet
+    narrowest, widest : m, width of a peak at half its height
+    jump : m across that the peak may move from profile to profile
+    gap : m along without a peak that a chain goes on over
+    shortest : m, least length of a chain
+    """
+
+    profile_length: float = setting(0.20, 0.02, 2.0, "The length of a profile", "m")
+    prominence: float = setting(7.0, 0.5, 100.0, "The prominence of a peak")
+    narrowest: float = setting(0.08, 0.0, 1.95, "The narrowest line", "m")
+    widest: float = setting(0.35, 0.02, 2.0, "The widest line", "m")
+    jump: float = setting(0.15, 0.01, 1.0, "The shift between profiles", "m")
+    gap: float = setting(0.60, 0.02, 10.0, "The gap along a line", "m")
+    shortest: float = setting(1.0, 0.0, 50.0, "The shortest line", "m")
+
+    def __post_init__(self):
+        check_limits(self)
+        if not self.narrowest < self.widest:
+            raise RoadExtractionError(f"Peaks are {self.narrowest} to {self.widest} m wide; the first must be below the second.")
+        if self.gap < self.profile_length:
+            raise RoadExtractionError(f"Peaks are chained over {self.gap} m along the road; it must be at least the length of a "
+                                      f"profile ({self.profile_length} m).")
+
+
+def points_on_peaks(road_points, road, settings, progress):
+    """Yield the records of one road's points that lie on painted lines, window by window.
+
+    Parameters
+    ----------
+    road_points : RoadPoints, corrected or not
+    road : its number
+    settings : PeakSettings
+
+    Notes
+    -----
+    Profile-based after Chen et al. (2009) as the driving-line thesis sums it up:
+    I(d) of each profile under a running median of 5, peaks of a least prominence
+    and of the width of a line, chained along the road. The numbers, and that
+    a chain must show in three of five of its profiles, are ours: they leave a road without paint empty.
+    """
+    profile = int(round(settings.profile_length / UNIT))
+    count = max(1, int(round(WINDOW / settings.profile_length)))
+    start, end = road_points.store.span(road)
+    windows = list(range(int(np.floor(start / UNIT / profile / count)), int(np.floor(end / UNIT / profile / count)) + 1))
+
+    def records_of(window):
+        return _window(road_points, road, window * count, (window + 1) * count, profile)
+
+    found = list(in_order(lambda window: peaks_of(*records_of(window), settings), windows, progress.part(0.0, 0.6)))
+    row, left, right = (np.concatenate([f[k] for f in found]) for k in range(3))
+    kept = chained(row, (left + right) / 2, settings)
+    row, left, right = row[kept], left[kept], right[kept]
+    yield from in_order(lambda window: _between(*records_of(window), row, left, right), windows, progress.part(0.6, 1.0))
+
+
+def _window(road_points, road, first, last, profile):
+    """Records of the profiles from `first` to before `last`, and the profile of each."""
+    records = road_points.window(road, (first * profile - 1) * UNIT, (last * profile + 1) * UNIT).records
+    row = (records["s"] // profile).astype(np.int64)
+    inside = (row >= first) & (row < last)
+    return chosen(records, inside), row[inside]
+
+
+def peaks_of(records, row, settings):
+    """Peaks of I(d) in the profiles of one window.
+
+    Parameters
+    ----------
+    records : (N,) ROAD_POINT
+    row : (N,) int, the profile that each lies in
+
+    Returns
+    -------
+    row, left, right : (P,) int, the profile of each peak and its borders at half its height, units of 0.1 mm
+    """
+    none = np.empty(0, np.int64)
+    if not len(records):
+        return none, none, none
+    first, low = row.min(), (records["d"] // CELL).min()
+    z = _profiles(Points(records).value, row - first, records["d"] // CELL - low)
+    reach = int(np.ceil(2 * settings.widest / (CELL * UNIT)))
+    # asphalt's level between the rows: a peak's feet are sought in its own profile
+    padded = np.pad(z, ((0, 0), (reach, reach)))
+    limits = np.array([settings.narrowest, settings.widest]) / (CELL * UNIT)
+    # a least height besides: asphalt itself is full of small peaks
+    _, found = find_peaks(padded.ravel(), height=1e-9, prominence=settings.prominence, width=limits, wlen=2 * reach + 1)
+    place = np.stack([found["left_ips"], found["right_ips"]])
+    number = (place[0] // padded.shape[1]).astype(np.int64)
+    borders = np.rint((place - number * padded.shape[1] - reach + low + 0.5) * CELL).astype(np.int64)
+    return number + first, borders[0], borders[1]
+
+
+def _profiles(value, row, column):
+    """(profiles, cells) smoothed I(d) above the profile's median, in deviations; 0 where nothing was scanned."""
+    shape = int(row.max()) + 1, int(column.max()) + 1
+    cell, size = row * shape[1] + column, shape[0] * shape[1]
+    count = np.bincount(cell, minlength=size)
+    # brightness in whole 64ths sums exactly, in any order
+    total = np.bincount(cell, np.rint(value.astype(float) * 64), size) / 64
+    seen = np.flatnonzero(count)
+    places = np.arange(size)
+    after = np.minimum(np.searchsorted(seen, places), len(seen) - 1)
+    before = np.maximum(np.searchsorted(seen, places, side="right") - 1, 0)
+    level = np.interp(places, seen, total[seen] / count[seen]).reshape(shape)
+    unseen = (np.maximum(np.abs(seen[after] - places), np.abs(places - seen[before])) > UNSEEN).reshape(shape)
+    level = ndimage.median_filter(level, (1, SMOOTH), mode="nearest")
+    level[unseen] = np.nan
+    empty = unseen.all(axis=1)
+    level[empty] = 0.0
+    median = np.nanmedian(level, axis=1, keepdims=True)
+    deviation = np.nanmedian(np.abs(level - median), axis=1, keepdims=True)
+    z = (level - median) / np.maximum(deviation, np.maximum(FLATTEST * np.abs(median), 1e-9))
+    return np.where(unseen, 0.0, z)
+
+
+def chained(row, middle, settings):
+    """(P,) bool, the peaks that go on from profile to profile for long enough.
+
+    Parameters
+    ----------
+    row : (P,) int, profile of each peak
+    middle : (P,) its offset, units of 0.1 mm
+    """
+    if not len(row):
+        return np.zeros(0, bool)
+    steps = max(1, int(round(settings.gap / settings.profile_length)))
+    pairs = cKDTree(np.c_[row / (steps + 0.5), middle * UNIT / settings.jump]).query_pairs(1.0, p=np.inf, output_type="ndarray")
+    pairs = pairs[row[pairs[:, 0]] != row[pairs[:, 1]]]  # two lines side by side are not one
+    graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(len(row), len(row)))
+    number, chain = connected_components(graph, directed=False)
+    first, last = np.full(number, np.iinfo(np.int64).max), np.full(number, np.iinfo(np.int64).min)
+    np.minimum.at(first, chain, row)
+    np.maximum.at(last, chain, row)
+    profiles = last - first + 1
+    told = np.bincount(np.unique(np.c_[chain, row], axis=0)[:, 0], minlength=number)
+    good = (profiles * settings.profile_length >= settings.shortest) & (told >= TOLD * profiles)
+    return good[chain]
+
+
+def _between(records, row, peak_row, left, right):
+    """The records that lie between the borders of a peak of their own profile."""
+    if not len(records) or not len(peak_row):
+        return records[:0]
+    order = np.lexsort((left, peak_row))
+    width = 1 << 32
+    keys = peak_row[order] * width + left[order]
+    at = np.searchsorted(keys, row * width + records["d"], side="right") - 1
+    peak = order[np.maximum(at, 0)]
+    return chosen(records, (at >= 0) & (peak_row[peak] == row) & (records["d"] <= right[peak]))

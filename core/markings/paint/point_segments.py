@@ -1,0 +1,141 @@
+"""Paint by thresholds on the points themselves, segment by segment across the road, and by density.
+
+No image is made: road points are split across the direction of travel, so that each
+segment is scanned alike, Otsu's threshold is taken of the points of each, and
+bright points that have few bright points about them are noise.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ...common.parallel import in_order
+from ...common.setting import check_limits, setting
+from ...intensity.asphalt_model import asphalt
+from ...survey.store.records import UNIT, Points, chosen
+from ..objects.connected_cells import occupied
+from .asphalt_level import otsu
+
+FEWEST = 200  # points of a segment that has a threshold of its own
+RIM = 0.5     # of the neighbours usual inside of paint: what a point on its rim has
+
+
+@dataclass(frozen=True)
+class SegmentSettings:
+    """How road points are split, and when a bright one is paint.
+
+    length, width : m, of a segment along and across the road
+    separation : spreads of asphalt between the means of the two classes, below which a segment has no paint
+    radius : m about a bright point in which its bright neighbours are counted
+    """
+
+    length: float = setting(10.0, 0.5, 200.0, "The length of a segment", "m")
+    width: float = setting(1.0, 0.1, 50.0, "The width of a segment", "m")
+    separation: float = setting(3.0, 0.0, 50.0, "The distance of paint from asphalt", "spreads")
+    radius: float = setting(0.12, 0.01, 1.0, "The radius in which neighbours are counted", "m")
+
+    def __post_init__(self):
+        check_limits(self)
+
+
+def points_in_segments(road_points, road, settings, progress):
+    """Yield the records of one road's points that are paint, segment row by segment row.
+
+    Parameters
+    ----------
+    road_points : RoadPoints, corrected or not
+    road : its number
+    settings : SegmentSettings
+
+    Notes
+    -----
+    Point-based after Yu et al. (2015) without its learned part (small
+    markings), as the driving-line thesis sums it up: Otsu's threshold per segment
+    across the road, then a threshold after Otsu on the counts of neighbours. Ours
+    are the sizes, the guard that leaves a segment without paint empty, and that
+    half of what is usual inside of paint is enough neighbours: its rim has no more.
+    """
+    length = int(round(settings.length / UNIT))
+    start, end = road_points.store.span(road)
+    windows = list(range(int(np.floor(start / UNIT / length)), int(np.floor(end / UNIT / length)) + 1))
+
+    def limits_of(window):
+        records = _window(road_points, road, window * length, (window + 1) * length)
+        return segment_thresholds(records, settings)
+
+    limits = dict(zip(windows, in_order(limits_of, windows, progress.part(0.0, 0.5))))
+    reach = int(np.ceil(settings.radius / UNIT)) + 1
+
+    def paint_of(window):
+        first, last = window * length, (window + 1) * length
+        records = _bright(_window(road_points, road, first - reach, last + reach), length, limits, settings)
+        own = (records["s"] >= first) & (records["s"] < last)
+        return chosen(records, own & dense_enough(records, own, settings))
+
+    yield from in_order(paint_of, windows, progress.part(0.5, 1.0))
+
+
+def _window(road_points, road, first, last):
+    """Records with first <= s < last, units of 0.1 mm."""
+    records = road_points.window(road, (first - 1) * UNIT, (last + 1) * UNIT).records
+    return chosen(records, (records["s"] >= first) & (records["s"] < last))
+
+
+def _segments(records, settings):
+    """(N,) int, the segment across the road that each record lies in."""
+    return (records["d"] // int(round(settings.width / UNIT))).astype(np.int64)
+
+
+def segment_thresholds(records, settings):
+    """dict of segment number to the least intensity of paint, infinite where there is none."""
+    value, segment = Points(records).value, _segments(records, settings)
+    order = np.argsort(segment, kind="stable")
+    numbers, starts = np.unique(segment[order], return_index=True)
+    return {int(number): _threshold(np.sort(value[rows]), settings.separation)
+            for number, rows in zip(numbers, np.split(order, starts[1:]))}
+
+
+def _threshold(values, separation):
+    if len(values) < FEWEST:
+        return np.inf
+    median, spread = asphalt(values)
+    # a few glints must not stretch the histogram
+    limited = np.clip(values, median - 6.0 * spread, median + 60.0 * spread)
+    threshold, below, above, share = otsu(limited)
+    # the larger class is asphalt: what is split off from a road without paint can be its dark end
+    return threshold if above - below > separation * spread and share <= 0.5 else np.inf
+
+
+def _bright(records, length, limits, settings):
+    """Records above the threshold of the segment they lie in."""
+    window, segment = records["s"] // length, _segments(records, settings)
+    if not len(records):
+        return records
+    first = int(window.min()), int(segment.min())
+    table = np.full((int(window.max()) - first[0] + 1, int(segment.max()) - first[1] + 1), np.inf)
+    for number in np.unique(window).tolist():
+        for place, value in limits.get(number, {}).items():
+            if 0 <= place - first[1] < table.shape[1]:
+                table[number - first[0], place - first[1]] = value
+    return chosen(records, Points(records).value > table[window - first[0], segment - first[1]])
+
+
+def dense_enough(records, own, settings):
+    """(N,) bool, points with as many bright neighbours as paint has; only those that are `own` are judged, by segment."""
+    keep = np.zeros(len(records), bool)
+    if not own.any():
+        return keep
+    places = np.c_[records["s"], records["d"]] * UNIT
+    rows = np.flatnonzero(own)
+    # points at one place have the same neighbours: of a cloud with every point many times each place is asked for once
+    asked, member = occupied(records["s"].take(rows), records["d"].take(rows))
+    count = cKDTree(places).query_ball_point(asked * UNIT, settings.radius, return_length=True).take(member) - 1
+    segment = _segments(records, settings)[rows]
+    for number in np.unique(segment):
+        here = np.flatnonzero(segment == number)
+        # sorted, so that sums do not depend on the order of the points
+        counts = np.sort(count[here]).astype(float)
+        threshold, _, above, share = otsu(counts)
+        keep[rows[here]] = count[here] >= (min(threshold, RIM * above) if share > 0 else 0.0)
+    return keep

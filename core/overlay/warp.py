@@ -1,0 +1,208 @@
+"""The image drawn on the map, by GDAL."""
+
+import os
+from pathlib import Path
+
+import numpy as np
+import shapely
+
+from ..common.errors import Cancelled, RoadExtractionError
+from ..common.progress import Progress
+from ..io.gdal_errors import gdal_exceptions
+from .georeference import lattice, own_pixel_size
+
+TILE = 512
+MEMORY = 128_000_000     # bytes of GDAL's cache: blocks beyond it are written while the work goes on, not all at its end
+LARGEST = 4e9            # pixels of the result; beyond this the polynomial or the pixel size is wrong
+_APPROXIMATION = 0.05    # px, within which GDAL interpolates places along a row
+_NODES = 21              # per side, of the lattice that tells GDAL the polynomial
+_MARGINS = (0.2, 0.1, 0.04, 0.0)  # of the area, by which the lattice reaches beyond it
+_SMALLEST_OVERVIEW = 256
+_ALGORITHMS = {"nearest": "near", "bilinear": "bilinear", "cubic": "cubic"}
+
+
+def drawn_area(found):
+    """What is drawn of the image: shapely polygon in pixel and line."""
+    frame = shapely.box(0, 0, found.image.width, found.image.height)
+    return found.hull.intersection(frame) if found.cut else frame
+
+
+def output_grid(found):
+    """((min x, min y, max x, max y), width, height) of the result.
+
+    Bounds are whole multiples of the pixel size; those of a shift at the image's own pixel size
+    are the image's, so that its pixels stay as they are.
+    """
+    outline = drawn_area(found).exterior
+    outline = shapely.get_coordinates(outline.segmentize(max(outline.length / 400, 1e-6)))
+    easting, northing = found.fit.polynomial.to_map(outline[:, 0], outline[:, 1])
+    size = found.pixel_size
+    x0, y0, x1, y1 = easting.min(), northing.min(), easting.max(), northing.max()
+    if not _keeps_its_pixels(found):
+        x0, y0 = np.floor(x0 / size + 1e-6) * size, np.floor(y0 / size + 1e-6) * size
+    width, height = (max(int(np.ceil((b - a) / size - 1e-6)), 1) for a, b in ((x0, x1), (y0, y1)))
+    if width * height > LARGEST:
+        raise RoadExtractionError(
+            f"The result would have {width} by {height} pixels of {size:g} m. Give a larger pixel size, choose a lower order, "
+            "or look for a wrong control point.")
+    y1 = y0 + height * size if not _keeps_its_pixels(found) else y1
+    return (float(x0), float(y1 - height * size), float(x0 + width * size), float(y1)), width, height
+
+
+def _keeps_its_pixels(found):
+    slope = found.fit.polynomial.jacobian(np.zeros(1), np.zeros(1))[0]
+    return found.settings.order == 0 and np.allclose(slope, found.pixel_size * np.array([[1, 0], [0, -1]]), rtol=1e-9, atol=1e-12)
+
+
+@gdal_exceptions()
+def draw_image(found, path, progress=None):
+    """Write the image as a tiled, losslessly compressed GeoTIFF with overviews; it takes its name when it is whole.
+
+    Bytes get an alpha band where the image ends; integers of more bits get 0, real numbers NaN as no-data value,
+    unless the image brings its own.
+
+    Parameters
+    ----------
+    found : Georeferencing
+    path : of the GeoTIFF
+
+    Returns
+    -------
+    float, the greatest distance in pixels between where GDAL draws a place and where the polynomial puts it
+
+    Raises
+    ------
+    RoadExtractionError
+        If the result would be absurdly large, the image cannot be read, or the file cannot be written.
+    """
+    from osgeo import gdal
+
+    progress = progress or Progress()
+    bounds, width, height = output_grid(found)
+    unfinished, tiled = (Path(path).with_name(Path(path).name + end) for end in (".unfinished.tif", ".source.tif"))
+    source = view = result = None
+    cancelled, failure = [], ""
+    cache = gdal.GetCacheMax()
+    gdal.SetCacheMax(min(cache, MEMORY))
+    try:
+        source = _with_lattice(gdal, found, _tiled(gdal, found.image, tiled, _callback(progress, 0.0, 0.1, cancelled)))
+        off = _departure(gdal, source, found) + _APPROXIMATION
+        # Drawn block by block as it is written: each tile is compressed once, and Cancel is heard in between
+        view = gdal.Warp("", source, **_warp_options(found, bounds))
+        result = gdal.GetDriverByName("GTiff").CreateCopy(str(unfinished), view, options=_file_options(found.image),
+                                                          callback=_callback(progress, 0.1, 0.8, cancelled))
+        levels = [2**k for k in range(1, 16) if max(width, height) / 2**k >= _SMALLEST_OVERVIEW]
+        result = None  # GDAL 3.6 may wait for its own threads for ever where it reads what they still write
+        if levels and not cancelled:
+            result = gdal.Open(str(unfinished), gdal.GA_Update)
+            result.BuildOverviews("AVERAGE", levels, callback=_callback(progress, 0.8, 1.0, cancelled))
+        result = None  # closes the file
+        if not cancelled:
+            os.replace(unfinished, path)
+            Path(f"{path}.aux.xml").unlink(missing_ok=True)
+    except RuntimeError as problem:
+        failure = str(problem)
+    finally:
+        source = view = result = None
+        gdal.SetCacheMax(cache)
+        for leftover in (unfinished, Path(f"{unfinished}.aux.xml"), tiled):
+            leftover.unlink(missing_ok=True)
+    # Raised out here, since GDAL's own error would keep its datasets alive until after GDAL itself is gone
+    if cancelled:
+        raise Cancelled
+    if failure:
+        raise RoadExtractionError(
+            f"The image could not be drawn to {path} ({failure}). Is {found.image.path} whole, and is there room on the disk?")
+    progress.at(1.0)
+    return off
+
+
+def _callback(progress, start, end, cancelled):
+    """GDAL's progress as ours; a user's Cancel is noted in `cancelled`, since GDAL knows only yes and no."""
+    part = progress.part(start, end)
+
+    def tell(fraction, *_):
+        try:
+            part.at(fraction)
+            return 1
+        except Cancelled:
+            cancelled.append(True)
+            return 0
+
+    return tell
+
+
+def _tiled(gdal, image, path, callback):
+    """The image's path; that of a copy in tiles where it is large and stored line by line (JPEG, PNG).
+
+    A turned image is read across its lines, and such a file begins anew each time.
+    """
+    dataset = gdal.Open(image.path)
+    band = dataset.GetRasterBand(1)
+    size = image.width * image.height * image.bands * gdal.GetDataTypeSize(band.DataType) // 8
+    if size < MEMORY // 2 or band.GetBlockSize()[0] < image.width:
+        return image.path
+    gdal.Translate(str(path), dataset, format="GTiff", creationOptions=["TILED=YES", "BIGTIFF=IF_SAFER", "COMPRESS=LZW"], callback=callback)
+    return str(path)
+
+
+def _with_lattice(gdal, found, path):
+    """The image as GDAL opens it, with points in place of a position.
+
+    GDAL would fit a polynomial of its own from the map to the image, which is no
+    inverse of ours: tens of pixels beside it in a tilted picture. It is given a dense lattice that obeys our
+    polynomial instead, for splines between the nodes (an affine needs no more than any three).
+    """
+    area, polynomial = drawn_area(found), found.fit.polynomial
+    x0, y0, x1, y1 = area.bounds
+    for margin in _MARGINS:
+        reach = margin * max(x1 - x0, y1 - y0)
+        pixel, line = lattice((x0 - reach, y0 - reach, x1 + reach, y1 + reach), _NODES)
+        if (np.linalg.det(polynomial.jacobian(pixel, line)) < 0).all():
+            break
+    easting, northing = polynomial.to_map(pixel, line)
+    points = [gdal.GCP(*map(float, place)) for place in zip(easting, northing, np.zeros(len(pixel)), pixel, line)]
+    more = {"rgbExpand": "rgb"} if found.image.palette else {}
+    return gdal.Translate("", path, format="VRT", GCPs=points, outputSRS=found.points.crs or None, **more)
+
+
+def _method(found):
+    return "GCP_TPS" if found.fit.polynomial.order > 1 else "GCP_POLYNOMIAL"
+
+
+def _departure(gdal, source, found):
+    """Pixels between where GDAL's transformer and the polynomial's inverse look for places of the result."""
+    area = drawn_area(found)
+    pixel, line = lattice(area.bounds, 33)
+    inside = shapely.contains_xy(area, pixel, line)
+    pixel, line = pixel[inside], line[inside]
+    easting, northing = found.fit.polynomial.to_map(pixel, line)
+    transformer = gdal.Transformer(source, None, [f"METHOD={_method(found)}"] + ["MAX_GCP_ORDER=1"] * (_method(found) != "GCP_TPS"))
+    places, _ = transformer.TransformPoints(1, np.column_stack([easting, northing, np.zeros(len(pixel))]).tolist())
+    return float(np.hypot(*(np.array(places)[:, :2] - np.column_stack([pixel, line])).T).max())
+
+
+def _warp_options(found, bounds):
+    image, size = found.image, found.pixel_size
+    transform = {"tps": True} if _method(found) == "GCP_TPS" else {"polynomialOrder": 1}
+    ends = {}
+    if not image.has_alpha:
+        if image.nodata is not None:
+            ends = {"dstNodata": image.nodata}
+        elif image.kind == "byte":
+            ends = {"dstAlpha": True}
+        else:
+            ends = {"dstNodata": 0 if image.kind == "integer" else "nan"}
+    # Left to itself GDAL guesses the scale from each window's extent, and blurs turned images at their rims
+    scale = min(1.0, own_pixel_size(found.fit, drawn_area(found)) / size)
+    options = [f"XSCALE={scale}", f"YSCALE={scale}"]
+    if found.cut:
+        options.append(f"CUTLINE={shapely.to_wkt(drawn_area(found), rounding_precision=3)}")
+    return {
+        "format": "VRT", "outputBounds": bounds, "xRes": size, "yRes": size, "resampleAlg": _ALGORITHMS[found.settings.resampling],
+        "dstSRS": found.points.crs or None, "errorThreshold": _APPROXIMATION, "warpOptions": options, **transform, **ends}
+
+
+def _file_options(image):
+    return ["TILED=YES", f"BLOCKXSIZE={TILE}", f"BLOCKYSIZE={TILE}", "COMPRESS=DEFLATE", "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS",
+            f"PREDICTOR={3 if image.kind == 'real' else 2}"]

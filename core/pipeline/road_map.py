@@ -1,0 +1,193 @@
+"""The whole chain in one call: survey in, road map out.
+
+The stages are the same functions that the single algorithms call, handed on in
+memory; nothing but the intensity image, which is one of the results, goes to disk.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..assess.curvature import marking_curvature
+from ..common.features import Features
+from ..common.progress import Progress
+from ..driving.driving_lines import DrivingSettings, driving_lines
+from ..intensity.correction import IntensitySettings, correct_intensity
+from ..intensity.image import ImageSettings, IntensityImage, check_fits, write_intensity_image
+from ..markings.lines.fit import LineSettings, fit_marking_lines, named_by_lines
+from ..markings.objects.cluster import ClusterSettings, cluster_markings
+from ..markings.objects.outliers import OutlierSettings, remove_outliers
+from ..markings.paint.extract import MarkingSettings, extract_markings
+from ..road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
+from ..road.edges.fit import EdgeSettings
+from ..road.profiles.detect import CurbSettings
+from ..road.scanlines.detect import ScanlineBoundarySettings
+from ..road.scanlines.section_planes import ScanlineSettings
+from ..road.surface.extract import SurfaceSettings, extract_road_surface
+from ..survey.open_survey import SurveySettings, open_survey
+from ..survey.point_density import cube_density
+from ..survey.store.records import Points, joined
+from .stages import PAINT, Extent, Stages
+
+
+@dataclass(frozen=True)
+class RoadMapSettings:
+    """The settings of every stage, and whether intensity is corrected first."""
+
+    survey: SurveySettings = SurveySettings()
+    boundary_method: str = BoundarySettings.method
+    curbs: CurbSettings = CurbSettings()
+    planes: ScanlineSettings = ScanlineSettings()
+    scanlines: ScanlineBoundarySettings = ScanlineBoundarySettings()
+    edges: EdgeSettings = EdgeSettings()
+    surface: SurfaceSettings = SurfaceSettings()
+    correct: bool = True
+    intensity: IntensitySettings = IntensitySettings()
+    image: ImageSettings = ImageSettings()
+    markings: MarkingSettings = MarkingSettings()
+    outliers: OutlierSettings = OutlierSettings()
+    clusters: ClusterSettings = ClusterSettings()
+    lines: LineSettings = LineSettings()
+    driving: DrivingSettings = DrivingSettings()
+
+    @property
+    def boundaries(self):
+        return BoundarySettings(self.boundary_method, self.curbs, self.scanlines, self.planes)
+
+
+@dataclass
+class RoadMap:
+    """Every result of the chain; `seconds` and `counts` tell of each stage.
+
+    `road_points` keep the survey's store; `road_points.close()` gives its disk space back.
+
+    `boundary_differences` tells where the two boundary methods lie apart, None where one was asked for.
+    `without_paint` is the sentence that says why there are no markings, "" where
+    there are.
+    """
+
+    frame: object
+    crs: str
+    curb_points: Features
+    edges: Features
+    surface: Features
+    road_points: object
+    boundary_differences: Features = None
+    length_by_method: dict = field(default_factory=dict)
+    intensity_report: object = None
+    image: object = None
+    markings: Features = None
+    marking_lines: Features = None
+    driving_lines: Features = None
+    curve_elements: Features = None
+    without_paint: str = ""
+    seconds: dict = field(default_factory=dict)
+    counts: dict = field(default_factory=dict)
+    survey_facts: dict = field(default_factory=dict)
+    density: tuple = ()                 # CubeDensity of the points near the road, and of the road surface
+    marking_curvature: object = None    # MarkingCurvature, None without lines
+
+
+def make_road_map(paths, trajectory, image_path, settings=RoadMapSettings(), progress=Progress()):
+    """Run the chain.
+
+    Parameters
+    ----------
+    paths : point cloud files
+    trajectory : Trajectory in the clouds' CRS
+    image_path : where the intensity image is written (.tif)
+
+    Returns
+    -------
+    RoadMap
+
+    Raises
+    ------
+    RoadExtractionError
+        If a stage cannot work with what it is given. A cloud without intensity still
+        yields edges and surface; `without_paint` then says why markings are missing.
+    """
+    stages = Stages(progress, Extent.expected(paths, trajectory, settings.survey.crs), settings.boundary_method,
+                    () if settings.correct else ("intensity",))
+    survey = stages.run("survey", "Reading the survey …", open_survey, paths, trajectory, settings.survey)
+    try:
+        return _map_of(survey, image_path, settings, stages)
+    except BaseException:
+        survey.store.close()
+        raise
+
+
+def _map_of(survey, image_path, settings, stages):
+    """The map of an open survey, whose store the road points keep."""
+    extent = Extent(survey.store.count / 1e6, sum(road.length for road in survey.frame.roads) / 1e3)
+    stages.know(extent, () if survey.has_intensity else PAINT)
+    if survey.has_intensity:
+        # before hours of work, not after
+        check_fits(*_span(survey), settings.image)
+    found = stages.run("curbs", "Detecting curbs …", find_curb_points, survey, settings.boundaries)
+    boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, found, survey.frame, settings.edges)
+    road_points, surface = stages.run("surface", "Extracting the road surface …", extract_road_surface,
+                                      survey, boundaries.edges, settings.surface)
+    facts = dict(files=len(survey.files), scanners=len(survey.scanners), passes=len(survey.frame.passes),
+                 roads=len(survey.frame.roads), sensor_height=survey.sensor_height, **survey.counts)
+    density = tuple(_density(points, store, stages.progress, stages.done)
+                    for points, store in ((survey, survey.store), (road_points, road_points)))
+    survey.store.let_go()
+    result = RoadMap(survey.frame, survey.crs, boundaries.curb_points, boundaries.edges, surface, road_points,
+                     boundaries.differences, boundaries.length_by_method, seconds=stages.seconds, survey_facts=facts,
+                     density=density)
+    result.counts.update(curb_points=len(boundaries.curb_points), road_points=len(road_points))
+    if survey.has_intensity:
+        _paint(result, image_path, settings, stages)
+    else:
+        result.without_paint = ("The point cloud has no intensity (all values are the same), so paint cannot be told from "
+                                "asphalt: no markings, marking lines or driving lines were made.")
+        stages.progress.warn(result.without_paint)
+    return result
+
+
+def _span(survey):
+    """Metres east and north over which the sections lie that have points."""
+    places = [survey.frame.road(road).to_map(np.array(survey.store.sections(road)) * survey.store.section_length, 0.0)
+              for road in survey.store.roads()]
+    return tuple(float(np.ptp(np.concatenate(axis))) for axis in zip(*places))
+
+
+def _density(points, store, progress, done):
+    """CubeDensity of points; `done` is where the bar stands meanwhile."""
+    sections = [(road, number) for road in store.roads() for number in store.sections(road)]
+    return cube_density(sections, lambda key: points.section(*key), progress.part(done, done))
+
+
+def _places(points):
+    """All points, of which only the columns are joined that are asked for."""
+    return Points(joined([points.store.section(*key) for key in points.all_sections()], points.store.dtype))
+
+
+def _paint(result, image_path, settings, stages):
+    """Intensity, markings and lines, added to the result."""
+    frame = result.frame
+    if settings.correct:
+        result.road_points, result.intensity_report = stages.run(
+            "intensity", "Correcting intensity …", correct_intensity, result.road_points, frame, settings.intensity)
+    stages.run("image", "Making the intensity image …", write_intensity_image,
+               result.road_points, image_path, settings.image)
+    result.image = IntensityImage.open(image_path)
+    points = stages.run("markings", "Extracting markings …", extract_markings,
+                        result.road_points, result.image, frame, settings.markings)
+    result.counts["marking_points"] = len(points)
+    if len(points):
+        points = stages.run("outliers", "Removing outliers …", remove_outliers, points, settings.outliers)
+    result.counts["marking_points_kept"] = len(points)
+    result.markings, clustered = stages.run("clusters", "Clustering markings …", cluster_markings,
+                                            points, frame, settings.clusters)
+    result.marking_lines = stages.run("lines", "Fitting marking lines …", fit_marking_lines,
+                                      clustered, result.markings, frame, settings.lines)
+    named_by_lines(result.markings, result.marking_lines)
+    result.marking_curvature = marking_curvature(_places(clustered), result.marking_lines.geometries, frame.origin)
+    result.driving_lines, result.curve_elements = stages.run(
+        "driving", "Making driving lines …", driving_lines, result.marking_lines, frame, settings.driving,
+        markings=result.markings, edges=result.edges, road_points=result.road_points)
+    if not len(result.markings):
+        result.without_paint = "No paint was found on this road, so there are no marking lines and no driving lines."
+        stages.progress.warn(result.without_paint)

@@ -1,0 +1,156 @@
+"""How far apart two sets of road edges run, where they tell of one curb, and which of the two to draw."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from ..common.features import Features
+from ..common.schemas import AGREE, END, LENGTH, ROAD, SIDE, STATION, of_main_curb
+from .common.sides import SIDES
+
+NODE = 0.5           # m along the road between places that are compared
+SAME_CURB = 0.25     # m across within which two lines are of one curb
+DOUBT = 0.05         # m across beyond which a stretch is reported
+USUAL_MOST = 0.95    # quantile of the distances that stands for a piece
+SHORTEST = 1.0       # m of a stretch that is reported
+SHORTEST_ALONE = 2.0  # m that one line must go on alone to be drawn in place of the other
+CHAIN_OFFSET = 100_000  # parts the chains of the two methods
+
+BOUNDARY_DIFFERENCES = [ROAD, SIDE, STATION, END, AGREE, LENGTH]
+
+
+@dataclass
+class EdgeTrace:
+    """The edges of one side of a road at places NODE apart.
+
+    s : (N,) m; d, z : (N,) m, offset and local height, NaN where no edge runs; measured : (N,) bool;
+    scatter : (N,) m of the curb points about the piece
+    """
+
+    s: np.ndarray
+    d: np.ndarray
+    z: np.ndarray
+    measured: np.ndarray
+    scatter: np.ndarray
+
+
+def trace_edges(edges, frame, road, side):
+    """EdgeTrace of one side of a road (number)."""
+    line = frame.road(road)
+    first, last = int(np.floor(line.start / NODE)), int(np.ceil(line.end / NODE))
+    s = np.arange(first, last + 1) * NODE
+    trace = EdgeTrace(s, *(np.full(len(s), np.nan) for _ in range(2)), np.zeros(len(s), bool), np.full(len(s), np.inf))
+    for geometry, row in edges:
+        if row["road"] != road or row["side"] != side or row["status"] == "inferred" or row.get("part", "bottom") != "bottom" \
+                or not of_main_curb(row):
+            continue
+        x, y, z = shapely.get_coordinates(geometry, include_z=True).T
+        x, y, z = frame.to_local(x, y, z)
+        at, d = line.locate(x, y)
+        good = np.isfinite(at)
+        at, d, z = at[good], d[good], z[good]
+        if len(at) < 2:
+            continue
+        order = np.argsort(at, kind="stable")
+        at, d, z = at[order], d[order], z[order]
+        inside = np.flatnonzero((s >= at[0] - NODE / 2) & (s <= at[-1] + NODE / 2))
+        trace.d[inside], trace.z[inside] = np.interp(s[inside], at, d), np.interp(s[inside], at, z)
+        trace.measured[inside] = row["status"] == "measured"
+        trace.scatter[inside] = row["rmse_m"]
+    return trace
+
+
+def chosen_points(points, others, edges, other_edges, frame):
+    """Of two sets of points of the road's own curbs, at every place those whose edge measures better there.
+
+    Where one method alone measured, its points are taken. Where both measured one curb
+    (SAME_CURB), along each such stretch those that scatter less about their line; where
+    they found different ones, those of the first, which asks more of a curb.
+
+    Parameters
+    ----------
+    points, others : Features CURB_POINTS of two methods, that which asks more of a curb first
+    edges, other_edges : Features ROAD_EDGES fitted through each
+    frame : RoadFrame
+
+    Returns
+    -------
+    Features CURB_POINTS
+    """
+    found = Features(points.geometry_type, list(points.schema), crs=points.crs)
+    for road in frame.roads:
+        for side in SIDES:
+            first, second = (trace_edges(e, frame, road.number, side) for e in (edges, other_edges))
+            take_second = _second_is_better(first, second)
+            for number, features in enumerate((points, others)):
+                mine = take_second if number else ~take_second
+                for geometry, row in features:
+                    if row["road"] == road.number and row["side"] == side and mine[_node(first.s, row["station_m"])]:
+                        chain = row.get("chain")
+                        found.add(geometry, **dict(row, chain=None if chain is None else chain + number * CHAIN_OFFSET))
+    return found
+
+
+def _node(s, station):
+    return int(np.clip(np.rint((station - s[0]) / NODE), 0, len(s) - 1))
+
+
+def _second_is_better(first, second):
+    """(N,) bool: is the second edge the one to draw? False where neither runs."""
+    both = first.measured & second.measured
+    with np.errstate(invalid="ignore"):
+        one_curb = both & (np.abs(first.d - second.d) <= SAME_CURB)
+    better = second.measured & ~first.measured
+    # where neither measured, the one that bridges
+    better |= ~first.measured & ~second.measured & np.isfinite(second.d) & np.isnan(first.d)
+    for a, b in runs(one_curb):
+        better[a:b] = second.scatter[a:b].mean() < first.scatter[a:b].mean()
+    # a line that begins a little before the other is no reason to change over
+    for a, b in runs(first.measured ^ second.measured):
+        if (b - a) * NODE < SHORTEST_ALONE:
+            if a > 0 and one_curb[a - 1]:
+                better[a:b] = better[a - 1]
+            elif b < len(better) and one_curb[b]:
+                better[a:b] = better[b]
+    return better
+
+
+def runs(mask):
+    """(first, last + 1) of every run of True."""
+    change = np.flatnonzero(np.diff(np.r_[False, mask, False].astype(np.int8)))
+    return list(zip(change[::2].tolist(), change[1::2].tolist()))
+
+
+def note_agreement(edges, first_edges, second_edges, frame):
+    """Write into `agree_cm` of every edge how far apart two sets of edges run beside it, and tell where it is much.
+
+    The number is the distance that 95 % of the piece keeps to, NULL where one of the two has
+    no line. It is measured along the road's offset, every NODE metres.
+
+    Returns
+    -------
+    Features BOUNDARY_DIFFERENCES: LineStringZ along the drawn edges, one for every stretch where
+    the two lie more than DOUBT apart, `agree_cm` their largest distance there
+    """
+    differences = Features("LineStringZ", list(BOUNDARY_DIFFERENCES), crs=edges.crs)
+    for road in frame.roads:
+        for side in SIDES:
+            first, second, drawn = (trace_edges(e, frame, road.number, side) for e in (first_edges, second_edges, edges))
+            apart = np.abs(first.d - second.d)
+            for row in edges.rows:
+                if row["road"] == road.number and row["side"] == side:
+                    beside = apart[(first.s >= row["station_m"]) & (first.s <= row["end_m"])]
+                    beside = beside[np.isfinite(beside)]
+                    if len(beside):
+                        row["agree_cm"] = round(100 * float(np.quantile(beside, USUAL_MOST)), 1)
+            with np.errstate(invalid="ignore"):
+                doubtful = (apart > DOUBT) & np.isfinite(drawn.d)
+            for a, b in runs(doubtful):
+                if (b - a) * NODE < SHORTEST:
+                    continue
+                x, y, z = frame.to_map(road.number, first.s[a:b], drawn.d[a:b], drawn.z[a:b])
+                line = shapely.linestrings(np.round(np.c_[x, y, z], 4))
+                differences.add(line, road=road.number, side=side, station_m=float(first.s[a]), end_m=float(first.s[b - 1]),
+                                agree_cm=round(100 * float(apart[a:b].max()), 1), length_m=round(line.length, 3))
+    return differences

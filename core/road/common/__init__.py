@@ -1,0 +1,1 @@
+"""What both methods of boundary detection use: pseudo scan-lines, decimation, corners of curbs, tracking along the road, occlusion."""

@@ -1,0 +1,283 @@
+"""Profiles across the road, and the pseudo scan-lines made of them.
+
+The road is cut into profiles: slices across it, PROFILE_WIDTH long, at fixed
+stations from 0. A profile is cut into cells POINT_SPACING wide; in each cell the
+points are parted into layers where the height jumps, so that branches, cars and
+ghosts lie in layers of their own. The lowest layer gives the cell's principal
+point, and the principal points of a profile are its pseudo scan-line.
+
+References
+----------
+Guan et al. (2014), ISPRS Journal 87, and the driving-line thesis after it, section
+3.3. The thesis takes the highest point of the lowest layer; here it is a high
+quantile, less what noise alone would give: the highest of many noisy points would
+raise a whole road above its sparser neighbours.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...common.order_statistics import order_by, thinned
+
+# Layers of the points of cells: where heights jump, what lies above is no ground.
+
+GHOST_SHARE = 0.15  # a lowest layer with less than this share of its cell is multipath, not ground
+
+
+def lowest_layers(place, h, layer_jump):
+    """Which points are ground; first index and count of the lowest real layer of every occupied cell."""
+    if not len(place):
+        empty = np.empty(0, np.int64)
+        return np.empty(0, bool), empty, empty
+    new_cell, new_layer = np.ones(len(place), bool), np.ones(len(place), bool)
+    np.not_equal(place[1:], place[:-1], out=new_cell[1:])
+    np.greater(h[1:] - h[:-1], layer_jump, out=new_layer[1:])
+    new_layer |= new_cell
+    layer_start = np.flatnonzero(new_layer)
+    layer_count = np.diff(layer_start, append=len(place))
+    first_of_cell = new_cell[layer_start]
+    ground = np.ones(len(place), bool)
+    if first_of_cell.all():
+        return ground, layer_start, layer_count
+    layer_cell = np.cumsum(first_of_cell) - 1
+    cell_count = np.bincount(layer_cell, layer_count)
+    real = layer_count >= GHOST_SHARE * cell_count[layer_cell]
+    chosen = np.flatnonzero(real)
+    chosen = chosen[np.r_[True, np.diff(layer_cell[chosen]) > 0]]
+    other = np.ones(len(layer_start), bool)
+    other[chosen] = False
+    ground[expand(layer_start[other], layer_start[other] + layer_count[other])[1]] = False
+    return ground, layer_start[chosen], layer_count[chosen]
+
+
+def expand(start, end):
+    """Every index of ragged ranges, and which range it belongs to: (N,) owners and (N,) indices."""
+    length = np.maximum(end - start, 0)
+    owner = np.repeat(np.arange(len(start)), length)
+    index = np.arange(len(owner))
+    index += np.repeat(start - (np.cumsum(length) - length), length)
+    return owner, index
+
+MOST = 60           # points of a cell that are looked at: more hardly tell its layers better
+HIGH = 0.9          # quantile of the lowest layer that stands for its highest point
+HIGH_SIGMA = 1.2816  # the same quantile of a normal distribution, in sigmas
+LEAST_NOISE = 0.002  # m
+USUAL_NOISE = 0.005  # m, where too few cells hold enough points to tell
+SAME_GROUND = 0.15  # m from a cell's ground within which points tell the scanner's noise
+SPREAD_POINTS, SPREAD_CELLS = 5, 10  # points in a cell, and such cells in a profile, that tell it
+SPREAD_ROWS = 6     # profiles either side that tell it together
+DEPTH, REACH = 2.0, 2.0  # m below and above the expected road within which ground is sought
+
+
+@dataclass
+class PseudoScanLines:
+    """Profiles of one side of the road, offsets counted outward from the reference line.
+
+    first : number of the first profile; station of profile k's middle is (k + 1/2) * width
+    width, spacing : metres
+    u, s, h : (N,) the points, sorted by profile, cell and height; u is the outward
+        offset, h the height above the expected road, which takes the grade out
+    along : (N,) m along the road from the vehicle to the point when it was seen
+    ground : (N,) bool, points of the lowest layer
+    starts : (P * C + 1,) index of the first point of every cell
+    low, high : (P, C) median and high quantile of the lowest layer, m; NaN where no point lies
+    noise : (P,) m, spread of heights within a cell of level road
+    spread : (P,) m, the same with the points of all layers next to the ground, in the smoother cells
+        over a few metres of road: near `noise` for a scanner that measures to millimetres, far above for one that does not
+    """
+
+    first: int
+    width: float
+    spacing: float
+    origin: float
+    u: np.ndarray
+    s: np.ndarray
+    h: np.ndarray
+    along: np.ndarray
+    ground: np.ndarray
+    starts: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    noise: np.ndarray
+    spread: np.ndarray
+
+    @property
+    def shape(self):
+        return self.low.shape
+
+    def offset(self, cell):
+        """Outward offset of the middle of cells, metres."""
+        return self.origin + (np.asarray(cell) + 0.5) * self.spacing
+
+    def part(self, first, last):
+        """The profiles from `first` to before `last`; the points are shared."""
+        a, b, cells = first - self.first, last - self.first, self.shape[1]
+        return replace(self, first=first, starts=self.starts[a * cells:b * cells + 1], low=self.low[a:b], high=self.high[a:b],
+                       noise=self.noise[a:b], spread=self.spread[a:b])
+
+
+def seen_between(lines, nearest, farthest, layer_jump):
+    """The PseudoScanLines of the points that were measured from `nearest` to before `farthest` metres ahead."""
+    own = np.flatnonzero((lines.along >= nearest) & (lines.along < farthest))
+    rows, cells = lines.shape
+    seen = pseudo_scan_lines(lines.u[own], lines.s[own], lines.h[own], lines.along[own], (lines.first, lines.first + rows),
+                             lines.width, lines.spacing, layer_jump, lines.origin, lines.origin + cells * lines.spacing)
+    return replace(seen, spread=lines.spread)
+
+
+def pseudo_scan_lines(u, s, h, along, profiles, width, spacing, layer_jump, origin, reach):
+    """Cut points of one side into profiles and cells and find the ground in each.
+
+    Parameters
+    ----------
+    u, s, h : (N,) outward offset, station, and height above the expected road, metres
+    along : (N,) metres along the road from the vehicle to the point when it was measured
+    profiles : (first, last + 1) numbers of the profiles
+    width, spacing, layer_jump : metres
+    origin, reach : nearest and farthest outward offset, metres
+
+    Returns
+    -------
+    PseudoScanLines
+    """
+    cells = max(int(np.ceil((reach - origin) / spacing)), 1)
+    kept, place = places(u, s, h, np.arange(len(u)), profiles, cells, width, spacing, origin)
+    run = run_of_profiles((u, s, h, along), kept, place, profiles, cells, layer_jump)
+    return joined_runs([run], profiles, width, spacing, origin)
+
+
+@dataclass
+class RunOfProfiles:
+    """Some profiles, by themselves: fields as of PseudoScanLines, but for those below.
+
+    count : (P, C) points of every cell
+    smooth : (P,) m, spread of heights next to the ground in the smoother cells, NaN where too few tell
+    """
+
+    profiles: tuple
+    u: np.ndarray
+    s: np.ndarray
+    h: np.ndarray
+    along: np.ndarray
+    ground: np.ndarray
+    count: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    noise: np.ndarray
+    smooth: np.ndarray
+
+
+def run_of_profiles(points, kept, place, profiles, cells, layer_jump):
+    """The ground of profiles, cell by cell.
+
+    Parameters
+    ----------
+    points : (u, s, h, along) of many points
+    kept, place : (N,) indices of those in the profiles and cells, and the place of each (`_places`)
+    profiles : (first, last + 1)
+    """
+    rows = profiles[1] - profiles[0]
+    height = points[2].take(kept)
+    height += DEPTH
+    height *= 1e4
+    order = order_by(np.rint(height, out=height).astype(np.int32), place)
+    place, kept = place.take(order), kept.take(order)
+    u, s, h, along = (v.take(kept) for v in points)
+    ground, first_of, count = lowest_layers(place, h, layer_jump)
+    low, high, noise = (np.full((rows, cells), np.nan) for _ in range(3))
+    owner = place[first_of]
+    middle = 0.5 * (h[first_of + (count - 1) // 2] + h[first_of + count // 2])
+    top = h[first_of + np.rint(HIGH * (count - 1)).astype(np.int64)]
+    low.flat[owner], high.flat[owner] = middle, top
+    many = count >= 4
+    noise.flat[owner[many]] = (top - middle)[many] / HIGH_SIGMA
+    held = np.bincount(place, minlength=rows * cells).reshape(rows, cells)
+    return RunOfProfiles(profiles, u, s, h, along, ground, held, low, high, _profile_noise(noise), _smooth(h, held, low))
+
+
+def joined_runs(runs, profiles, width, spacing, origin):
+    """PseudoScanLines of profiles (first, last + 1) from runs of them that follow one another; those that none holds are empty."""
+    rows, cells = profiles[1] - profiles[0], runs[0].low.shape[1]
+    low, high = np.full((rows, cells), np.nan), np.full((rows, cells), np.nan)
+    held = np.zeros((rows, cells), np.int64)
+    noise, smooth = np.full(rows, USUAL_NOISE), np.full(rows, np.nan)
+    for run in runs:
+        own = slice(run.profiles[0] - profiles[0], run.profiles[1] - profiles[0])
+        low[own], high[own], held[own], noise[own], smooth[own] = run.low, run.high, run.count, run.noise, run.smooth
+    u, s, h, along, ground = (np.concatenate([getattr(run, name) for run in runs]) for name in ("u", "s", "h", "along", "ground"))
+    return PseudoScanLines(profiles[0], width, spacing, origin, u, s, h, along, ground, np.r_[0, np.cumsum(held)], low, high, noise,
+                           _spread(smooth))
+
+
+def crowds_thinned(place):
+    """Indices of (N,) places, of every cell no more than about MOST, evenly spread over their order."""
+    if len(place) <= MOST:
+        return slice(None)
+    place = place - place.min()
+    return slice(None) if np.bincount(place).max() <= MOST else thinned(place, MOST)
+
+
+def places(u, s, h, seen, profiles, cells, width, spacing, origin):
+    """Of the points `seen` those within profiles and cells, and the place of each: profile * cells + cell, from the first profile."""
+    u, s, h = u.take(seen), s.take(seen), h.take(seen)
+    profile = np.floor(s / width).astype(np.int32)
+    profile -= profiles[0]
+    cell = np.floor((u - origin) / spacing).astype(np.int32)
+    kept = (profile >= 0) & (profile < profiles[1] - profiles[0]) & (cell >= 0) & (cell < cells) & (h > -DEPTH) & (h < REACH)
+    place = profile * np.int32(cells) + cell
+    return (seen, place) if kept.all() else (seen[kept], place[kept])
+
+
+def _profile_noise(noise):
+    """(P,) median spread of each profile's cells."""
+    dense = np.isfinite(noise).sum(1) >= 20
+    return np.where(dense, np.fmax(_row_median(noise), LEAST_NOISE), USUAL_NOISE)
+
+
+def _smooth(h, held, low):
+    """(P,) spread of heights about the ground of their cells, in the smoother cells of every profile; NaN where too few tell."""
+    rows, there = len(low), np.flatnonzero(held)
+    own = np.full(low.shape, np.nan)
+    if len(there):
+        size = held.flat[there]
+        first = np.cumsum(size) - size
+        off = np.abs(h - np.repeat(low.flat[there], size))
+        near, count = off < SAME_GROUND, size
+        if not near.all():
+            off = np.where(near, off, 0.0)
+            count = np.add.reduceat(near, first, dtype=np.int64)
+        # 1.2533 mean distances of a normal distribution are its sigma
+        mean = 1.2533 * np.add.reduceat(off, first) / np.maximum(count, 1)
+        own.flat[there] = np.where(count >= SPREAD_POINTS, mean, np.nan)
+    # grass is rough with any scanner, so the smoother cells tell
+    ordered, n = _sorted_rows(own)
+    return np.where(n >= SPREAD_CELLS, ordered[np.arange(rows), np.maximum(n - 1, 0) * 3 // 10], np.nan)
+
+
+def _spread(smooth):
+    """(P,) spread of heights about the ground, in the smoother cells of profiles and their neighbours."""
+    # one profile beside a bush says nothing about the scanner
+    padded = np.pad(smooth, SPREAD_ROWS, constant_values=np.nan)
+    around = np.sort(np.lib.stride_tricks.sliding_window_view(padded, 2 * SPREAD_ROWS + 1), axis=1)
+    known = np.isfinite(around).sum(1)
+    middle = around[np.arange(len(smooth)), np.maximum(known - 1, 0) // 2]
+    return np.where(known > 0, middle, LEAST_NOISE)
+
+
+def _sorted_rows(values):
+    """Every row without its NaN in order, filled up with NaN to the longest; and how many values each has."""
+    there = np.isfinite(values)
+    count = there.sum(1)
+    found = np.full((len(values), max(int(count.max(initial=0)), 1)), np.nan)
+    found[np.arange(found.shape[1]) < count[:, None]] = values[there]
+    found.sort(axis=1)
+    return found, count
+
+
+def _row_median(values):
+    """Median of every row without its NaN (NaN where a row has none)."""
+    ordered, count = _sorted_rows(values)
+    k = np.maximum(count - 1, 0)
+    rows = np.arange(len(values))
+    return 0.5 * (ordered[rows, k // 2] + ordered[rows, (k + 1) // 2])

@@ -1,0 +1,163 @@
+"""What a line of steps in plan is: a corner, the curb of a side street, an island, or no curb of the road."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ..common.sides import SIDES
+from ..common.tracking import ROUGH_ROAD
+from .steps import PlanSteps
+from .tracking import CONNECT, groups_in_line
+
+SHORTEST = 1.0       # m of a line
+DENSEST = 0.6        # m between the steps of a line, on average, at most: scan lines lie apart
+WANDER = 0.02        # m, scatter about its own running line beyond the scanner's noise
+ALONG = np.cos(np.radians(45.0))  # of its angle to the road above which a curb is the road's own
+OVERLAP = 0.5        # m along the road that a piece of main curb may lie beside another
+STRAIGHT, STRAIGHT_LENGTH = 0.05, 2.0  # m off its chord within which a curb that left the road runs straight; m of it
+ISLAND_SHARE = 0.6   # share of an island's steps behind which it does
+ISLAND_LENGTH = 2.0  # m of lines about one island
+ONE_ISLAND = 3.0     # m between them
+ALONE = 5.0          # m of a line that is a side street's although nothing joins it to the main curb
+STREET, BESIDE_STREET = (2.5, 16.0), 4.0  # m from it at which its other side lies; m along by which the two may miss each other
+
+
+@dataclass
+class TurnedCurb:
+    """One line: steps in order, uphill on the right; kind is main (a piece that profiles missed), corner, side_street or island."""
+
+    steps: PlanSteps
+    s: np.ndarray
+    d: np.ndarray
+    side: str
+    kind: str
+    closed: bool = False
+
+
+def like_a_curb(chain, steps, usual, settings):
+    """Is a line long, dense, steep and smooth enough?"""
+    own = steps[chain.steps]
+    length = _length(own.x, own.y)
+    if length < SHORTEST or length > DENSEST * len(own):
+        return False
+    height, noise = np.median(own.height), np.median(usual[chain.steps])
+    sharp = max(np.quantile(own.run, 0.3) - 2 * noise, 0.0)
+    if height < settings.min_height or np.degrees(np.arctan2(height, sharp)) < settings.slope:
+        return False
+    return np.median(own.noise) <= max(ROUGH_ROAD, 2 * noise) and np.mean(own.behind >= 2) >= 0.5 \
+        and _wander(own) <= WANDER + noise
+
+
+def _length(x, y):
+    return float(np.hypot(np.diff(x), np.diff(y)).sum())
+
+
+def _wander(own):
+    """Median distance of the steps of a line from the chord of their neighbours."""
+    if len(own) < 3:
+        return 0.0
+    cx, cy = own.x[2:] - own.x[:-2], own.y[2:] - own.y[:-2]
+    off = np.abs(cx * (own.y[1:-1] - own.y[:-2]) - cy * (own.x[1:-1] - own.x[:-2])) / np.maximum(np.hypot(cx, cy), 1e-6)
+    return float(np.median(off))
+
+
+def named_curbs(chains, steps, falls, runs, line, limits, passes):
+    """The lines that are curbs, each with its kind and side.
+
+    Parameters
+    ----------
+    chains : list of PlanChain; steps : PlanSteps that they point into
+    falls : (M,) m uphill of each step at which the ground is down again, NaN where it stays up
+    runs : main curbs in plan, uphill on the right: list of (side, (x, y, h))
+    line, passes : Road and its passes
+    limits : side -> how far out the road reaches at stations
+
+    Returns
+    -------
+    list of TurnedCurb
+    """
+    places = [place for _, place in runs] + [(steps.x[c.steps], steps.y[c.steps], steps.h[c.steps]) for c in chains]
+    if not chains:
+        return []
+    group = groups_in_line(places)
+    sides = {}
+    for number, (side, _) in zip(group, runs):
+        sides.setdefault(number, side)
+    found, islands = [], []
+    for number, chain in zip(group[len(runs):], chains):
+        own = steps[chain.steps]
+        s, d = line.locate(own.x, own.y)
+        if chain.closed or number not in sides:
+            behind = np.any([sign * d > limits[side](s, 0.0, 0.0) for side, sign in SIDES.items()], axis=0)
+            side = "left" if np.nanmedian(d - np.mean([p.at_station(s)[0] for p in passes], axis=0)) > 0 else "right"
+            if np.mean(np.isfinite(falls[chain.steps]) & ~behind) >= ISLAND_SHARE:
+                islands.append(TurnedCurb(own, s, d, side, "island", chain.closed))
+            elif _length(own.x, own.y) >= ALONE and not behind.any() and np.median(_along(own, s, line)) < ALONG \
+                    and _faced(own, [steps[c.steps] for c in chains]):
+                # of a street whose corner something hides
+                found.append(TurnedCurb(own, s, d, side, "side_street"))
+            continue
+        found += _away_from(own, s, d, sides[number], line, limits[sides[number]], places[:len(runs)])
+    return found + _whole_islands(islands)
+
+
+def _away_from(own, s, d, side, line, limit, runs):
+    """A line that continues a main curb: a piece of that curb, or a corner with the straight curb of a side street behind it."""
+    along = _along(own, s, line)
+    if np.median(along) > ALONG and not limit.between(np.nanmin(s) + OVERLAP, np.nanmax(s) - OVERLAP):
+        return [TurnedCurb(own, s, d, side, "main")]
+    tips = np.array([(run[0][k], run[1][k]) for run in runs for k in (0, -1)])
+    near = [np.hypot(*(tips - (own.x[k], own.y[k])).T).min() for k in (0, -1)]
+    # in order from the main curb outward
+    order = np.arange(len(own)) if near[0] <= near[1] else np.arange(len(own))[::-1]
+    cut = len(own) if max(near) <= CONNECT else _where_straight(own, order, along)
+    parts = [(order[:cut + 1], "corner"), (order[cut:], "side_street")]
+    return [TurnedCurb(own[np.sort(part)], s[np.sort(part)], d[np.sort(part)], side, kind) for part, kind in parts if len(part) > 1]
+
+
+def _faced(own, lines):
+    """Does another line run along the other side of the street that one bounds?"""
+    k = len(own) // 2
+    for other in lines:
+        dx, dy = other.x - own.x[k], other.y - own.y[k]
+        out, aside = -(dx * own.nx[k] + dy * own.ny[k]), np.abs(dx * own.ny[k] - dy * own.nx[k])
+        opposite = other.nx * own.nx[k] + other.ny * own.ny[k] < -0.7
+        if np.any((out > STREET[0]) & (out < STREET[1]) & (aside < BESIDE_STREET) & opposite):
+            return True
+    return False
+
+
+def _along(own, s, line):
+    """(N,) cosine of the angle between a line and the road at its steps."""
+    k = np.arange(len(own))
+    a, b = np.maximum(k - 2, 0), np.minimum(k + 2, len(own) - 1)
+    dx, dy = own.x[b] - own.x[a], own.y[b] - own.y[a]
+    return np.abs(dx * np.cos(line.heading(s)) + dy * np.sin(line.heading(s))) / np.maximum(np.hypot(dx, dy), 1e-9)
+
+
+def _where_straight(own, order, along):
+    """Position in `order` from which a line runs straight to its end, away from the road; its length where it does not."""
+    x, y = own.x[order], own.y[order]
+    for k in range(len(x) - 2):
+        rest = np.hypot(x[-1] - x[k], y[-1] - y[k])
+        if rest < STRAIGHT_LENGTH:
+            break
+        off = np.abs((x[-1] - x[k]) * (y[k:] - y[k]) - (y[-1] - y[k]) * (x[k:] - x[k])) / rest
+        if off.max() <= STRAIGHT and np.median(along[order[k:]]) < ALONG:
+            return k
+    return len(x)
+
+
+def _whole_islands(lines):
+    """Lines about islands that are long enough together."""
+    if not lines:
+        return []
+    trees = [cKDTree(np.c_[line.steps.x, line.steps.y]) for line in lines]
+    length = np.array([_length(line.steps.x, line.steps.y) for line in lines])
+    kept = []
+    for k, line in enumerate(lines):
+        near = [j for j in range(len(lines)) if j == k or trees[k].count_neighbors(trees[j], ONE_ISLAND)]
+        if length[near].sum() >= ISLAND_LENGTH:
+            kept.append(line)
+    return kept

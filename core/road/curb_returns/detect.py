@@ -1,0 +1,263 @@
+"""Curbs that do not run along the road: around corners, into side streets, about islands.
+
+They are sought in plan where the road is not bounded yet: between the main curbs,
+and where a main curb ends. A line of steps that continues a main curb is a corner,
+and a side street where it runs on straight; one behind which the ground comes down
+again is an island. Any other step is somebody's garden.
+"""
+
+import numpy as np
+import shapely
+from scipy.spatial import cKDTree
+
+from ...common.parallel import in_order
+from ...common.progress import Progress
+from ...survey.frame.road_frame import CORRIDOR
+from ..common.decimation import FEW_IN_PLAN
+from ..common.sides import BESIDE, SIDES, ahead_of_vehicle, expected_height, sections_of
+from .classify import like_a_curb, named_curbs
+from .raster import CELL, averaged, driven_ground, falls_again, ground_raster, ground_slopes, step_places
+from .steps import PlanSteps, measure_plan_steps
+from .tracking import joined_chains, trace_chains
+
+KINDS = {"main": "of the road's own", "corner": "of corners", "side_street": "of side streets", "island": "of islands"}
+OPENING = 6.0        # m without main curb that are an opening and no driveway
+AT_OPENING = 6.0     # m of main curb beside an opening behind which corners are sought
+BEHIND_CURB = 0.6    # m behind a main curb that are looked at elsewhere
+INNER, INNER_HEIGHT = 0.5, 0.3  # m from a main curb, and about the expected road, where ground inside is road for certain
+NODE = 0.05          # m along the road between the stations at which that is decided
+MARGIN = 2.0         # m of road either side of a section that its own steps need
+NOISY, DENSE = 0.12, 6  # share of the least curb that heights in a cell scatter, and points in one, above which they are averaged
+ON_MAIN = 0.25       # m from a main curb within which a step is that curb
+RUN_GAP = 2.5        # m between points of one run of main curb
+RUN_ACROSS = 0.5     # m across between such points
+ISLAND_WIDTH = 8.0   # m within which the ground behind an island's curb comes down again
+
+
+def add_turned_curbs(curb_points, crowds, settings, progress=Progress()):
+    """Add the points of corners, side streets and islands to those of the main curbs.
+
+    Parameters
+    ----------
+    curb_points : Features CURB_POINTS of every road, kind main; more are added at the end
+    crowds : Crowds of the survey
+    settings : CurbSettings
+    """
+    survey = crowds.survey
+    length = dict.fromkeys(KINDS, 0.0)
+    roads = survey.store.roads()
+    for i, road in enumerate(roads):
+        part = progress.part(i / len(roads), (i + 1) / len(roads))
+        main, chain = _main_curbs(curb_points, survey, road)
+        for number, curb in enumerate(find_turned_curbs(crowds, road, main, settings, part), chain):
+            length[curb.kind] += _add_points(curb_points, survey, road, curb, number)
+    found = ", ".join(f"{length[kind]:.0f} m {title}" for kind, title in KINDS.items() if length[kind])
+    progress.say(f"Curbs away from the road's direction: {found or 'none'}.")
+
+
+def _main_curbs(curb_points, survey, road):
+    """Main curbs of a road, side -> (N, 4) station, offset, height and whether it was seen, and the first chain number that is free."""
+    main, chain = {}, 0
+    for side in SIDES:
+        rows = [(r["station_m"], r["offset_m"], g.z - survey.frame.origin[2], r["status"] == "measured") for g, r in curb_points
+                if r["road"] == road and r["side"] == side and r.get("part", "bottom") == "bottom"]
+        rows = np.array(rows, float).reshape(-1, 4)
+        rows = rows[np.argsort(rows[:, 0], kind="stable")]
+        if len(rows):
+            rows[:, 2] -= expected_height(survey, road, rows[:, 0])
+        main[side] = rows
+    for row in curb_points.rows:
+        if row["road"] == road and row.get("chain") is not None:
+            chain = max(chain, row["chain"] + 1)
+    return main, chain
+
+
+def _add_points(curb_points, survey, road, curb, chain):
+    """Add the points of one line; returns its length."""
+    steps, frame = curb.steps, survey.frame
+    z = steps.h + expected_height(survey, road, curb.s) + frame.origin[2]
+    along = np.r_[0.0, np.cumsum(np.hypot(np.diff(steps.x), np.diff(steps.y)))]
+    places = shapely.points(np.round(steps.x + frame.origin[0], 4), np.round(steps.y + frame.origin[1], 4), np.round(z, 4))
+    for k, place in enumerate(places):
+        curb_points.add(place, road=road, side=curb.side, status="measured", station_m=round(float(curb.s[k]), 4),
+                        offset_m=round(float(curb.d[k]), 4), height_m=round(float(steps.height[k]), 4), part="bottom",
+                        kind=curb.kind, chain=chain, along_m=round(float(along[k]), 3), support=int(steps.support[k]))
+    return float(along[-1])
+
+
+def find_turned_curbs(crowds, road, main, settings, progress=Progress()):
+    """Corners, side streets and islands of one road.
+
+    Parameters
+    ----------
+    crowds : Crowds of the survey
+    main : dict side -> (N, 4) of the main curb's points, ascending: station, offset, height above the
+        expected road, 1 where it was measured and 0 where it is hidden
+    settings : CurbSettings
+
+    Returns
+    -------
+    list of TurnedCurb
+    """
+    survey = crowds.survey
+    limits = {side: _Limit(points, SIDES[side]) for side, points in main.items()}
+    line = survey.frame.road(road)
+    known, barrier = cKDTree(_places_along(line, main, RUN_GAP)), _places_along(line, main, OPENING).T
+
+    def work(section):
+        return _steps_of_section(crowds, road, section, limits, known, barrier, settings)
+
+    found = [part for part in in_order(work, sections_of(survey, road, settings.profile_width), progress) if part is not None]
+    if not found:
+        return []
+    steps, falls = PlanSteps.join([part for part, _, _ in found]), np.concatenate([part for _, part, _ in found])
+    usual = np.concatenate([part for _, _, part in found])
+    chains = [c for c in joined_chains(trace_chains(steps), steps) if like_a_curb(c, steps, usual, settings)]
+    return named_curbs(chains, steps, falls, _runs(main, line), line, limits, survey.frame.passes_of(road))
+
+
+class _Limit:
+    """How far out one side is looked at: to a little behind the main curb, everywhere at openings."""
+
+    def __init__(self, points, sign):
+        self.sign = sign
+        self.s, self.u, self.seen = points[:, 0], sign * points[:, 1], points[points[:, 3] > 0, 0]
+        cuts = np.flatnonzero(np.diff(self.s) > OPENING) + 1
+        self.runs = [(part[0], part[-1]) for part in np.split(self.s, cuts) if len(part)]
+
+    def __call__(self, s, behind=BEHIND_CURB, at_opening=AT_OPENING):
+        """(N,) largest outward offset at stations: `behind` metres behind the curb, but for its last metres beside openings."""
+        if not len(self.s):
+            return np.full(len(s), CORRIDOR)
+        bounded = np.zeros(len(s), bool)
+        for a, b in self.runs:
+            bounded |= (s > a + at_opening) & (s < b - at_opening)
+        return np.where(bounded, np.interp(s, self.s, self.u) + behind, CORRIDOR)
+
+    def between(self, start, end):
+        """Was a point of main curb measured between two stations?"""
+        return bool(((self.seen > start) & (self.seen < end)).any())
+
+
+def _places_along(line, main, gap):
+    """(N, 2) local places along the main curbs, gaps up to `gap` metres between their points closed."""
+    places = [np.empty((0, 2))]
+    for points in main.values():
+        for run in _split(points, gap):
+            s = np.arange(run[0, 0], run[-1, 0] + CELL, CELL)
+            places.append(np.c_[line.to_map(s, np.interp(s, run[:, 0], run[:, 1]))])
+    return np.concatenate(places)
+
+
+def _split(points, gap=RUN_GAP):
+    if not len(points):
+        return []
+    apart = (np.diff(points[:, 0]) > gap) | (np.abs(np.diff(points[:, 1])) > RUN_ACROSS + np.diff(points[:, 0]))
+    return np.split(points, np.flatnonzero(apart) + 1)
+
+
+def _runs(main, line):
+    """Main curbs as polylines in plan with uphill on the right: list of (side, (x, y, h))."""
+    found = []
+    for side, points in main.items():
+        for run in _split(points):
+            if len(run) > 1:
+                run = run[::-1] if side == "left" else run
+                found.append((side, (*line.to_map(run[:, 0], run[:, 1]), run[:, 2])))
+    return found
+
+
+def _steps_of_section(crowds, road, section, limits, known, barrier, settings, few=FEW_IN_PLAN):
+    """(PlanSteps of a section, where the ground behind each falls again, the scanner's noise); None where there are none."""
+    survey, width = crowds.survey, crowds.width
+    margin = int(np.ceil(MARGIN / width))
+    profiles = section[0] - margin, section[1] + margin
+    start, end, first, last = (k * width for k in (*section, *profiles))
+    reach = _Reach(limits, first, last)
+    most = None if few is None or crowds.mostly_uneven(road, sum(section) // 2) else few
+    seen = [_beside_vehicle(survey, road, part, reach) for part in crowds.few_of_every_cell(road, profiles, most)]
+    if not seen:
+        return None
+    *place, along, inner = (np.concatenate(column) for column in zip(*seen))
+    raster = ground_raster(*place, settings.layer_jump)
+    if raster is None:
+        return None
+    dense = len(raster.x) >= DENSE * np.isfinite(raster.low).sum()
+    noisy = dense and raster.noise > NOISY * settings.min_height
+    if noisy and most is not None:
+        # where averages are wanted every point counts
+        return _steps_of_section(crowds, road, section, limits, known, barrier, settings, few=None)
+    line = survey.frame.road(road)
+    slopes = ground_slopes(raster.low)
+    driven, stepped = driven_ground(raster, slopes, *_track(survey, road, first, last), [v[inner] for v in place[:2]], *barrier,
+                                    settings.min_height)
+
+    def wanted(x, y):
+        own, _ = line.locate(x, y)
+        fresh = (own >= start) & (own < end)
+        if known.n and len(x):
+            fresh &= known.query(np.c_[x, y])[0] > ON_MAIN
+        return fresh
+
+    x, y, nx, ny = step_places(raster, slopes, driven, stepped, settings.min_height, settings.max_height, wanted)
+    fresh = wanted(x, y)
+    if not fresh.any():
+        return None
+    views = _averaged_views(raster, place, along, settings.layer_jump) if noisy else [raster]
+    steps = measure_plan_steps(views, x[fresh], y[fresh], nx[fresh], ny[fresh], 0.5 * settings.min_height, settings.max_height)
+    # within a tight bend a step may be measured beyond where stations end
+    steps = steps[np.isfinite(line.locate(steps.x, steps.y)[0])]
+    lean = [float(np.median(slope[driven])) for slope in slopes]
+    falls = falls_again(raster, lean, steps.x, steps.y, steps.nx, steps.ny, steps.h, steps.height, ISLAND_WIDTH)
+    return steps, falls, np.full(len(steps), views[0].noise)
+
+
+def _beside_vehicle(survey, road, points, reach):
+    """Of points within reach and near the vehicle: local x, y, height above the expected road, metres ahead of the vehicle,
+    and whether each lies between the road's own curbs: the far side of a long island is road, too, but may not be
+    connected with the track by as short a stretch as a section."""
+    s, d = points.s, points.d
+    inside, inner = reach(s, d)
+    own = np.flatnonzero(inside)
+    s, d, inner, points = s.take(own), d.take(own), inner.take(own), points[own]
+    along = ahead_of_vehicle(survey, points, s)
+    near = np.flatnonzero(np.abs(along) < BESIDE + np.abs(d))
+    if len(near) < len(s):
+        s, inner, along, points = s.take(near), inner.take(near), along.take(near), points[near]
+    h = points.z - expected_height(survey, road, s)
+    return points.x, points.y, h, along, inner & (np.abs(h) < INNER_HEIGHT)
+
+
+class _Reach:
+    """How far out both sides are looked at between two stations, at nodes, so that many points cost little."""
+
+    def __init__(self, limits, first, last):
+        self.first = int(np.floor(first / NODE))
+        nodes = np.arange(self.first, int(np.ceil(last / NODE)) + 2) * NODE
+        left, right = (np.minimum(limits[side](nodes), CORRIDOR) for side in SIDES)
+        self.inside = -right, left
+        self.inner = [sign * np.where(limit < CORRIDOR, np.maximum(limit - BEHIND_CURB - INNER, 0.0), 0.0)
+                      for sign, limit in ((-1, right), (1, left))]
+
+    def __call__(self, s, d):
+        """(N,) bool: within the limits, and between the road's own curbs for certain."""
+        k = np.rint(s * (1.0 / NODE)).astype(np.intp)
+        k -= self.first
+        return tuple((d >= low.take(k)) & (d <= high.take(k)) for low, high in (self.inside, self.inner))
+
+
+def _averaged_views(raster, place, along, layer_jump):
+    """Averages of all points, of those seen from before and of those from behind: positions that drifted in between blur a curb."""
+    halves = (ground_raster(*(v[half] for v in place), layer_jump) for half in (along > 0, along <= 0))
+    return [averaged(view, layer_jump) for view in (raster, *halves) if view is not None]
+
+
+def _track(survey, road, first, last):
+    """Local places along the tracks of all passes between two stations."""
+    line, xs, ys = survey.frame.road(road), [], []
+    for p in survey.frame.passes_of(road):
+        s = np.arange(max(first, p.span[0]), min(last, p.span[1]), 0.8 * CELL)
+        x, y = line.to_map(s, p.at_station(s)[0])
+        xs.append(x)
+        ys.append(y)
+    return np.concatenate(xs), np.concatenate(ys)

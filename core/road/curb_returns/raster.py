@@ -1,0 +1,335 @@
+"""Steps of the ground in plan, in any direction: a raster of the lowest layer, and where it rises beside driven ground.
+
+Profiles across the road see a curb that runs along it. A curb that turns into a
+side street, or goes round an island, may run any way: it is sought where level
+ground that is connected with the driven track ends at a rise.
+"""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from ...common.order_statistics import order_by
+from ..common.pseudo_scanlines import lowest_layers
+
+CELL = 0.10          # m
+BELOW, ABOVE = 1.0, 1.0  # m about the expected road within which ground is sought
+FINE_CELL = 0.05     # m, cells whose points are averaged for a noisy scanner
+NOWHERE = 1e6        # m, farther up and down than any ground
+UNEVEN = 0.7         # share of the least step that level ground may differ within WINDOW cells
+WINDOW = 5           # cells, a square of which is looked at together
+BLOCK, BLOCKS = 5, 5  # cells a side of a block, and blocks a side of the window, that tell the slope of the ground
+STEEPEST = 0.12      # rise over run of a road
+TRACK_HALF = 0.75    # m beside a driven track that is road for certain
+EMPTY_REACH = 3      # cells without ground that a vehicle would drive over between others: scan lines lie apart
+BESIDE_ROAD = 4      # cells from driven ground within which it may end at a step
+AT_ONCE = 512        # steps looked at together: what fits the processor's cache
+ABOUT = 4            # cells about a step whose ground tells its direction and height
+OUTER, STRIP = 0.11, 0.31  # m from the middle of a step beyond which ground is before or after it; m along it
+ROUGH = 0.25         # share of a step's height that the road before it may scatter
+FAINTEST = 0.6       # share of the least step that the cells of one must show
+BACK_DOWN = 0.4      # share of a step's height that the ground behind an island may lie above its bottom
+SPREAD_POINTS, SPREAD_CELLS = 4, 50  # points in a cell, and such cells, that tell the scanner's noise
+SMOOTHER = 0.3       # quantile of them that does
+USUAL_NOISE, LEAST_NOISE = 0.005, 0.002  # m
+
+
+@dataclass
+class GroundRaster:
+    """Ground of a stretch of road on a grid of local map coordinates.
+
+    x0, y0 : m, the grid's corner, a whole number of cells from 0
+    x, y, h : (N,) the points of the lowest layer; h above the expected road
+    place : (N,) the cell of each, row * columns + column
+    low : (rows, columns) m, mean height of the lowest layer, NaN where no point lies
+    noise : m, spread of heights within a cell of level ground
+    """
+
+    x0: float
+    y0: float
+    x: np.ndarray
+    y: np.ndarray
+    h: np.ndarray
+    place: np.ndarray
+    low: np.ndarray
+    noise: float
+
+    def inside(self, x, y):
+        """(row, column) of those local places that lie on the grid."""
+        row, column = (np.floor(np.asarray(v) / CELL - np.rint(v0 / CELL)).astype(np.int64)
+                       for v, v0 in ((y, self.y0), (x, self.x0)))
+        on = (row >= 0) & (column >= 0) & (row < self.low.shape[0]) & (column < self.low.shape[1])
+        return row[on], column[on]
+
+    def middle(self, row, column):
+        """Local x, y of the middle of cells."""
+        return self.x0 + (column + 0.5) * CELL, self.y0 + (row + 0.5) * CELL
+
+    def by_cell(self, x, y, reach):
+        """The points within `reach` metres of local places, sorted by cell.
+
+        Returns
+        -------
+        x, y, h : (M,) of the points
+        starts : (rows * columns + 1,) index of the first point of every cell
+        """
+        near = np.zeros(self.low.shape, np.uint8)
+        near[self.inside(x, y)] = 1
+        cells = 2 * int(np.ceil(reach / CELL)) + 1
+        near = cv2.dilate(near, np.ones((cells, cells), np.uint8)).ravel().view(bool)
+        own = np.flatnonzero(near.take(self.place))
+        order = own.take(order_by(self.place.take(own)))
+        count = np.bincount(self.place.take(order), minlength=self.low.size)
+        return self.x.take(order), self.y.take(order), self.h.take(order), np.r_[0, np.cumsum(count)]
+
+
+def ground_raster(x, y, h, layer_jump):
+    """The ground of points, cell by cell; None where there are none.
+
+    Parameters
+    ----------
+    x, y : (N,) local metres; h : (N,) m above the expected road
+    layer_jump : m of height that parts ground from what is above it
+    """
+    kept = np.flatnonzero((h > -BELOW) & (h < ABOVE))
+    if not len(kept):
+        return None
+    x, y, h = (v if len(kept) == len(h) else v.take(kept) for v in (x, y, h))
+    column, row = np.floor(x / CELL).astype(np.int32), np.floor(y / CELL).astype(np.int32)
+    first_column, first_row = int(column.min()), int(row.min())
+    columns, rows = int(column.max()) - first_column + 1, int(row.max()) - first_row + 1
+    row -= first_row
+    row *= columns
+    column -= first_column
+    place = row
+    place += column
+    above = _above_ground(place, h, rows * columns, layer_jump)
+    if above.any():
+        ground = np.flatnonzero(~above)
+        x, y, h, place = (v.take(ground) for v in (x, y, h, place))
+    n, total, squares = _sums(place, h, rows * columns)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        low = total / n
+        spread = np.sqrt(np.maximum(squares - total * low, 0.0) / (n - 1))
+    # curbs and grass are rough with any scanner, so the smoother cells tell
+    tell = spread[n >= SPREAD_POINTS]
+    noise = max(float(np.quantile(tell, SMOOTHER)), LEAST_NOISE) if len(tell) >= SPREAD_CELLS else USUAL_NOISE
+    return GroundRaster(first_column * CELL, first_row * CELL, x, y, h, place, low.reshape(rows, columns), noise)
+
+
+def _above_ground(place, h, cells, layer_jump):
+    """(N,) bool: does a point lie in another layer than the lowest of its cell?"""
+    n, total, squares = _sums(place, h, cells)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        # heights on either side of a gap have at least this sum of squares about their mean
+        parted = squares - total * total / n > 0.99 * layer_jump**2 * (n - 1) / n
+    above = np.zeros(len(h), bool)
+    own = np.flatnonzero(parted.take(place))
+    if len(own):
+        order = own.take(order_by(np.rint((h.take(own) + BELOW) * 1e4).astype(np.int32), place.take(own)))
+        ground, _, _ = lowest_layers(place.take(order), h.take(order), layer_jump)
+        above[order] = ~ground
+    return above
+
+
+def _sums(place, h, cells):
+    """Of every cell the number of points, the sum of their heights, and of the squares of these."""
+    place = place.astype(np.intp)
+    return np.bincount(place, minlength=cells), np.bincount(place, h, cells), np.bincount(place, h * h, cells)
+
+
+def averaged(raster, layer_jump):
+    """A raster of means: the points of every FINE_CELL made one, so that the noise of single heights goes down.
+
+    None where there are no points. `noise` is what is left of it.
+    """
+    if raster is None:
+        return None
+    column, row = np.floor(raster.x / FINE_CELL).astype(np.int64), np.floor(raster.y / FINE_CELL).astype(np.int64)
+    cell = (row - row.min()) * (column.max() - column.min() + 1) + column - column.min()
+    count = np.bincount(cell)
+    held = np.flatnonzero(count)
+    count = count[held]
+    mean = ground_raster(*(np.bincount(cell, v)[held] / count for v in (raster.x, raster.y, raster.h)), layer_jump)
+    mean.noise = max(raster.noise / np.sqrt(np.median(count)), LEAST_NOISE)
+    return mean
+
+
+def ground_slopes(low):
+    """Slope of the ground about every cell: two (rows, columns) arrays, m per m along columns and rows.
+
+    The median over a few metres, so that the steps in it do not count; no more than a road's, so that banks are not level.
+    """
+    rows, columns = low.shape
+    padded = np.pad(low, ((0, -rows % BLOCK), (0, -columns % BLOCK)), constant_values=np.nan)
+    blocks = padded.reshape(padded.shape[0] // BLOCK, BLOCK, padded.shape[1] // BLOCK, BLOCK)
+    there = np.isfinite(blocks)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = np.where(there, blocks, 0.0).sum((1, 3)) / there.sum((1, 3))
+    found = []
+    for axis in (1, 0):
+        slope = np.full(mean.shape, np.nan)
+        ahead, behind = (slice(None), slice(1, None)), (slice(None), slice(None, -1))
+        if axis == 0:
+            ahead, behind = ahead[::-1], behind[::-1]
+        slope[behind] = (mean[ahead] - mean[behind]) / (BLOCK * CELL)
+        slope = np.clip(_median_about(slope, BLOCKS), -STEEPEST, STEEPEST)
+        found.append(np.repeat(np.repeat(slope, BLOCK, 0), BLOCK, 1)[:rows, :columns])
+    return found
+
+
+def _median_about(values, size):
+    """Median of a square of cells about each one, without NaN; 0 where there is nothing else."""
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(values, size // 2, constant_values=np.nan), (size, size))
+    count = np.isfinite(around).sum((2, 3))
+    own = count > 0
+    ordered = np.sort(around[own].reshape(-1, size * size), axis=1)
+    middle = np.zeros(values.shape)
+    middle[own] = ordered[np.arange(len(ordered)), (count[own] - 1) // 2]
+    return middle
+
+
+def driven_ground(raster, slopes, track_x, track_y, inner, barrier_x, barrier_y, least):
+    """Level ground connected with the driven track, and where the ground is stepped.
+
+    Parameters
+    ----------
+    slopes : of `ground_slopes`
+    track_x, track_y : local places along the driven tracks, less than CELL apart
+    inner : (x, y) of local places that lie between the road's own curbs
+    barrier_x, barrier_y : the same along lines that are known to bound the road
+    least : m, the least step that is sought
+
+    Returns
+    -------
+    driven : (rows, columns) bool
+    stepped : (rows, columns) bool, occupied cells in whose neighbourhood the ground rises more than its slope says
+    """
+    there = np.isfinite(raster.low)
+    window = np.ones((WINDOW, WINDOW), np.uint8)
+    span = cv2.dilate(np.where(there, raster.low, -NOWHERE), window) - cv2.erode(np.where(there, raster.low, NOWHERE), window)
+    level = span <= UNEVEN * least + (np.abs(slopes[0]) + np.abs(slopes[1])) * (WINDOW - 1) * CELL
+    passable = level & _grown(there, _diamond(EMPTY_REACH))
+    barrier = np.zeros(there.shape, bool)
+    barrier[raster.inside(barrier_x, barrier_y)] = True
+    passable &= ~_grown(barrier, np.ones((3, 3), np.uint8))
+    count, label = cv2.connectedComponents(passable.view(np.uint8), connectivity=4)
+    track = np.zeros(there.shape, bool)
+    track[raster.inside(track_x, track_y)] = True
+    track = _grown(track, _diamond(int(round(TRACK_HALF / CELL))))
+    track[raster.inside(*inner)] = True
+    wanted = np.zeros(count, bool)
+    wanted[label[track & passable]] = True
+    wanted[0] = False
+    return wanted[label], there & ~level
+
+
+def _grown(mask, about):
+    """(rows, columns) bool: is a cell of the mask among those about each one?"""
+    return cv2.dilate(mask.view(np.uint8), about).view(bool)
+
+
+def _diamond(reach):
+    """Cells up to `reach` away, counted along rows and columns."""
+    away = np.abs(np.arange(-reach, reach + 1))
+    return (away[:, None] + away <= reach).astype(np.uint8)
+
+
+def step_places(raster, slopes, driven, stepped, least, highest, wanted=None):
+    """Where the ground rises beside driven ground: place and direction, one for every 0.2 m square at most.
+
+    wanted : function, local x, y -> bool: squares without such a cell may be left out
+
+    Returns
+    -------
+    x, y : (M,) local metres
+    nx, ny : (M,) unit vector uphill
+    """
+    beside = _grown(driven, _diamond(BESIDE_ROAD))
+    row, column = np.nonzero(stepped & beside)
+    if wanted is not None:
+        x, y = raster.middle(row, column)
+        _, square = np.unique(_squares(x, y), return_inverse=True)
+        own = np.flatnonzero(np.bincount(square, wanted(x, y))[square])
+        row, column = row[own], column[own]
+    ground = np.pad(raster.low, ABOUT, constant_values=np.nan)
+    parts = [_rises_at(raster, ground, slopes, row[a:a + AT_ONCE], column[a:a + AT_ONCE], least, highest)
+             for a in range(0, len(row), AT_ONCE)]
+    x, y, nx, ny, cost = np.concatenate(parts, axis=1) if parts else np.empty((5, 0))
+    best = _one_of_each_square(x, y, cost)
+    return x[best], y[best], nx[best], ny[best]
+
+
+def _rises_at(raster, ground, slopes, row, column, least, highest):
+    """Of some cells those at which the ground rises like a step: x, y, unit vector uphill, and how far the middle is off; (5, M).
+
+    ground : the raster's, with ABOUT cells of nothing about it
+    """
+    reach = np.arange(-ABOUT, ABOUT + 1)
+    down, along = (v.ravel() for v in np.meshgrid(reach, reach, indexing="ij"))
+    around = ground[row[:, None] + down + ABOUT, column[:, None] + along + ABOUT]
+    dx, dy = along * CELL, down * CELL
+    sx, sy = (v[row, column] for v in slopes)
+    around -= sx[:, None] * dx + sy[:, None] * dy
+    # what belongs to the step at this cell: neither the wall behind a curb nor what lies under a bridge
+    near = np.isfinite(around) & (np.abs(around - raster.low[row, column][:, None]) <= highest + 0.05)
+    gx, gy = _gradient(around, near, dx, dy)
+    size = np.maximum(np.hypot(gx, gy), 1e-9)
+    nx, ny = gx / size, gy / size
+    u, v = nx[:, None] * dx + ny[:, None] * dy, ny[:, None] * dx - nx[:, None] * dy
+    strip = near & (np.abs(v) <= STRIP)
+    before, after, at = (_mean(around, strip & m) for m in ((u < -OUTER), (u > OUTER), (np.abs(u) < OUTER)))
+    rise = after - before
+    rough = np.sqrt(_mean((around - before[:, None]) ** 2, strip & (u < -OUTER)))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        part = (at - before) / rise
+        good = (part > 0.15) & (part < 0.85) & (rise >= FAINTEST * least) & (rise <= highest + 0.05) & (rough <= ROUGH * rise)
+    # the middle of the step, not of the cell
+    return np.array([*raster.middle(row[good], column[good]), nx[good], ny[good], np.abs(part - 0.5)[good]])
+
+
+def _gradient(values, mask, dx, dy):
+    """Slope of the plane through masked values of every row."""
+    z = np.where(mask, values, 0.0)
+    n = mask.sum(1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mx, my, mz = mask @ dx / n, mask @ dy / n, z.sum(1) / n
+        xx, yy, xy = mask @ (dx * dx) / n - mx * mx, mask @ (dy * dy) / n - my * my, mask @ (dx * dy) / n - mx * my
+        xz, yz = z @ dx / n - mx * mz, z @ dy / n - my * mz
+        det = xx * yy - xy * xy + 1e-9
+        return (yy * xz - xy * yz) / det, (xx * yz - xy * xz) / det
+
+
+def _mean(values, mask):
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.where(mask, values, 0.0).sum(1) / mask.sum(1)
+
+
+def _one_of_each_square(x, y, cost):
+    """Indices of the cheapest place of every square of two cells, squares in order."""
+    key = _squares(x, y)
+    order = np.lexsort((cost, key))
+    return order[np.r_[True, np.diff(key[order]) > 0][:len(order)]]
+
+
+def _squares(x, y):
+    """(N,) number of the square of two cells in which places lie."""
+    return np.floor(y / (2 * CELL)).astype(np.int64) * 10_000_000 + np.floor(x / (2 * CELL)).astype(np.int64)
+
+
+def falls_again(raster, lean, x, y, nx, ny, bottom, height, farthest):
+    """(M,) metres uphill of each step at which the ground is back at the step's bottom; NaN where it stays up.
+
+    lean : m per m along columns and rows, the slope of the road; bottom, height : (M,) metres; farthest : metres
+    """
+    lean = nx * lean[0] + ny * lean[1]
+    out = (np.arange(int(round(farthest / CELL))) + 2) * CELL
+    column = np.floor((x[:, None] + out * nx[:, None]) / CELL - np.rint(raster.x0 / CELL)).astype(np.int64)
+    row = np.floor((y[:, None] + out * ny[:, None]) / CELL - np.rint(raster.y0 / CELL)).astype(np.int64)
+    on = (row >= 0) & (column >= 0) & (row < raster.low.shape[0]) & (column < raster.low.shape[1])
+    there = np.where(on, raster.low[np.where(on, row, 0), np.where(on, column, 0)], np.nan)
+    with np.errstate(invalid="ignore"):
+        down = there < (bottom + BACK_DOWN * height)[:, None] + lean[:, None] * out
+    first = np.argmax(down, axis=1)
+    return np.where(down.any(1), out[first], np.nan)

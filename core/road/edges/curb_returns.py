@@ -1,0 +1,157 @@
+"""Edges of corners, side streets and islands: smooth lines along the curb's own course, from the main edge's end on."""
+
+import numpy as np
+import shapely
+from scipy.interpolate import Akima1DInterpolator
+
+from ...common.schemas import of_main_curb
+from ..common.pseudo_scanlines import expand
+
+VERTEX = 0.25     # m between vertices: the nose of an island has a radius below a metre
+CONNECT = 2.5     # m from a main edge's end within which a corner begins there
+SHARP = np.radians(50.0)  # of turn from the chord before to the chord after, and
+SHARPEST = 0.45   # m of radius that such a turn would have, for a corner to be one
+SMOOTH = 0.5      # m along a curb within which its points tell its course
+SAME = 0.02       # m within which two places are one
+
+
+def turned_lines(curb_points):
+    """The measured curb points that are not of a main curb, by road and chain, each in order along its chain.
+
+    Returns
+    -------
+    dict road -> list of (rows, (N, 3) map coordinates), chains ascending
+    """
+    chains = {}
+    for geometry, row in curb_points:
+        if not of_main_curb(row) and row["status"] == "measured" and row.get("part", "bottom") == "bottom":
+            chains.setdefault((row["road"], row["chain"]), []).append((row["along_m"], geometry, row))
+    found = {}
+    for (road, _), members in sorted(chains.items()):
+        members.sort(key=lambda m: m[0])
+        places = np.array([(g.x, g.y, g.z) for _, g, _ in members])
+        if len(places) > 1:
+            found.setdefault(road, []).append(([row for _, _, row in members], places))
+    return found
+
+
+def draw_turned(edges, road, lines, number):
+    """Add the edges of one road that lead away from it; returns the next free line number.
+
+    A corner begins with the vertex at which the main edge ends, so that the two touch.
+    """
+    ends = _main_ends(edges, road)
+    for rows, places in lines:
+        kind = rows[0]["kind"]
+        closed = kind == "island" and np.hypot(*(places[0, :2] - places[-1, :2])) <= SAME
+        first, last = (None, None) if kind == "island" else (_nearest(ends, places[k]) for k in (0, -1))
+        if first is not None and last is not None and np.array_equal(first, last):
+            near = np.hypot(*(first[:2] - places[0, :2])) <= np.hypot(*(first[:2] - places[-1, :2]))
+            first, last = (first, None) if near else (None, last)
+        # the main edge's own end is a place of the curve, so that an arc stays one where the curb was not seen for a metre
+        places = np.concatenate([*(v[None] for v in (first,) if v is not None), places, *(v[None] for v in (last,) if v is not None)])
+        vertices, residual = _drawn(places)
+        vertices = np.round(vertices, 4)
+        if closed:
+            vertices[-1] = vertices[0]
+        vertices[0], vertices[-1] = vertices[0] if first is None else first, vertices[-1] if last is None else last
+        vertices = vertices[np.r_[True, np.hypot(*np.diff(vertices[:, :2], axis=0).T) > 0]]
+        stations = [row["station_m"] for row in rows]
+        edges.add(shapely.linestrings(vertices), road=road, side=rows[0]["side"], status="measured",
+                  station_m=round(min(stations), 3), end_m=round(max(stations), 3),
+                  height_m=round(float(np.median([row["height_m"] for row in rows])), 3), part="bottom", kind=kind,
+                  length_m=round(float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), 3),
+                  rmse_m=round(float(np.sqrt(np.mean(residual**2))), 4), chain=number)
+        number += 1
+    return number
+
+
+def _drawn(places):
+    """Vertices of the smooth line through places, with its sharp corners, and how far each place lies off it."""
+    smooth = _smoothed(places)
+    bounds = np.r_[0, _sharp_chords(places) + 1, len(places)]
+    vertices, residuals = [], []
+    for k, (first, last) in enumerate(zip(bounds[:-1], bounds[1:])):
+        if k:
+            vertices.append(_corner(places[bounds[k - 1]:first], places[first:last])[None])
+        # a piece between two sharp corners is not rounded by what lies beyond them
+        part = _smoothed(places[first:last]) if len(bounds) > 2 else smooth
+        vertices.append(_through(part))
+        residuals.append(np.hypot(*(part - places[first:last])[:, :2].T))
+    return np.concatenate(vertices), np.concatenate(residuals)
+
+
+def _sharp_chords(places):
+    """Chords that cut a corner, the curb running one way before them and another after them: index of each one's first place."""
+    x, y = places[:, 0], places[:, 1]
+    heading, length = np.arctan2(np.diff(y), np.diff(x)), np.hypot(np.diff(x), np.diff(y))
+    turn = np.zeros(len(length))
+    turn[1:-1] = np.abs((heading[2:] - heading[:-2] + np.pi) % (2 * np.pi) - np.pi)
+    around = length.copy()
+    around[1:-1] += 0.5 * (length[2:] + length[:-2])
+    turn[(turn < SHARP) | (turn < around / SHARPEST)] = 0.0
+    beside = np.maximum(np.r_[0.0, turn[:-1]], np.r_[turn[1:], 0.0])
+    return np.flatnonzero((turn > beside) | (turn == beside) & (turn > 0) & (np.r_[0.0, turn[:-1]] < turn))
+
+
+def _corner(before, after):
+    """Where two pieces of curb meet, each drawn on straight; the middle between their ends where that is not between them."""
+    a, b = before[-1], after[0]
+    p, q = a - before[max(len(before) - 4, 0)], b - after[min(3, len(after) - 1)]
+    cross = p[0] * q[1] - p[1] * q[0]
+    f = ((b[0] - a[0]) * q[1] - (b[1] - a[1]) * q[0]) / cross if abs(cross) > 1e-6 else np.inf
+    meet = a[:2] + f * p[:2] if np.isfinite(f) else a[:2] + np.inf
+    gap = np.hypot(*(b - a)[:2])
+    if not max(np.hypot(*(meet - a[:2])), np.hypot(*(meet - b[:2]))) <= gap:
+        meet = 0.5 * (a + b)[:2]
+    return np.r_[meet, 0.5 * (a[2] + b[2])]
+
+
+def _smoothed(places):
+    """Places moved onto the parabolas through their neighbours within SMOOTH metres: noise goes, arcs stay."""
+    t = _chord_length(places[:, 0], places[:, 1])
+    owner, index = expand(np.searchsorted(t, t - SMOOTH), np.searchsorted(t, t + SMOOTH, side="right"))
+    u = t[index] - t[owner]
+    weight = 1.0 - (u / (SMOOTH * 1.1)) ** 2
+    count = np.bincount(owner, minlength=len(t))
+    powers = [np.bincount(owner, weight * u**k, len(t)) for k in range(5)]
+    # a stretch with few neighbours is drawn to its own places
+    normal = np.array([[powers[i + j] for j in range(3)] for i in range(3)]).transpose(2, 0, 1) + 1e-9 * np.eye(3)
+    right = np.array([[np.bincount(owner, weight * u**k * (places[index, c] - places[owner, c]), len(t)) for c in range(3)]
+                      for k in range(3)]).transpose(2, 0, 1)
+    moved = places + np.linalg.solve(normal, right)[:, 0]
+    # the ends stay: other lines begin there
+    moved[[0, -1]] = places[[0, -1]]
+    return np.where((count >= 4)[:, None], moved, places)
+
+
+def _through(places):
+    """(M, 3) vertices of a curve through places, VERTEX apart."""
+    if len(places) < 3:
+        return places
+    t = _chord_length(places[:, 0], places[:, 1])
+    return Akima1DInterpolator(t, places)(np.linspace(0.0, t[-1], int(np.ceil(t[-1] / VERTEX)) + 1))
+
+
+def _chord_length(x, y):
+    """(N,) metres along a polyline at its vertices; no two are the same."""
+    return np.r_[0.0, np.cumsum(np.maximum(np.hypot(np.diff(x), np.diff(y)), 1e-3))]
+
+
+def _main_ends(edges, road):
+    """(K, 3) end vertices of the main edges of a road, those where two pieces touch left out."""
+    ends = [np.array(geometry.coords[k]) for geometry, row in edges if row["road"] == road and of_main_curb(row) for k in (0, -1)]
+    if not ends:
+        return np.empty((0, 3))
+    ends = np.array(ends)
+    apart = np.hypot(*(ends[:, None, :2] - ends[None, :, :2]).transpose(2, 0, 1))
+    return ends[(apart <= SAME).sum(1) == 1]
+
+
+def _nearest(ends, place):
+    """The end within CONNECT of a place, None where there is none."""
+    if not len(ends):
+        return None
+    distance = np.hypot(*(ends[:, :2] - place[:2]).T)
+    k = int(np.argmin(distance))
+    return ends[k] if distance[k] <= CONNECT else None

@@ -1,0 +1,205 @@
+"""Road edges: smooth lines through the curb points of each side, cut by what was measured and what was bridged."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from scipy.interpolate import splev, splprep, splrep
+from scipy.ndimage import median_filter
+
+from ...common.features import Features
+from ...common.parallel import go_on
+from ...common.progress import Progress
+from ...common.schemas import ROAD_EDGES, of_main_curb
+from ...common.setting import check_limits, setting
+from ..common.nearest_pass import name_passes
+from .curb_returns import draw_turned, turned_lines
+
+CONNECT = 2.5          # m between curb points that are joined as measured
+MEDIAN_WINDOW = 5.0    # m of running median
+OUTLIER_MADS, OUTLIER_FLOOR = 3.0, 0.05  # MAD; m
+HIDDEN_STEP = 0.5      # m that a row of hidden curb stands for
+HIDDEN_SHARE = 0.5     # share of a gap that must be hidden for a bridge
+GAP_ENDS = 1.0         # m of a gap next to its ends, half in view, of which nothing is asked
+SHARPEST = 1.0         # m across per m along that a joined edge may run
+STEP_ACROSS = 0.25     # m across that two joined points may differ at any distance
+VERTEX = 0.5           # m between vertices
+SHORTEST = 2.0         # m of a piece with curb points
+LEAST_SIGMA = 0.001    # m, noise of a curb point at least: more would let the spline cut bends
+
+
+@dataclass(frozen=True)
+class EdgeSettings:
+    """How curb points become lines.
+
+    max_gap : m that are bridged where something hides the curb; longer gaps break the edge
+    fallback_width : m from edge to edge of a road drawn where no curb was found; 0 draws none
+    """
+
+    max_gap: float = setting(15.0, 0.0, 100.0, "The longest bridged gap", "m")
+    fallback_width: float = setting(0.0, 2.0, 50.0, "The fallback width", "m", "for none")
+
+    def __post_init__(self):
+        check_limits(self)
+
+
+def fit_road_edges(curb_points, frame, settings=EdgeSettings(), progress=Progress()):
+    """Fit a smoothing cubic B-spline through the curb points of each side.
+
+    Parameters
+    ----------
+    curb_points : Features CURB_POINTS (rows of part `top` are left aside)
+    frame : RoadFrame
+
+    Returns
+    -------
+    Features ROAD_EDGES: LineStringZ in map coordinates, digitised along the road,
+    one piece for each stretch of one status. Pieces of one edge share their end
+    vertices and `chain`.
+    """
+    edges = Features("LineStringZ", list(ROAD_EDGES), crs=curb_points.crs)
+    table, turned = _table(curb_points), turned_lines(curb_points)
+    lines = 0
+    for road in frame.roads:
+        for side in ("left", "right"):
+            rows = table[(table["road"] == road.number) & (table["side"] == side)]
+            drawn = []
+            for piece in _pieces(rows, settings.max_gap):
+                drawn.append(_draw(edges, frame, road, side, piece, lines))
+                lines += 1
+            if settings.fallback_width:
+                lines = _draw_fallback(edges, frame, road, side, drawn, settings.fallback_width, lines)
+        lines = draw_turned(edges, road.number, turned.get(road.number, []), lines)
+    name_passes(edges, frame)
+    length = {status: sum(r["length_m"] for r in edges.rows if r["status"] == status) for status in ("measured", "bridged")}
+    if len(edges):
+        progress.say(f"Road edges: {length['measured']:.0f} m measured, {length['bridged']:.0f} m bridged.")
+    else:
+        progress.warn("No curb was found along this road, so there are no road edges. A verge is none; a lower minimum curb "
+                      "height finds low curbs, an assumed road width draws edges all the same.")
+    progress.at(1.0)
+    return edges
+
+
+def _table(curb_points):
+    """The curb points of bottoms as a structured array, sorted by road, side and station."""
+    rows = [(r["road"], r["side"], r["status"] == "measured", r["station_m"], r["offset_m"], g.x, g.y, g.z,
+             r.get("height_m") or 0.0, -1 if r.get("chain") is None else r["chain"], r.get("residual_m") or 0.0)
+            for g, r in curb_points if of_main_curb(r) and r.get("part", "bottom") == "bottom" and r["status"] in ("measured", "occluded")]
+    table = np.array(rows, dtype=[("road", int), ("side", "U5"), ("measured", bool), ("s", float), ("d", float), ("x", float),
+                                  ("y", float), ("z", float), ("height", float), ("chain", int), ("residual", float)])
+    return table[np.lexsort((table["d"], table["s"], table["side"], table["road"]))]
+
+
+def _pieces(rows, max_gap):
+    """Curb points of one side parted into edges: lists of (points, is each gap to the next bridged)."""
+    hidden = rows["s"][~rows["measured"]]
+    points = without_outliers(rows[rows["measured"]])
+    if len(points) < 2:
+        return []
+    gap = np.diff(points["s"])
+    across = np.abs(np.diff(points["d"]))
+    joined = (gap <= CONNECT) & (across <= STEP_ACROSS + SHARPEST * gap)
+    start, end = points["s"][:-1], points["s"][1:]
+    covered = HIDDEN_STEP * (np.searchsorted(hidden, end) - np.searchsorted(hidden, start, side="right"))
+    bridged = (gap > CONNECT) & (gap <= max_gap) & (covered >= HIDDEN_SHARE * (gap - GAP_ENDS)) \
+        & (across <= STEP_ACROSS + 0.1 * gap)
+    breaks = np.flatnonzero(~(joined | bridged)) + 1
+    pieces = []
+    for part, flags in zip(np.split(points, breaks), np.split(np.r_[bridged, False], breaks)):
+        if len(part) >= 2 and part["s"][-1] - part["s"][0] >= SHORTEST:
+            pieces.append((part, flags[:-1]))
+    return pieces
+
+
+def without_outliers(points):
+    """Points that stay near the running median of the offsets of their chain."""
+    kept = np.ones(len(points), bool)
+    for chain in np.unique(points["chain"]):
+        rows = np.flatnonzero(points["chain"] == chain)
+        if len(rows) < 5:
+            continue
+        s, d = points["s"][rows], points["d"][rows]
+        spacing = np.median(np.diff(s))
+        window = int(np.clip(2 * round(0.5 * MEDIAN_WINDOW / max(spacing, 0.05)) + 1, 3, len(rows) | 1))
+        # an edge that turns away is no outlier: its own running direction is taken out first
+        direction = median_filter(np.diff(d) / np.maximum(np.diff(s), 0.05), window, mode="nearest")
+        off = d - np.r_[0.0, np.cumsum(direction * np.diff(s))]
+        away = np.abs(off - median_filter(off, window, mode="nearest"))
+        limit = max(OUTLIER_MADS * 1.4826 * np.median(away), OUTLIER_FLOOR)
+        kept[rows] = away <= limit
+    return points[kept]
+
+
+class EdgeCurve:
+    """A parametric smoothing cubic B-spline through curb points, by chord length."""
+
+    def __init__(self, points):
+        x, y, z = points["x"], points["y"], points["z"]
+        self.middle = np.array([x.mean(), y.mean(), z.mean()])
+        x, y, z = x - self.middle[0], y - self.middle[1], z - self.middle[2]
+        self.t = np.r_[0.0, np.cumsum(np.maximum(np.hypot(np.diff(x), np.diff(y)), 1e-3))]
+        order = min(3, len(x) - 1)
+        across, up = _noise(self.t, points["d"]), _noise(self.t, points["z"])
+        # x and y share the noise across; together 2 m values of variance sigma²
+        self.plan, _ = splprep([x, y], u=self.t, k=order, s=len(x) * across**2)
+        self.height = splrep(self.t, z, k=order, s=len(x) * up**2)
+        fx, fy = splev(self.t, self.plan)
+        self.residual = np.hypot(fx - x, fy - y)
+
+    def at(self, t):
+        x, y = splev(t, self.plan)
+        return np.c_[x, y, splev(t, self.height)] + self.middle
+
+
+def _noise(t, values):
+    """Scatter of single points about a smooth line, from how each differs from its neighbours' chord."""
+    if len(values) < 4:
+        return LEAST_SIGMA
+    left, right = np.diff(t)[:-1], np.diff(t)[1:]
+    f = left / (left + right)
+    off = values[1:-1] - ((1 - f) * values[:-2] + f * values[2:])
+    return max(float(np.median(np.abs(off) / np.sqrt(1 + f**2 + (1 - f) ** 2))) * 1.4826, LEAST_SIGMA)
+
+
+def _draw(edges, frame, road, side, piece, number):
+    """Add the pieces of one edge; returns its (start, end) station."""
+    points, bridged = piece
+    curve = EdgeCurve(points)
+    changes = np.flatnonzero(np.diff(bridged.astype(int))) + 1
+    bounds = np.r_[0, changes, len(points) - 1]
+    for i, j in zip(bounds[:-1], bounds[1:]):
+        go_on()
+        a, b = curve.t[i], curve.t[j]
+        vertices = curve.at(np.linspace(a, b, max(int(np.ceil((b - a) / VERTEX)), 1) + 1))
+        rows = points[i:j + 1]
+        edges.add(shapely.linestrings(np.round(vertices, 4)), road=road.number, side=side,
+                  status="bridged" if bridged[i] else "measured",
+                  station_m=round(float(rows["s"][0]), 3), end_m=round(float(rows["s"][-1]), 3),
+                  height_m=round(float(np.median(rows["height"])), 3), part="bottom", kind="main",
+                  length_m=round(float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), 3),
+                  rmse_m=round(float(np.sqrt(np.mean(curve.residual[i:j + 1] ** 2))), 4), chain=number)
+    return float(points["s"][0]), float(points["s"][-1])
+
+
+def _draw_fallback(edges, frame, road, side, drawn, width, number):
+    """Add lines half the width beside the middle of the driven tracks where no edge was found."""
+    passes = frame.passes_of(road.number)
+    start, end = min(p.span[0] for p in passes), max(p.span[1] for p in passes)
+    free, at = [], max(start, 0.0)
+    for a, b in sorted(drawn):
+        free.append((at, a))
+        at = max(at, b)
+    free.append((at, end))
+    for a, b in free:
+        if b - a < CONNECT:
+            continue
+        s = np.linspace(a, b, max(int(np.ceil((b - a) / VERTEX)), 1) + 1)
+        tracks = np.array([p.at_station(s)[0] for p in passes])
+        offset = 0.5 * (tracks.min(0) + tracks.max(0)) + (0.5 if side == "left" else -0.5) * width
+        x, y, z = frame.to_map(road.number, s, offset, frame.track_height(road.number, s))
+        edges.add(shapely.linestrings(np.round(np.c_[x, y, z], 4)), road=road.number, side=side, status="inferred",
+                  station_m=round(float(a), 3), end_m=round(float(b), 3), part="bottom", kind="main",
+                  length_m=round(float(np.hypot(np.diff(x), np.diff(y)).sum()), 3), chain=number)
+        number += 1
+    return number

@@ -1,0 +1,253 @@
+"""Curb points: where the road ends against a raised edge, nearest the driven track on each side."""
+
+from contextlib import closing
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from ...common.errors import RoadExtractionError
+from ...common.features import Features
+from ...common.parallel import in_order
+from ...common.progress import Progress
+from ...common.schemas import CURB_POINTS
+from ...common.setting import check_limits, setting
+from ..common.corners import Steps
+from ..common.decimation import FEW, Crowds
+from ..common.nearest_pass import name_passes
+from ..common.occlusion import Sight
+from ..common.pseudo_scanlines import SPREAD_ROWS
+from ..common.sides import REACH, SECTION, SIDES, Track, expected_height, profiles_beside, sections_of
+from ..common.tracking import NOISY, choose_along, curb_chains, link_chains, long_enough
+from ..curb_returns.detect import add_turned_curbs
+from .steps import AVERAGE, find_averaged_steps, find_steps
+
+VEHICLE_HALF = 0.6      # m from the track: no curb nearer
+MERGE_ACROSS = 0.12     # m between the same step seen in two passes
+MERGE_UP = 0.10
+DROPPED = 0.5           # a lower curb counts where it continues a full one: share of MIN_HEIGHT
+STRAIGHT_BLOCK, SHARP_BLOCK = 2.0, 0.5  # m
+TURN_PER_BLOCK = np.radians(1.0)        # a block of road turns no more than this
+BENT = 0.015            # m off its own straight line beyond which a block is cut shorter
+END_STEPS = 3           # profiles that give the end point of a chain
+MAIN_SHARE = 0.6        # of the work
+HIDDEN_STEP = 0.5       # m between rows of hidden curb
+HIDDEN_REACH = 25.0     # m between curbs within which hidden curb is reported
+
+
+@dataclass(frozen=True)
+class CurbSettings:
+    """How curbs are recognised.
+
+    block_length : m of road per curb point; 0 = 0.5 to 2.0, shorter in sharp bends
+    profile_width : m of road per profile
+    point_spacing : m, cells of the pseudo scan-lines
+    layer_jump : m of height that parts ground from what is above it
+    slope : degrees, least steepness of a curb face
+    min_height, max_height : m, road to top of curb
+    """
+
+    block_length: float = setting(0.0, 0.25, 10.0, "The block length", "m", "for automatic")
+    profile_width: float = setting(0.25, 0.05, 2.0, "The profile width", "m")
+    point_spacing: float = setting(0.025, 0.01, 0.1, "The point spacing", "m")
+    layer_jump: float = setting(0.05, 0.01, 0.5, "The layer jump", "m")
+    slope: float = setting(60.0, 10.0, 89.0, "The slope", "°")
+    min_height: float = setting(0.05, 0.01, 0.95, "The minimum curb height", "m")
+    max_height: float = setting(0.35, 0.02, 1.0, "The maximum curb height", "m")
+
+    def __post_init__(self):
+        check_limits(self)
+        if not self.min_height < self.max_height:
+            raise RoadExtractionError(f"Curbs from {self.min_height} m to {self.max_height} m were asked for; the maximum "
+                                      "must be above the minimum.")
+
+
+def detect_curbs(survey, settings=CurbSettings(), progress=Progress(), turned=True, crowds=None):
+    """Bottom corners of the curb on each side of every road, one per block.
+
+    Parameters
+    ----------
+    survey : Survey
+    turned : whether corners, side streets and islands are looked for too
+    crowds : Crowds of the survey, where it is used again
+
+    Returns
+    -------
+    Features CURB_POINTS: PointZ in map coordinates. Rows of status `measured` are
+    vertices of the road edge; rows of status `occluded` say where something hides
+    it, at the place where it is expected.
+    """
+    if crowds is None:
+        with closing(Crowds(survey, settings.profile_width, settings.point_spacing)) as own:
+            return detect_curbs(survey, settings, progress, turned, own)
+    found = Features("PointZ", list(CURB_POINTS), crs=survey.crs)
+    roads = survey.store.roads()
+    for i, road in enumerate(roads):
+        part = progress.part(MAIN_SHARE * i / len(roads), MAIN_SHARE * (i + 1) / len(roads))
+        steps, sight = _steps_of_road(crowds, road, settings, part)
+        for side in SIDES:
+            _report_side(found, survey, road, side, steps[side], sight[side], settings)
+    measured = sum(row["status"] == "measured" for row in found.rows)
+    if turned:
+        add_turned_curbs(found, crowds, settings, progress.part(MAIN_SHARE, 1.0))
+    name_passes(found, survey.frame)
+    progress.say(f"Curb points: {measured:,} measured, {len(found) - measured:,} hidden by something in front.")
+    return found
+
+
+def _steps_of_road(crowds, road, settings, progress):
+    """Steps of each side, passes merged, and what was seen beside the road."""
+    survey, width = crowds.survey, crowds.width
+    sections = sections_of(survey, road, width)
+    first, last = sections[0][0], sections[-1][1]
+    around = max(SPREAD_ROWS, int(np.ceil(AVERAGE / width)))
+    sight = {side: Sight(width, first, last - first, REACH) for side in SIDES}
+    tracks = {side: Track(survey.frame, road, sign) for side, sign in SIDES.items()}
+
+    def work(section):
+        found = {side: [] for side in SIDES}
+        wide = section[0] - around, section[1] + around
+        most = None if crowds.mostly_uneven(road, sum(section) // 2) else FEW
+        seen = list(profiles_beside(crowds, road, wide, tracks, settings, most))
+        # where averages are wanted every point counts
+        if most and any((lines.part(*section).spread > NOISY * settings.min_height).any() for *_, lines in seen):
+            seen = profiles_beside(crowds, road, wide, tracks, settings, most=None)
+        for side, _, beside, lines in seen:
+            sight[side].look(*beside, section, lines.part(*section))
+            steps = _steps_by_noise(lines, section, settings)
+            found[side].append(steps[steps.u > tracks[side](steps.s) + VEHICLE_HALF])
+        return {side: _merge_passes(steps) for side, steps in found.items() if steps}
+
+    parts = {side: [] for side in SIDES}
+    for found in in_order(work, sections, progress):
+        for side, steps in found.items():
+            parts[side].append(steps)
+    return {side: Steps.join(parts[side]) if parts[side] else None for side in SIDES}, sight
+
+
+def _steps_by_noise(lines, section, settings):
+    """Steps of a section's profiles: of each by itself, or averaged with its neighbours where noise would hide a curb."""
+    own = lines.part(*section)
+    least, noisy = DROPPED * settings.min_height, own.spread > NOISY * settings.min_height
+    sharp = find_steps(own, least, settings.max_height)
+    if not noisy.any():
+        return sharp
+    blurred = find_averaged_steps(lines, least, settings.max_height, settings.layer_jump)
+    blurred = blurred[(blurred.profile >= section[0]) & (blurred.profile < section[1])]
+    return Steps.join([sharp[~noisy[sharp.profile - own.first]], blurred[noisy[blurred.profile - own.first]]])
+
+
+def _merge_passes(found):
+    """One step where several passes saw the same one: the mean, weighted by support."""
+    steps = Steps.join(found)
+    if len(found) < 2 or not len(steps):
+        return steps
+    order = np.lexsort((steps.u, steps.profile))
+    steps = steps[order]
+    apart = (np.diff(steps.profile) > 0) | (np.diff(steps.u) > MERGE_ACROSS) | (np.abs(np.diff(steps.h)) > MERGE_UP)
+    group = np.r_[0, np.cumsum(apart)]
+    weight = np.sqrt(np.maximum(steps.support, 1))
+    total = np.bincount(group, weight)
+    values = {name: np.bincount(group, weight * getattr(steps, name)) / total
+              for name in ("s", "u", "h", "skew", "height", "run", "noise", "usual")}
+    return Steps(profile=steps.profile[np.r_[True, apart]], **values,
+                 support=np.bincount(group, steps.support).astype(np.int64),
+                 behind=np.bincount(group, steps.behind).astype(np.int64))
+
+
+def _report_side(found, survey, road, side, steps, sight, settings):
+    """Curb points of one side of one road, measured and hidden, in order of station."""
+    if steps is None or not len(steps):
+        return
+    frame, sign = survey.frame, SIDES[side]
+    track = Track(frame, road, sign)
+    label = link_chains(steps, settings.profile_width)
+    chains = curb_chains(steps, label, settings.profile_width, settings.min_height, np.radians(settings.slope))
+    chosen = long_enough(choose_along(chains, steps, track), chains, steps)
+    edges = block_edges(frame.road(road), *survey.store.span(road), settings.block_length)
+    rows = []
+    for number, (chain, a, b) in enumerate(chosen):
+        members = chains[chain].steps
+        members = members[(steps.s[members] >= a) & (steps.s[members] <= b)]
+        rows += _block_points(steps[members], edges, number)
+    measured = np.array([(r["s"], r["u"], r["h"]) for r in rows]).reshape(-1, 3)
+    rows += hidden_points(measured, sight, track)
+    rows.sort(key=lambda r: r["s"])
+    if not rows:
+        return
+    s, u, h = (np.array([r[name] for r in rows]) for name in ("s", "u", "h"))
+    x, y, z = frame.to_map(road, s, sign * u, h + expected_height(survey, road, s))
+    for point, row in zip(shapely.points(np.round(x, 4), np.round(y, 4), np.round(z, 4)), rows):
+        found.add(point, road=road, side=side, station_m=round(row["s"], 4), offset_m=round(sign * row["u"], 4),
+                  part="bottom", kind="main", **row["fields"])
+
+
+def block_edges(road, start, end, block_length):
+    """Stations at which blocks begin and end, counted from station 0.
+
+    Automatic blocks are 0.5 to 2.0 m long, so that the road turns no more than a
+    degree within one; the length is decided for every 20 m of road.
+    """
+    edges = []
+    first, last = int(np.floor(start / SECTION)), int(np.ceil(end / SECTION))
+    if block_length:
+        return np.arange(np.floor(start / block_length), np.ceil(end / block_length) + 1) * block_length
+    for k in range(first, last):
+        bend = np.abs(road.curvature(np.arange(k * SECTION, (k + 1) * SECTION, 0.5))).max()
+        length = np.clip(TURN_PER_BLOCK / max(bend, 1e-9), SHARP_BLOCK, STRAIGHT_BLOCK)
+        edges.append(np.linspace(k * SECTION, (k + 1) * SECTION, int(np.ceil(SECTION / length)) + 1)[:-1])
+    return np.r_[np.concatenate(edges), last * SECTION] if edges else np.array([start, end])
+
+
+def _block_points(steps, edges, chain):
+    """One point per block from the steps of a chain: their line, read at the middle of what was seen."""
+    if not len(steps):
+        return []
+    names, member = np.unique(block_numbers(steps, edges), return_inverse=True)
+    n = np.bincount(member)
+
+    def mean(v):
+        return np.bincount(member, v) / n
+
+    s, u, h, height = (mean(v) for v in (steps.s, steps.u, steps.h, steps.height))
+    residual = np.sqrt(mean((steps.u - np.interp(steps.s, s, u)) ** 2))
+    support = np.bincount(member, steps.support)
+    return [dict(s=float(s[k]), u=float(u[k]), h=float(h[k]),
+                 fields=dict(status="measured", height_m=round(float(height[k]), 4), chain=chain,
+                             residual_m=round(float(residual[k]), 4), support=int(support[k]))) for k in range(len(names))]
+
+
+def block_numbers(steps, edges):
+    """(M,) number of the block of each step of a chain; blocks in which the curb bends are cut in four, and the ends are their own."""
+    block = np.searchsorted(edges, steps.s, side="right")
+    names, member = np.unique(block, return_inverse=True)
+    n = np.bincount(member)
+    ds = steps.s - (np.bincount(member, steps.s) / n)[member]
+    du = steps.u - (np.bincount(member, steps.u) / n)[member]
+    slope = np.bincount(member, ds * du) / (np.bincount(member, ds * ds) + 1e-3)
+    off = np.sqrt(np.bincount(member, (du - slope[member] * ds) ** 2) / n)
+    start, length = edges[names - 1], np.diff(edges)[np.minimum(names, len(edges) - 1) - 1]
+    quarter = np.clip(np.floor(4 * (steps.s - start[member]) / length[member]), 0, 3).astype(np.int64)
+    block = 8 * block + 2 * np.where(off[member] > BENT, quarter, 0)  # even numbers, so that there is room for the ends
+    # a chain's ends stand for themselves, not for the middle of their blocks
+    if len(steps) > 2 * END_STEPS:
+        block[:END_STEPS] = block[0] - 1
+        block[-END_STEPS:] = block[-1] + 1
+    return block
+
+
+def hidden_points(measured, sight, track):
+    """Places in the gaps between curb points where something hides the curb."""
+    if len(measured) < 2:
+        return []
+    measured = measured[np.argsort(measured[:, 0], kind="stable")]
+    s = np.arange(np.ceil(measured[0, 0] / HIDDEN_STEP), np.floor(measured[-1, 0] / HIDDEN_STEP) + 1) * HIDDEN_STEP
+    after = np.clip(np.searchsorted(measured[:, 0], s, side="right"), 1, len(measured) - 1)
+    before_s, after_s = measured[after - 1, 0], measured[after, 0]
+    wide = (after_s - before_s <= HIDDEN_REACH) & (after_s - before_s > STRAIGHT_BLOCK) \
+        & (s - before_s > 0.5 * HIDDEN_STEP) & (after_s - s > 0.5 * HIDDEN_STEP)
+    s = s[wide]
+    u, h = (np.interp(s, measured[:, 0], measured[:, k]) for k in (1, 2))
+    hidden = sight.hidden(s, u, h, track(s))
+    return [dict(s=float(a), u=float(b), h=float(c), fields=dict(status="occluded"))
+            for a, b, c in zip(s[hidden], u[hidden], h[hidden])]

@@ -1,0 +1,318 @@
+"""Road boundaries from normalized scanlines: corners of curbs, chained along the road.
+
+Section by section the scanlines of each side, pass and scanner are searched by
+themselves; corners that agree are merged, those that do not stay apart until the
+choice along the road, which both ways of finding curbs share, takes the ones that go on.
+
+References
+----------
+The scanline paper (ISPRS Archives, 2020), section 3 and table 1.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from ...common.errors import RoadExtractionError
+from ...common.features import Features
+from ...common.parallel import in_order
+from ...common.progress import Progress
+from ...common.schemas import CURB_POINTS, ROAD_EDGES
+from ...common.setting import check_limits, setting
+from ..common.nearest_pass import name_passes
+from ..common.occlusion import TALL, Sight
+from ..common.pseudo_scanlines import LEAST_NOISE
+from ..common.sides import REACH, SECTION, SIDES, Track, expected_height
+from ..common.tracking import choose_along, curb_chains, link_chains, long_enough
+from ..edges.fit import HIDDEN_SHARE, HIDDEN_STEP, SHARPEST, SHORTEST, STEP_ACROSS, VERTEX, EdgeCurve, without_outliers
+from ..profiles.detect import MERGE_ACROSS, MERGE_UP, VEHICLE_HALF, block_edges, block_numbers, hidden_points
+from .candidates import NEIGHBOURS, find_candidates, rows_filled, samples_near
+from .corners import CurbCorners, corners_of, rows_along
+from .grid import height_grid
+
+# Boundary lines through the corners of curbs: bottom and top, left and right, cut by what was measured.
+
+MEASURED_GAP = 1.0   # m between corners that follow on each other; wider gaps are joined, but not measured
+
+_POINT = [("s", float), ("d", float), ("x", float), ("y", float), ("z", float), ("height", float), ("chain", int)]
+
+
+def boundary_lines(corners, frame, max_gap, progress=Progress()):
+    """Smooth lines through corners, bottoms and tops apart.
+
+    Parameters
+    ----------
+    corners : Features CURB_POINTS with `part` bottom or top
+    frame : RoadFrame
+    max_gap : m between corners that are joined
+
+    Returns
+    -------
+    Features with the fields of ROAD_EDGES: LineStringZ along the road, one piece for each
+    stretch of one status: measured; bridged, a gap between corners; occluded, a gap that
+    something hides. Pieces of one line share their end vertices and `chain`.
+    """
+    lines = Features("LineStringZ", list(ROAD_EDGES), crs=corners.crs)
+    number = 0
+    for road in frame.roads:
+        for side in SIDES:
+            hidden = np.sort([row["station_m"] for row in corners.rows
+                              if row["road"] == road.number and row["side"] == side and row["status"] == "occluded"])
+            for part in ("bottom", "top"):
+                for points, status in _pieces(_points(corners, road.number, side, part), hidden, max_gap):
+                    _draw(lines, points, status, road=road.number, side=side, part=part, chain=number)
+                    number += 1
+    name_passes(lines, frame)
+    length = {part: sum(row["length_m"] for row in lines.rows if row["part"] == part) for part in ("bottom", "top")}
+    progress.say(f"Boundaries: {length['bottom']:.0f} m of bottom lines and {length['top']:.0f} m of top lines.")
+    progress.at(1.0)
+    return lines
+
+
+def _points(corners, road, side, part):
+    """The measured corners of one kind, sorted by station."""
+    rows = [(row["station_m"], row["offset_m"], g.x, g.y, g.z, row.get("height_m") or 0.0, row["chain"]) for g, row in corners
+            if row["road"] == road and row["side"] == side and row["part"] == part and row["status"] == "measured"]
+    points = np.array(rows, dtype=_POINT)
+    return without_outliers(points[np.argsort(points["s"], kind="stable")])
+
+
+def _pieces(points, hidden, max_gap):
+    """Points parted where the line breaks: lists of (points, status of each gap to the next)."""
+    if len(points) < 2:
+        return []
+    gap, across = np.diff(points["s"]), np.abs(np.diff(points["d"]))
+    near = gap <= MEASURED_GAP
+    joined = (near | (gap <= max_gap)) & (across <= STEP_ACROSS + SHARPEST * gap)
+    covered = HIDDEN_STEP * (np.searchsorted(hidden, points["s"][1:]) - np.searchsorted(hidden, points["s"][:-1], side="right"))
+    status = np.where(near, "measured", np.where(covered >= HIDDEN_SHARE * gap, "occluded", "bridged"))
+    breaks = np.flatnonzero(~joined) + 1
+    parts = zip(np.split(points, breaks), np.split(np.append(status, ""), breaks))
+    return [(part, flags[:-1]) for part, flags in parts if len(part) >= 2 and part["s"][-1] - part["s"][0] >= SHORTEST]
+
+
+def _draw(lines, points, status, **fields):
+    """Add the pieces of one line."""
+    curve = EdgeCurve(points)
+    bounds = np.r_[0, np.flatnonzero(status[1:] != status[:-1]) + 1, len(points) - 1]
+    for i, j in zip(bounds[:-1], bounds[1:]):
+        a, b = curve.t[i], curve.t[j]
+        vertices = curve.at(np.linspace(a, b, max(int(np.ceil((b - a) / VERTEX)), 1) + 1))
+        rows = points[i:j + 1]
+        lines.add(shapely.linestrings(np.round(vertices, 4)), status=str(status[i]), kind="main",
+                  station_m=round(float(rows["s"][0]), 3), end_m=round(float(rows["s"][-1]), 3),
+                  height_m=round(float(np.median(rows["height"])), 3),
+                  length_m=round(float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), 3),
+                  rmse_m=round(float(np.sqrt(np.mean(curve.residual[i:j + 1] ** 2))), 4), **fields)
+
+MOST_NOISE = 0.005   # m: where planes scatter more, it is the ground that is rough, as verges are
+CORNER_BLOCK = 0.5   # m of road per corner where corners are asked for
+
+
+@dataclass(frozen=True)
+class ScanlineBoundarySettings:
+    """The paper's table 1.
+
+    search_width : m across within which the height must change
+    sensor_height : m from the trajectory down to the road; 0 = from the data
+    clipping_height : m above the road up to which anything is looked at
+    min_height : m of height change
+    distance_across, distance_along : m to either side of a candidate from which its planes are made
+    ransac_distance : m, inliers of a plane
+    vertical_angle, horizontal_angle : degrees of a plane's normal from Z: at least that of a face, at most that of
+        road and sidewalk
+    max_gap : m between corners that are connected
+    """
+
+    search_width: float = setting(0.10, 0.04, 0.5, "The search width", "m")
+    sensor_height: float = setting(0.0, 0.0, 10.0, "The sensor height", "m")
+    clipping_height: float = setting(0.45, 0.05, 2.0, "The clipping height", "m")
+    min_height: float = setting(0.03, 0.01, 0.5, "The minimum height", "m")
+    distance_across: float = setting(0.50, 0.15, 2.0, "The distance across", "m")
+    distance_along: float = setting(0.40, 0.1, 2.0, "The distance along", "m")
+    ransac_distance: float = setting(0.005, 0.001, 0.1, "The RANSAC distance", "m")
+    vertical_angle: float = setting(60.0, 20.0, 90.0, "The vertical angle", "°")
+    horizontal_angle: float = setting(20.0, 1.0, 45.0, "The horizontal angle", "°")
+    max_gap: float = setting(2.5, 0.0, 100.0, "The longest connected gap", "m")
+
+    def __post_init__(self):
+        check_limits(self)
+        if self.clipping_height <= self.min_height:
+            raise RoadExtractionError(f"The clipping height is {self.clipping_height} m and the minimum height {self.min_height} m; "
+                                      "the clipping height must be above the minimum height.")
+        if self.vertical_angle <= self.horizontal_angle:
+            raise RoadExtractionError(f"The vertical angle is {self.vertical_angle}° and the horizontal angle {self.horizontal_angle}°; "
+                                      "the vertical angle must be above the horizontal one.")
+
+
+def curbs_from_scanlines(source, settings=ScanlineBoundarySettings(), block_length=0.0, progress=Progress()):
+    """Bottom and top corners of the curb on each side of every road, one of each per block.
+
+    Parameters
+    ----------
+    source : gives `frame`, `crs`, `interval`, `corridor`, `roads()`, `span(road)`, `road_height(road, s)`,
+        `runs(road, start, end)` and `level`; see SurveyScanlines
+    block_length : m of road per corner; 0 = 0.5 to 2.0, shorter in sharp bends
+
+    Returns
+    -------
+    Features CURB_POINTS: PointZ in map coordinates, `part` bottom or top. Rows of status
+    `occluded` say where something hides the curb.
+    """
+    found = Features("PointZ", list(CURB_POINTS), crs=source.crs)
+    roads = source.roads()
+    for i, road in enumerate(roads):
+        part = progress.part(i / len(roads), (i + 1) / len(roads))
+        corners, sight = _corners_of_road(source, road, settings, part)
+        for side in SIDES:
+            if corners[side] is not None and len(corners[side]):
+                _report_side(found, source, road, side, corners[side], sight[side], settings, block_length)
+    name_passes(found, source.frame)
+    bottoms = [row["status"] for row in found.rows if row["part"] == "bottom"]
+    progress.say(f"Corners of curbs: {bottoms.count('measured'):,} measured on scanlines, "
+                 f"{bottoms.count('occluded'):,} hidden by something in front.")
+    return found
+
+
+def _corners_of_road(source, road, settings, progress):
+    """Corners of each side, passes and scanners merged where they agree, and what was seen beside the road."""
+    interval = source.interval
+    sections = _sections(*source.span(road), interval)
+    first, last = sections[0][0], sections[-1][1]
+    margin = max(rows_along(interval, settings), NEIGHBOURS + rows_filled(interval)) + 1
+    sight = {side: Sight(interval, first, last - first, REACH) for side in SIDES}
+    tracks = {side: Track(source.frame, road, sign) for side, sign in SIDES.items()}
+
+    def work(section):
+        begin, end = section
+        rows = begin - margin, end + margin
+        stations = np.arange(*rows) * interval
+        nearest = {side: tracks[side](stations) + VEHICLE_HALF for side in SIDES}
+        found = {side: [] for side in SIDES}
+        for lines in source.runs(road, (rows[0] - 0.5) * interval, (rows[1] - 0.5) * interval):
+            heights = lines.z - np.repeat(expected_height(source, road, lines.station), np.diff(lines.first))
+            grid = height_grid(lines, heights, rows, interval, min(REACH, source.corridor), settings.clipping_height)
+            closed = grid.closed(rows_filled(interval))
+            tall = _tall(lines, heights, interval)
+            candidates, strip = {}, _level_beside(source, road, int(lines.pass_number[0]), stations[margin:-margin])
+            for side, sign in SIDES.items():
+                origin = np.floor(nearest[side].min())
+                outward = grid.outward(sign, origin)
+                sight[side].look(sign * tall[0], *tall[1:], section, outward.part(margin, margin + end - begin))
+                if strip is not None:
+                    sight[side].level(section, *strip[sign])
+                of_side = find_candidates(closed.outward(sign, origin), outward.low, nearest[side], settings)
+                candidates[side] = of_side[(of_side.row >= margin) & (of_side.row < margin + end - begin)]
+            for side, corners in _corners(lines, heights, rows, interval, candidates, settings):
+                found[side].append(corners)
+        return {side: merged_corners(parts) for side, parts in found.items() if parts}
+
+    parts = {side: [] for side in SIDES}
+    for found in in_order(work, sections, progress):
+        for side, corners in found.items():
+            parts[side].append(corners)
+    return {side: _with_usual_noise(CurbCorners.join(found)) if found else None for side, found in parts.items()}, sight
+
+
+def _sections(start, end, interval):
+    """The section planes of a road parted for work: list of (first, last + 1) numbers, about 20 m each."""
+    first, last = int(np.floor(start / interval)), int(np.ceil(end / interval)) + 1
+    count = max(int(np.ceil((end - start) / SECTION)), 1)
+    bounds = np.unique(np.rint(np.linspace(first, last, count + 1)).astype(int))
+    return [(int(a), int(b)) for a, b in zip(bounds[:-1], bounds[1:])]
+
+
+def _level_beside(source, road, number, stations):
+    """{sign of the side: (nearest, farthest, height)} of the ground that scanlines leave out beside the track of a pass, (R,) each."""
+    if source.level is None:
+        return None
+    low, high, height = source.level(road, number, stations[0], stations[-1] + source.interval).at(stations)
+    height = height - expected_height(source, road, stations)
+    return {1: (low, high, height), -1: (-high, -low, height)}
+
+
+def _tall(lines, heights, interval):
+    """(d, s, h) of the vertices of things that hide what lies behind."""
+    vertex = np.flatnonzero(heights > TALL)
+    line = np.searchsorted(lines.first, vertex, side="right") - 1
+    return lines.d[vertex], lines.station[line] + 0.5 * interval, heights[vertex]
+
+
+def _corners(lines, heights, rows, interval, candidates, settings):
+    """Yield (side, corners at its candidates) of one pass and scanner."""
+    if not any(map(len, candidates.values())):
+        return
+    places = (np.concatenate([c.row for c in candidates.values()]), np.concatenate([SIDES[side] * c.u for side, c in candidates.items()]))
+    samples = samples_near(lines, heights, rows, interval, places, settings.distance_across, rows_along(interval, settings),
+                           settings.clipping_height)
+    for side, of_side in candidates.items():
+        if len(of_side):
+            yield side, corners_of(samples.outward(SIDES[side]), of_side, settings)
+
+
+def merged_corners(found):
+    """One corner where several passes or scanners saw the same one: the mean, weighted by support."""
+    corners = CurbCorners.join(found)
+    if len(found) < 2 or not len(corners):
+        return corners
+    corners = corners[np.lexsort((corners.u, corners.profile))]
+    apart = (np.diff(corners.profile) > 0) | (np.diff(corners.u) > MERGE_ACROSS) | (np.abs(np.diff(corners.h)) > MERGE_UP)
+    group = np.r_[0, np.cumsum(apart)]
+    weight = np.sqrt(np.maximum(corners.support, 1))
+    total = np.bincount(group, weight)
+    values = {name: np.bincount(group, weight * getattr(corners, name)) / total
+              for name in ("s", "u", "h", "skew", "height", "run", "noise", "usual", "top_u", "top_h", "residual")}
+    return CurbCorners(profile=corners.profile[np.r_[True, apart]], **values,
+                       support=np.bincount(group, corners.support).astype(np.int64),
+                       behind=np.bincount(group, corners.behind).astype(np.int64))
+
+
+def _with_usual_noise(corners):
+    """The corners, each with the scatter that is usual about the planes of this road."""
+    if len(corners):
+        corners.usual = np.full(len(corners), np.clip(np.median(corners.noise), LEAST_NOISE, MOST_NOISE))
+    return corners
+
+
+def _report_side(found, source, road, side, corners, sight, settings, block_length):
+    """Bottom and top corners of one side of one road, measured and hidden, in order of station."""
+    frame, sign = source.frame, SIDES[side]
+    track = Track(frame, road, sign)
+    label = link_chains(corners, source.interval)
+    chains = curb_chains(corners, label, source.interval, settings.min_height, np.radians(settings.vertical_angle))
+    chosen = long_enough(choose_along(chains, corners, track), chains, corners)
+    edges = block_edges(frame.road(road), *source.span(road), block_length)
+    rows = []
+    for number, (chain, a, b) in enumerate(chosen):
+        members = chains[chain].steps
+        members = members[(corners.s[members] >= a) & (corners.s[members] <= b)]
+        rows += _block_points(corners[members], edges, number)
+    bottoms = np.array([(r["s"], r["u"], r["h"]) for r in rows if r["fields"]["part"] == "bottom"]).reshape(-1, 3)
+    rows += [{**r, "fields": dict(r["fields"], part="bottom")} for r in hidden_points(bottoms, sight, track)]
+    rows.sort(key=lambda r: (r["s"], r["fields"]["part"]))
+    if not rows:
+        return
+    s, u, h = (np.array([r[name] for r in rows]) for name in ("s", "u", "h"))
+    x, y, z = frame.to_map(road, s, sign * u, h + expected_height(source, road, s))
+    for point, row in zip(shapely.points(np.round(x, 4), np.round(y, 4), np.round(z, 4)), rows):
+        found.add(point, road=road, side=side, station_m=round(row["s"], 4), offset_m=round(sign * row["u"], 4), kind="main",
+                  **row["fields"])
+
+
+def _block_points(corners, edges, chain):
+    """A bottom and a top corner per block from those of a chain: their means."""
+    if not len(corners):
+        return []
+    names, member = np.unique(block_numbers(corners, edges), return_inverse=True)
+    n = np.bincount(member)
+    mean = {name: np.bincount(member, getattr(corners, name)) / n for name in ("s", "u", "h", "top_u", "top_h", "height")}
+    off = corners.u - np.interp(corners.s, mean["s"], mean["u"])
+    residual, support = np.sqrt(np.bincount(member, off**2) / n), np.bincount(member, corners.support)
+    rows = []
+    for k in range(len(names)):
+        fields = dict(status="measured", height_m=round(float(mean["height"][k]), 4), chain=chain,
+                      residual_m=round(float(residual[k]), 4), support=int(support[k]))
+        for part, u, h in (("bottom", "u", "h"), ("top", "top_u", "top_h")):
+            rows.append(dict(s=float(mean["s"][k]), u=float(mean[u][k]), h=float(mean[h][k]), fields=dict(fields, part=part)))
+    return rows

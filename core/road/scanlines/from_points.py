@@ -1,0 +1,116 @@
+"""Scanlines straight from the points, where a cloud has no scan lattice to mesh.
+
+Spinning multi-beam scanners, thinned clouds and clouds without times have no rows
+and columns of neighbours. There the points near a section plane stand for its cut
+through the surface: binned across the road, in every bin the lowest layer. What
+stands above the ground is kept as lines of its own, for it tells what hides a curb.
+"""
+
+import numpy as np
+
+from ..common.pseudo_scanlines import pseudo_scan_lines
+from ..common.sides import expected_height
+from .mesh import increasing
+from .scanlines import Scanlines
+
+SPACING = 0.02      # m across between vertices
+UPWARD = 0.01       # m of height between them where the ground is steep
+LAYER_JUMP = 0.05   # m of height that parts ground from what is above it
+STEEP, STEEP_SIGMAS = 0.02, 6.0  # m of height within one bin, and times the noise, beyond which it gets a vertex for every UPWARD
+TALL = 0.45         # m above the expected road from which what is not ground is kept
+WIDEST_GAP = 0.30   # m between neighbouring vertices of one line
+FEWEST = 3          # vertices of a line
+SLACK = 0.01        # m more than the slices need are read: which points belong to a slice the slice decides
+LEAST_SLICE = 0.20  # m along the road: thinner slices fall between two turns of a scanner
+
+
+def point_scanlines(survey, road, start, end, interval, corridor):
+    """Scanlines of the points near section planes at k * interval, start <= k * interval < end.
+
+    Parameters
+    ----------
+    survey : Survey
+    road : number
+    start, end, interval, corridor : metres
+
+    Returns
+    -------
+    Scanlines; a slice takes the points within interval / 2 of its plane, or within
+    LEAST_SLICE / 2 where that is more
+    """
+    first, last = int(np.ceil(start / interval - 1e-9)), int(np.ceil(end / interval - 1e-9))
+    half = 0.5 * max(LEAST_SLICE, interval)
+    if last <= first:
+        return Scanlines.none()
+    points = survey.window(road, first * interval - half - SLACK, (last - 1) * interval + half + SLACK)
+    points = points[np.abs(points.d) < corridor]
+    s, d = points.s, points.d
+    h = points.z - expected_height(survey, road, s)
+    key = points.pass_number.astype(np.int64) * 256 + points.scanner
+    parts = []
+    for value in np.unique(key):
+        own = np.flatnonzero(key == value)
+        rows, index = _slices(s[own], first, last, interval, half)
+        index = own[index]
+        # the row stands in the station's place, so that slices may overlap
+        cells = pseudo_scan_lines(d[index], rows + 0.5, h[index], points.intensity[index].astype(float), (first, last), 1.0,
+                                  SPACING, LAYER_JUMP, -corridor, corridor)
+        for chosen, at in ((cells.ground, 0.5), (~cells.ground & (cells.h > TALL), 1.0)):
+            parts.append(_joined(*_vertices(cells, np.flatnonzero(chosen), at), first, interval, int(value) // 256, int(value) % 256))
+    lines = Scanlines.join(parts)
+    if not len(lines):
+        return lines
+    lines.z = lines.z + np.repeat(expected_height(survey, road, lines.station), np.diff(lines.first))
+    return lines[np.lexsort((lines.d[lines.first[:-1]], lines.scanner, lines.pass_number, np.rint(lines.station / interval)))]
+
+
+def _slices(s, first, last, interval, half):
+    """(row, index) of every point within `half` of a section plane, once for each such plane."""
+    low = np.maximum(np.ceil((s - half) / interval).astype(np.int64), first)
+    high = np.minimum(np.floor((s + half) / interval).astype(np.int64), last - 1)
+    count = np.maximum(high - low + 1, 0)
+    index = np.repeat(np.arange(len(s)), count)
+    return np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count) + low[index], index
+
+
+def _vertices(cells, chosen, quantile):
+    """Row, offset, height and intensity of a vertex for every occupied cell, several where it is steep.
+
+    Heights of level cells are a quantile of theirs: the median of ground, the top of what is tall.
+    """
+    count = cells.shape[1]
+    place = np.repeat(np.arange(len(cells.starts) - 1), np.diff(cells.starts))[chosen]
+    d, h, intensity = cells.u[chosen], cells.h[chosen], cells.along[chosen]
+    if not len(chosen):
+        return (np.empty(0, np.int64),) + (np.empty(0),) * 3
+    begins = np.r_[True, np.diff(place) > 0]
+    first = np.flatnonzero(begins)
+    cell = np.cumsum(begins) - 1
+    lowest, highest = h[first], h[np.r_[first[1:], len(h)] - 1]
+    noise = cells.noise[place[first] // count]
+    steep = (highest - lowest > np.maximum(STEEP, STEEP_SIGMAS * noise)) & (quantile < 1.0)
+    level = np.where(steep[cell], np.floor((h - lowest[cell]) / UPWARD), 0.0).astype(np.int64)
+    begins = begins | np.r_[True, np.diff(level) != 0]
+    start = np.flatnonzero(begins)
+    number = np.diff(np.r_[start, len(h)])
+    middle = start + np.floor(quantile * (number - 1) + 0.5).astype(np.int64)
+    across, bright = np.add.reduceat(d, start) / number, np.add.reduceat(intensity, start) / number
+    row, column = place[start] // count, place[start] % count
+    # a face is followed up on the left of the road and down on its right
+    rise = np.where(column < count // 2, -1, 1) * level[start]
+    order = np.lexsort((rise, column, row))
+    return row[order], across[order], h[middle][order], bright[order]
+
+
+def _joined(row, d, h, intensity, first, interval, pass_number, scanner):
+    """Vertices in order made lines, parted where they lie far apart."""
+    if not len(row):
+        return Scanlines.none()
+    new = np.r_[True, (np.diff(row) != 0) | (np.diff(d) > WIDEST_GAP) | (np.abs(np.diff(h)) > 2 * WIDEST_GAP)]
+    begins = np.flatnonzero(new)
+    count = len(begins)
+    # noise brings points of a face out of order
+    d = increasing(d, np.r_[begins, len(row)])
+    lines = Scanlines((row[begins] + first) * interval, np.full(count, pass_number), np.full(count, scanner),
+                      np.r_[begins, len(row)], d, h, intensity.astype(np.float32))
+    return lines[np.diff(lines.first) >= FEWEST]

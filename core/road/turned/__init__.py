@@ -1,1 +1,0 @@
-"""Curbs that turn away from the road: corners, side streets, islands, found in the plan."""

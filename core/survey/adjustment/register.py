@@ -1,0 +1,231 @@
+"""How far apart two passes lie over the same stretch of road: across, along and up.
+
+Navigation drifts between two drives by centimetres, and every curb and line is
+then seen twice. Both passes are turned into strips of cells, height and
+brightness freed of what varies slowly, and laid on each other with every offset
+up to 30 cm; the offset at which they agree best is how far the one lies off the
+other. What only one of them saw (vehicles) agrees nowhere and tells nothing.
+"""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from ...common.parallel import in_order
+from ...common.progress import Progress
+from .corrections import STEP
+
+AXES = "along", "left", "up"
+CHANNELS = "steps", "paint"
+WHOLE = {"steps": 1e4, "paint": 64.0}  # in 0.1 mm and in parts of a spread
+WINDOW = STEP          # m of road compared at a time, counted from station 0
+REACH = 12.0           # m either side of the reference line
+FINE, COARSE = 0.02, 0.25  # m: cells in the direction of an offset, and across it
+MOST = 0.30            # m between two passes
+LAGS = np.arange(-int(round(MOST / FINE)), int(round(MOST / FINE)) + 1)
+LOWEST, HIGHEST = -0.3, 0.4   # m about the road's expected height: ground and curbs
+BLUR = 3               # cells over which heights are averaged
+SMOOTH = 51            # cells: what varies over more than a metre is no curb and no paint
+EDGE, CONTRAST = 0.05, 4.0  # m of height, and spreads of brightness, beyond which a cell tells no more
+BEST = 0.999           # correlation: more tells no more
+LEVEL = 0.01           # m: cells that lie flat tell how far one pass lies above the other
+FEWEST = 300           # cells that two passes must share in a window
+ALIKE = 6.0            # neighbouring cells whose errors are alike
+POOLED = 15.0          # m, sigma: over so much road drift changes little
+SURE = 0.006           # m, sigma of an offset that counts
+USUAL = 0.10           # m, sigma of what is expected at all: of two offsets as good the smaller one
+CLEAR = 25.0           # by how much the best offset must be likelier (twice the logarithm) than none
+ALONE = 0.7            # of that at most, another offset that stands out may reach
+TOP = 2                # cells either side of the best that tell where between cells it lies
+BESIDE = 2             # cells beside the best that are no others
+
+
+@dataclass(frozen=True)
+class Offsets:
+    """What must be added to pass `other` to lay it on pass `one`, window by window of a road.
+
+    stations : (N,) middles of the windows
+    along, left, up : (N,) metres, NaN where nothing tells
+    beyond : windows in which they seem to lie more than MOST apart
+    """
+
+    one: int
+    other: int
+    stations: np.ndarray
+    along: np.ndarray
+    left: np.ndarray
+    up: np.ndarray
+    beyond: int
+
+
+class _Strips:
+    """One pass in one window: rows of cells in which height and brightness are known but for what varies slowly.
+
+    `heights`, `steps` (m) and `paint` (spreads), (rows, cells) float32 with NaN where nothing was seen; offsets lie along a row.
+    """
+
+    def __init__(self, fine, coarse, h, intensity, shape):
+        row, cell = (coarse / COARSE).astype(np.int64), (fine / FINE).astype(np.int64)
+        inside = (row >= 0) & (row < shape[0]) & (cell >= 0) & (cell < shape[1])
+        place = (row * shape[1] + cell)[inside]
+
+        def means(values, cells):
+            # of a cell and those beside it where points may lie farther apart than cells
+            total, count = (_around(np.bincount(place, some, shape[0] * shape[1]).reshape(shape).astype(np.float32), cells)
+                            for some in (values[inside], None))
+            with np.errstate(invalid="ignore", divide="ignore"):
+                return np.where(count > 0.5, total / count, np.float32(np.nan))
+
+        self.heights = means(h, BLUR)
+        self.steps = np.clip(_without_slow(self.heights), -EDGE, EDGE)
+        paint = _without_slow(means(intensity, 1))
+        known = np.isfinite(paint)
+        spread = float(np.median(np.abs(paint[known]))) / 0.6745 if known.any() else 0.0
+        self.paint = np.clip(paint / max(spread, 1e-6), -CONTRAST, CONTRAST)
+
+
+def _without_slow(values):
+    """Rows of values less their mean over SMOOTH cells; NaN stays."""
+    known = np.isfinite(values)
+    return values - _around(np.where(known, values, np.float32(0)), SMOOTH) / np.maximum(_around(known.astype(np.float32), SMOOTH), 1)
+
+
+def _around(values, cells):
+    """Sums over so many cells of a row."""
+    return cv2.boxFilter(values, cv2.CV_32F, (cells, 1), normalize=False, borderType=cv2.BORDER_CONSTANT)
+
+
+def _shifted(one, other, lag):
+    """The cells of two strips that lie on each other when `other` is moved by `lag` cells."""
+    size = one.shape[1]
+    return one[:, max(lag, 0):size + min(lag, 0)], other[:, max(-lag, 0):size - max(lag, 0)]
+
+
+def _likeness(one, other):
+    """(2, 4, L) of steps and paint, for every lag: sums of products and of either's squares over the cells both saw, and how many these are."""
+    found = np.zeros((2, 4, len(LAGS)))
+    for k, name in enumerate(CHANNELS):
+        known = [np.isfinite(getattr(strips, name)) for strips in (one, other)]
+        # whole numbers sum exactly, in whatever order a library does it
+        values = [np.where(there, np.rint(getattr(strips, name) * WHOLE[name]), 0.0) for there, strips in zip(known, (one, other))]
+        known = [there.astype(float) for there in known]
+        squares = [v * v for v in values]
+        for j, lag in enumerate(LAGS.tolist()):
+            for i, pair in enumerate((values, (squares[0], known[1]), (known[0], squares[1]), known)):
+                found[k, i, j] = np.vdot(*map(np.ascontiguousarray, _shifted(*pair, lag)))
+    return found
+
+
+def _rise(one, other, lag):
+    """Median metres that `one` lies above `other` moved by `lag`, of level cells; NaN of too few."""
+    off = np.subtract(*_shifted(one.heights, other.heights, lag))
+    level = np.maximum(*map(np.abs, _shifted(one.steps, other.steps, lag))) < LEVEL
+    off = off[level & np.isfinite(off)]
+    return float(np.median(off)) if len(off) >= FEWEST else np.nan
+
+
+def pass_offsets(survey, road, progress=Progress()):
+    """How far the passes over a road lie apart, each from the next one that was there.
+
+    Parameters
+    ----------
+    survey : Survey with times
+    road : number
+
+    Returns
+    -------
+    list of Offsets
+    """
+    start, end = survey.store.span(road)
+    windows = [number for number in range(int(np.floor(start / WINDOW)), int(np.ceil(end / WINDOW)))
+               if _shared(survey.frame.passes_of(road), number * WINDOW, (number + 1) * WINDOW)]
+    seen = {}
+    for number, found in zip(windows, in_order(lambda number: _looked_at(survey, road, number), windows, progress)):
+        for pair, evidence in found.items():
+            seen.setdefault(pair, []).append((number, *evidence))
+    return [_settled(pair, evidence) for pair, evidence in sorted(seen.items())]
+
+
+def _shared(passes, start, end):
+    """Whether two passes were there."""
+    return sum(p.span[0] < end and p.span[1] > start for p in passes) > 1
+
+
+def _looked_at(survey, road, number):
+    """What a window says of passes, each against the next: {(one, other): (likeness across, likeness along, rise)}."""
+    points = survey.window(road, number * WINDOW, (number + 1) * WINDOW)
+    nodes = number * WINDOW + np.arange(int(WINDOW / COARSE) + 1) * COARSE
+    s, d = points.s, points.d
+    h = points.z - np.interp(s, nodes, survey.road_height(road, nodes))
+    near = np.flatnonzero((np.abs(d) < REACH) & (h > LOWEST) & (h < HIGHEST))
+    owner, s, d, h = points.pass_number.take(near), s[near] - number * WINDOW, d[near] + REACH, h[near]
+    intensity = points.intensity.take(near).astype(float)
+    strips = []
+    for numbers in np.unique(owner).tolist():
+        own = np.flatnonzero(owner == numbers)
+        if len(own) > FEWEST:
+            sides = [_Strips(fine[own], coarse[own], h[own], intensity[own], (round(width / COARSE), round(length / FINE)))
+                     for fine, coarse, length, width in ((d, s, 2 * REACH, WINDOW), (s, d, WINDOW, 2 * REACH))]
+            strips.append((numbers, *sides))
+    return {(one[0], other[0]): (_likeness(one[1], other[1]), _likeness(one[2], other[2]), _rise(one[1], other[1], 0))
+            for one, other in zip(strips[:-1], strips[1:])}
+
+
+def _settled(pair, evidence):
+    """Offsets of two passes from what their windows say, each window helped by those beside it."""
+    numbers = np.array([row[0] for row in evidence])
+    across, lengthwise = (_pooled(numbers, np.array([row[k] for row in evidence])) for k in (1, 2))
+    (steps, steps_far), (paint, paint_far) = (_best_lags(across[:, k]) for k in range(len(CHANNELS)))
+    # a curb face looks another way from the other lane: it tells where no paint does
+    left, far = np.where(np.isnan(paint), steps, paint), np.where(np.isnan(paint), steps_far | paint_far, False)
+    # along the road, it is hit here on its face and there on its top by scan lines as regular as any pattern
+    along, _ = _best_lags(lengthwise[:, CHANNELS.index("paint")])
+    rises = np.array([row[3] for row in evidence])
+    known = np.isfinite(rises)
+    total = _pooled(numbers, known.astype(float))
+    up = np.where(total > 0.5, _pooled(numbers, np.nan_to_num(rises)) / np.maximum(total, 1e-9), np.nan)
+    stations = (numbers + 0.5) * WINDOW
+    return Offsets(*pair, stations, along, left, up, int(np.count_nonzero(far)))
+
+
+def _pooled(numbers, values):
+    """(N, ...) sums over the windows of numbers (N,) and those beside them, which count the less the farther they are."""
+    sigma = POOLED / WINDOW
+    whole = np.zeros((numbers[-1] - numbers[0] + 1, *values.shape[1:]))
+    whole[numbers - numbers[0]] = values
+    return gaussian_filter1d(whole, sigma, axis=0, mode="constant")[numbers - numbers[0]] * (sigma * np.sqrt(2 * np.pi))
+
+
+def _best_lags(likeness):
+    """Offsets, (N,) metres or NaN, at which passes are most alike, from (N, 4, L) of `_likeness`; and where that is at the very limit.
+
+    Correlation, unlike the mean difference, says nothing where there is but noise, however that is spread over the cells.
+    """
+    products, squares, others, counts = np.moveaxis(likeness, 1, 0)
+    enough = counts[:, len(LAGS) // 2]
+    correlation = np.clip(products / np.sqrt(np.maximum(squares * others, 1e-12)), 0.0, BEST)
+    fit = np.log(1.0 - correlation**2) * (enough / ALIKE)[:, None]
+    unlikely = np.where(enough[:, None] >= FEWEST, fit, 0.0) + (FINE * LAGS / USUAL) ** 2
+    best = np.argmin(unlikely, axis=1)
+    least = unlikely.min(axis=1)
+    clear = (least < -CLEAR) & (_runner_up(unlikely, best) > ALONE * least)
+    limit = clear & ((best == 0) | (best == len(LAGS) - 1))
+    # a parabola through the best and those about it
+    k = np.clip(best, TOP, len(LAGS) - 1 - TOP)[:, None] + np.arange(-TOP, TOP + 1)
+    bend, slope, _ = np.polyfit(np.arange(-TOP, TOP + 1.0), np.take_along_axis(unlikely, k, 1).T, 2)
+    bend = np.maximum(bend, 1e-12)
+    found = FINE * (LAGS[k[:, TOP]] + np.clip(-0.5 * slope / bend, -TOP, TOP))
+    return np.where(clear & ~limit & (FINE / np.sqrt(bend) < SURE), found, np.nan), limit
+
+
+def _runner_up(unlikely, best):
+    """(N,) the least of (N, L) values that is less than its neighbours and none of those beside the best; infinite where there is none.
+
+    Slabs and cobbles fit themselves again one stone farther.
+    """
+    dips = np.zeros(unlikely.shape, bool)
+    dips[:, 1:-1] = (unlikely[:, 1:-1] <= unlikely[:, :-2]) & (unlikely[:, 1:-1] <= unlikely[:, 2:])
+    dips &= np.abs(np.arange(unlikely.shape[1]) - best[:, None]) > BESIDE
+    return np.where(dips, unlikely, np.inf).min(axis=1)

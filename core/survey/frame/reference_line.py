@@ -1,0 +1,131 @@
+"""A road's reference line: the smoothed track of its longest pass, and its continuation by others."""
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.ndimage import gaussian_filter1d
+from scipy.spatial import cKDTree
+
+from ...common.errors import RoadExtractionError
+from .passes import LEVEL, NEAR, moving_rows
+
+NODE = 0.1         # m between nodes of the reference line: 0.02 mm of sagitta at R = 60 m
+SMOOTHING = 2.0    # m, sigma: takes jitter out of the heading; d is measured from the result anyway
+EXTENSION = 10.0   # m that the frame reaches beyond the driven part: scanners look ahead and behind
+SPARSE = 2.0       # m between rows beyond which chords would cut the bends
+JUNCTION = 15.0    # m between the end of one pass and the start of the next that continues the road
+ASIDE = 6.0        # m to the side: another lane of the same carriageway
+STRAIGHT_ON = np.radians(30.0)
+BLEND = 40.0       # m over which a continuing pass in another lane is led over to the line
+
+
+def track_line(x, y, z):
+    """(N, 3) places at least half a metre apart along a driven track."""
+    rows = moving_rows(x, y)
+    return np.c_[x, y, z][rows]
+
+
+def reference_nodes(line):
+    """Nodes of the reference line, NODE apart and EXTENSION beyond both ends, of (N, 2+) track places.
+
+    Raises
+    ------
+    RoadExtractionError
+        If the track does not move.
+    """
+    x, y = line[:, 0], line[:, 1]
+    driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
+    unique = np.r_[True, np.diff(driven) > 0]
+    driven, x, y = driven[unique], x[unique], y[unique]
+    if driven[-1] < 1.0:
+        raise RoadExtractionError("The trajectory does not move: at least 1 m of driving is needed to define a road.")
+    u = np.arange(0.0, driven[-1] + NODE / 2, NODE)
+    if np.median(np.diff(driven)) > SPARSE and len(driven) > 3:
+        x, y = CubicSpline(driven, x)(u), CubicSpline(driven, y)(u)
+    else:
+        x, y = np.interp(u, driven, x), np.interp(u, driven, y)
+    x, y = _extend(_smooth(x), _smooth(y))
+    along = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
+    u = np.arange(0.0, along[-1], NODE)
+    return np.interp(u, along, x), np.interp(u, along, y)
+
+
+def _smooth(values):
+    """Gaussian along the line, mirrored through its end points so that these stay."""
+    pad = min(int(4 * SMOOTHING / NODE), len(values) - 1)
+    head = 2 * values[0] - values[1:pad + 1][::-1]
+    tail = 2 * values[-1] - values[-pad - 1:-1][::-1]
+    return gaussian_filter1d(np.r_[head, values, tail], SMOOTHING / NODE)[pad:pad + len(values)]
+
+
+def _extend(x, y):
+    reach = min(int(3.0 / NODE), len(x) - 1)
+    steps = np.arange(1, int(round(EXTENSION / NODE)) + 1) * NODE
+
+    def beyond(tip, inner):
+        direction = np.array([x[tip] - x[inner], y[tip] - y[inner]])
+        direction /= np.hypot(*direction)
+        return x[tip] + steps * direction[0], y[tip] + steps * direction[1]
+
+    hx, hy = beyond(0, reach)
+    tx, ty = beyond(-1, len(x) - 1 - reach)
+    return np.r_[hx[::-1], x, tx], np.r_[hy[::-1], y, ty]
+
+
+def continued(line, track):
+    """A line lengthened by a track that goes on where it ends, either way driven; None where it does not.
+
+    Parameters
+    ----------
+    line, track : (N, 3) places as `track_line` gives them
+
+    Returns
+    -------
+    (M, 3) places, the direction of `line` kept, or None
+    """
+    for way in (track, track[::-1]):
+        found = _appended(line, way)
+        if found is not None:
+            return found
+        found = _appended(line[::-1], way)
+        if found is not None:
+            return found[::-1]
+    return None
+
+
+def _appended(line, track):
+    direction = _direction(line[::-1]) * -1.0
+    ahead = (track[:, :2] - line[-1, :2]) @ direction
+    aside = (track[:, :2] - line[-1, :2]) @ np.array([-direction[1], direction[0]])
+    if not (-JUNCTION < ahead[0] < JUNCTION and abs(aside[0]) < ASIDE and abs(track[0, 2] - line[-1, 2]) < LEVEL):
+        return None
+    if np.arccos(np.clip(_direction(track) @ direction, -1, 1)) > STRAIGHT_ON:
+        return None
+    beyond = track[int(np.argmax(ahead > 1.0)):] if (ahead > 1.0).any() else track[:0]
+    if len(beyond) < 3:
+        return None
+    driven = np.r_[0.0, np.cumsum(np.hypot(*np.diff(beyond[:, :2], axis=0).T))]
+    if _comes_back(line, beyond, driven):
+        return None
+    step = np.gradient(beyond[:, :2], axis=0)
+    left = np.c_[-step[:, 1], step[:, 0]] / np.maximum(np.hypot(*step.T), 1e-9)[:, None]
+    share = np.clip(1.0 - driven / BLEND, 0.0, 1.0)
+    share = share * share * (3.0 - 2.0 * share)
+    beyond = beyond.copy()
+    beyond[:, :2] -= left * (aside[0] * share)[:, None]
+    return np.concatenate([line, beyond])
+
+
+def _comes_back(line, beyond, driven):
+    """Whether a continuation comes near the line elsewhere than at its end: one place would have two stations."""
+    left = np.r_[0.0, np.cumsum(np.hypot(*np.diff(line[::-1, :2], axis=0).T))][::-1]
+    for old, new in ((line[left > 3 * NEAR], beyond), (line, beyond[driven > 3 * NEAR])):
+        if len(old) and len(new) and cKDTree(old[:, :2]).query(new[:, :2])[0].min() < NEAR:
+            return True
+    return False
+
+
+def _direction(line):
+    """Unit vector in which a line sets out, over its first five metres."""
+    far = np.hypot(*(line[:, :2] - line[0, :2]).T) > 5.0
+    step = line[int(np.argmax(far)) if far.any() else -1, :2] - line[0, :2]
+    return step / max(np.hypot(*step), 1e-9)

@@ -1,0 +1,370 @@
+"""The road frame: station and offset of any place, and the way back to the map.
+
+A road's reference line is the smoothed track of its longest pass, kept as nodes
+0.1 m apart. Position and heading are interpolated between nodes, and a point's
+station is where the normal of the line passes through it: the frame that both
+published methods speak, and in which every stage works.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ..trajectory.trajectory import clean_trajectory
+from .passes import LEVEL, LONGEST, TURN_REACH, Pass, moving_rows, split_into_passes, thin_by_distance
+from .reference_line import EXTENSION, JUNCTION, NODE, continued, reference_nodes, track_line
+
+CORRIDOR = 25.0    # m either side
+FARTHEST_CORRIDOR = 200.0     # m beyond the track that no point with a place lies: the widest corridor, and the ends of a road
+JOIN_DISTANCE = 12.0          # m between two passes over one carriageway
+JOIN_REACH = 15.0             # m at most, where the lanes of one drift apart
+JOIN_ANGLE = np.radians(30.0)
+JOIN_LENGTH = 20.0            # m that two passes must share
+
+
+class Road:
+    """One carriageway's reference line in local coordinates.
+
+    Station 0 is where the line begins, in the direction of the longest pass; offset is left positive.
+    """
+
+    def __init__(self, number, nodes_x, nodes_y, start):
+        self.number = number
+        self.start = start
+        self.x, self.y = nodes_x, nodes_y
+        dx, dy = np.gradient(nodes_x, NODE), np.gradient(nodes_y, NODE)
+        self._heading = np.unwrap(np.arctan2(dy, dx))
+        self._cos, self._sin = np.cos(self._heading), np.sin(self._heading)
+        self._curvature = np.gradient(self._heading, NODE)
+        self.end = start + NODE * (len(nodes_x) - 1)
+        self.length = self.end - EXTENSION
+        self._tree = None
+
+    def _at(self, s):
+        u = np.clip((np.asarray(s, float) - self.start) / NODE, 0, len(self.x) - 1)
+        k = np.minimum(u.astype(np.int64), len(self.x) - 2)
+        return k, u - k
+
+    def _line(self, s):
+        """Position and unit tangent of the reference line at s."""
+        k, f = self._at(s)
+        x = self.x[k] + f * (self.x[k + 1] - self.x[k])
+        y = self.y[k] + f * (self.y[k + 1] - self.y[k])
+        c = self._cos[k] + f * (self._cos[k + 1] - self._cos[k])
+        n = self._sin[k] + f * (self._sin[k + 1] - self._sin[k])
+        return x, y, c, n
+
+    def heading(self, s):
+        """Direction of the reference line, radians counter-clockwise from east."""
+        k, f = self._at(s)
+        return self._heading[k] + f * (self._heading[k + 1] - self._heading[k])
+
+    def curvature(self, s):
+        """1/m, positive where the road turns left."""
+        k, f = self._at(s)
+        return self._curvature[k] + f * (self._curvature[k + 1] - self._curvature[k])
+
+    def to_map(self, s, d):
+        """Local x, y of station s and offset d (straight on beyond the ends)."""
+        s, d = np.asarray(s, float), np.asarray(d, float)
+        x, y, c, n = self._line(s)
+        beyond = s - np.clip(s, self.start, self.end)
+        return x + beyond * c - d * n, y + beyond * n + d * c
+
+    def locate(self, x, y, start=None, corridor=CORRIDOR):
+        """Station and offset of local places.
+
+        Parameters
+        ----------
+        x, y : (N,) local metres
+        start : (N,) a station near the right foot (from gps_time), or None for the nearest foot
+        corridor : largest |offset|, metres
+
+        Returns
+        -------
+        s, d : (N,) metres; NaN beyond the frame's ends, outside the corridor, or at the
+            inner side of a bend beyond 0.9 of its radius, where normals cross.
+        """
+        x, y = np.asarray(x, float), np.asarray(y, float)
+        if start is None:
+            start = self.nearest_station(x, y, corridor)
+        s = np.array(start, float)
+        lost = ~np.isfinite(s)
+        s[lost] = self.start
+        d = np.empty(len(s))
+        active = np.arange(len(s))
+        # Newton on the along-track component; most points settle in three steps
+        for _ in range(12):
+            px, py, c, n = self._line(s[active])
+            ex, ey = x[active] - px, y[active] - py
+            along, across = ex * c + ey * n, ey * c - ex * n
+            d[active] = across
+            step = along / np.clip(1.0 - self.curvature(s[active]) * across, 0.4, 2.5)
+            s[active] = np.clip(s[active] + np.clip(step, -30, 30), self.start - 1.0, self.end + 1.0)
+            active = active[np.abs(along) > 2e-5]
+            if not len(active):
+                break
+        settled = np.ones(len(s), bool)
+        settled[active] = False
+        inside = settled & ~lost & (s >= self.start) & (s < self.end) & (np.abs(d) <= corridor) \
+            & (self.curvature(s) * d < 0.9)
+        s[~inside] = np.nan
+        d[~inside] = np.nan
+        return s, d
+
+    def nearest_station(self, x, y, corridor=CORRIDOR):
+        """Station of the nearest node of the line, NaN where none is within the corridor."""
+        if self._tree is None:
+            self._tree = cKDTree(np.c_[self.x[::5], self.y[::5]])
+        distance, index = self._tree.query(np.c_[x, y], distance_upper_bound=corridor * 1.05 + 1.0)
+        return np.where(np.isfinite(distance), self.start + 5 * NODE * index, np.nan)
+
+
+@dataclass
+class RoadFrame:
+    """All roads and passes of a survey; `origin` is what local coordinates leave out."""
+
+    origin: np.ndarray
+    roads: list
+    passes: list
+    crs: str = ""
+    has_time: bool = True
+    notes: tuple = ()
+
+    def road(self, number):
+        return self.roads[number]
+
+    def passes_of(self, road):
+        return [p for p in self.passes if p.road == road]
+
+    @property
+    def farthest(self):
+        """Metres of x or y from the origin beyond which no point can have a place."""
+        return max(max(np.abs(p.x).max(), np.abs(p.y).max()) for p in self.passes) + FARTHEST_CORRIDOR
+
+    def to_local(self, x, y, z=None):
+        """Map coordinates to local ones."""
+        local = np.asarray(x, float) - self.origin[0], np.asarray(y, float) - self.origin[1]
+        return local if z is None else local + (np.asarray(z, float) - self.origin[2],)
+
+    def to_map(self, road, s, d, z=None):
+        """Map coordinates of station and offset on a road (number)."""
+        x, y = self.roads[road].to_map(s, d)
+        found = x + self.origin[0], y + self.origin[1]
+        return found if z is None else found + (np.asarray(z, float) + self.origin[2],)
+
+    def track_height(self, road, s, below=None):
+        """(N,) local z of the trajectory at stations of a road: the mean of the passes that were there.
+
+        `below` maps pass numbers to metres that are taken off each pass first.
+        """
+        s = np.asarray(s, float)
+        below = below or {}
+        total, count = np.zeros(s.shape), np.zeros(s.shape)
+        passes = self.passes_of(road)
+        for p in passes:
+            first, last = p.span
+            there = (s >= first) & (s <= last)
+            total += np.where(there, p.height_at_station(s) - below.get(p.number, 0.0), 0.0)
+            count += there
+        if not count.all():
+            # beyond the driven part, and where the road goes on between two passes: the pass that ends nearest
+            nearest = np.argmin([np.maximum(np.maximum(p.span[0] - s, s - p.span[1]), 0.0) for p in passes], axis=0)
+            for k, p in enumerate(passes):
+                alone = (count == 0) & (nearest == k)
+                total[alone], count[alone] = p.height_at_station(s[alone]) - below.get(p.number, 0.0), 1
+        return total / count
+
+    def nearest_pass(self, road, s, d):
+        """(N,) number of the pass whose track runs nearest to stations and offsets of a road, of those that were there."""
+        s, d = np.asarray(s, float), np.asarray(d, float)
+        passes = self.passes_of(road)
+        away = [np.where((s >= p.span[0]) & (s <= p.span[1]), 0.0, 1e6) + np.abs(p.at_station(s)[0] - d) for p in passes]
+        return np.array([p.number for p in passes])[np.argmin(away, axis=0)]
+
+    def locate_nearest(self, x, y, corridor=CORRIDOR):
+        """Road number, s and d of local places by the nearest foot; road is -1 where there is none."""
+        x, y = np.asarray(x, float), np.asarray(y, float)
+        best_road = np.full(len(x), -1)
+        best_s, best_d = np.full(len(x), np.nan), np.full(len(x), np.nan)
+        for road in self.roads:
+            s, d = road.locate(x, y, corridor=corridor)
+            better = np.isfinite(d) & ~(np.abs(d) >= np.abs(np.where(np.isnan(best_d), np.inf, best_d)))
+            best_road[better], best_s[better], best_d[better] = road.number, s[better], d[better]
+        return best_road, best_s, best_d
+
+
+def build_frame(trajectory):
+    """Roads and passes of a trajectory.
+
+    The drive is cut into passes; the longest becomes the reference of the first
+    road, lengthened by passes that go on where it ends, up to LONGEST; what runs within 12 m of
+    it and parallel, either way, is a further pass over the same road; what is
+    left makes the next road.
+    """
+    trajectory = clean_trajectory(trajectory)
+    origin = np.floor([trajectory.x.min(), trajectory.y.min(), trajectory.z.min()])
+    track = np.c_[trajectory.x - origin[0], trajectory.y - origin[1], trajectory.z - origin[2]]
+    pieces = split_into_passes(trajectory)
+    turning = np.zeros(len(track), bool)
+    for piece in pieces:
+        turning[piece.first:piece.line_first] = turning[piece.line_last:piece.last] = True
+    moved = np.unique(np.concatenate([piece.first + moving_rows(*track[piece.first:piece.last, :2].T) for piece in pieces]))
+    # metres driven up to the last row that moved; a jump between two pieces lies before the later one's first row
+    driven = np.r_[0.0, np.cumsum(np.hypot(*np.diff(track[moved, :2], axis=0).T))]
+    driven = driven[np.searchsorted(moved, np.arange(len(track)), side="right") - 1]
+    waiting = [(piece.first, piece.last) for piece in pieces]
+    roads, passes = [], []
+    while waiting:
+        waiting = _longest_first(waiting, driven)
+        longest = waiting[0]
+        if roads and _length(longest, driven) < JOIN_LENGTH:
+            break
+        road, members, waiting = _grow_road(len(roads), track, turning, moved, driven, waiting)
+        roads.append(road)
+        passes += [replace(_make_pass(road, trajectory.time[a:b], *track[a:b].T),
+                           attitude=trajectory.rows(slice(a, b)).attitude()) for a, b in sorted(members)]
+    passes.sort(key=lambda p: p.time[0])
+    for number, p in enumerate(passes):
+        p.number = number
+    return RoadFrame(origin, roads, passes, trajectory.crs, trajectory.has_time, trajectory.notes)
+
+
+def _length(rows, driven):
+    return float(driven[rows[1] - 1] - driven[rows[0]])
+
+
+def _longest_first(ranges, driven):
+    # to the centimetre: of equals the earlier comes first, whatever the rounding of coordinates
+    return sorted(ranges, key=lambda rows: (-round(_length(rows, driven), 2), rows))
+
+
+def _line_of(track, turning, rows):
+    """The track of rows as a line, without a turn on the spot at its ends."""
+    straight = np.flatnonzero(~turning[rows[0]:rows[1]])
+    if len(straight) > 1:
+        rows = rows[0] + straight[0], rows[0] + straight[-1] + 1
+    return track_line(*track[rows[0]:rows[1]].T)
+
+
+def _grow_road(number, track, turning, moved, driven, waiting):
+    """(Road, row ranges of its passes, row ranges left over), beginning with the first of the ranges waiting."""
+    longest, line = waiting[0], _line_of(track, turning, waiting[0])
+    while True:
+        road = Road(number, *reference_nodes(line), -EXTENSION)
+        members, rest = [], []
+        for rows in waiting:
+            shared, left = ([rows], []) if rows == longest else _shared_with(road, line, track, moved, rows)
+            members += shared
+            rest += left
+        for rows in _longest_first(rest, driven):
+            if _length(rows, driven) >= JOIN_LENGTH and _ends_near(line, track, rows):
+                longer = continued(line, _line_of(track, turning, rows))
+                if longer is not None and np.hypot(*np.diff(longer[:, :2], axis=0).T).sum() <= LONGEST:
+                    line = longer
+                    break
+        else:
+            return road, members, rest
+
+
+def _ends_near(line, track, rows):
+    """Whether a range of rows begins or ends where a line does, turns on the spot allowed for."""
+    ends = track[[rows[0], rows[1] - 1], None, :2] - line[None, [0, -1], :2]
+    return bool((np.hypot(ends[..., 0], ends[..., 1]) < JUNCTION + TURN_REACH).any())
+
+
+def _away(line, places):
+    """Whether places lie wholly outside the box about a line."""
+    return bool((places.min(axis=0) > line.max(axis=0) + JOIN_REACH).any() or (places.max(axis=0) < line.min(axis=0) - JOIN_REACH).any())
+
+
+def _shared_with(road, line, track, moved, rows):
+    """The parts of a driven piece that run along a road, and the parts that do not."""
+    a, b = rows
+    if _away(line[:, :2], track[a:b, :2]):
+        return [], [rows]
+    kept = np.unique(np.r_[a, moved[(moved >= a) & (moved < b)], b - 1])
+    kept = kept[thin_by_distance(*track[kept, :2].T, 2.0)]
+    x, y, z = track[kept].T
+    s, d = road.locate(x, y, corridor=JOIN_REACH)
+    level = np.abs(z - line[cKDTree(line[:, :2]).query(np.c_[x, y])[1], 2]) < LEVEL
+    direction = np.arctan2(np.gradient(y), np.gradient(x)) if len(kept) > 1 else np.zeros(len(kept))
+    turned = np.abs((direction - road.heading(np.where(np.isnan(s), 0, s)) + np.pi / 2) % np.pi - np.pi / 2)
+    along = np.isfinite(d) & (turned < JOIN_ANGLE) & level
+    if len(kept) < JOIN_LENGTH:
+        along[:] = 2 * along.sum() > len(along)
+    along = _fill_runs(along, int(JOIN_LENGTH / 2))
+    if not along.all():
+        along = ~_fill_runs(~along, int(JOIN_LENGTH / 2))
+    for i, j in _runs(along):
+        if along[i] and not np.nanmedian(np.abs(d[i:j])) <= JOIN_DISTANCE:
+            along[i:j] = False
+    shared, left = [], []
+    for i, j in _runs(along):
+        ends = [int(kept[i]) if i else a, int(kept[j]) if j < len(kept) else b]
+        if not along[i]:
+            left.append(tuple(ends))
+            continue
+        # Where a round begins again the station starts anew: the next pass
+        cuts = [int(kept[i + k]) for k in _jumps(s[i:j])]
+        shared += list(zip([ends[0], *cuts], [*cuts, ends[1]]))
+    return shared, left
+
+
+def _jumps(s):
+    """Indices at which the station leaps, at least JOIN_LENGTH from the ends and each other."""
+    found = np.flatnonzero(np.abs(np.diff(s)) > 10.0) + 1
+    shortest, kept, last = int(JOIN_LENGTH / 2), [], 0
+    for k in found:
+        if k - last >= shortest and len(s) - k >= shortest:
+            kept.append(int(k))
+            last = k
+    return kept
+
+
+def _runs(mask):
+    """[(first, end)] of the runs of equal values."""
+    cuts = np.r_[0, np.flatnonzero(np.diff(mask.astype(int))) + 1, len(mask)]
+    return list(zip(cuts[:-1].tolist(), cuts[1:].tolist()))
+
+
+def _fill_runs(mask, shortest):
+    """Turn runs of False shorter than `shortest` into True."""
+    filled = mask.copy()
+    for i, j in _runs(mask):
+        if not mask[i] and j - i < shortest:
+            filled[i:j] = True
+    return filled
+
+
+def _make_pass(road, time, x, y, z):
+    """A pass with the vehicle's own feet on the road, found by walking so that they never leap."""
+    kept = moving_rows(x, y)
+    driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x[kept]), np.diff(y[kept])))]
+    s, _ = road.locate(x[kept], y[kept], corridor=2 * JOIN_DISTANCE)
+    rows = np.arange(len(x))
+    run = _longest_run(s)
+    if run is None:
+        hint = np.clip(road.nearest_station(x, y, np.inf), road.start, road.end)
+        direction = 1 if hint[-1] >= hint[0] else -1
+    else:
+        i, j = run
+        direction = 1 if s[j - 1] >= s[i] else -1
+        before, after = driven[:i] - driven[i], driven[j:] - driven[j - 1]
+        walked = np.r_[s[i] + direction * before, s[i:j], s[j - 1] + direction * after]
+        hint = np.interp(rows, kept, walked)
+    s, d = road.locate(x, y, hint, corridor=2 * JOIN_DISTANCE)
+    good = np.isfinite(s)
+    if not good.any():
+        return Pass(0, road.number, direction, time, x, y, z, np.clip(hint, road.start, road.end), np.zeros(len(x)))
+    s, d = np.interp(rows, rows[good], s[good]), np.interp(rows, rows[good], d[good])
+    return Pass(0, road.number, direction, time, x, y, z, s, d)
+
+
+def _longest_run(s):
+    """(first, end) of the longest stretch whose stations are known and do not leap; None where none is known."""
+    broken = ~np.isfinite(s[1:]) | ~np.isfinite(s[:-1]) | (np.abs(np.diff(s)) > 30.0)
+    cuts = np.r_[0, np.flatnonzero(broken) + 1, len(s)]
+    runs = [(int(i), int(j)) for i, j in zip(cuts[:-1], cuts[1:]) if np.isfinite(s[i])]
+    return max(runs, key=lambda run: (run[1] - run[0], -run[0])) if runs else None

@@ -1,0 +1,333 @@
+"""One block of a point cloud: its points near the road as compact records."""
+
+import os
+from collections import deque
+from concurrent.futures import ThreadPoolExecutor, wait
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..common.memory import KeptArrays
+from ..common.parallel import PATIENCE
+from .frame.projection import AT_ONCE, Placing
+from .las.reader import CloudReaders
+from .las.scale import LasAxis
+from .scanners import ScannerCensus, times_by_value
+from .sensor_height import DEFAULT_HEIGHT, HeightTally, Tracks, first_estimate
+from .store.columns import Columns
+from .store.records import SURVEY_POINT, UNIT, in_units, point_dtype, to_units
+from .trajectory.time_systems import WEEK
+
+# Point cloud files into the section store, block by block in several threads.
+
+LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags")  # what is decoded of a LAZ file
+WAITING = 4_000_000    # points kept back at most until the height of the road is known
+SAMPLES = 5_000        # points on the track that tell it
+THREADS = 4            # at most: each has blocks decoded, by all cores (lazrs keeps the others waiting), and places their points
+QUEUE = 3              # blocks for each of them that are begun or wait: what keeps them busy while sections are put into the temporary file
+
+
+class SurveyReader:
+    """Reads files into a store and learns on the way what must be known of the whole survey.
+
+    Attributes, complete after `read`
+    ---------------------------------
+    census : ScannerCensus
+    darkest, brightest : the lowest and the highest intensity
+    unplaced_time : points whose time no pass has
+    heights : {pass number: metres from the trajectory down to the road}
+    """
+
+    def __init__(self, frame, store, corridor, has_time, week_ends=False):
+        self.frame, self.store = frame, store
+        self.census, self.darkest, self.brightest, self.unplaced_time = ScannerCensus(), 65535, 0, 0
+        self.tracks = Tracks(frame)
+        self._blocks = BlockReading(frame, corridor, has_time, week_ends)
+        self._ground = None        # made, as the tally of heights, when the rough height of the road is known
+        self._tally = None
+        self._waiting, self._samples = [], []  # parts of blocks until it is known
+
+    def read(self, files, block, progress):
+        """Read all files, `block` points at a time."""
+        total, done = sum(file.count for file in files), 0
+        threads = min(THREADS, os.cpu_count() or 1)
+        with CloudReaders(LAYERS) as readers, ThreadPoolExecutor(threads) as pool:
+            waiting = deque()
+
+            def take():
+                nonlocal done
+                while not wait([waiting[0]], PATIENCE).done:
+                    progress.at(done / total)
+                done += self._take(*waiting.popleft().result())
+                progress.at(done / total)
+
+            try:
+                for load in readers.blocks(files, block):
+                    waiting.append(pool.submit(self._read_block, load))
+                    # the first blocks tell the road's height, which the others are chosen by
+                    while len(waiting) > (QUEUE * threads if self._ground else 0):
+                        take()
+                while waiting:
+                    take()
+            finally:
+                for coming in waiting:
+                    coming.cancel()
+        self._settle()
+        self.heights, self.uneven = self._tally.heights(), self._tally.uneven()
+
+    def _read_block(self, load):
+        """What the block says of the whole cloud, its points, whether these were chosen by height and parted, and their number in the block."""
+        block, ground, found, parts = load(), self._ground, BlockPoints(), []
+        for road, points, own in self._blocks.read(block, found, ground):
+            parts.append((road, _copied(points, own)) if ground is None else self._parted(road, points, own))
+        return found, parts, ground is not None, len(block)
+
+    def _parted(self, road, points, own):
+        """Points by section, for the store; those on the track are counted."""
+        for number, drops in self.tracks.drops(road, points, own):
+            self._tally.add(number, drops)
+        return self.store.parted(road, points, own)
+
+    def _take(self, found, parts, parted, count):
+        """One block, in the order of the files."""
+        self.darkest, self.brightest = min(self.darkest, found.darkest), max(self.brightest, found.brightest)
+        self.unplaced_time += found.without_time
+        for name, times in found.scanners.items():
+            self.census.take(name, times)
+        if parted:
+            for part in parts:
+                self.store.add(part)
+        elif self._ground is not None:
+            self._choose(parts)
+        else:
+            self._waiting += parts
+            self._samples += [drops[::7] for road, points in parts for _, drops in self.tracks.drops(road, points)]
+            if sum(map(len, self._samples)) > SAMPLES or sum(len(points) for _, points in self._waiting) > WAITING:
+                self._settle()
+        return count
+
+    def _settle(self):
+        """Settle the rough height of the road and store what waited for it."""
+        if self._ground is not None:
+            return
+        drop = first_estimate(np.concatenate(self._samples)) if self._samples else None
+        drop = DEFAULT_HEIGHT if drop is None else drop
+        self._tally = HeightTally([p.number for p in self.frame.passes], drop)
+        self._ground = Ground(self.frame, drop)
+        waiting, self._waiting, self._samples = self._waiting, [], []
+        self._choose(waiting)
+
+    def _choose(self, parts):
+        """Choose by height what was placed before that was known, and store it."""
+        for road, points in parts:
+            kept = KeptArrays().of(len(points))
+            near = self._ground.near(road, points["s"], points["z"], kept)
+            if near.any():
+                self.store.add(self._parted(road, points, near))
+
+
+def _copied(points, own):
+    """Points that are meant (None for all) as Columns that stay."""
+    return points.copy() if own is None else points.take(own).whole()
+
+ABOVE, BELOW = 3.5, 4.0  # m about the road kept: vehicles that hide a curb above, ditches below
+# m more that are stored: the height of the road is rough while reading, and exact when points are handed out,
+# so that what is handed out does not depend on which file came first
+MARGIN = 1.5
+GROUND_BITS = 12       # of a station in units of 0.1 mm: the height of the road is looked up every 0.41 m
+SCANNER_FIELDS = ("point_source_id", "scanner_channel")
+
+
+@dataclass
+class BlockPoints:
+    """What a block says of the whole cloud.
+
+    scanners : {LAS field: {value: (first time, last time, count)}}
+    darkest, brightest : intensity
+    without_time : points whose time no pass has
+    """
+
+    scanners: dict = field(default_factory=dict)
+    darkest: int = 65535
+    brightest: int = 0
+    without_time: int = 0
+
+    def add(self, columns, names):
+        """Take note of some points of the block."""
+        self.darkest = min(self.darkest, int(columns["intensity"].min()))
+        self.brightest = max(self.brightest, int(columns["intensity"].max()))
+        for name, key in zip(SCANNER_FIELDS, ("source", "scanner")):
+            if name in names:
+                seen = self.scanners.setdefault(name, {})
+                for value, (start, end, number) in times_by_value(columns[key], columns["time"]).items():
+                    first, last, count = seen.get(value, (start, end, 0))
+                    seen[value] = min(first, start), max(last, end), count + number
+
+
+class Ground:
+    """The rough height of the roads, for choosing points by height.
+
+    Parameters
+    ----------
+    drop : metres from the tracks down to the road
+    """
+
+    def __init__(self, frame, drop):
+        self._roads = {}
+        for road in frame.roads:
+            first, last = (int(station / UNIT) >> GROUND_BITS for station in (road.start, road.end))
+            stations = ((np.arange(first, last + 1) << GROUND_BITS) + (1 << GROUND_BITS) // 2) * UNIT
+            lowest = frame.track_height(road.number, stations) - drop - BELOW - MARGIN
+            self._roads[road.number] = first, to_units(lowest)
+
+    def near(self, road, s, z, kept):
+        """(N,) bool: which places of a road, int32 units of 0.1 mm, are near its height. `kept` as of KeptArrays."""
+        first, lowest = self._roads[int(road)]
+        cell, k = np.right_shift(s, GROUND_BITS, out=kept("cell", np.int32)), kept("k", np.intp)
+        np.copyto(k, np.subtract(cell, first, out=cell))
+        above = np.subtract(z, lowest.take(k, out=cell, mode="clip"), out=cell)
+        # what is below becomes a large number
+        return above.view(np.uint32) < np.uint32((ABOVE + BELOW + 2 * MARGIN) / UNIT)
+
+
+class BlockReading:
+    """Turns blocks into compact records; may be called by several threads.
+
+    Parameters
+    ----------
+    frame : RoadFrame
+    corridor : metres either side
+    has_time : whether points are placed by their time; else at the nearest foot
+    week_ends : whether the GPS week ends during the scan
+    """
+
+    def __init__(self, frame, corridor, has_time, week_ends=False):
+        self.frame, self.corridor, self.has_time, self.week_ends = frame, corridor, has_time, week_ends
+        self.dtype = point_dtype(SURVEY_POINT, frame.farthest)
+        self.placing = Placing(frame, corridor) if has_time else None
+        self.roads = np.array([p.road for p in frame.passes] + [-1])
+        self._kept = KeptArrays()
+
+    def read(self, block, found, ground=None):
+        """Yield the points of a laspy point record near a road, those near its height where a Ground is given.
+
+        Each time a road's number, the Columns of a piece of the block, and (N,) bool which of them are meant, None for
+        all. The next piece is written over these Columns; what is said of the whole cloud is added to `found`, BlockPoints.
+        """
+        names = set(block.point_format.dimension_names)
+        axes = [LasAxis(*axis, self.dtype[axis[0].lower()]) for axis in zip("XYZ", block.scales, block.offsets, self.frame.origin)]
+        # piece by piece, so that what is worked on stays in the processor's cache
+        for first in range(0, len(block), AT_ONCE):
+            yield from self._piece(block[first:first + AT_ONCE], names, axes, found, ground)
+
+    def _piece(self, piece, names, axes, found, ground):
+        kept = self._kept.of(len(piece))
+        flagged = _flagged(piece)
+        columns = self._columns(piece, names, flagged, kept)
+        found.add(columns, names)
+        usable = _not_withheld(piece, names) if flagged else None
+        for axis, name in zip(axes, "xyz"):
+            columns[name], there = axis.units(piece.array, kept)
+            usable = _both(usable, there)
+        columns["s"], columns["d"] = kept("s", np.int32), kept("d", np.int32)
+        columns["pass_number"], inside, lost = self._placed(columns, usable)
+        found.without_time += lost
+        if inside is not None:
+            if not inside.any():
+                return
+            # so that they are stations of this piece at all
+            columns["s"][~inside] = columns["s"][inside.argmax()]
+        points = Columns(columns, self.dtype, len(piece))
+        for number, own in self._by_road(columns["pass_number"], inside):
+            if ground is not None:
+                near = ground.near(number, columns["s"], columns["z"], kept)
+                own = _both(own, None if near.all() else near)
+            if own is None or own.any():
+                yield number, points, own
+
+    def _by_road(self, pass_number, inside):
+        """Number of each road that points with a place are on, and which of them; None for all."""
+        if len(self.frame.roads) == 1:
+            return [(0, inside)]
+        road = self.roads[pass_number.view(np.int16)]
+        if inside is not None:
+            road = np.where(inside, road, -1)
+        found = np.unique(road)
+        return [(number, None if len(found) == 1 else road == number) for number in found.tolist() if number >= 0]
+
+    def _columns(self, piece, names, flagged, kept):
+        """What is kept of a piece as it is: time, intensity, source, returns, scanner."""
+        raw = piece.array
+        columns = {name: kept(name, SURVEY_POINT[name]) for name in ("time", "intensity", "source", "returns")}
+        columns["time"][:] = raw["gps_time"] if "gps_time" in raw.dtype.names else 0.0
+        if self.week_ends:
+            columns["time"][:] = carried_on(columns["time"])
+        columns["intensity"][:] = raw["intensity"]
+        columns["source"][:] = raw["point_source_id"]
+        columns["scanner"] = np.broadcast_to(np.uint8(0), len(raw))
+        if "scanner_channel" in names and flagged:
+            columns["scanner"] = np.asarray(piece["scanner_channel"])
+        # LAS 1.4 keeps them so
+        columns["returns"][:] = raw["bit_fields"] if "scanner_channel" in names else _returns(piece)
+        return columns
+
+    def _placed(self, columns, usable):
+        """Put stations and offsets into their columns; passes (uint16), which points have a place (None for all), how many a time of no pass."""
+        names = ("x", "y", "time", "s", "d")
+        if usable is None:
+            passes, inside = self._located(*map(columns.get, names))
+            return passes.view(np.uint16), inside, self._lost(passes)
+        rows = np.flatnonzero(usable)
+        some = [columns[name].take(rows) for name in names]
+        found, there = self._located(*some)
+        passes, inside = np.full(len(usable), -1, np.int16), np.zeros(len(usable), bool)
+        passes[rows], inside[rows] = found, True if there is None else there
+        for name, values in zip(names[3:], some[3:]):
+            columns[name][rows] = values
+        return passes.view(np.uint16), inside, self._lost(found)
+
+    def _lost(self, passes):
+        if not self.has_time or passes.strides[0] == 0 and passes[0] >= 0:
+            return 0
+        return int(np.count_nonzero(passes < 0))
+
+    def _located(self, x, y, time, s, d):
+        """The same of points that may all be used, as `Placing.put` has it."""
+        if self.has_time:
+            return self.placing.put(x, y, time, s, d)
+        road, along, across = self.frame.locate_nearest(x * UNIT, y * UNIT, self.corridor)
+        in_units(along, s)
+        in_units(across, d)
+        passes = np.full(len(x), -1, np.int16)
+        for p in self.frame.passes[::-1]:
+            passes[road == p.road] = p.number
+        return passes, road >= 0
+
+
+def carried_on(time):
+    """Seconds of the week, those after the week's end carried on."""
+    return np.where(time < WEEK / 2, time + WEEK, time)
+
+
+def _returns(block):
+    """(N,) return number + 16 * number of returns."""
+    return np.asarray(block["return_number"]) | (np.asarray(block["number_of_returns"]) << 4)
+
+
+def _flagged(piece):
+    """Whether any point has a flag or a scanner channel: LAS 1.4 keeps them in one byte, and most clouds have none."""
+    raw = piece.array
+    return "classification_flags" not in raw.dtype.names or bool(raw["classification_flags"].max())
+
+
+def _not_withheld(piece, names):
+    """(N,) bool of the points that are not withheld, None where none is."""
+    withheld = np.asarray(piece["withheld"]) if "withheld" in names else None
+    return withheld == 0 if withheld is not None and withheld.any() else None
+
+
+def _both(one, other):
+    """What two masks have in common, either of which may be None for all."""
+    if one is None or other is None:
+        return other if one is None else one
+    return one & other

@@ -1,0 +1,102 @@
+"""Points per cubic metre, counted section by section."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..common.parallel import in_order
+from ..common.progress import Progress
+from ..io.gdal_errors import gdal_exceptions
+
+SIDE = 10_000       # units of 0.1 mm: 1 m
+AT_ONCE = 1 << 15   # points counted at a time: what fits the processor's cache
+
+
+@dataclass(frozen=True)
+class CubeDensity:
+    """Points per m³ in cubes of 1 m.
+
+    mean : over occupied cubes; of_a_point : mean over points of the number in their own cube, what a point sees
+    """
+
+    points: int
+    mean: float
+    of_a_point: float
+
+
+def cube_density(sections, points_of=lambda section: section, progress=Progress()):
+    """CubeDensity of points, counted side by side.
+
+    A cube that two sections share counts once: the cubes are those of the map, and only their numbers are kept.
+
+    Parameters
+    ----------
+    sections : one for each section of road
+    points_of : function of one of them that returns its points, Points
+    """
+    keys, counts = [], []
+    for found in in_order(lambda section: _counted(points_of(section)), sections, progress):
+        if found is not None:
+            keys.append(found[0])
+            counts.append(found[1])
+    if not keys:
+        return CubeDensity(0, float("nan"), float("nan"))
+    _, place = np.unique(np.concatenate(keys), return_inverse=True)
+    number = np.bincount(place.ravel(), np.concatenate(counts))
+    total = int(number.sum())
+    return CubeDensity(total, float(number.mean()), float((number**2).sum() / number.sum()))
+
+
+def _counted(points):
+    """Keys of the occupied cubes and how many points each holds; None without points."""
+    if not len(points):
+        return None
+    low, size = [], []
+    for axis in (points.records[name] for name in "xyz"):
+        low.append(int(axis.min()) // SIDE)
+        size.append(int(axis.max()) // SIDE - low[-1] + 1)
+    count = np.zeros(size[0] * size[1] * size[2], np.int64)
+    for first in range(0, len(points), AT_ONCE):
+        x, y, z = (points.records[name][first:first + AT_ONCE] // np.int32(SIDE) - np.int32(least) for name, least in zip("xyz", low))
+        z *= np.int32(size[1])
+        z += y
+        z *= np.int32(size[0])
+        z += x
+        some = np.bincount(z)
+        count[:len(some)] += some
+    held = np.flatnonzero(count)
+    x, y, z = held % size[0] + low[0], held // size[0] % size[1] + low[1], held // (size[0] * size[1]) + low[2]
+    half = 2**22   # 4,000 km either side, and 32 km up or down
+    return ((z + 2**15) << 46) | ((y + half) << 23) | (x + half), count[held]
+
+
+# Point density as a GeoTIFF.
+
+@gdal_exceptions()
+def write_density(found, path):
+    """Write the density of an Inspection: float32 points per m², NaN where no point lies.
+
+    Parameters
+    ----------
+    found : Inspection
+    path : of the .tif
+    """
+    from osgeo import gdal, osr
+
+    density, (west, north) = found.density
+    height, width = density.shape
+    cell = found.settings.cell_size
+    dataset = gdal.GetDriverByName("GTiff").Create(
+        str(path), width, height, 1, gdal.GDT_Float32, ["COMPRESS=DEFLATE", "TILED=YES", "PREDICTOR=3"])
+    dataset.SetGeoTransform((west, cell, 0.0, north, 0.0, -cell))
+    if found.crs:
+        reference = osr.SpatialReference()
+        reference.ImportFromWkt(found.crs)
+        dataset.SetProjection(reference.ExportToWkt())
+    band = dataset.GetRasterBand(1)
+    band.SetNoDataValue(float("nan"))
+    band.SetDescription("Points per m²")
+    # bytes, not an array: osgeo's numpy bridge breaks wherever numpy is not the one it was built with
+    band.WriteRaster(0, 0, width, height, np.ascontiguousarray(density, np.float32).tobytes())
+    band.FlushCache()
+    del band, dataset

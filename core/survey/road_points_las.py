@@ -1,0 +1,155 @@
+"""Road points as a LAZ file: what a later stage must know travels in extra fields."""
+
+import numpy as np
+
+from ..common.errors import RoadExtractionError
+from ..common.progress import Progress
+from .adjustment.corrections import PassMoves
+from .las.reader import BLOCK, open_cloud, read_blocks
+from .las.writer import new_laz, scale_for
+from .store.records import ROAD_POINT, UNIT, point_dtype
+from .store.road_points import RoadPoints
+from .store.section_store import SectionStore
+
+ROAD_CLASS = 11  # ASPRS: road surface
+SCALE = UNIT
+FARTHEST_MOVE = 10.0  # m: no pass is moved so far
+
+# Stations and offsets are stored as integers of 0.1 mm, so that what is read
+# back is to the bit what was passed on in memory.
+EXTRA = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", None), ("scanner", "uint8", "Scanner", None),
+         ("station_m", "int32", "Station along the road", UNIT), ("offset_m", "int32", "Offset, left positive", UNIT),
+         ("half_width", "uint16", "Half width of the road", 1e-3), ("covered", "uint8", "Beneath something on the road", None)]
+CORRECTED = ("intensity_corrected", "float32", "Intensity, range corrected", None)
+CLUSTER = ("cluster", "int32", "Cluster of paint", None)
+NEEDED = ("road", "pass", "station_m", "offset_m", "half_width")
+
+
+def write_road_points(road_points, path, progress=Progress()):
+    """Write road points as LAS 1.4 class 11 in road order; the file appears whole or not at all.
+
+    Coordinates are those that were measured, to 0.1 mm, or to 1 mm where they lie more than 214 km from the origin and to 1 cm beyond
+    2,147 km; how passes were moved is kept beside them and done again on reading.
+    `path` ends in .laz or .las. Raises RoadExtractionError where it cannot be written.
+    """
+    sections = road_points.all_sections()
+    header = _header(road_points)
+    with new_laz(path, header) as writer:
+        for k, (road, number) in enumerate(sections):
+            writer.write_points(_record(road_points, road, number, header))
+            progress.at((k + 1) / len(sections))
+
+
+def _header(road_points):
+    import laspy
+
+    header = laspy.LasHeader(point_format=6, version="1.4")
+    header.scales = np.full(3, scale_for(_farthest(road_points)))
+    header.offsets = np.asarray(road_points.origin, float)
+    # The time values are handed on as they came
+    header.global_encoding.gps_time_type = laspy.header.GpsTimeType.STANDARD
+    header.generating_software = "Lanewright"
+    extra = EXTRA + ([CORRECTED] if road_points.has_corrected else []) + ([CLUSTER] if road_points.has_cluster else [])
+    header.add_extra_dims([
+        laspy.ExtraBytesParams(name=name, type=kind, description=text,
+                               **({} if scale is None else dict(scales=np.array([scale]), offsets=np.array([0.0]))))
+        for name, kind, text, scale in extra])
+    if road_points.moves is not None:
+        header.vlrs.extend(road_points.moves.to_records())
+    if road_points.crs:
+        from ..io.crs import parse_crs
+
+        header.add_crs(parse_crs(road_points.crs))
+    return header
+
+
+def _farthest(road_points):
+    """Metres of x or y of any point from the origin; of points whose x and y have 32 bits what these can hold."""
+    if road_points.store.dtype["x"] == np.int32:
+        return 0.0
+    ends = [int(np.abs(road_points.store.section(road, number)[name]).max(initial=0))
+            for road, number in road_points.all_sections() for name in "xy"]
+    return max(ends, default=0) * UNIT + FARTHEST_MOVE
+
+
+def _whole(units, share):
+    """Units of 0.1 mm in those of a file, of which one unit is a share."""
+    return units if abs(share - 1.0) < 1e-12 else np.rint(units * share)
+
+
+def _record(road_points, road, number, header):
+    import laspy
+
+    records = road_points.store.section(road, number)
+    out = laspy.ScaleAwarePointRecord.zeros(len(records), header=header)
+    off = (0, 0, 0) if road_points.moves is None else road_points.moves.units(records)
+    for name, moved in zip("xyz", off):
+        out.array[name.upper()] = _whole(records[name] - moved, SCALE / header.scales[0])
+    out["gps_time"] = records["time"]
+    out["intensity"] = records["intensity"]
+    out["point_source_id"] = records["source"]
+    out["return_number"], out["number_of_returns"] = records["returns"] & 15, records["returns"] >> 4
+    out["classification"] = np.full(len(records), ROAD_CLASS, np.uint8)
+    out.array["road"], out.array["pass"] = road, records["pass_number"]
+    out.array["scanner"] = records["scanner"]
+    out.array["station_m"], out.array["offset_m"] = records["s"], records["d"]
+    out.array["half_width"], out.array["covered"] = records["half_width"], records["covered"]
+    if road_points.has_corrected:
+        out.array["intensity_corrected"] = records["corrected"]
+    if road_points.has_cluster:
+        out.array["cluster"] = records["cluster"]
+    return out
+
+
+def read_road_points(path, progress=Progress()):
+    """RoadPoints from a LAZ file that Lanewright wrote.
+
+    Raises
+    ------
+    RoadExtractionError
+        If the file lacks the extra fields of road points.
+    """
+    with open_cloud(path) as reader:
+        header = reader.header
+        names = set(header.point_format.dimension_names)
+        missing = [name for name in NEEDED if name not in names]
+        if missing:
+            raise RoadExtractionError(
+                f"{path} lacks the extra field(s) {', '.join(missing)} that tell where on the road a point lies. "
+                "Give it the road points written by “Extract road surface” or a stage after it.")
+        origin, scales, total = np.asarray(header.offsets, float), np.asarray(header.scales), header.point_count
+        # where the file says its points lie; 32 bits of x and y reach beyond where they change to 64
+        farthest = max((np.abs(np.r_[header.mins, header.maxs][[0, 1, 3, 4]] - origin[[0, 1, 0, 1]])).max(), 0.0) if total else 0.0
+        dtype = point_dtype(ROAD_POINT, farthest)
+        crs, moves = header.parse_crs(), PassMoves.of_records(header.vlrs)
+    has_corrected, has_cluster = "intensity_corrected" in names, "cluster" in names
+    store = SectionStore(dtype)
+    done = 0
+    for block in read_blocks(path, BLOCK):
+        records = np.zeros(len(block), dtype)
+        # another program may have rewritten the file with its own scale
+        for _axis, (name, scale) in enumerate(zip("xyz", scales)):
+            raw = np.asarray(block[name.upper()])
+            records[name] = raw if abs(scale - SCALE) < 1e-12 else np.rint(raw * (scale / SCALE))
+        records["time"] = block["gps_time"]
+        records["intensity"], records["source"] = block["intensity"], block["point_source_id"]
+        records["returns"] = np.asarray(block["return_number"]) | (np.asarray(block["number_of_returns"]) << 4)
+        records["pass_number"] = block["pass"]
+        records["scanner"] = block["scanner"] if "scanner" in names else 0
+        records["s"] = np.rint(np.asarray(block["station_m"], float) / UNIT)
+        records["d"] = np.rint(np.asarray(block["offset_m"], float) / UNIT)
+        records["half_width"] = np.rint(np.asarray(block["half_width"], float) / 1e-3)
+        records["corrected"] = block["intensity_corrected"] if has_corrected else np.nan
+        records["cluster"] = block["cluster"] if has_cluster else 0
+        records["covered"] = block["covered"] if "covered" in names else 0
+        if moves is not None:
+            for name, moved in zip("xyz", moves.units(records)):
+                records[name] += moved
+        roads = np.asarray(block["road"])
+        for road in np.unique(roads):
+            store.append(int(road), records[roads == road])
+        done += len(block)
+        progress.at(done / max(total, 1))
+    if not store.count:
+        raise RoadExtractionError(f"{path} holds no points. Run the stage that made it again with other settings.")
+    return RoadPoints(store, origin, "" if crs is None else crs.to_wkt(), has_corrected, has_cluster, moves)

@@ -1,0 +1,263 @@
+"""Reading a trajectory: text tables of any dress, Applanix SBET, or the columns of a layer."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ...common.errors import RoadExtractionError
+from ...io.crs import horizontal, parse_crs, reproject_trajectory
+from ...io.text_table import SAMPLE, only_numbers, read_number_table
+from .columns import AGREES, ROLES, angle_between, angle_unit_said, columns_by_role, columns_from_numbers, driven_course, find_header, geographic_unit
+from .trajectory import Trajectory
+
+SBET_DOUBLES = 17  # time, lat, lon, height, 3 velocities, roll, pitch, heading, wander angle, 6 more
+GEOGRAPHIC = "EPSG:4326"
+
+
+def read_trajectory(path, crs="", target_crs=""):
+    """A trajectory from a CSV or text file, with or without header, or an Applanix SBET file.
+
+    Parameters
+    ----------
+    path : the file
+    crs : WKT or "EPSG:n" of its coordinates; "" takes what the file says, and
+        WGS 84 for longitude and latitude
+    target_crs : where given and the trajectory's CRS is known, it is reprojected
+
+    Returns
+    -------
+    Trajectory, not yet cleaned: rows in file order, angles in degrees, `notes`
+    say what was found out. Longitude and latitude stay in degrees (x is the
+    longitude) when no `target_crs` is given.
+
+    Raises
+    ------
+    RoadExtractionError
+        If the file cannot be read or its columns cannot be told.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise RoadExtractionError(f"There is no file {path}. Check the path of the trajectory.")
+    if not path.stat().st_size:
+        raise RoadExtractionError(f"{path} is empty. Export the trajectory again.")
+    trajectory = _read_sbet(path, crs) if _is_sbet(path) else _read_text(path, crs)
+    return reproject_trajectory(trajectory, target_crs) if target_crs else trajectory
+
+
+def trajectory_from_columns(columns, crs="", angle_unit="", label="The trajectory", notes=()):
+    """A Trajectory of columns of numbers.
+
+    Parameters
+    ----------
+    columns : role to (N,) array; roles are time, x, y, z, roll, pitch, heading,
+        and lon, lat in place of x, y. Points of a layer in their order, vertices
+        of a line: without `time` the order is the drive
+    crs : WKT or "EPSG:n" of x, y; "" where unknown
+    angle_unit : "degrees", "radians", or "" to recognise it
+    label : how messages name the source
+
+    Raises
+    ------
+    RoadExtractionError
+        If x, y or z is missing, or coordinates and CRS contradict each other.
+    """
+    columns = {role: only_numbers(np.asarray(values, float)) for role, values in columns.items()}
+    notes = list(notes)
+    time = columns.get("time")
+    has_time = time is not None and np.isfinite(time).any()
+    x, y, crs = _plane_coordinates(columns, time if has_time else None, crs, label, notes)
+    if "z" not in columns or not np.isfinite(columns["z"]).any():
+        raise RoadExtractionError(
+            f"{label} has no heights. Each position needs a z (the height of the vehicle): name the column z or height, "
+            "or use a layer whose points have Z.")
+    if not has_time:
+        time = np.arange(len(x), dtype=float)
+        notes.append(f"{label} has no time; its positions count in the order they stand in.")
+    angles = _angles(columns, x, y, crs, angle_unit, notes)
+    return Trajectory(time, x, y, columns["z"], *angles, crs=crs, has_time=has_time, notes=tuple(notes))
+
+
+def _read_text(path, crs):
+    table = read_number_table(path)
+    count = table.values.shape[1]
+    names, units = find_header(table.preamble, count)
+    notes = []
+    if names:
+        roles = columns_by_role(names)
+        place = {role: names.index(name) for role, name in roles.items()}
+        _check_complete(path, names, place, table.first_row)
+        said = [units[place[role]] for role in ("heading", "roll", "pitch") if role in place and units[place[role]]]
+        unit = said[0] if said else angle_unit_said(table.preamble)
+        _refuse_feet(path, units, place, table.preamble)
+    else:
+        place = columns_from_numbers(table.values, path)
+        unit = angle_unit_said(table.preamble)
+        notes.append(f"{path.name} has no line of names; recognised by the numbers: "
+                     + ", ".join(f"{role} in column {place[role] + 1}" for role in (*ROLES, "lon", "lat") if role in place) + ".")
+    if table.dropped:
+        notes.append(f"{table.dropped} lines of {path.name} had another number of columns than {count} and were left out.")
+    columns = {role: table.values[:, k] for role, k in place.items()}
+    _seconds(columns, units[place["time"]] if "time" in place else "")
+    if "lon" in place and units[place["lon"]] in ("degrees", "radians"):
+        columns["_plane_unit"] = units[place["lon"]]
+    return _with_crs_said(columns, crs, unit, path, table.preamble, notes)
+
+
+def _with_crs_said(columns, crs, unit, path, preamble, notes):
+    plane_unit = columns.pop("_plane_unit", "")
+    if plane_unit == "radians":
+        columns["lon"], columns["lat"] = np.degrees(columns["lon"]), np.degrees(columns["lat"])
+    said = re.search(r"EPSG\s*[:=]?\s*(\d{4,6})", " ".join(preamble), re.IGNORECASE)
+    if said and not crs:
+        found = parse_crs(f"EPSG:{said.group(1)}")
+        if horizontal(found).is_projected == ("x" in columns):
+            crs = found.to_wkt()
+            notes.append(f"{path.name} says that it is in {found.name} (EPSG:{said.group(1)}).")
+    return trajectory_from_columns(columns, crs, unit, path.name, notes)
+
+
+def _check_complete(path, names, place, first_row):
+    missing = [role for role, other in (("x", "lon"), ("y", "lat"), ("z", "z")) if role not in place and other not in place]
+    if missing:
+        raise RoadExtractionError(
+            f"{path} has the columns {', '.join(names)}; {' and '.join(missing)} cannot be found among them. Name them "
+            "time, x, y, z, roll, pitch, heading, or longitude, latitude, height.")
+    if "time" in place and re.match(r"\d+[:-]\d+[:-]\d", first_row[place["time"]]):
+        raise RoadExtractionError(
+            f"The column {names[place['time']]} of {path} holds clock times such as {first_row[place['time']]!r}. GPS seconds are "
+            "needed, since UTC differs from them by leap seconds: export the trajectory with GPS time in seconds.")
+
+
+def _refuse_feet(path, units, place, preamble):
+    text = " ".join(preamble).lower()
+    in_feet = [role for role in ("x", "y", "z") if role in place and units[place[role]] == "feet"]
+    if in_feet or re.search(r"(position|height|distance|coordinates?)s? in (us )?(survey )?(feet|foot|ft)\b", text):
+        raise RoadExtractionError(
+            f"{path} gives positions in feet. Lanewright works in metres: export the trajectory in a metric CRS and run again.")
+
+
+def _seconds(columns, unit):
+    scale = {"milliseconds": 1e-3, "microseconds": 1e-6, "nanoseconds": 1e-9}.get(unit)
+    if scale:
+        columns["time"] = columns["time"] * scale
+
+
+def _plane_coordinates(columns, time, crs, label, notes):
+    """x, y and their CRS; longitude and latitude in degrees where they are geographic."""
+    known = parse_crs(crs)
+    geographic = known is not None and horizontal(known).is_geographic
+    if "x" in columns and "y" in columns and ("lon" not in columns or (known is not None and not geographic)):
+        x, y = columns["x"], columns["y"]
+        unit = geographic_unit(x, y, time)
+        if geographic and not unit and max(np.nanmax(np.abs(x)), np.nanmax(np.abs(y))) > 360:
+            raise RoadExtractionError(
+                f"{label} is said to be in {horizontal(known).name} (degrees), but its coordinates reach "
+                f"{np.nanmax(np.abs(x)):.0f}, {np.nanmax(np.abs(y)):.0f}. Give the CRS that its x and y are in.")
+        if not geographic and known is not None and unit:
+            raise RoadExtractionError(
+                f"{label} is said to be in {horizontal(known).name}, but its coordinates look like longitude and latitude "
+                f"(about {np.nanmedian(x):.4f}, {np.nanmedian(y):.4f}). Set its CRS to EPSG:4326.")
+        if not geographic and not unit:
+            return x, y, "" if known is None else known.to_wkt()
+    elif "lon" in columns and "lat" in columns:
+        x, y = columns["lon"], columns["lat"]
+        unit = geographic_unit(x, y, time)
+        if not unit and max(np.nanmax(np.abs(x)), np.nanmax(np.abs(y))) > 360:
+            raise RoadExtractionError(
+                f"{label} has longitude and latitude up to {np.nanmax(np.abs(x)):.0f}, {np.nanmax(np.abs(y)):.0f}: no degrees. "
+                "Name the columns x and y when they are metres.")
+    else:
+        raise RoadExtractionError(f"{label} has no x and y, nor longitude and latitude. Name its columns time, x, y, z.")
+    if unit == "radians":
+        x, y = np.degrees(x), np.degrees(y)
+        notes.append(f"{label} gives longitude and latitude in radians.")
+    if known is None or not geographic:
+        known = parse_crs(GEOGRAPHIC)
+        notes.append(f"{label} gives longitude and latitude; taken as WGS 84.")
+    return x, y, known.to_wkt()
+
+
+def _angles(columns, x, y, crs, unit, notes):
+    """roll, pitch, heading in degrees, heading clockwise from north; None where a column is missing."""
+    found = {role: columns.get(role) for role in ("roll", "pitch", "heading")}
+    if all(values is None for values in found.values()):
+        return [None, None, None]
+    if crs and horizontal(parse_crs(crs)).is_geographic:
+        x = x * np.cos(np.radians(np.nanmedian(y))) * 1.11e5
+        y = y * 1.11e5
+    heading = found["heading"]
+    good = np.isfinite(x) & np.isfinite(y) & np.isfinite(np.nan if heading is None else heading)
+    if good.sum() > 2:
+        rows, course = driven_course(x[good], y[good])
+        heading_there = heading[good][rows]
+        if np.abs(heading[good]).max() > 2 * np.pi + 0.1:
+            unit = "degrees"
+        elif not unit and len(rows):
+            unit = min(("degrees", "radians"), key=lambda u: _off(heading_there, u, course))
+        if len(rows):
+            in_degrees = np.degrees(heading_there) if unit == "radians" else heading_there
+            heading, note = _from_north(heading, in_degrees, course, unit)
+            found["heading"] = heading
+            notes += note
+    elif not unit:
+        # the roll of a car on a road passes 3 degrees somewhere, but never 0.2 radians
+        largest = max((np.nanmax(np.abs(v)) for v in found.values() if v is not None and np.isfinite(v).any()), default=1.0)
+        unit = "radians" if largest < 0.15 else "degrees"
+    if unit == "radians":
+        notes.append("Roll, pitch and heading are in radians; they were turned into degrees.")
+        found = {role: None if values is None else np.degrees(values) for role, values in found.items()}
+    if found["heading"] is not None:
+        found["heading"] = found["heading"] % 360.0
+    return [found["roll"], found["pitch"], found["heading"]]
+
+
+def _off(heading, unit, course):
+    return float(np.median(angle_between(np.degrees(heading) if unit == "radians" else heading, course)))
+
+
+def _from_north(heading, in_degrees, course, unit):
+    """The heading clockwise from north, and a note where it was counted from east or contradicts the drive."""
+    off = float(np.median(angle_between(in_degrees, course)))
+    if off < 3 * AGREES:
+        return heading, []
+    if np.median(angle_between(90.0 - in_degrees, course)) < AGREES:
+        quarter = np.pi / 2 if unit == "radians" else 90.0
+        return quarter - heading, ["The heading is counted counter-clockwise from east; it was turned into clockwise from north."]
+    return heading, [f"The heading differs from the course driven by {off:.0f}° in the median; the course is used, not the heading."]
+
+
+def _is_sbet(path):
+    """Binary records of 17 doubles whose latitude, longitude and time can be such."""
+    size = path.stat().st_size
+    with open(path, "rb") as file:
+        head = file.read(SAMPLE)
+    if b"\0" not in head or head[:2] in (b"\xff\xfe", b"\xfe\xff") or size < 2 * SBET_DOUBLES * 8:
+        return False
+    usable = len(head) // (SBET_DOUBLES * 8) * SBET_DOUBLES
+    rows = np.frombuffer(head, "<f8", usable).reshape(-1, SBET_DOUBLES)
+    with np.errstate(invalid="ignore"):
+        return bool(np.isfinite(rows[:, :4]).all() and (np.abs(rows[:, 1]) <= np.pi / 2).all()
+                    and (np.abs(rows[:, 2]) <= 2 * np.pi).all() and (rows[:, 0] >= 0).all()
+                    and (np.diff(rows[:, 0]) > 0).mean() > 0.9)
+
+
+def _read_sbet(path, crs):
+    """SBET: little-endian records of 17 doubles, angles in radians, heading in the wander frame."""
+    data = np.fromfile(path, "<f8")
+    rows = data[:len(data) // SBET_DOUBLES * SBET_DOUBLES].reshape(-1, SBET_DOUBLES)
+    notes = []
+    if path.stat().st_size % (SBET_DOUBLES * 8):
+        notes.append(f"{path.name} ends within a record; the last, incomplete one was left out.")
+    known = parse_crs(crs)
+    if known is not None and not horizontal(known).is_geographic:
+        raise RoadExtractionError(
+            f"{path} is an Applanix SBET file: its positions are geographic, but {horizontal(known).name} was given as their CRS. "
+            "Leave the CRS of the input empty or geographic, and give the projected CRS as the target.")
+    true_heading = rows[:, 9] - rows[:, 10]
+    columns = dict(time=rows[:, 0], x=np.degrees(rows[:, 2]), y=np.degrees(rows[:, 1]), z=rows[:, 3],
+                   roll=rows[:, 7], pitch=rows[:, 8], heading=true_heading)
+    trajectory = trajectory_from_columns(columns, crs or GEOGRAPHIC, "radians", path.name, notes)
+    kept = tuple(note for note in trajectory.notes if "radians" not in note)
+    return replace(trajectory, notes=kept)

@@ -1,0 +1,71 @@
+"""Many curves fitted at once: each as if it were alone."""
+
+import numpy as np
+import pytest
+from lanewright.core.curves.base import Arc, percentiles
+from lanewright.core.curves.bspline import fit_splines, smooth_profiles
+from lanewright.core.curves.clothoid import Clothoid
+from lanewright.core.curves.line_circle import fit_circles
+from lanewright.core.curves.model_selection import fit_curves
+from lanewright.core.curves.segmentation import cuts_of, segment_line
+
+
+def painted(curve, step=0.25, seed=1):
+    u = np.arange(0.0, curve.length, step)
+    e = np.random.default_rng(seed).normal(0, 0.01, len(u))
+    return (curve.at(u) + e[:, None] * np.c_[-np.sin(curve.heading(u)), np.cos(curve.heading(u))]).T
+
+
+def winding(length=220.0):
+    u = np.arange(0.0, length, 0.25)
+    return u, 6.0 * np.sin(u / 25.0) + np.random.default_rng(5).normal(0, 0.01, len(u))
+
+
+STREET = [painted(Arc(0.0, 0.0, 0.3, 0.0, 60.0)), painted(Arc(5.0, 2.0, 0.3, 1 / 140, 25.0)), winding(),
+          painted(Clothoid(0.0, 0.0, 0.0, 0.0, 1 / 4000, 80.0)), painted(Arc(0.0, 0.0, 0.0, 0.0, 3.0)),
+          painted(Arc(100.0, -20.0, 2.0, -1 / 60, 120.0))]
+
+
+def test_lines_fitted_together_have_the_curves_they_have_alone():
+    together = fit_curves(STREET)
+    assert [fit.curve.kind for fit in together] == ["line", "circle", "b-spline", "clothoid", "line", "circle"]
+    for fit, line in zip(together, STREET):
+        alone, = fit_curves([line])
+        assert alone.curve.kind == fit.curve.kind
+        np.testing.assert_allclose(fit.residuals, alone.residuals, atol=1e-7)
+
+
+def test_splines_and_profiles_do_not_depend_on_what_is_fitted_beside_them():
+    for fit, line in zip(fit_splines(STREET), STREET):
+        np.testing.assert_allclose(fit.residuals, fit_splines([line])[0].residuals, atol=1e-9)
+    profiles = [(line[0] - line[0][0], line[1]) for line in STREET if (np.diff(line[0]) > 0).all()]
+    for profile, smooth in zip(profiles, smooth_profiles(profiles, 3.0)):
+        np.testing.assert_allclose(smooth(profile[0]), smooth_profiles([profile], 3.0)[0](profile[0]), atol=1e-9)
+
+
+def test_what_is_left_unrefined_is_hopeless_all_the_same():
+    refined, left = (fit_circles([winding()], hopeless)[0] for hopeless in (np.inf, 0.5))
+    assert refined.worst > 0.5 and left.worst > 0.5 and len(left.residuals) == len(refined.residuals)
+
+
+def test_a_circle_worth_refining_is_refined():
+    refined, anyway = (fit_circles([STREET[5]], hopeless)[0] for hopeless in (np.inf, 0.5))
+    np.testing.assert_allclose(refined.residuals, anyway.residuals, atol=1e-12)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 20, 41])
+def test_percentiles_are_numpy_s(count):
+    values = np.random.default_rng(count).normal(size=count)
+    np.testing.assert_array_equal(percentiles(values, (2.5, 50.0, 97.5)), np.percentile(values, [2.5, 50.0, 97.5]))
+
+
+def test_a_road_ten_times_as_long_is_divided_where_its_tenth_is():
+    rng = np.random.default_rng(4)
+    curvature = np.tile(np.repeat([0.0, 1 / 120, 0.0, -1 / 80], 60), 10)
+    heading = np.cumsum(curvature)
+    x, y = np.cumsum(np.cos(heading)) + rng.normal(0, 0.01, 2400), np.cumsum(np.sin(heading)) + rng.normal(0, 0.01, 2400)
+    long, short = cuts_of([(x, y), (x[:480], y[:480])])
+    assert len(long) >= 36
+    for (first, last), (a, b) in zip(long[:6], short[:6]):
+        assert first == pytest.approx(a, abs=5.0) and last == pytest.approx(b, abs=5.0)
+    assert [(segment.first, segment.last) for segment in segment_line(x[:480], y[:480])] == short

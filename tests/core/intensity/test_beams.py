@@ -1,0 +1,69 @@
+"""A scanner that spins many unequal lasers over a street: asphalt is to be one brightness for all of them."""
+
+import numpy as np
+import pytest
+from lanewright.core.intensity.beams import Beams
+from lanewright.core.intensity.correction import correct_intensity
+from lanewright.core.intensity.image import IntensityImage, write_intensity_image
+from lanewright.core.markings.objects.cluster import cluster_markings
+from lanewright.core.markings.paint.extract import extract_markings
+from spun_streets import BEAMS, spun
+
+
+def hatching(x, y):
+    """An island beside the lane: bars of 0.3 m across a strip, within a frame of lines of 0.15 m."""
+    inside = (x > 20) & (x < 26) & (y > 2.5) & (y < 5.0)
+    frame = (np.abs(y - 2.575) < 0.075) | (np.abs(y - 4.925) < 0.075)
+    return inside & (frame | ((x + y) % 1.5 < 0.3))
+
+
+def scatter(values):
+    return np.std(values) / np.mean(values)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("by_turn", [False, True])
+def test_unequal_beams_are_told_apart_and_made_alike(by_turn):
+    points, frame = spun(by_turn=by_turn)
+    corrected, report = correct_intensity(points, frame)
+    found = corrected.all_points()
+    assert BEAMS <= report.beams <= BEAMS + 10 and "beams" in report.lines()[0]
+    assert scatter(found.value) < 0.45 * scatter(found.intensity.astype(float))
+
+
+@pytest.mark.slow
+def test_paint_stays_brighter_than_asphalt_when_beams_are_made_alike():
+    points, frame = spun(hatching)
+    found = correct_intensity(points, frame)[0].all_points()
+    painted = hatching(found.x, found.y)
+    assert np.median(found.value[painted]) - np.median(found.value[~painted]) == pytest.approx(25 * 256, rel=0.1)
+
+
+def test_beams_that_are_alike_already_are_left_alone():
+    points, frame = spun(unequal=False)
+    assert Beams.of(points, frame, 1) is None
+
+
+@pytest.mark.slow
+def test_the_beams_do_not_depend_on_the_length_of_sections():
+    results = [correct_intensity(*spun(section_length=length))[0].all_points() for length in (20.0, 7.0)]
+    by_place = [np.lexsort((p.y, p.x, p.time)) for p in results]
+    np.testing.assert_array_equal(results[0].value[by_place[0]], results[1].value[by_place[1]])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("paint", [None, hatching])
+def test_a_hatched_island_under_unequal_beams_is_found_and_grey_asphalt_is_not(tmp_path, paint):
+    pytest.importorskip("osgeo.gdal")
+    points, frame = spun(paint)
+    corrected, _ = correct_intensity(points, frame)
+    write_intensity_image(corrected, tmp_path / "image.tif")
+    marked = extract_markings(corrected, IntensityImage.open(tmp_path / "image.tif"), frame)
+    if paint is None:
+        assert len(marked) < 20
+        return
+    found, everything = marked.all_points(), corrected.all_points()
+    assert paint(found.x, found.y).mean() > 0.8
+    assert paint(found.x, found.y).sum() > 0.6 * paint(everything.x, everything.y).sum()
+    markings, _ = cluster_markings(marked, frame)
+    assert 3.0 < sum(g.area for g in markings.geometries) < 8.0

@@ -1,0 +1,30 @@
+"""Markings have the names of the lines they make."""
+
+import shapely
+from lanewright.core.common.features import Features
+from lanewright.core.common.schemas import MARKING_LINES, MARKINGS
+from lanewright.core.markings.lines.fit import named_by_lines
+
+
+def street(*lines):
+    """Three dashes on y = 0, an arrow's shaft beside them, an edge line on y = 4, and marking lines (y, kind) along them."""
+    markings, found = Features("PolygonZ", MARKINGS), Features("LineStringZ", MARKING_LINES)
+    for x in (0, 9, 18):
+        markings.add(shapely.force_3d(shapely.box(x, -0.07, x + 3, 0.07)), road=0, use="keep", **{"class": "lane"})
+    markings.add(shapely.force_3d(shapely.box(4, -0.07, 7, 0.07)), road=0, use="other", **{"class": "arrow"})
+    markings.add(shapely.force_3d(shapely.box(0, 3.93, 21, 4.07)), road=0, use="keep", **{"class": "edge"})
+    for y, kind in lines:
+        found.add(shapely.LineString([(0, y, 0), (21, y, 0)]), road=0, kind=kind)
+    return markings, found
+
+
+def test_the_dashes_of_a_centre_line_are_centre_line_and_nothing_else_changes_its_name():
+    markings, lines = street((0.0, "centre"), (4.0, "edge"))
+    assert named_by_lines(markings, lines) == 3
+    assert markings.column("class") == ["centre"] * 3 + ["arrow", "edge"]
+
+
+def test_a_line_beside_a_marking_does_not_name_it():
+    markings, lines = street((0.4, "centre"))
+    assert named_by_lines(markings, lines) == 0
+    assert named_by_lines(markings, Features("LineStringZ", MARKING_LINES)) == 0

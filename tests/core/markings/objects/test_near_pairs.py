@@ -1,0 +1,155 @@
+"""Markings that lie beside each other are found in order of station, as a table of all pairs would tell."""
+
+import tracemalloc
+
+import numpy as np
+import pytest
+from lanewright.core.markings.objects import classify as classes
+from lanewright.core.markings.objects import near_pairs
+from lanewright.core.markings.objects.classify import ALONG, ASKEW, DOUBLE, PARALLEL, STRIPE_LENGTH, STRIPE_PITCH, STRIPE_WIDTH, STRIPES, classify
+from lanewright.core.markings.objects.shape import Shape
+from lanewright.core.markings.objects.split_merge import join_fragments
+from scipy.sparse.csgraph import connected_components
+
+
+def pieces(count, length, longest, seed=0):
+    """dict of columns of markings strewn over a road."""
+    random = np.random.default_rng(seed)
+    s0, d0 = random.uniform(0, length, count), random.uniform(-4, 4, count).round(1)
+    along, across = random.uniform(0.0, longest, count) * random.random(count), random.uniform(0.1, 0.8, count)
+    return {"s0": s0, "s1": s0 + along, "d0": d0, "d1": d0 + across, "offset": d0 + across / 2, "length": along, "width": across,
+            "elongation": along / across, "direction": random.normal(0.0, 0.1, count), "along": random.random(count) < 0.8}
+
+
+def crossings(count, seed=0):
+    """dict of columns of `count` zebra crossings of one to five stripes, some askew, and of strewn pieces."""
+    random, column = np.random.default_rng(seed), pieces(200, 40.0 * count, 6.0, seed)
+    for k in range(count):
+        stripes, pitch, lean = random.integers(1, 6), random.uniform(0.4, 1.8), random.uniform(-0.7, 0.7)
+        d = -3.0 + pitch * np.arange(stripes)
+        s = 40.0 * k + pitch * np.tan(lean) * np.arange(stripes)
+        more = {"s0": s, "s1": s + 4.0, "d0": d, "d1": d + 0.5, "offset": d + 0.25, "length": np.full(stripes, 4.0),
+                "width": np.full(stripes, 0.5), "elongation": np.full(stripes, 8.0), "direction": np.full(stripes, lean),
+                "along": np.ones(stripes, bool)}
+        column = {name: np.r_[values, more[name]] for name, values in column.items()}
+    return column
+
+
+@pytest.fixture(params=[7, 1 << 18])
+def at_a_time(request, monkeypatch):
+    monkeypatch.setattr(near_pairs, "PAIRS", request.param)
+
+
+@pytest.mark.parametrize("apart", [0.0, 3.0])
+@pytest.mark.parametrize("counts", [(60, 90), (1, 5), (0, 4), (4, 0), (0, 0)])
+def test_every_pair_that_meets_comes_once(at_a_time, apart, counts):
+    one, other = (pieces(count, 50.0, 8.0, seed) for seed, count in enumerate(counts))
+    # whole metres: many begin where others end
+    bounds = [np.rint(column[name]) for column in (one, other) for name in ("s0", "s1")]
+    found = [np.column_stack(pair) for pair in near_pairs.near_pairs(*bounds, apart)]
+    found = np.concatenate([np.empty((0, 2), int), *found])
+    s0, s1, t0, t1 = bounds
+    expected = np.argwhere((s0[:, None] <= t1 + apart) & (s1[:, None] >= t0 - apart))
+    np.testing.assert_array_equal(found[np.lexsort(found.T[::-1])], expected)
+
+
+def partners_among_all(column, line):
+    rows = np.flatnonzero(line)
+    s0, s1, d = (column[name][rows] for name in ("s0", "s1", "offset"))
+    overlap = np.minimum(s1[:, None], s1) - np.maximum(s0[:, None], s0)
+    near = (np.abs(d[:, None] - d) <= DOUBLE) & (overlap > 0.5 * (s1 - s0)[:, None])
+    np.fill_diagonal(near, False)
+    result = np.zeros(len(line), bool)
+    result[rows] = near.any(axis=1)
+    return result
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 400])
+def test_lines_of_a_double_line_are_those_among_all_pairs(at_a_time, count):
+    column = pieces(count, 300.0, 30.0)
+    line = column["along"]
+    found = classes._has_partner(column, line)
+    np.testing.assert_array_equal(found, partners_among_all(column, line))
+    assert count < 400 or 0.1 < found[line].mean() < 0.9
+
+
+def stripes_among_all(column):
+    turn, length, width = (column[name] for name in ("direction", "length", "width"))
+    rows = np.flatnonzero((np.abs(turn) <= ASKEW) & (width >= STRIPE_WIDTH[0]) & (width <= STRIPE_WIDTH[1])
+                          & (length >= STRIPE_LENGTH[0]) & (length <= STRIPE_LENGTH[1]))
+    s, d = ((column[low][rows] + column[high][rows]) / 2 for low, high in (("s0", "s1"), ("d0", "d1")))
+    ds, dd, turn, length = s - s[:, None], d - d[:, None], turn[rows], length[rows]
+    middle = (turn + turn[:, None]) / 2
+    ahead, pitch = ds * np.cos(middle) + dd * np.sin(middle), np.abs(dd * np.cos(middle) - ds * np.sin(middle))
+    shared = (length + length[:, None]) / 2 - np.abs(ahead) > 0.5 * np.minimum(length, length[:, None])
+    across = ((np.abs(dd) > np.abs(ds)) | (np.abs(middle) <= ALONG)) & (np.abs(turn - turn[:, None]) <= PARALLEL)
+    group = connected_components(shared & across & (pitch >= STRIPE_PITCH[0]) & (pitch <= STRIPE_PITCH[1]), directed=False)[1]
+    result = np.zeros(len(width), bool)
+    result[rows] = np.bincount(group, minlength=1)[group] >= STRIPES
+    return result
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_stripes_of_crossings_are_those_among_all_pairs(at_a_time, seed):
+    column = crossings(60, seed)
+    found = classes.zebra_stripes(column)
+    np.testing.assert_array_equal(found, stripes_among_all(column))
+    assert 50 < found[200:].sum() < len(found[200:]) - 20
+
+
+def strips_beyond_lines_among_all(column, line, room):
+    s0, s1, d, length = (column[name] for name in ("s0", "s1", "offset", "length"))
+    short = column["along"] & (s1 - s0 > column["d1"] - column["d0"]) & (room < classes.RIM)
+    found = np.zeros(len(line), bool)
+    for k in np.flatnonzero(short):
+        outward = np.sign(d[k]) * (d[k] - d)
+        times = 1.0 if room[k] < column["width"][k] / 2 + classes.TOUCHING_EDGE else classes.LONGER
+        reach = classes.NO_LANE if room[k] < classes.AT_RIM else classes.BEYOND
+        beside = (outward > 0.1) & (outward < reach) & (np.minimum(s1, s1[k]) - np.maximum(s0, s0[k]) > 0)
+        found[k] = (line & beside & (length > times * length[k])).any()
+    return found
+
+
+def test_strips_beyond_an_edge_line_are_those_among_all_pairs(at_a_time):
+    column = pieces(500, 300.0, 20.0)
+    line, room = column["along"] & (column["length"] > 2.0), 4.0 - np.abs(column["offset"])
+    found = classes._beyond_the_edge_line(column, line, room)
+    np.testing.assert_array_equal(found, strips_beyond_lines_among_all(column, line, room))
+    assert 5 < found.sum() < (room < classes.RIM).sum()
+
+
+def away(column, k):
+    """(N,) m from the box of a marking to the box of each."""
+    gaps = [np.maximum(column[low], column[low][k]) - np.minimum(column[high], column[high][k]) for low, high in (("s0", "s1"), ("d0", "d1"))]
+    return np.max(gaps, axis=0)
+
+
+def test_bars_of_hatching_and_their_outlines_are_those_among_all_pairs(at_a_time):
+    column = pieces(300, 900.0, 8.0)
+    kinds = np.where(np.arange(300) % 3 > 0, "hatch", "symbol")
+    bars, symbols = kinds == "hatch", np.flatnonzero(kinds == "symbol")
+    outlines = [k for k in symbols if (bars & (away(column, k) < classes.TOUCHING)).any()]
+    np.testing.assert_array_equal(classes._outlines(column, kinds.tolist()), outlines)
+    others = [bars & (away(column, k) < classes.BAR_APART) & (np.arange(300) != k) for k in range(300)]
+    lone = [k for k in np.flatnonzero(bars) if not others[k].any() and (column["s1"] - column["s0"])[k] < classes.HATCHED_AREA]
+    np.testing.assert_array_equal(classes._lone_bars(column, kinds.tolist()), lone)
+    assert 5 < len(outlines) < len(symbols) and 5 < len(lone) < bars.sum()
+
+
+def dash(s, d, width):
+    return Shape(s0=s, s1=s + 3.0, d0=d, d1=d + width, offset=d + width / 2, length=3.0, width=width, direction=0.0, area=3.0 * width,
+                 points=100, begin=d + width / 2, finish=d + width / 2, closed_area=3.0 * width, stems=(1.0, 1.0))
+
+
+@pytest.mark.parametrize("width", [0.12, 0.5], ids=["dashes", "stripes"])
+def test_memory_grows_with_the_number_of_dashes_and_not_with_its_square(width):
+    shapes = [dash(12.0 * k, d, width) for k in range(5000) for d in (-3.5, -1.5, 1.5, 3.5)]
+    tracemalloc.start()
+    try:
+        found = classify(shapes, np.full(len(shapes), 6.0))
+        joined = join_fragments(shapes, 0.35)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert len(found) == len(np.unique(joined)) == 20_000
+    assert peak < 5_000 * len(shapes)

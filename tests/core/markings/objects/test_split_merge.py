@@ -1,0 +1,95 @@
+"""Paint that touches: what is one marking and what is two."""
+
+import numpy as np
+import pytest
+from lanewright.core.markings.objects.split_merge import split_compounds
+from lanewright.core.survey.store.records import ROAD_POINT, to_units
+
+
+def paint(*strips, spacing=0.03):
+    """Points on painted rectangles (s0, s1, d0, d1) and the number of the rectangle of each."""
+    places, owner = [], []
+    for number, (s0, s1, d0, d1) in enumerate(strips):
+        s, d = np.meshgrid(np.arange(s0, s1, spacing), np.arange(d0, d1, spacing))
+        places.append(np.c_[s.ravel(), d.ravel()])
+        owner.append(np.full(s.size, number))
+    places = np.vstack(places)
+    records = np.zeros(len(places), ROAD_POINT)
+    records["s"], records["d"] = to_units(places[:, 0]), to_units(places[:, 1])
+    return records, np.concatenate(owner)
+
+
+def split(records):
+    return split_compounds(records, np.zeros(len(records), np.int64))
+
+
+def share_together(labels, owner, number):
+    """Share of a rectangle's points that carry its most frequent label."""
+    return np.bincount(labels[owner == number]).max() / np.count_nonzero(owner == number)
+
+
+def test_a_stop_line_that_runs_into_an_edge_line_is_two_markings():
+    records, owner = paint((0, 30, 3.0, 3.15), (20.0, 20.4, 0.0, 3.0))
+    labels = split(records)
+    assert len(np.unique(labels)) == 2
+    assert share_together(labels, owner, 0) > 0.98 and share_together(labels, owner, 1) > 0.9
+
+
+def test_an_edge_line_and_a_centre_line_joined_by_a_stop_line_are_three():
+    records, owner = paint((0, 30, 3.0, 3.15), (0, 8, -0.15, 0.0), (0.0, 0.4, 0.0, 3.0))
+    assert len(np.unique(split(records))) == 3
+
+
+@pytest.mark.parametrize("side", [1, -1], ids=["left", "right"])
+@pytest.mark.parametrize("gap", [0.0, 0.08])
+def test_a_stop_line_that_touches_a_dash_is_two_markings(gap, side):
+    records, owner = paint((0, 0.4, 0.15, 3.2), (0.4, 4.4, -0.075 - gap, 0.15 - gap))
+    records["d"] *= side
+    labels = split(records)
+    assert len(np.unique(labels)) == 2
+    assert share_together(labels, owner, 0) > 0.9 and share_together(labels, owner, 1) > 0.9
+
+
+def test_a_stop_line_of_scan_lines_far_apart_is_cut_from_its_dash():
+    records, owner = paint((0, 0.4, 0.15, 3.2), (0.4, 4.4, -0.075, 0.15))
+    # scan lines askew, as a scanner mounted at 45 degrees draws them, 0.23 m apart
+    kept = np.abs((records["s"] + records["d"]) * 1e-4 / 0.23 % 1.0 - 0.5) < 0.08
+    records, owner = records[kept], owner[kept]
+    labels = split(records)
+    assert len(np.unique(labels)) == 2
+    assert share_together(labels, owner, 0) > 0.85 and share_together(labels, owner, 1) > 0.9
+
+
+def test_a_stop_line_alone_stays_whole():
+    assert len(np.unique(split(paint((0, 0.5, 0.0, 3.2))[0]))) == 1
+
+
+def test_a_zebra_crossing_is_not_cut_across_its_stripes():
+    stripes = [(0, 4, d, d + 0.5) for d in np.arange(-4.0, 4.0, 0.9)]
+    assert len(np.unique(split(paint(*stripes)[0]))) == 1
+
+
+def test_a_long_line_that_drifts_across_the_road_stays_one():
+    s = np.arange(0, 200, 0.02)
+    records = np.zeros(len(s) * 4, ROAD_POINT)
+    records["s"] = to_units(np.tile(s, 4))
+    records["d"] = to_units(np.tile(2.0 * np.sin(s / 60), 4) + np.repeat([0.0, 0.04, 0.08, 0.12], len(s)))
+    assert len(np.unique(split(records))) == 1
+
+
+@pytest.mark.parametrize("figure", [
+    ((0, 3.2, -0.08, 0.08), (3.2, 4.5, -0.5, 0.5)),                      # an arrow
+    ((0, 4, 0.0, 0.2), (0, 4, 0.9, 1.1), (1.9, 2.1, 0.2, 0.9)),          # a letter
+], ids=["arrow", "letter"])
+def test_figures_stay_whole(figure):
+    assert len(np.unique(split(paint(*figure)[0]))) == 1
+
+
+def test_the_order_of_the_points_does_not_matter():
+    records, _ = paint((0, 30, 3.0, 3.15), (20.0, 20.4, 0.0, 3.0))
+    shuffle = np.random.default_rng(1).permutation(len(records))
+    assert np.array_equal(split(records[shuffle]), split(records)[shuffle])
+
+
+def test_no_points_give_no_labels():
+    assert len(split_compounds(np.zeros(0, ROAD_POINT), np.empty(0, np.int64))) == 0

@@ -1,0 +1,74 @@
+"""How bright paint must be."""
+
+import numpy as np
+import pytest
+from lanewright.core.intensity.asphalt_model import asphalt
+from lanewright.core.markings.paint.asphalt_level import asphalt_bins, background, bin_edges, otsu, split_bins
+from lanewright.core.survey.store.records import to_units
+
+RNG = np.random.default_rng(4)
+
+
+def test_otsu_parts_two_materials_between_them():
+    values = np.r_[RNG.normal(0, 1, 9000), RNG.normal(12, 1, 1000)]
+    threshold, below, above, share = otsu(values)
+    assert 3 < threshold < 9
+    assert (below, above, share) == (pytest.approx(0, abs=0.1), pytest.approx(12, abs=0.1), pytest.approx(0.1, abs=0.005))
+
+
+def test_otsu_of_one_value_has_nothing_above():
+    assert otsu(np.full(100, 7.0))[3] == 0.0
+
+
+@pytest.mark.parametrize("share", [0.0, 0.1, 0.4])
+def test_paint_does_not_change_what_asphalt_is(share):
+    count = int(20000 * share)
+    values = np.r_[RNG.normal(1000, 80, 20000 - count), RNG.normal(4000, 400, count)]
+    median, spread = asphalt(values)
+    assert median == pytest.approx(1000, rel=0.02)
+    assert spread == pytest.approx(80, rel=0.15)
+
+
+def test_bins_are_as_wide_as_the_points_are_dense_within_limits():
+    for sigma, width in ((0.3, 0.75), (1.5, 1.5), (8.0, 3.0)):
+        edges = bin_edges(to_units(RNG.normal(0.0, sigma, 50_000)), -5.0, 5.0)
+        np.testing.assert_allclose(np.diff(edges), width, rtol=0.03)
+        assert edges[0] <= -5.0 and edges[-1] >= 5.0
+
+
+def split_of(z, separation=4.0):
+    d = RNG.uniform(-1, 1, len(z))
+    bins = asphalt_bins(z, d, np.array([-1.0, 1.0]))
+    (split,) = split_bins(z, d, bins, separation)
+    return split
+
+
+def test_asphalt_alone_is_not_parted():
+    assert not split_of(RNG.normal(0, 1, 20_000)).accepted
+
+
+def test_a_patch_of_lighter_asphalt_is_not_paint():
+    assert not split_of(np.r_[RNG.normal(0, 1, 15_000), RNG.normal(2.5, 1, 5_000)]).accepted
+
+
+@pytest.mark.parametrize("share", [0.01, 0.10, 0.40])
+def test_paint_is_parted_also_where_it_covers_much_of_the_road(share):
+    count = int(20_000 * share)
+    split = split_of(np.r_[RNG.normal(0, 1, 20_000 - count), RNG.normal(15, 3, count)])
+    assert split.accepted
+    assert 2 < split.threshold < 12
+
+
+def test_bins_with_few_cells_join_their_neighbour():
+    d = np.r_[np.full(600, 0.5), np.full(100, 1.5), np.full(600, 2.5), np.full(20, 3.5)]
+    bins = asphalt_bins(RNG.normal(0, 1, len(d)), d, np.arange(0.0, 5.0))
+    assert [b.count for b in bins] == [600, 720]
+
+
+def test_the_background_follows_a_patch_and_not_the_paint_on_it():
+    z = np.zeros((300, 200))
+    z[100:] = 2.0
+    z[:, 95:99] = 20.0
+    level = background(z, z < 5)
+    assert level[50, 97] == pytest.approx(0.0, abs=0.01)
+    assert level[250, 97] == pytest.approx(2.0, abs=0.01)

@@ -1,0 +1,300 @@
+"""Which points of a street are paint."""
+
+import numpy as np
+import pytest
+from lanewright.core.common import parallel
+from lanewright.core.common.errors import RoadExtractionError
+from lanewright.core.common.progress import Progress
+from lanewright.core.intensity.image import IntensityImage, write_intensity_image
+from lanewright.core.markings.paint import extract as extraction
+from lanewright.core.markings.paint.extract import MarkingSettings, extract_markings
+from lanewright.core.survey.frame.road_frame import build_frame
+from lanewright.core.survey.store.records import ROAD_POINT, to_units
+from lanewright.core.survey.store.road_points import RoadPoints
+from lanewright.core.survey.store.section_store import SectionStore
+from lanewright.core.survey.trajectory.trajectory import Trajectory
+from painted_streets import ASPHALT, assert_same_points, drive, records_at, road_points, shuffled, street, strewn, strip
+
+gdal = pytest.importorskip("osgeo.gdal")
+
+FRAME = drive()
+
+
+def found_on(records, folder, frame=FRAME, section_length=20.0, mask=None):
+    points = road_points(records, frame, section_length)
+    path = folder / "image.tif"
+    write_intensity_image(points, path)
+    return extract_markings(points, IntensityImage.open(path), frame, mask_path=mask).all_points()
+
+
+@pytest.mark.parametrize("radius", [np.inf, 80.0])
+def test_a_painted_strip_is_found_with_its_width_to_2_cm(tmp_path, radius):
+    frame = drive(radius=radius)
+    paint = found_on(street(frame, [strip(10, 70, 1.0, 1.15)]), tmp_path, frame)
+    low, high = np.percentile(paint.d, [2.5, 97.5])
+    assert (high - low) / 0.95 == pytest.approx(0.15, abs=0.02)
+    assert (low + high) / 2 == pytest.approx(1.075, abs=0.01)
+    assert paint.s.min() == pytest.approx(10, abs=0.1) and paint.s.max() == pytest.approx(70, abs=0.1)
+
+
+def test_asphalt_without_paint_yields_nothing(tmp_path):
+    assert len(found_on(street(FRAME), tmp_path)) < 20
+
+
+def test_patches_seams_and_worn_tracks_are_not_paint(tmp_path):
+    def level(s, d):
+        patch = (s > 30) & (s < 36) & (d > -2) & (d < 1)
+        return np.where(patch, 1.35, 1.0) * (1 + 0.15 * np.cos(3 * d)) * np.where(np.abs(s - 50) < 0.03, 0.5, 1.0)
+
+    assert len(found_on(street(FRAME, level=level), tmp_path)) < 40
+
+
+def test_what_wear_has_left_between_two_runs_of_paint_is_paint_and_a_speck_on_its_own_is_not(tmp_path):
+    ends = [strip(10, 30, 1.0, 1.15), strip(33, 60, 1.0, 1.15)]
+    specks = [strip(s, s + 0.04, 1.05, 1.10) for s in (30.6, 31.2, 31.8, 32.4)]
+    alone = [strip(s, s + 0.04, -2.0, -1.95) for s in (30.6, 31.2, 31.8, 32.4)]
+    paint = found_on(street(FRAME, ends + specks + alone, density=3000), tmp_path)
+    for speck in specks:
+        assert speck(paint.s, paint.d).any()
+    assert not any(speck(paint.s, paint.d).any() for speck in alone)
+
+
+def test_brightness_that_falls_with_distance_hides_no_line(tmp_path):
+    lines = [strip(10, 70, d, d + 0.15) for d in (-3.5, 0.0, 3.5)]
+
+    def fall(d):
+        return 1.6 / (1 + 0.15 * (d + 4))
+
+    records = street(FRAME, lines, noise=0.25)
+    records["intensity"] = records["intensity"] * fall(records["d"] * 1e-4)
+    paint = found_on(records, tmp_path)
+    for line in lines:
+        assert line(paint.s, paint.d).sum() > 0.9 * line(records["s"] * 1e-4, records["d"] * 1e-4).sum()
+
+
+def test_a_zebra_crossing_and_a_stop_line_are_not_erased(tmp_path):
+    marks = [strip(30, 34, d, d + 0.5) for d in np.arange(-3.5, 3.5, 1.0)] + [strip(27.0, 27.3, -3.5, -0.2)]
+    records = street(FRAME, marks)
+    paint = found_on(records, tmp_path)
+    for mark in marks:
+        assert mark(paint.s, paint.d).sum() > 0.9 * mark(records["s"] * 1e-4, records["d"] * 1e-4).sum()
+    assert np.any([mark(paint.s, paint.d) for mark in marks], axis=0).mean() > 0.95
+
+
+def test_a_concrete_gutter_is_left_out_and_the_edge_line_beside_it_kept(tmp_path):
+    line = strip(5, 75, 3.2, 3.35)
+    paint = found_on(street(FRAME, [line, strip(0, 80, 3.6, 4.0), strip(0, 80, -4.0, -3.6)]), tmp_path)
+    assert line(paint.s, paint.d).mean() > 0.97
+    assert np.count_nonzero(line(paint.s, paint.d)) > 0.9 * 70 * 0.15 * 1500
+
+
+@pytest.mark.parametrize("side", [1, -1], ids=["left", "right"])
+def test_what_parked_cars_leave_to_be_seen_of_a_gutter_is_no_paint(tmp_path, side):
+    line = strip(5, 75, *sorted((2.9 * side, 3.05 * side)))
+    records = street(FRAME, [line], level=lambda s, d: np.where(d * side > 3.65, 2.6, 1.0))
+    # shadows askew, as a scanner mounted at 45 degrees casts them over the parking strip and the lane beside it
+    s, d = records["s"] * 1e-4, records["d"] * side * 1e-4
+    paint = found_on(records[~((d > -1.0) & ((s - d) % 6.0 < 4.0))], tmp_path)
+    on_line = line(paint.s, paint.d)
+    assert on_line.mean() > 0.97
+    assert np.count_nonzero(on_line) > 0.85 * 70 * 0.15 * 1500 / 3
+
+
+def test_an_edge_line_painted_right_beside_a_gutter_is_found_and_the_gutter_is_not(tmp_path):
+    line = strip(5, 75, 3.52, 3.67)
+    street_ = street(FRAME, [line], level=lambda s, d: np.where(np.abs(d) > 3.7, 2.0, 1.0))
+    paint = found_on(street_, tmp_path)
+    assert line(paint.s, paint.d).mean() > 0.97
+    assert np.count_nonzero(line(paint.s, paint.d)) > 0.9 * 70 * 0.15 * 1500
+
+
+@pytest.mark.parametrize("factor", [1.4, 1.7, 2.2])
+def test_a_pale_repair_in_a_lane_without_paint_is_road_and_a_line_across_it_is_paint(tmp_path, factor):
+    lines = [strip(5, 75, d, d + 0.15) for d in (-3.5, 0.1, 3.35)]
+
+    def repair(s, d):
+        return np.where((s > 26) & (s < 33) & (d > -2.6) & (d < 0.8), factor, 1.0)
+
+    paint = found_on(street(FRAME, lines, level=repair), tmp_path)
+    on_line = np.any([line(paint.s, paint.d) for line in lines], axis=0)
+    assert on_line.mean() > 0.97
+    assert np.count_nonzero(strip(27, 32, 0.1, 0.25)(paint.s, paint.d)) > 0.9 * 5 * 0.15 * 1500
+
+
+@pytest.mark.slow
+def test_noisy_multi_beam_intensities_show_bars_of_paint_and_stay_silent_without(tmp_path):
+    bar = strip(30, 34, 1.0, 1.3)
+    s, d = strewn(80, 4, -4, 3000)
+    rng = np.random.default_rng(9)
+
+    def seen(painted):
+        level = np.where(painted, 2.2 * ASPHALT, ASPHALT)
+        return found_on(records_at(FRAME, s, d, np.abs(level + rng.normal(0, 0.55 * ASPHALT, len(s))), 4.0), tmp_path)
+
+    paint = seen(bar(s, d))
+    assert np.count_nonzero(bar(paint.s, paint.d)) > 0.8 * np.count_nonzero(bar(s, d))
+    assert bar(paint.s, paint.d).mean() > 0.75
+    assert len(seen(np.zeros(len(s), bool))) == 0
+
+
+class Listener(Progress):
+    """Keeps what a user is told and warned of."""
+
+    def __init__(self):
+        self.warnings, self.said = [], []
+
+    def warn(self, text):
+        self.warnings.append(text)
+
+    def say(self, text):
+        self.said.append(text)
+
+    def part(self, first, last):
+        return self
+
+
+@pytest.mark.parametrize("ends, told", [((0, 100), 0), ((0, 84), 1), ((33, 100), 1)], ids=["whole", "bright end", "dark end"])
+def test_intensities_cut_off_at_an_end_are_warned_of_also_where_nothing_is_corrected(tmp_path, ends, told):
+    records, listener = street(FRAME, [strip(10, 70, 1.0, 1.15)]), Listener()
+    low, high = np.percentile(records["intensity"], ends)
+    records["intensity"] = np.rint(np.clip((records["intensity"] - low) / (high - low), 0, 1) * 1000)
+    points = road_points(records, FRAME)
+    write_intensity_image(points, tmp_path / "image.tif")
+    extract_markings(points, IntensityImage.open(tmp_path / "image.tif"), FRAME, progress=listener)
+    assert len(listener.warnings) == told
+
+
+def test_neither_the_order_of_points_nor_the_length_of_sections_matters(tmp_path):
+    records = street(FRAME, [strip(10, 70, 1.0, 1.15), strip(39, 43, -2, -1.5)], density=500)
+    plain = found_on(records, tmp_path).records
+    other = found_on(shuffled(records), tmp_path, section_length=7.0).records
+    assert_same_points(plain, other)
+
+
+@pytest.mark.slow
+def test_where_points_crowd_some_of_them_tell_how_all_lie(tmp_path, monkeypatch):
+    """Of 12 000 points a metre every fourth tells how wide the bins are."""
+    line = strip(5, 75, 1.0, 1.15)
+    records = street(FRAME, [line], density=1500)
+    usual = found_on(records, tmp_path)
+    monkeypatch.setattr(extraction, "MOST", 60_000)
+    some = found_on(records, tmp_path)
+    assert_same_points(some.records, found_on(shuffled(records), tmp_path, section_length=7.3).records)
+    assert abs(len(some) - len(usual)) < 0.01 * len(usual)
+    assert line(some.s, some.d).mean() > 0.97
+
+
+@pytest.mark.parametrize("threads", [1, 7])
+def test_paint_before_and_after_a_stretch_without_points_is_found_by_any_number_of_threads(tmp_path, monkeypatch, threads):
+    line = strip(0, 150, 1.0, 1.15)
+    frame = drive(160)
+    records = street(frame, [line], length=160.0)
+    s = records["s"] * 1e-4
+    records = records[(s < 25) | ((s > 85) & (s < 95)) | (s > 130)]
+    usual = found_on(records, tmp_path, frame)
+    monkeypatch.setattr(parallel.os, "cpu_count", lambda: threads)
+    assert_same_points(usual.records, found_on(records, tmp_path, frame).records)
+    on_line = line(records["s"] * 1e-4, records["d"] * 1e-4).sum()
+    assert line(usual.s, usual.d).mean() > 0.97 and line(usual.s, usual.d).sum() > 0.9 * on_line
+
+
+@pytest.mark.slow
+def test_the_mask_lies_on_the_image_and_covers_the_paint(tmp_path):
+    line = strip(10, 70, 1.0, 1.15)
+    frame = drive(radius=80.0)
+    records = street(frame, [line], length=160.0)
+    found_on(records, tmp_path, frame, mask=tmp_path / "mask.tif")
+    image, mask = IntensityImage.open(tmp_path / "image.tif"), IntensityImage.open(tmp_path / "mask.tif")
+    assert (mask.geotransform, mask.width, mask.height) == (image.geotransform, image.width, image.height)
+    covered = mask.sample(records["x"] * 1e-4, records["y"] * 1e-4, frame.origin) == 1
+    painted = line(records["s"] * 1e-4, records["d"] * 1e-4)
+    assert covered[painted].mean() > 0.90
+    assert painted[covered].mean() > 0.85
+
+
+@pytest.mark.parametrize("wrong", [dict(method="magic"), dict(lowest=0.0), dict(lowest=6.0, highest=5.0), dict(close=-1.0)])
+def test_settings_without_sense_are_refused(wrong):
+    with pytest.raises(RoadExtractionError):
+        MarkingSettings(**wrong)
+
+
+def noisy_bar(frame, road, start, end, scanner, noisy, seed=3):
+    """Records of a road with a bar of paint from station 30 to 34, seen by a quiet or a noisy scanner."""
+    s, d = strewn(end - start, 4, -4, 1200, seed)
+    s = s + start
+    level = np.where(BAR(s, d), 2.2 * ASPHALT, ASPHALT)
+    scatter = np.random.default_rng(seed + 1).normal(0, 0.55 if noisy else 0.08, len(s))
+    records = records_at(frame, s, d, np.abs(level + scatter * ASPHALT), 4.0)
+    x, y = frame.road(road).to_map(records["s"] * 1e-4, records["d"] * 1e-4)
+    records["x"], records["y"] = to_units(x), to_units(y)
+    records["scanner"] = scanner
+    return records
+
+
+BAR = strip(30, 34, 1.0, 1.3)
+
+
+def found_and_said(tiles, frame, folder):
+    """Paint of road 0 before station 55, and the sentences about scatter; `tiles` are pairs of road and records."""
+    points, listener = RoadPoints(SectionStore(ROAD_POINT, 20.0), frame.origin), Listener()
+    for road, records in tiles:
+        points.store.append(road, records)
+    write_intensity_image(points, folder / "image.tif")
+    found = extract_markings(points, IntensityImage.open(folder / "image.tif"), frame, progress=listener)
+    paint = found.window(0, 0, 55)
+    return paint, [text for text in listener.said if "scatter about asphalt" in text]
+
+
+@pytest.mark.parametrize("noisy", [True, False], ids=["noisy", "quiet"])
+def test_a_tile_beside_of_another_scanner_leaves_the_method_on_this_street_as_it_is(tmp_path, noisy):
+    frame = drive(190)
+    street_ = noisy_bar(frame, 0, 0, 80, 0, noisy)
+    alone, (said,) = found_and_said([(0, street_)], frame, tmp_path)
+    beside = noisy_bar(frame, 0, 80, 180, 1, not noisy, seed=8)
+    both, (said_of_both,) = found_and_said([(0, np.concatenate([street_, beside]))], frame, tmp_path)
+    on_bar = np.count_nonzero(BAR(street_["s"] * 1e-4, street_["d"] * 1e-4))
+    assert np.count_nonzero(BAR(alone.s, alone.d)) > 0.8 * on_bar
+    if noisy:
+        assert_same_points(np.asarray(alone.records), np.asarray(both.records))
+    else:
+        assert abs(len(both) - len(alone)) < 0.02 * len(alone)
+    assert ("averages" in said) == noisy and "scanner 0" in said and "scanner 1" not in said
+    assert "Along " in said_of_both and "scanner 0" in said_of_both and "scanner 1" in said_of_both
+
+
+@pytest.mark.parametrize("noisy", [True, False], ids=["noisy", "quiet"])
+def test_another_road_of_another_scanner_leaves_the_method_on_this_street_as_it_is(tmp_path, noisy):
+    s = np.arange(0.0, 90.0, 0.1)
+    frame = build_frame(Trajectory(np.r_[s / 10, s / 10 + 500], np.r_[s, s] + 500_000, np.repeat([5_400_000.0, 5_400_060.0], len(s)),
+                                   np.full(2 * len(s), 102.0)))
+    assert len(frame.roads) == 2
+    street_, other = noisy_bar(frame, 0, 0, 79.9, 0, noisy), noisy_bar(frame, 1, 0, 79.9, 1, not noisy, seed=8)
+    alone, _ = found_and_said([(0, street_)], frame, tmp_path)
+    both, (said,) = found_and_said([(0, street_), (1, other)], frame, tmp_path)
+    assert len(alone) > 500 and abs(len(both) - len(alone)) < 0.02 * len(alone)
+    # one scatters by half of asphalt's level, the other by a twelfth
+    assert "Along 80 of 160 m" in said
+
+
+def test_a_noisy_scanner_that_measured_forty_metres_of_a_quiet_street_is_known_there(tmp_path):
+    """None of the windows that usually tell lies in its 40 m."""
+    frame = drive(90)
+    quiet = noisy_bar(frame, 0, 0, 79.9, 0, noisy=False)
+    outside = quiet[(quiet["s"] < to_units(20)) | (quiet["s"] >= to_units(60))]
+    paint, (said,) = found_and_said([(0, np.concatenate([outside, noisy_bar(frame, 0, 20, 59.9, 1, noisy=True, seed=8)]))], frame, tmp_path)
+    assert "8 % (scanner 0)" in said and "(scanner 1)" in said and "Along 40 of 80 m" in said
+    assert BAR(paint.s, paint.d).mean() > 0.75
+
+
+@pytest.mark.parametrize("method", extraction.METHODS)
+def test_points_without_a_corrected_intensity_among_corrected_ones_hide_no_paint(tmp_path, method):
+    line = strip(10, 70, 1.0, 1.15)
+    records = street(FRAME, [line])
+    records["corrected"] = records["intensity"]
+    records["corrected"][::7] = np.nan
+    points = road_points(records, FRAME)
+    points.has_corrected = True
+    write_intensity_image(points, tmp_path / "image.tif")
+    paint = extract_markings(points, IntensityImage.open(tmp_path / "image.tif"), FRAME, MarkingSettings(method=method)).all_points()
+    assert line(paint.s, paint.d).mean() > 0.9
+    assert 0.1 < np.isnan(paint.corrected).mean() < 0.2

@@ -1,0 +1,130 @@
+"""Paint on streets seen by a noisy spinning scanner: strokes and rows of dashes are found, and what only looks bright is not."""
+
+import numpy as np
+import pytest
+from lanewright.core.intensity.correction import correct_intensity
+from lanewright.core.markings.objects.dash_rows import in_rows
+from lanewright.core.markings.objects.shape import measure
+from lanewright.core.markings.paint.extract import extract_markings
+from spun_streets import spun
+
+
+class NoImage:
+    """Averages are taken of the points: the image is not looked at."""
+
+
+def strip(x0, x1, y0, y1):
+    return lambda x, y: (x >= x0) & (x < x1) & (y >= y0) & (y < y1)
+
+
+def dashes(count, first=12.0, length=0.5, gap=0.5, y=2.6, width=0.15, askew=0.0):
+    """A row of dashes along the road, or `askew` radians to it."""
+    def painted(px, py):
+        along = (px - first) * np.cos(askew) + (py - y) * np.sin(askew)
+        across = (py - y) * np.cos(askew) - (px - first) * np.sin(askew)
+        number = np.floor(along / (length + gap))
+        return (np.abs(across) < width / 2) & (number >= 0) & (number < count) & (along - number * (length + gap) < length)
+    return painted
+
+
+ALONG, ASKEW, ACROSS = dashes(6, first=8.0, y=2.0), dashes(6, first=16.0, y=1.0, askew=0.7), dashes(6, first=24.0, y=-5.0, askew=np.pi / 2)
+SPOT = dashes(1, first=32.0, y=2.0)
+LINE, STOP_LINE = strip(8.0, 20.0, -2.5, -2.35), strip(28.0, 28.3, -3.0, 0.0)
+CURB_FACE, BENEATH_A_CAR = strip(30.0, 42.0, 5.0, 5.15), strip(33.0, 39.0, -5.0, -4.7)
+STREAK, PATCH = strip(10.0, 16.0, -6.0, -5.7), strip(35.0, 41.0, 0.5, 2.5)
+PAINTED = (ALONG, ASKEW, ACROSS, LINE, STOP_LINE)
+BRIGHT = PAINTED + (SPOT, CURB_FACE, BENEATH_A_CAR)
+
+
+def glare(x, y, turn):
+    """A streak that shines at the vehicle as it passes, and a patch of lighter asphalt that fades out."""
+    patch = 14 * np.exp(-0.5 * (((x - 38) / 1.5) ** 2 + ((y - 1.5) / 0.4) ** 2))
+    return np.where(STREAK(x, y) & (turn >= 25) & (turn < 28), 220, 0) + patch
+
+
+def everything_and_found(section_length=20.0):
+    """All points of one street with everything on it, and those that were found to be paint."""
+    points, frame = spun(lambda x, y: np.any([mark(x, y) for mark in BRIGHT], axis=0), section_length=section_length, glare=glare, noisy=True,
+                         height=lambda x, y: 0.08 * np.clip((y - 5.0) / 0.15, 0, 1) * ((x > 29) & (x < 43)),
+                         covered=strip(33.0, 39.0, -6.0, -4.0))
+    points = correct_intensity(points, frame)[0]
+    return points.all_points(), extract_markings(points, NoImage(), frame).all_points()
+
+
+@pytest.fixture(scope="module")
+def street():
+    return everything_and_found()
+
+
+def found_of(mark, street):
+    """Share of a mark's points that were found."""
+    everything, found = street
+    return mark(found.x, found.y).sum() / mark(everything.x, everything.y).sum()
+
+
+@pytest.mark.parametrize("row", [ALONG, ASKEW, ACROSS])
+def test_short_dashes_in_a_row_are_found_whichever_way_the_row_runs(street, row):
+    assert found_of(row, street) > 0.6
+
+
+def test_lines_and_stop_lines_are_found_by_their_shape_alone(street):
+    assert found_of(LINE, street) > 0.7 and found_of(STOP_LINE, street) > 0.7
+
+
+def test_what_is_found_is_paint(street):
+    _, found = street
+    assert np.any([mark(found.x, found.y) for mark in PAINTED], axis=0).mean() > 0.7
+
+
+def test_a_single_bright_spot_as_large_as_a_dash_is_no_marking(street):
+    assert found_of(SPOT, street) == 0
+
+
+def test_the_face_of_a_curb_as_bright_as_paint_is_no_line(street):
+    assert found_of(CURB_FACE, street) < 0.02
+
+
+def test_what_shines_beneath_a_parked_car_is_no_line(street):
+    assert found_of(BENEATH_A_CAR, street) == 0
+
+
+def test_a_streak_that_is_bright_from_one_place_only_is_no_line(street):
+    everything, _ = street
+    beside = strip(10.0, 16.0, -6.9, -6.2)
+    bright, dark = (everything.value[area(everything.x, everything.y)].mean() for area in (STREAK, beside))
+    line = everything.value[LINE(everything.x, everything.y)].mean()
+    assert bright - dark > 0.5 * (line - dark)
+    assert found_of(STREAK, street) == 0
+
+
+def test_a_patch_of_lighter_asphalt_that_fades_out_is_no_paint(street):
+    assert found_of(PATCH, street) == 0
+
+
+@pytest.mark.slow
+def test_the_length_of_sections_does_not_change_what_is_found(street):
+    places = [np.sort(points.x * 1e4 + points.y) for points in (street[1], everything_and_found(7.0)[1])]
+    np.testing.assert_array_equal(*places)
+
+
+def shape_of(s, d, length=0.5, width=0.15):
+    """Shape of a dash along the road with its middle at s, d."""
+    along, across = np.meshgrid(np.arange(s - length / 2, s + length / 2, 0.04), np.arange(d - width / 2, d + width / 2, 0.04))
+    return measure(*(np.rint(axis.ravel() / 1e-4).astype(np.int64) for axis in (along, across)))
+
+
+def test_four_dashes_in_line_are_a_row_and_three_are_none():
+    shapes = [shape_of(s, 0.02 * s) for s in (0.0, 1.0, 2.0, 3.0)]
+    assert [row.tolist() for row in in_rows(shapes)] == [[0, 1, 2, 3]]
+    assert in_rows(shapes[:3]) == []
+
+
+def test_a_dash_worn_away_does_not_end_a_row_and_dashes_beside_each_other_are_none():
+    assert [len(row) for row in in_rows([shape_of(s, 0.0) for s in (0.0, 0.9, 2.7, 3.6, 4.5)])] == [5]
+    assert in_rows([shape_of(0.0, d) for d in (0.0, 1.0, 2.0, 3.0)]) == []
+
+
+def test_spots_strewn_about_are_no_row():
+    rng = np.random.default_rng(3)
+    places = rng.uniform(0, 12, (40, 2))
+    assert sum(len(row) for row in in_rows([shape_of(s, d) for s, d in places])) < 8

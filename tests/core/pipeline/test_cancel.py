@@ -1,0 +1,74 @@
+"""Cancel is asked for often enough, in every stage, however long the road is."""
+
+from collections import Counter
+
+import pytest
+from lanewright.core.common.errors import Cancelled
+from lanewright.core.common.parallel import heard
+from lanewright.core.common.progress import Progress
+from lanewright.core.pipeline import road_map as chain
+from lanewright.core.pipeline.road_map import RoadMapSettings, make_road_map
+from lanewright.core.pipeline.stages import NAMES
+
+pytestmark = pytest.mark.slow
+
+SHORT, LONG = 60.0, 180.0   # m
+
+
+class Questions(Progress):
+    """Counts how often each stage asks, and how often between two new sections of a road; cancels at a question if it is told to."""
+
+    def __init__(self, last=None):
+        self.asked, self.stage, self.last = Counter(), "", last
+
+    def ask(self):
+        if self.asked.total() == self.last:
+            raise Cancelled
+        self.asked[self.stage] += 1
+
+    def at(self, fraction):
+        self.ask()
+
+
+def questions(monkeypatch, survey, folder, last=None):
+    sample, cloud = survey
+    found = Questions(last)
+    run = chain.Stages.run
+
+    def noted(self, name, *arguments, **options):
+        found.stage = name
+        return run(self, name, *arguments, **options)
+
+    with monkeypatch.context() as patch, heard(found):
+        patch.setattr(chain.Stages, "run", noted)
+        patch.setattr("lanewright.core.common.parallel.PATIENCE", 60.0)  # no question depends on the machine's speed
+        make_road_map([cloud], sample.trajectory, folder / "image.tif", RoadMapSettings(), found)
+    return found.asked
+
+
+@pytest.fixture(scope="module")
+def streets(made_survey):
+    return [made_survey(length=length, pulse_rate=60_000.0, rotation_rate=60.0) for length in (SHORT, LONG)]
+
+
+@pytest.fixture(scope="module")
+def asked(streets, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("maps")
+    with pytest.MonkeyPatch.context() as patch:
+        return [questions(patch, street, folder) for street in streets]
+
+
+def test_no_stretch_without_a_question_grows_with_the_road(asked):
+    """Three times the road is asked about far more often in every stage, though some look at as many samples of any road."""
+    short, long = asked
+    few = {stage: (short[stage], long[stage]) for stage in long if stage != "survey" and long[stage] < 1.5 * short[stage]}
+    assert not few
+    assert set(long) == set(NAMES)
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.75, 0.99])
+def test_cancel_at_any_question_ends_the_work_there_and_leaves_nothing_unfinished(streets, asked, share, tmp_path, monkeypatch):
+    last = int(share * asked[0].total())
+    with pytest.raises(Cancelled):
+        questions(monkeypatch, streets[0], tmp_path, last)
+    assert {path.name for path in tmp_path.iterdir()} <= {"image.tif"}

@@ -1,0 +1,90 @@
+"""Clouds of which little was kept: the sample survey with one scan line in two, four and eight, and with few of its points."""
+
+from types import SimpleNamespace
+
+import laspy
+import numpy as np
+import pytest
+import shapely
+from lanewright.core.assess.boundaries import assess_boundaries
+from lanewright.core.common.progress import Progress
+from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
+from lanewright.core.road.scanlines.source import SurveyScanlines
+from lanewright.core.survey.open_survey import open_survey
+
+pytestmark = pytest.mark.slow
+
+ROTATION = 100.0
+TOLERANCE = 0.10
+
+
+class Log(Progress):
+    def __init__(self):
+        self.lines = []
+
+    def say(self, text):
+        self.lines.append(text)
+
+    warn = say
+
+
+@pytest.fixture(scope="module")
+def street(made_survey):
+    sample, cloud = made_survey(length=60.0, pulse_rate=100_000.0, rotation_rate=ROTATION, speed_kmh=30.0)
+    curbs = {dropped: [geometry for geometry, row in sample.truth_boundaries
+                       if row.get("part") != "top" and (row.get("kind") == "dropped") == dropped] for dropped in (False, True)}
+    return SimpleNamespace(cloud=cloud, trajectory=sample.trajectory, curbs=curbs[False], dropped=curbs[True])
+
+
+def thinned(street, folder, which):
+    """The survey of the points that `which` chooses by their times."""
+    points = laspy.read(street.cloud)
+    points.points = points.points[which(np.asarray(points.gps_time))]
+    points.write(folder / "thinned.laz")
+    return open_survey([str(folder / "thinned.laz")], street.trajectory)
+
+
+def one_line_in(kept):
+    # turns are counted from a whole second, which the mirror passes anywhere: a line begins in one of them and ends in the next
+    return lambda time: np.floor((time - np.floor(time.min())) * ROTATION) % kept == 0
+
+
+def drawn(survey, street, method):
+    """The edges, and what was said meanwhile."""
+    log = Log()
+    edges = draw_boundaries(find_curb_points(survey, BoundarySettings(method=method), log), survey.frame, progress=log).edges
+    return edges.geometries, "\n".join(log.lines)
+
+
+def right(edges, survey, street):
+    """Whether nearly all edges are right within TOLERANCE, and nearly all curbs are found, to a centimetre."""
+    found = assess_boundaries(edges, street.curbs, frame=survey.frame, excluded=street.dropped, reasons=["dropped"] * len(street.dropped))
+    accuracy = found.total[TOLERANCE]
+    return accuracy.rates.precision > 0.9 and accuracy.rates.recall > 0.9 and accuracy.lateral.rmse < 0.01
+
+
+@pytest.mark.parametrize("kept", [2, 4, 8])
+def test_of_a_few_scan_lines_the_curbs_are_drawn_still(street, tmp_path, kept):
+    survey = thinned(street, tmp_path, one_line_in(kept))
+    for clock in SurveyScanlines(survey).lattice.clocks.values():
+        assert abs(clock.frequency) / clock.spacing == pytest.approx(ROTATION / kept, rel=1e-3)
+    for method in ("scanlines", "both"):
+        assert right(drawn(survey, street, method)[0], survey, street)
+
+
+def test_of_an_eighth_of_the_points_no_false_curb_is_drawn_and_the_log_says_that_scanlines_measured_none(street, tmp_path):
+    """Points a quarter of a metre apart on the road hit a curb's face once or not at all; profiles add up what many lines saw."""
+    survey = thinned(street, tmp_path, lambda time: np.random.default_rng(3).random(len(time)) < 1 / 8)
+    edges, said = drawn(survey, street, "both")
+    assert "Corners of curbs: 0 measured on scanlines" in said and "scanlines 0 m" in said
+    assert shapely.length(edges).sum() > 20.0
+    curbs = shapely.union_all(shapely.force_2d(street.curbs + street.dropped))
+    assert max(shapely.distance(shapely.points(shapely.get_coordinates(shapely.segmentize(edges, 0.5))), curbs)) < TOLERANCE
+
+
+def test_of_a_thinned_cloud_without_times_scanlines_are_made_of_points_and_the_log_says_so(street, tmp_path):
+    survey = thinned(street, tmp_path, one_line_in(2))
+    survey.has_time = False
+    edges, said = drawn(survey, street, "both")
+    assert "scanlines are made of the points near each section plane" in said
+    assert right(edges, survey, street)

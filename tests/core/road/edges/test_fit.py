@@ -1,0 +1,165 @@
+"""Road edges fitted through curb points of known streets."""
+
+import curbed_streets as streets
+import numpy as np
+import pytest
+import shapely
+from curbed_streets import EAST, NORTH, length_of, parked_car, street, survey_of
+from lanewright.core.common.errors import RoadExtractionError
+from lanewright.core.common.features import Features
+from lanewright.core.common.progress import Progress
+from lanewright.core.common.schemas import CURB_POINTS
+from lanewright.core.road.edges.fit import EdgeSettings, fit_road_edges
+from lanewright.core.road.profiles.detect import detect_curbs
+from lanewright.core.survey.frame.road_frame import build_frame
+from lanewright.core.survey.trajectory.trajectory import Trajectory
+
+
+def straight_frame(length=60.0):
+    time, x, y, z = streets.driven(length)
+    return build_frame(Trajectory(time, x + EAST, y + NORTH, z + 100))
+
+
+def curb_points(stations, offset=lambda s: 3.5, hidden=(), noise=0.0, seed=2):
+    """Curb points of the left side of a straight street, at given stations; `hidden` are stations of hidden curb."""
+    rng = np.random.default_rng(seed)
+    points = Features("PointZ", list(CURB_POINTS))
+    for s in stations:
+        d = offset(s) + rng.normal(0, noise)
+        points.add(shapely.Point(EAST + s, NORTH + d, 100.0), road=0, side="left", status="measured", part="bottom",
+                   station_m=float(s), offset_m=float(d), height_m=0.12, chain=0)
+    for s in hidden:
+        points.add(shapely.Point(EAST + s, NORTH + offset(s), 100.0), road=0, side="left", status="occluded", part="bottom",
+                   station_m=float(s), offset_m=float(offset(s)))
+    return points
+
+
+def places(edges):
+    return np.concatenate([shapely.get_coordinates(g) for g in edges.geometries]) - [EAST, NORTH]
+
+
+def test_the_edge_runs_along_the_curb_and_along_the_road():
+    edges = fit_road_edges(curb_points(np.arange(0, 60, 1.0), noise=0.01), straight_frame())
+    assert [(r["side"], r["status"], r["part"]) for r in edges.rows] == [("left", "measured", "bottom")]
+    vertices = places(edges)
+    assert (np.diff(vertices[:, 0]) > 0).all()
+    np.testing.assert_allclose(vertices[:, 1], 3.5, atol=0.015)
+
+
+def test_both_edges_of_a_scanned_bend_are_arcs_about_its_centre():
+    radius = 40.0
+    surveyed = survey_of(street(radius=radius), drive=streets.driven(radius=radius))
+    edges = fit_road_edges(detect_curbs(surveyed), surveyed.frame)
+    assert [r["side"] for r in edges.rows] == ["left", "right"]
+    for (line, _row), offset in zip(edges, (3.5, -3.5)):
+        x, y = (shapely.get_coordinates(line) - [EAST, NORTH]).T
+        np.testing.assert_allclose(np.hypot(x, y - radius), radius - offset, atol=0.012)
+
+
+def test_a_single_stray_point_does_not_bend_the_edge():
+    edges = fit_road_edges(curb_points(np.arange(0, 60, 1.0), lambda s: 3.5 + 0.3 * (s == 30)), straight_frame())
+    np.testing.assert_allclose(places(edges)[:, 1], 3.5, atol=0.01)
+
+
+def test_a_corner_that_turns_away_is_followed():
+    def corner(s):
+        return 3.5 if s < 40 else 3.5 + 8.0 - np.sqrt(64.0 - (s - 40.0) ** 2)
+
+    vertices = places(fit_road_edges(curb_points(np.arange(0, 45, 0.5), corner), straight_frame()))
+    assert vertices[:, 0].max() == pytest.approx(44.5, abs=0.1)
+    np.testing.assert_allclose(vertices[:, 1], [corner(s) for s in vertices[:, 0]], atol=0.04)
+
+
+def test_a_hidden_gap_is_bridged_and_says_so():
+    stations = np.r_[np.arange(0, 20, 1.0), np.arange(30, 60, 1.0)]
+    edges = fit_road_edges(curb_points(stations, hidden=np.arange(20, 29.5, 0.5)), straight_frame())
+    assert [r["status"] for r in edges.rows] == ["measured", "bridged", "measured"]
+    assert len({r["chain"] for r in edges.rows}) == 1
+    first, bridge, last = edges.geometries
+    assert first.coords[-1] == bridge.coords[0] and bridge.coords[-1] == last.coords[0]
+    assert bridge.length == pytest.approx(11.0, abs=0.05)
+    np.testing.assert_allclose(places(edges)[:, 1], 3.5, atol=0.01)
+
+
+@pytest.mark.parametrize("hidden, gap", [(False, 10.0), (True, 18.0)], ids=["open", "too long"])
+def test_an_opening_and_a_gap_that_is_too_long_break_the_edge(hidden, gap):
+    stations = np.r_[np.arange(0, 20, 1.0), np.arange(19 + gap, 60, 1.0)]
+    edges = fit_road_edges(curb_points(stations, hidden=np.arange(19.5, 19 + gap, 0.5) if hidden else ()), straight_frame())
+    assert [r["status"] for r in edges.rows] == ["measured", "measured"]
+    assert edges.rows[0]["end_m"] == pytest.approx(19) and edges.rows[1]["station_m"] == pytest.approx(19 + gap)
+
+
+def test_the_user_says_how_long_a_gap_may_be():
+    points = curb_points(np.r_[np.arange(0, 20, 1.0), np.arange(30, 60, 1.0)], hidden=np.arange(20, 29.5, 0.5))
+    for longest, bridged in ((8.0, 0), (12.0, 1)):
+        edges = fit_road_edges(points, straight_frame(), EdgeSettings(max_gap=longest))
+        assert sum(r["status"] == "bridged" for r in edges.rows) == bridged
+
+
+def test_a_row_of_parked_cars_is_bridged_where_the_curb_was():
+    points = street()
+    for start in (15.0, 21.0, 38.0):
+        points = parked_car(points, start)
+    surveyed = survey_of(points)
+    edges = fit_road_edges(detect_curbs(surveyed), surveyed.frame)
+    assert length_of(edges, "left", "bridged") > 10.0
+    for line, row in edges:
+        offset = 3.5 if row["side"] == "left" else -3.5
+        np.testing.assert_allclose(shapely.get_coordinates(line)[:, 1] - NORTH, offset, atol=0.03)
+
+
+def test_without_curbs_nothing_is_drawn_unless_a_width_is_asked_for():
+    nothing = Features("PointZ", list(CURB_POINTS))
+    assert len(fit_road_edges(nothing, straight_frame())) == 0
+    edges = fit_road_edges(nothing, straight_frame(), EdgeSettings(fallback_width=7.0))
+    assert {(r["side"], r["status"]) for r in edges.rows} == {("left", "inferred"), ("right", "inferred")}
+    for line, _row in edges:
+        np.testing.assert_allclose(np.abs(shapely.get_coordinates(line)[:, 1] - NORTH), 3.5, atol=1e-3)
+
+
+def test_a_layer_without_edges_comes_with_a_word():
+    class Heard(Progress):
+        warnings = []
+
+        def warn(self, text):
+            self.warnings.append(text)
+
+    fit_road_edges(curb_points(np.arange(0, 30, 1.0)), straight_frame(), progress=Heard())
+    assert not Heard.warnings
+    fit_road_edges(Features("PointZ", list(CURB_POINTS)), straight_frame(), progress=Heard())
+    assert len(Heard.warnings) == 1 and "no road edges" in Heard.warnings[0]
+
+
+def test_the_fallback_fills_only_what_has_no_curb():
+    edges = fit_road_edges(curb_points(np.arange(0, 30, 1.0)), straight_frame(), EdgeSettings(fallback_width=7.0))
+    left = [(r["status"], r["station_m"], r["end_m"]) for r in edges.rows if r["side"] == "left"]
+    assert [status for status, _, _ in left] == ["measured", "inferred"]
+    assert left[1][1] == pytest.approx(29.0) and left[1][2] == pytest.approx(60.0)
+
+
+def test_the_order_of_curb_points_changes_nothing():
+    points = curb_points(np.arange(0, 60, 1.0), noise=0.01)
+    order = np.random.default_rng(0).permutation(len(points))
+    shuffled = Features("PointZ", points.schema, [points.geometries[k] for k in order], [points.rows[k] for k in order])
+    lines = [fit_road_edges(p, straight_frame()).geometries for p in (points, shuffled)]
+    assert [g.wkb for g in lines[0]] == [g.wkb for g in lines[1]]
+
+
+@pytest.mark.parametrize("wrong, word", [(dict(max_gap=-1.0), "gap"), (dict(fallback_width=1.0), "fallback width")])
+def test_settings_that_make_no_sense_are_refused(wrong, word):
+    with pytest.raises(RoadExtractionError, match=word):
+        EdgeSettings(**wrong)
+
+
+def test_curb_points_and_edges_name_the_pass_that_drove_nearest():
+    """There on the right, back on the left: each side's curb is best looked at in the drive beside it."""
+    time, x, y, z = streets.driven(60.0)
+    back = time[-1] + 100.0 + time
+    both = Trajectory(np.r_[time, back], np.r_[x, x[::-1]] + EAST, np.r_[y - 1.75, y + 1.75] + NORTH, np.r_[z, z] + 100)
+    frame = build_frame(both)
+    points = Features("PointZ", list(CURB_POINTS))
+    for side, north in (("left", 3.5), ("right", -3.5)):
+        for s in np.arange(0, 60, 1.0):
+            points.add(shapely.Point(EAST + s, NORTH + north, 100.0), road=0, side=side, status="measured", part="bottom",
+                       station_m=float(s), offset_m=north + 1.75, height_m=0.12, chain=0)  # offsets count from the first drive
+    assert [(row["side"], row["pass"]) for row in fit_road_edges(points, frame).rows] == [("left", 1), ("right", 0)]

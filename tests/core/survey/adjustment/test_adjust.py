@@ -1,0 +1,153 @@
+"""Two drives over one street whose positions drifted: laid on each other, and left alone where they agree."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from lanewright.core.common.progress import Progress
+from lanewright.core.survey.adjustment.adjust import fit_passes, shares
+from lanewright.core.survey.adjustment.register import Offsets, pass_offsets
+from scanned_streets import driven, scanned, survey_of
+
+FLAT = ((-20.0, 0.0), (20.0, 0.0))
+
+
+def twice(east=0.0, left=0.0, up=0.0, paint=lambda x, y: 0.0 * x, section_length=20.0, **scan):
+    """A street driven twice, the second drive's points and track off by so many metres."""
+    time, x = driven(8.0)
+    drives = [(time, x, 0.0), (time + 100.0, x, left if np.isscalar(left) else 0.0)]
+    clouds = [scanned(drive=drive[:2], pulses=pulses, clipped=8.0, noise=0.004, lost=0.1, seed=seed, **scan)
+              for seed, (drive, pulses) in enumerate(zip(drives, (60_000.0, 57_000.0)))]
+    rng = np.random.default_rng(3)
+    painted = [3000.0 + 2000.0 * paint(cloud.x, cloud.y) + 200.0 * rng.standard_normal(len(cloud)) for cloud in clouds]
+    second = clouds[1]
+    beside = left if np.isscalar(left) else left(second.x)
+    clouds[1] = replace(second, x=second.x + east, y=second.y + beside, z=second.z + up)
+    survey = survey_of(*clouds, drives=drives, section_length=section_length)
+    whole = records(survey)
+    assert len(whole) == sum(map(len, clouds))
+    # brightness as painted, whatever the helper gave: points are known by their time
+    light = dict(zip(np.concatenate([cloud.time for cloud in clouds]).tolist(), np.concatenate(painted).tolist()))
+    store = type(survey.store)(survey.store.dtype, section_length)
+    whole["intensity"] = [light[moment] for moment in whole["time"].tolist()]
+    store.append(0, whole)
+    survey.store = store
+    return survey
+
+
+def records(survey):
+    """All points, by their time."""
+    found = np.concatenate([np.asarray(survey.store.section(0, number)) for number in survey.store.sections(0)])
+    return found[np.argsort(found["time"])]
+
+
+def face_of(survey, number):
+    """Offset of the left curb face in the points of one drive, metre by metre along the street."""
+    points = records(survey)
+    h = points["z"] * 1e-4 - (100.0 - survey.frame.origin[2])
+    face = (points["pass_number"] == number) & (points["d"] > 20_000) & (points["d"] < 40_000) & (h > 0.04) & (h < 0.09)
+    metre = np.floor(points["s"][face] * 1e-4 / 10.0).astype(int)
+    known = np.bincount(metre) > 10
+    return (np.bincount(metre, points["d"][face] * 1e-4) / np.maximum(np.bincount(metre), 1))[known]
+
+
+class Heard(Progress):
+    def __init__(self):
+        self.said, self.warned = [], []
+
+    def say(self, text):
+        self.said.append(text)
+
+    def warn(self, text):
+        self.warned.append(text)
+
+
+def test_two_drives_five_centimetres_apart_meet_in_their_middle():
+    survey, heard = twice(left=0.05, up=0.02), Heard()
+    fit_passes(survey, heard)
+    one, other = face_of(survey, 0), face_of(survey, 1)
+    np.testing.assert_allclose(one, other, atol=0.006)
+    np.testing.assert_allclose(np.r_[one, other], 3.525, atol=0.008)
+    points = records(survey)
+    road = (np.abs(points["d"]) < 20_000) & (points["s"] > 100_000) & (points["s"] < 700_000)
+    heights = [np.median(points["z"][road & (points["pass_number"] == number)]) * 1e-4 for number in (0, 1)]
+    assert heights[0] == pytest.approx(heights[1], abs=0.002)
+    assert "5." in heard.said[0] or "4.9" in heard.said[0]
+    assert not heard.warned
+
+
+def test_a_track_goes_with_its_points():
+    survey = twice(left=0.06)
+    before = [p.d.mean() for p in survey.frame.passes]
+    fit_passes(survey)
+    moved = [p.d.mean() - d for p, d in zip(survey.frame.passes, before)]
+    np.testing.assert_allclose(moved, [0.03, -0.03], atol=0.006)
+
+
+def test_drives_that_agree_stay_as_they_were_measured():
+    survey, heard = twice(), Heard()
+    store, frame = survey.store, survey.frame
+    fit_passes(survey, heard)
+    assert survey.store is store and survey.frame is frame
+    assert "stay as they were measured" in heard.said[0]
+
+
+def test_drift_that_grows_along_the_street_is_followed():
+    survey = twice(left=lambda x: 0.0006 * x)
+    fit_passes(survey)
+    one, other = face_of(survey, 0), face_of(survey, 1)
+    np.testing.assert_allclose(one, other, atol=0.012)
+
+
+def test_stop_lines_tell_how_far_drives_lie_apart_along_the_street():
+    survey = twice(east=0.06, paint=lambda x, y: (np.mod(x, 20.0) < 0.4) & (np.abs(y) < 3.0), section=FLAT)
+    offsets, = pass_offsets(survey, 0)
+    known = np.isfinite(offsets.along)
+    assert known.sum() >= 4
+    np.testing.assert_allclose(offsets.along[known], -0.06, atol=0.02)
+
+
+def test_a_bare_plain_tells_nothing_of_the_place():
+    survey = twice(left=0.05, section=FLAT)
+    offsets, = pass_offsets(survey, 0)
+    assert np.isnan(offsets.left).all() and np.isnan(offsets.along).all()
+
+
+def test_cobbles_fit_again_one_stone_farther_and_move_nothing():
+    survey = twice(left=0.06, section=FLAT, paint=lambda x, y: np.mod(y, 0.12) < 0.06)
+    offsets, = pass_offsets(survey, 0)
+    assert np.isnan(offsets.left).all()
+
+
+def test_drives_half_a_metre_apart_are_warned_of_and_not_moved():
+    survey, heard = twice(left=0.36), Heard()
+    store = survey.store
+    fit_passes(survey, heard)
+    assert survey.store is store
+    assert "more than 30 cm" in heard.warned[0]
+
+
+@pytest.mark.slow
+def test_the_fit_does_not_depend_on_where_sections_are_cut():
+    one, other = twice(left=0.05, up=0.02), twice(left=0.05, up=0.02, section_length=7.0)
+    fit_passes(one)
+    fit_passes(other)
+    np.testing.assert_array_equal(records(one), records(other))
+
+
+def test_of_three_drives_each_is_moved_by_its_share():
+    stations = np.arange(5.0, 200.0, 10.0)
+    nothing = np.zeros(len(stations))
+    offsets = [Offsets(0, 1, stations, nothing, nothing + 0.03, nothing, 0), Offsets(1, 2, stations, nothing, nothing + 0.03, nothing, 0)]
+    moved = shares(offsets)
+    for number, left in ((0, -0.03), (1, 0.0), (2, 0.03)):
+        np.testing.assert_allclose(moved[number][1][1], left, atol=0.001)
+
+
+def test_one_offset_out_of_line_moves_nothing_by_much():
+    stations = np.arange(5.0, 200.0, 10.0)
+    nothing = np.zeros(len(stations))
+    left = nothing + 0.02
+    left[9] = 0.28
+    moved = shares([Offsets(0, 1, stations, nothing, left, nothing, 0)])
+    np.testing.assert_allclose(moved[1][1][1] - moved[0][1][1], 0.02, atol=0.012)
