@@ -1,0 +1,37 @@
+"""Public names of a folder, imported when they are first asked for: opening one file need not load all others."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
+
+
+def public(package: str, modules: dict[str, str]) -> tuple[Callable[[str], Any], list[str]]:
+    """What an `__init__` needs to offer names of the modules beside it.
+
+    Parameters
+    ----------
+    package : `__name__` of the folder
+    modules : public name -> module that defines it, relative to the folder
+
+    Returns
+    -------
+    __getattr__ : looks a name up in its module (PEP 562)
+    __all__ : the public names
+
+    Examples
+    --------
+    `__getattr__, __all__ = public(__name__, {"open_survey": "open_survey", "Survey": "open_survey"})`
+    """
+
+    def get(name: str) -> Any:
+        if name not in modules:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        module = import_module(f".{modules[name]}", package)
+        # a module may have the name of its function: importing it set the folder's attribute to the module
+        value = getattr(module, name)
+        setattr(import_module(package), name, value)
+        return value
+
+    return get, sorted(modules)
