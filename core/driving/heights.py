@@ -5,7 +5,7 @@ from scipy.ndimage import gaussian_filter1d, median_filter
 
 from ..common.order_statistics import order_by
 from ..common.parallel import in_order
-from ..survey.store.records import UNIT
+from ..survey.store.records import COORDINATE_SCALE
 from .cross_section import STEP
 
 REACH = 0.3        # m either side of the driving line
@@ -66,7 +66,7 @@ def _heights(sections, s, lanes):
 
 def _beside(lanes):
     """Where, in grains across the road, a table begins that tells which offsets lie within reach of lanes (offsets in metres), and the table."""
-    spans = np.array([(d.min() - REACH, d.max() + REACH) for d in lanes]) / UNIT
+    spans = np.array([(d.min() - REACH, d.max() + REACH) for d in lanes]) / COORDINATE_SCALE
     spans = np.stack([np.floor(spans[:, 0]), np.ceil(spans[:, 1])], axis=1).astype(np.int32) >> GRAIN
     first = np.int32(spans[:, 0].min() - 1)
     table = np.zeros(spans[:, 1].max() - first + 2, bool)
@@ -80,7 +80,7 @@ class _Near:
 
     def __init__(self, sections, s, cells, reach, lanes):
         # of the points' own kind, or all stations would be copied to compare them
-        bounds = np.ceil((s[cells] + reach * np.array([[-1], [1]])) / UNIT).astype(np.int32)
+        bounds = np.ceil((s[cells] + reach * np.array([[-1], [1]])) / COORDINATE_SCALE).astype(np.int32)
         first, beside = _beside([d for _, d in lanes if len(d)])
         parts = [(np.empty(0, int), *np.empty((2, 0), np.int32))]
         for records in sections:
@@ -101,7 +101,7 @@ class _Near:
         return [self._medians(*lane) if len(lane[0]) else (np.empty(0), np.empty(0, int)) for lane in lanes]
 
     def _medians(self, cells, d):
-        middle, reach = np.rint(d / UNIT).astype(np.int32), int(REACH / UNIT)
+        middle, reach = np.rint(d / COORDINATE_SCALE).astype(np.int32), int(REACH / COORDINATE_SCALE)
         low, high = np.array([middle.min() - reach, middle.max() + reach], np.int32) >> GRAIN
         near = slice(np.searchsorted(self.across, low), np.searchsorted(self.across, high, side="right"))
         at = np.full(int(cells[-1]) + 2, -1)
@@ -109,7 +109,7 @@ class _Near:
         place = at.take(self.cell[near], mode="clip")
         inside = np.flatnonzero((place >= 0) & (np.abs(self.offset[near] - middle.take(place, mode="clip")) <= reach))
         place, height = place[inside], self.height[near][inside]
-        height = height[order_by(height, place)] * UNIT
+        height = height[order_by(height, place)] * COORDINATE_SCALE
         count = np.bincount(place, minlength=len(cells))
         begin = np.cumsum(count) - count
         found, some = np.full(len(cells), np.nan), np.flatnonzero(count)

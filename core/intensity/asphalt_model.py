@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..common.order_statistics import ascending, quantile_in_order
-from ..survey.store.records import UNIT
+from ..survey.store.records import COORDINATE_SCALE
 from .vehicle_relative import ACROSS, AWAY, UNKNOWN
 
 BIN = 0.5           # m of distance
@@ -47,8 +47,8 @@ def asphalt(values):
 
 def distance_bin(places):
     """(N,) int32 bin of signed distances, units of 0.1 mm."""
-    number = places + np.int32(REACH / UNIT)
-    number //= np.int32(BIN / UNIT)
+    number = places + np.int32(REACH / COORDINATE_SCALE)
+    number //= np.int32(BIN / COORDINATE_SCALE)
     return np.clip(number, 0, BINS - 1, out=number)
 
 
@@ -188,7 +188,7 @@ class AsphaltTable:
         Asphalt farther away than REACH is taken for that at REACH, on either side. NaN for a scanner whose asphalt
         is unknown, and in the last column, which is that of points whose place is UNKNOWN.
         """
-        distance = (((np.arange(PLACES) << SHIFT) - HALF) + (1 << SHIFT) / 2) * UNIT
+        distance = (((np.arange(PLACES) << SHIFT) - HALF) + (1 << SHIFT) / 2) * COORDINATE_SCALE
         position = np.clip((distance + REACH) / BIN - 0.5, 0, BINS - 1)
         asphalt = np.stack([np.interp(position, np.arange(BINS), row) for row in self.asphalt])
         found = self.reference - asphalt if self.logarithmic else self.reference / np.maximum(asphalt, 1e-6)

@@ -9,7 +9,7 @@ from scipy import sparse
 
 from ..common.memory import KeptArrays
 from ..common.order_statistics import order_by
-from ..survey.store.records import UNIT
+from ..survey.store.records import COORDINATE_SCALE
 
 NEAREST = 1e-3      # m added to a distance, so that a point on a cell's centre has a finite weight
 AT_ONCE = 1 << 19   # distances worked at a time: what fits the processor's cache
@@ -51,7 +51,7 @@ def reach_of(settings):
 
 def lattice_cell(units, origin, cell_size):
     """Column or row of the lattice in which coordinates lie, as whole float64; `units` are 0.1 mm from `origin`, m."""
-    return np.floor((units * UNIT + origin) / cell_size)
+    return np.floor((units * COORDINATE_SCALE + origin) / cell_size)
 
 
 def interpolation_sums(points, brightness, origin, settings, step=1):
@@ -108,7 +108,7 @@ def interpolation_sums(points, brightness, origin, settings, step=1):
 
 def _in_cell(units, origin, cell_size):
     """The cell that coordinates lie in, (N,) whole float64, and how far from its middle, (N,) float32 in cells."""
-    place = (units * UNIT + origin) / cell_size
+    place = (units * COORDINATE_SCALE + origin) / cell_size
     cell = np.floor(place)
     # taken off before the precision is
     place -= cell

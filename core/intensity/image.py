@@ -9,8 +9,8 @@ from ..common.order_statistics import quantiles
 from ..common.parallel import in_order
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from ..io.geotiff import NODATA, TILE, IntensityImage, new_geotiff, write_display_image
-from ..survey.store.records import UNIT
+from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage, new_geotiff, write_display_image
+from ..survey.store.records import COORDINATE_SCALE
 from .idw import Sums, interpolation_sums, lattice_cell, reach_of
 
 __all__ = ["ImageSettings", "IntensityImage", "write_intensity_image", "write_display_image"]
@@ -101,7 +101,7 @@ def write_intensity_image(road_points, path, settings=ImageSettings(), progress=
         for (column, row), parts in _with_pieces(work, sums, progress.part(0.3, 1.0)):
             values = grid.tile(column, row, parts)
             if values is not None:
-                image.write(column * TILE, row * TILE, values)
+                image.write(column * GEOTIFF_TILE, row * GEOTIFF_TILE, values)
                 # compressed by another thread while the next tiles are made
                 image.flush()
     progress.say(f"Intensity image: {grid.width:,} x {grid.height:,} cells of {settings.cell_size:g} m.")
@@ -114,7 +114,7 @@ def check_fits(width, height, settings):
     ------
     RoadExtractionError
     """
-    side = TILE * settings.cell_size
+    side = GEOTIFF_TILE * settings.cell_size
     if np.ceil(width / side) * np.ceil(height / side) > MOST_TILES:
         raise RoadExtractionError(
             f"The road points span {width / 1000:.1f} by {height / 1000:.1f} km, "
@@ -154,7 +154,7 @@ def _step(points, settings):
     Where they crowd these are evenly strewn: one of so many in the order of station and offset that a cell has MOST of them.
     """
     d = points[::WIDTH_TOLD].records["d"]
-    width = max((int(d.max()) - int(d.min())) * UNIT, settings.cell_size)
+    width = max((int(d.max()) - int(d.min())) * COORDINATE_SCALE, settings.cell_size)
     return max(int(len(points) * settings.cell_size**2 / (WINDOW / PIECES * width) / MOST), 1)
 
 
@@ -213,13 +213,13 @@ class _Grid:
     def tiles_of(self, extent):
         """(column, row) of every tile that an extent touches."""
         c0, c1, r0, r1 = extent
-        return [(column, row) for column in range((c0 - self.column) // TILE, (c1 - self.column) // TILE + 1)
-                for row in range((self.row - r1) // TILE, (self.row - r0) // TILE + 1)]
+        return [(column, row) for column in range((c0 - self.column) // GEOTIFF_TILE, (c1 - self.column) // GEOTIFF_TILE + 1)
+                for row in range((self.row - r1) // GEOTIFF_TILE, (self.row - r0) // GEOTIFF_TILE + 1)]
 
     def tile(self, column, row, parts):
         """(height, width) float32 of one tile, from the Sums that touch it; None where nothing is."""
-        shape = min(TILE, self.height - row * TILE), min(TILE, self.width - column * TILE)
-        whole = Sums(self.column + column * TILE, self.row - row * TILE, np.zeros(shape, np.float32), np.zeros(shape, np.float32))
+        shape = min(GEOTIFF_TILE, self.height - row * GEOTIFF_TILE), min(GEOTIFF_TILE, self.width - column * GEOTIFF_TILE)
+        whole = Sums(self.column + column * GEOTIFF_TILE, self.row - row * GEOTIFF_TILE, np.zeros(shape, np.float32), np.zeros(shape, np.float32))
         for part in parts:
             part.add_to(whole)
         seen = whole.weights > 0

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..survey.store.records import UNIT
+from ..survey.store.records import COORDINATE_SCALE
 
 TICK = 5e-4            # s between the times at which the vehicle is looked up: 1 cm of driving
 UNKNOWN = np.int32(2**30)
@@ -93,6 +93,6 @@ class _Track:
     def _less(self, units, name, k):
         """(N,) int32 units less where the vehicle was at ticks k: of places with 64 bits the lower 32 tell it, as what is near is."""
         if name not in self._tables:
-            self._tables[name] = np.rint(self.driven.at(self.ticks, name)[0] / UNIT).astype(np.int64).astype(np.int32)
+            self._tables[name] = np.rint(self.driven.at(self.ticks, name)[0] / COORDINATE_SCALE).astype(np.int64).astype(np.int32)
         there = self._tables[name].take(k, mode="clip")
         return np.subtract(units.astype(np.int32, copy=False), there, out=there)

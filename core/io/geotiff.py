@@ -11,10 +11,10 @@ from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from .gdal_errors import gdal_exceptions
 
-TILE = 512          # px, side of a tile of the file and of the work
+GEOTIFF_TILE = 512          # px, side of a tile of the file and of the work
 NODATA = -9999.0
-AT_ONCE = 4 * TILE**2   # px that are read in one piece to be sampled
-KEPT = 32 * TILE**2     # px that GDAL may keep of what a thread has read
+AT_ONCE = 4 * GEOTIFF_TILE**2   # px that are read in one piece to be sampled
+KEPT = 32 * GEOTIFF_TILE**2     # px that GDAL may keep of what a thread has read
 COMPRESSING = 2     # threads
 DISPLAY_LONGEST = 2000  # px of the reduced image from which the stretch is taken
 SPARSE_STEP = 16        # px from one of them to the next at the most, where few tiles of a large image hold data
@@ -147,7 +147,7 @@ class IntensityImage:
             return pixels.ravel().take(floor_row.astype(np.intp))
         whole_column, whole_row = floor_column.astype(np.int64), floor_row.astype(np.int64)
         inside = np.flatnonzero((whole_column >= -1) & (whole_row >= -1) & (whole_column < self.width) & (whole_row < self.height))
-        tile = (whole_row[inside] // TILE) * (self.width // TILE + 2) + whole_column[inside] // TILE
+        tile = (whole_row[inside] // GEOTIFF_TILE) * (self.width // GEOTIFF_TILE + 2) + whole_column[inside] // GEOTIFF_TILE
         order = inside[np.argsort(tile, kind="stable")]
         cuts = np.flatnonzero(np.diff(np.sort(tile, kind="stable"))) + 1
         for rows in np.split(order, cuts) if len(order) else []:
@@ -198,11 +198,11 @@ def filled_tiles(dataset):
     from osgeo import gdal
 
     band, width, height = dataset.GetRasterBand(1), dataset.RasterXSize, dataset.RasterYSize
-    waiting, found = [(0, 0, -(-width // TILE), -(-height // TILE))], []
+    waiting, found = [(0, 0, -(-width // GEOTIFF_TILE), -(-height // GEOTIFF_TILE))], []
     while waiting:
         c0, r0, c1, r1 = waiting.pop()
-        column, row = c0 * TILE, r0 * TILE
-        flags, _ = band.GetDataCoverageStatus(column, row, min(c1 * TILE, width) - column, min(r1 * TILE, height) - row)
+        column, row = c0 * GEOTIFF_TILE, r0 * GEOTIFF_TILE
+        flags, _ = band.GetDataCoverageStatus(column, row, min(c1 * GEOTIFF_TILE, width) - column, min(r1 * GEOTIFF_TILE, height) - row)
         if not flags & gdal.GDAL_DATA_COVERAGE_STATUS_DATA:
             continue
         if c1 - c0 == r1 - r0 == 1:
@@ -223,7 +223,7 @@ class NewGeoTiff:
     def __init__(self, path, width, height, geotransform, crs, byte, nodata):
         from osgeo import gdal
 
-        options = [f"BLOCKXSIZE={TILE}", f"BLOCKYSIZE={TILE}", "TILED=YES", "COMPRESS=DEFLATE", "SPARSE_OK=TRUE",
+        options = [f"BLOCKXSIZE={GEOTIFF_TILE}", f"BLOCKYSIZE={GEOTIFF_TILE}", "TILED=YES", "COMPRESS=DEFLATE", "SPARSE_OK=TRUE",
                    "BIGTIFF=IF_SAFER", f"NUM_THREADS={COMPRESSING}"]
         # intensities are too noisy to be told from those beside them: a predictor costs twice what it saves, and more to undo
         options += ["PREDICTOR=2"] if byte else ["ZLEVEL=1"]
@@ -301,7 +301,7 @@ def write_display_image(image_path, path, progress=Progress()):
     low, high = _stretch(image)
     with new_geotiff(path, image.width, image.height, image.geotransform, image.crs, byte=True, nodata=0) as picture:
         for column, row in image.tiles():
-            width, height = min(TILE, image.width - column), min(TILE, image.height - row)
+            width, height = min(GEOTIFF_TILE, image.width - column), min(GEOTIFF_TILE, image.height - row)
             values = image.read_pixels(column, row, width, height)
             known = np.isfinite(values)
             if known.any():
@@ -315,11 +315,11 @@ def _stretch(image):
     """1st and 99.5th percentile of an image, taken from every n-th pixel."""
     tiles = image.tiles()
     # where most of a large image is empty, as many pixels as of a small one that is full
-    filled = int(np.sqrt(len(tiles))) * TILE // DISPLAY_LONGEST
+    filled = int(np.sqrt(len(tiles))) * GEOTIFF_TILE // DISPLAY_LONGEST
     step = max(1, min(max(image.width, image.height) // DISPLAY_LONGEST, max(filled, SPARSE_STEP)))
     parts = [np.empty(0, np.float32)]
     for column, row in tiles:
-        values = image.read_pixels(column, row, TILE, TILE)[::step, ::step]
+        values = image.read_pixels(column, row, GEOTIFF_TILE, GEOTIFF_TILE)[::step, ::step]
         parts.append(values[np.isfinite(values)])
     values = np.concatenate(parts)
     return tuple(np.percentile(values, [1.0, 99.5])) if len(values) else (0.0, 1.0)

@@ -26,7 +26,7 @@ from ..road.scanlines.section_planes import ScanlineSettings
 from ..road.surface.extract import SurfaceSettings, extract_road_surface
 from ..survey.open_survey import SurveySettings, open_survey
 from ..survey.point_density import cube_density
-from ..survey.store.records import Points, joined
+from ..survey.store.records import Points, join_columns
 from .stages import PAINT, Extent, Stages
 
 
@@ -161,7 +161,7 @@ def _density(points, store, progress, done):
 
 def _places(points):
     """All points, of which only the columns are joined that are asked for."""
-    return Points(joined([points.store.section(*key) for key in points.all_sections()], points.store.dtype))
+    return Points(join_columns([points.store.section(*key) for key in points.all_sections()], points.store.dtype))
 
 
 def _paint(result, image_path, settings, stages):

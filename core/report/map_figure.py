@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 
 from ..io.gdal_errors import gdal_exceptions
-from ..io.geotiff import TILE, filled_tiles
+from ..io.geotiff import GEOTIFF_TILE, filled_tiles
 
 # An intensity image made small and grey, to lie below a report's map.
 
@@ -57,7 +57,7 @@ def _averaged(dataset, columns, rows, nodata):
     band, width, height = dataset.GetRasterBand(1), dataset.RasterXSize, dataset.RasterYSize
     total, count = np.zeros((2, rows, columns))
     for left, top in filled_tiles(dataset):
-        size = min(TILE, width - left), min(TILE, height - top)
+        size = min(GEOTIFF_TILE, width - left), min(GEOTIFF_TILE, height - top)
         values = np.frombuffer(band.ReadRaster(left, top, *size, buf_type=gdal.GDT_Float32), np.float32).reshape(size[::-1])
         known = np.isfinite(values) if nodata is None else np.isfinite(values) & (values != np.float32(nodata))
         column, row = (np.arange(first, first + n) * few // many for first, n, few, many in

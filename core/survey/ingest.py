@@ -15,7 +15,7 @@ from .las.scale import LasAxis
 from .scanners import ScannerCensus, times_by_value
 from .sensor_height import DEFAULT_HEIGHT, HeightTally, Tracks, first_estimate
 from .store.columns import Columns
-from .store.records import SURVEY_POINT, UNIT, in_units, point_dtype, to_units
+from .store.records import COORDINATE_SCALE, SURVEY_POINT, fill_units, point_dtype, to_units
 from .trajectory.time_systems import WEEK
 
 # Point cloud files into the section store, block by block in several threads.
@@ -175,8 +175,8 @@ class Ground:
     def __init__(self, frame, drop):
         self._roads = {}
         for road in frame.roads:
-            first, last = (int(station / UNIT) >> GROUND_BITS for station in (road.start, road.end))
-            stations = ((np.arange(first, last + 1) << GROUND_BITS) + (1 << GROUND_BITS) // 2) * UNIT
+            first, last = (int(station / COORDINATE_SCALE) >> GROUND_BITS for station in (road.start, road.end))
+            stations = ((np.arange(first, last + 1) << GROUND_BITS) + (1 << GROUND_BITS) // 2) * COORDINATE_SCALE
             lowest = frame.track_height(road.number, stations) - drop - BELOW - MARGIN
             self._roads[road.number] = first, to_units(lowest)
 
@@ -187,7 +187,7 @@ class Ground:
         np.copyto(k, np.subtract(cell, first, out=cell))
         above = np.subtract(z, lowest.take(k, out=cell, mode="clip"), out=cell)
         # what is below becomes a large number
-        return above.view(np.uint32) < np.uint32((ABOVE + BELOW + 2 * MARGIN) / UNIT)
+        return above.view(np.uint32) < np.uint32((ABOVE + BELOW + 2 * MARGIN) / COORDINATE_SCALE)
 
 
 class BlockReading:
@@ -295,9 +295,9 @@ class BlockReading:
         """The same of points that may all be used, as `Placing.put` has it."""
         if self.has_time:
             return self.placing.put(x, y, time, s, d)
-        road, along, across = self.frame.locate_nearest(x * UNIT, y * UNIT, self.corridor)
-        in_units(along, s)
-        in_units(across, d)
+        road, along, across = self.frame.locate_nearest(x * COORDINATE_SCALE, y * COORDINATE_SCALE, self.corridor)
+        fill_units(along, s)
+        fill_units(across, d)
         passes = np.full(len(x), -1, np.int16)
         for p in self.frame.passes[::-1]:
             passes[road == p.road] = p.number

@@ -10,7 +10,7 @@ from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from ..io.crs import check_metric, horizontal, parse_crs, reproject_trajectory
 from .frame.road_frame import build_frame
-from .las.reader import BLOCK, read_blocks, read_headers
+from .las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
 from .open_survey import SurveySettings, match_clocks
 from .scanners import ScannerCensus
 from .sensor_height import AROUND, NEAR_TRACK, height_above
@@ -93,7 +93,7 @@ def inspect_survey(paths, trajectory=None, settings=InspectionSettings(), crs=""
     counter = _Counter(files, settings, _usable(trajectory, wkt))
     total, done = sum(file.count for file in files), 0
     for file in files:
-        for block in read_blocks(file.path, BLOCK):
+        for block in read_blocks(file.path, POINTS_PER_BLOCK):
             counter.take(block)
             done += len(block)
             progress.at(done / total)

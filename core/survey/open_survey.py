@@ -12,9 +12,9 @@ from .adjustment.adjust import fit_passes
 from .clock_check import check_clock
 from .frame.road_frame import CORRIDOR, build_frame
 from .ingest import ABOVE, BELOW, SurveyReader, carried_on
-from .las.reader import BLOCK, CloudReaders, read_headers
+from .las.reader import POINTS_PER_BLOCK, CloudReaders, read_headers
 from .scanners import numbers_by_value
-from .store.records import SURVEY_POINT, UNIT, Points, point_dtype
+from .store.records import COORDINATE_SCALE, SURVEY_POINT, Points, point_dtype
 from .store.section_store import MEMORY_LIMIT, SECTION_LENGTH, SectionStore
 from .trajectory.time_systems import align_time, wrapped_week
 
@@ -41,7 +41,7 @@ class SurveySettings:
     fit_passes: bool = True
     section_length: float = SECTION_LENGTH
     memory_limit: int = MEMORY_LIMIT
-    block: int = BLOCK
+    block: int = POINTS_PER_BLOCK
 
     def __post_init__(self):
         check_limits(self)
@@ -87,11 +87,11 @@ class Survey:
             records["scanner"] = numbers_by_value(self.scanners, int(numbers.max()) + 1).take(numbers)
         # most are near beyond doubt: the others are looked at one by one
         z = records["z"]
-        first, nodes = self._heights(road, records["s"].min() * UNIT, records["s"].max() * UNIT)
-        doubtful = np.flatnonzero((z < (nodes.max() - BELOW) / UNIT + 1) | (z > (nodes.min() + ABOVE) / UNIT - 1))
-        at = records["s"][doubtful] * UNIT / HEIGHT_STEP - first
+        first, nodes = self._heights(road, records["s"].min() * COORDINATE_SCALE, records["s"].max() * COORDINATE_SCALE)
+        doubtful = np.flatnonzero((z < (nodes.max() - BELOW) / COORDINATE_SCALE + 1) | (z > (nodes.min() + ABOVE) / COORDINATE_SCALE - 1))
+        at = records["s"][doubtful] * COORDINATE_SCALE / HEIGHT_STEP - first
         k = at.astype(np.int64)
-        h = z[doubtful] * UNIT - (nodes[k] + (at - k) * (nodes[k + 1] - nodes[k]))
+        h = z[doubtful] * COORDINATE_SCALE - (nodes[k] + (at - k) * (nodes[k + 1] - nodes[k]))
         near = np.ones(len(records), bool)
         near[doubtful] = (h > -BELOW) & (h < ABOVE)
         return None if near[doubtful].all() else near

@@ -5,20 +5,20 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from .adjustment.corrections import PassMoves
-from .las.reader import BLOCK, open_cloud, read_blocks
+from .las.reader import POINTS_PER_BLOCK, open_cloud, read_blocks
 from .las.writer import new_laz, scale_for
-from .store.records import ROAD_POINT, UNIT, point_dtype
+from .store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype
 from .store.road_points import RoadPoints
 from .store.section_store import SectionStore
 
 ROAD_CLASS = 11  # ASPRS: road surface
-SCALE = UNIT
+SCALE = COORDINATE_SCALE
 FARTHEST_MOVE = 10.0  # m: no pass is moved so far
 
 # Stations and offsets are stored as integers of 0.1 mm, so that what is read
 # back is to the bit what was passed on in memory.
 EXTRA = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", None), ("scanner", "uint8", "Scanner", None),
-         ("station_m", "int32", "Station along the road", UNIT), ("offset_m", "int32", "Offset, left positive", UNIT),
+         ("station_m", "int32", "Station along the road", COORDINATE_SCALE), ("offset_m", "int32", "Offset, left positive", COORDINATE_SCALE),
          ("half_width", "uint16", "Half width of the road", 1e-3), ("covered", "uint8", "Beneath something on the road", None)]
 CORRECTED = ("intensity_corrected", "float32", "Intensity, range corrected", None)
 CLUSTER = ("cluster", "int32", "Cluster of paint", None)
@@ -69,7 +69,7 @@ def _farthest(road_points):
         return 0.0
     ends = [int(np.abs(road_points.store.section(road, number)[name]).max(initial=0))
             for road, number in road_points.all_sections() for name in "xy"]
-    return max(ends, default=0) * UNIT + FARTHEST_MOVE
+    return max(ends, default=0) * COORDINATE_SCALE + FARTHEST_MOVE
 
 
 def _whole(units, share):
@@ -125,7 +125,7 @@ def read_road_points(path, progress=Progress()):
     has_corrected, has_cluster = "intensity_corrected" in names, "cluster" in names
     store = SectionStore(dtype)
     done = 0
-    for block in read_blocks(path, BLOCK):
+    for block in read_blocks(path, POINTS_PER_BLOCK):
         records = np.zeros(len(block), dtype)
         # another program may have rewritten the file with its own scale
         for _axis, (name, scale) in enumerate(zip("xyz", scales)):
@@ -136,8 +136,8 @@ def read_road_points(path, progress=Progress()):
         records["returns"] = np.asarray(block["return_number"]) | (np.asarray(block["number_of_returns"]) << 4)
         records["pass_number"] = block["pass"]
         records["scanner"] = block["scanner"] if "scanner" in names else 0
-        records["s"] = np.rint(np.asarray(block["station_m"], float) / UNIT)
-        records["d"] = np.rint(np.asarray(block["offset_m"], float) / UNIT)
+        records["s"] = np.rint(np.asarray(block["station_m"], float) / COORDINATE_SCALE)
+        records["d"] = np.rint(np.asarray(block["offset_m"], float) / COORDINATE_SCALE)
         records["half_width"] = np.rint(np.asarray(block["half_width"], float) / 1e-3)
         records["corrected"] = block["intensity_corrected"] if has_corrected else np.nan
         records["cluster"] = block["cluster"] if has_cluster else 0

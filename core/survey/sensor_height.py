@@ -4,18 +4,18 @@ import threading
 
 import numpy as np
 
-from .store.records import UNIT, to_units
+from .store.records import COORDINATE_SCALE, to_units
 
 NEAR_TRACK = 1.5       # m either side of the vehicle's own track: road, not sidewalk
 DEFAULT_HEIGHT = 2.6   # m, where too few points lie on the track
 FEWEST = 50            # points that make a height
 STEP = 0.001           # m to which a height is told
-_STEP = round(STEP / UNIT)
+_STEP = round(STEP / COORDINATE_SCALE)
 RANGE = 20.0           # m either side of the first estimate that is counted
 PEAK = 0.1             # m: width of the bins in which the road stands out
 EVEN = 0.15            # m: no springs let a vehicle rise and sink more than this for half of its way
 CELL_BITS = 8          # of a station in units of 0.1 mm: a track is looked up every 26 mm
-REACH = round(NEAR_TRACK / UNIT)
+REACH = round(NEAR_TRACK / COORDINATE_SCALE)
 AROUND = 0.5           # m either side of the peak that belong to the road
 
 
@@ -26,8 +26,8 @@ class Tracks:
         self.frame = frame
         self._tracks = {}  # pass number -> first cell of station, offsets and heights of the track in the middle of each
         for p in frame.passes:
-            first, last = (int(station / UNIT) >> CELL_BITS for station in p.span)
-            middles = ((np.arange(first, last + 1) << CELL_BITS) + (1 << CELL_BITS) // 2) * UNIT
+            first, last = (int(station / COORDINATE_SCALE) >> CELL_BITS for station in p.span)
+            middles = ((np.arange(first, last + 1) << CELL_BITS) + (1 << CELL_BITS) // 2) * COORDINATE_SCALE
             self._tracks[p.number] = first, *map(to_units, p.at_station(middles))
 
     def drops(self, road, points, own=None):
@@ -74,7 +74,7 @@ def _between(values, least, most):
 
 def first_estimate(drops):
     """Metres from the trajectory down to the road, good to a decimetre or two, of (N,) units; None of too few points."""
-    return float(np.median(drops)) * UNIT if len(drops) > FEWEST else None
+    return float(np.median(drops)) * COORDINATE_SCALE if len(drops) > FEWEST else None
 
 
 class HeightTally:
@@ -94,7 +94,7 @@ class HeightTally:
     def add(self, number, drops):
         """Count (N,) int32 units below the trajectory of points on the track of one pass."""
         size = int(2 * RANGE / STEP)
-        k = drops - np.int32(round(self.origin / UNIT) - _STEP // 2)
+        k = drops - np.int32(round(self.origin / COORDINATE_SCALE) - _STEP // 2)
         k //= _STEP
         if k.min() < 0 or k.max() >= size:
             k = k[(k >= 0) & (k < size)]

@@ -48,10 +48,10 @@ def placing(size):
     from lanewright.core.survey import ingest as reading
     from lanewright.core.survey.frame.projection import Placing
     from lanewright.core.survey.frame.road_frame import CORRIDOR, build_frame
-    from lanewright.core.survey.las.reader import BLOCK, read_blocks
+    from lanewright.core.survey.las.reader import POINTS_PER_BLOCK, read_blocks
     from lanewright.core.survey.trajectory.reader import read_trajectory
 
-    blocks = [block for path in clouds_of("dense", size) for block in read_blocks(str(path), BLOCK, reading.LAYERS)]
+    blocks = [block for path in clouds_of("dense", size) for block in read_blocks(str(path), POINTS_PER_BLOCK, reading.LAYERS)]
     frame = build_frame(read_trajectory(trajectory_of("dense", size)))
 
     def place(block):
@@ -68,12 +68,12 @@ def placing(size):
 def storing(size):
     """Points that are decoded already into the sections of the road frame, ready for the next stage."""
     from lanewright.core.survey import ingest as reading
-    from lanewright.core.survey.las.reader import BLOCK, read_blocks
+    from lanewright.core.survey.las.reader import POINTS_PER_BLOCK, read_blocks
     from lanewright.core.survey.open_survey import open_survey
     from lanewright.core.survey.trajectory.reader import read_trajectory
 
     clouds, trajectory = clouds_of("dense", size), read_trajectory(trajectory_of("dense", size))
-    decoded = {str(path): list(read_blocks(str(path), BLOCK, reading.LAYERS)) for path in clouds}
+    decoded = {str(path): list(read_blocks(str(path), POINTS_PER_BLOCK, reading.LAYERS)) for path in clouds}
 
     class Decoded:
         """Stands in for the readers of the files."""

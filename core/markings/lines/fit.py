@@ -14,7 +14,7 @@ from ...common.progress import Progress
 from ...common.schemas import MARKING_LINES
 from ...common.setting import check_limits, setting
 from ...curves.model_selection import CURVES
-from ...survey.store.records import joined
+from ...survey.store.records import join_columns
 from ..lines import labelling as line_choice
 from ..objects.classify import LINES
 from .dash_pattern import same_rhythm
@@ -147,7 +147,7 @@ def _linked(strands, settings):
 
 def _records_of(points, road):
     parts = [points.store.section(road, section) for section in points.sections(road)]
-    return joined(parts, points.store.dtype)
+    return join_columns(parts, points.store.dtype)
 
 
 def _add(found, one, shape, number, road, origin):

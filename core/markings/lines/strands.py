@@ -8,7 +8,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ...common.order_statistics import order_by
 from ...curves.base import median, percentiles
-from ...survey.store.records import UNIT
+from ...survey.store.records import COORDINATE_SCALE
 from ..objects.classify import LINES
 
 BIN = 5000             # units of 0.1 mm: 0.5 m of station in which runs of paint are told apart
@@ -262,10 +262,10 @@ def _strand(place, rank, along, across, height, half_width):
     if not own.all():
         inside = np.repeat(own, count)
         return _strand(*(column[inside] for column in (place, rank, along, across, height, half_width)))
-    first, last = float(along.min() * UNIT), float(along.max() * UNIT)
-    s, z = (np.add.reduceat(values, starts, dtype=np.int64) / count * UNIT for values in (along, height))
-    d = middle * UNIT
-    offset = across * UNIT
+    first, last = float(along.min() * COORDINATE_SCALE), float(along.max() * COORDINATE_SCALE)
+    s, z = (np.add.reduceat(values, starts, dtype=np.int64) / count * COORDINATE_SCALE for values in (along, height))
+    d = middle * COORDINATE_SCALE
+    offset = across * COORDINATE_SCALE
     low, high = percentiles(offset - np.repeat(d, count), (2.5, 97.5))
     room = median(half_width * 1e-3 - np.abs(offset))
     share = np.bincount(rank, minlength=len(LINES) + 1) / len(rank) * (last - first)

@@ -7,7 +7,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from ...common.errors import RoadExtractionError
-from ...survey.store.records import UNIT
+from ...survey.store.records import COORDINATE_SCALE
 from .dash_rows import in_rows
 from .near_pairs import near_pairs
 from .shape import ALONG
@@ -39,7 +39,7 @@ def contrast(value, s, starts):
     -------
     (K,) 0 for what only just is brighter than asphalt, 1 for bright paint
     """
-    value, stretch = value[:starts[-1]], np.floor_divide(s[:starts[-1]], int(STRETCH / UNIT))
+    value, stretch = value[:starts[-1]], np.floor_divide(s[:starts[-1]], int(STRETCH / COORDINATE_SCALE))
     if not len(value):
         return np.empty(0)
     order = np.argsort(stretch, kind="stable")

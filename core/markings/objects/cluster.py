@@ -18,7 +18,7 @@ from ...common.progress import Progress
 from ...common.schemas import MARKINGS
 from ...common.setting import check_limits, setting
 from ...curves.base import median
-from ...survey.store.records import UNIT, Points, joined
+from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
 from ..objects import outline as polygons
 from .classify import LINES, NOT_PAINT, ClassSettings, classify, contrast, too_pale
 from .connected_cells import components, occupied
@@ -143,13 +143,13 @@ def group(marking_points, road, distance, progress=Progress()):
     window nor section length shows in the result.
     """
     start, end = marking_points.store.span(road)
-    reach = int(np.ceil(distance * STRETCH / (CELL * UNIT))) + 1
+    reach = int(np.ceil(distance * STRETCH / (CELL * COORDINATE_SCALE))) + 1
     records, labels, links = [], [], []
     shared_cells, shared_labels, count = np.empty((0, 2), np.int64), np.empty(0, np.int64), 0
-    windows = range(int(np.floor(start / UNIT / CELL / WINDOW)), int(np.floor(end / UNIT / CELL / WINDOW)) + 1)
+    windows = range(int(np.floor(start / COORDINATE_SCALE / CELL / WINDOW)), int(np.floor(end / COORDINATE_SCALE / CELL / WINDOW)) + 1)
     for step, window in enumerate(windows):
         first, last = window * WINDOW, (window + 1) * WINDOW
-        found = marking_points.window(road, (first - 1) * CELL * UNIT, (last + reach + 1) * CELL * UNIT).records
+        found = marking_points.window(road, (first - 1) * CELL * COORDINATE_SCALE, (last + reach + 1) * CELL * COORDINATE_SCALE).records
         column = found["s"] // CELL
         found = found[(column >= first) & (column < last + reach)]
         cells, member, component = _components(found, distance)
@@ -163,12 +163,12 @@ def group(marking_points, road, distance, progress=Progress()):
         labels.append(component[member[own]])
         progress.at((step + 1) / len(windows))
     if not records:
-        return joined([], marking_points.store.dtype), np.empty(0, np.int64)
+        return join_columns([], marking_points.store.dtype), np.empty(0, np.int64)
     pairs = np.concatenate(links)
     graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
     _, merged = connected_components(graph, directed=False)
     labels = np.concatenate(labels)
-    return joined(records, marking_points.store.dtype), merged[labels] if len(labels) else labels
+    return join_columns(records, marking_points.store.dtype), merged[labels] if len(labels) else labels
 
 
 def _components(records, distance):
@@ -177,8 +177,8 @@ def _components(records, distance):
     size = np.bincount(member, minlength=len(cells))
     # sums of integers are the same in any order
     s, d = (np.bincount(member, records[name], len(cells)) for name in ("s", "d"))
-    places = np.stack([s / size / STRETCH, d / size * SQUEEZE], axis=1) * UNIT
-    return cells, member, components(cells, places, (CELL * UNIT / STRETCH, CELL * UNIT * SQUEEZE), distance)
+    places = np.stack([s / size / STRETCH, d / size * SQUEEZE], axis=1) * COORDINATE_SCALE
+    return cells, member, components(cells, places, (CELL * COORDINATE_SCALE / STRETCH, CELL * COORDINATE_SCALE * SQUEEZE), distance)
 
 
 def _shared(cells, labels, others, other_labels):
@@ -211,8 +211,8 @@ def _add(markings, records, shape, kind, number, road, frame):
     if kind[0] in STRIPS and not (kind[0] == "zebra" and abs(shape.direction) > SQUARE_TO_ROAD):
         drawn = polygons.band(records["s"], records["d"], shape)
     else:
-        drawn = polygons.outline(*polygons.painted_cells(records["s"] * UNIT, records["d"] * UNIT))
-    places = np.stack([records["x"], records["y"], records["z"]], axis=1) * UNIT
+        drawn = polygons.outline(*polygons.painted_cells(records["s"] * COORDINATE_SCALE, records["d"] * COORDINATE_SCALE))
+    places = np.stack([records["x"], records["y"], records["z"]], axis=1) * COORDINATE_SCALE
     scanned_from = _scanning_distance(records, frame)
     for part in polygons.parts(drawn):
         geometry = polygons.to_map(part, frame.road(road), frame.origin, places)
@@ -227,6 +227,6 @@ def _scanning_distance(records, frame):
     away = np.empty(len(records))
     for number in numbers[:1] if (numbers == numbers[0]).all() else np.unique(numbers):
         rows = np.flatnonzero(numbers == number)
-        track = frame.passes[number].at_station(along[rows] * UNIT)[0]
-        away[rows] = np.abs(across[rows] * UNIT - track)
+        track = frame.passes[number].at_station(along[rows] * COORDINATE_SCALE)[0]
+        away[rows] = np.abs(across[rows] * COORDINATE_SCALE - track)
     return median(away)

@@ -12,7 +12,7 @@ from ...common.order_statistics import order_by
 from ...common.parallel import in_order
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
-from ...survey.store.records import UNIT, chosen
+from ...survey.store.records import COORDINATE_SCALE, take_rows
 from ...survey.store.road_points import RoadPoints
 
 # Which of many points cannot be far from their neighbours: told by the cells they lie in, before any neighbour is looked for.
@@ -49,7 +49,7 @@ def may_be_lonely(records, k, looked, distances, limit, lonelier):
     This holds for cells of any size. They follow the usual distance down to a size that
     leaves no more than `CELLS` of them for every point.
     """
-    side = max(int(SIDE * np.median(distances) / UNIT), _least_side(records["s"], records["d"]))
+    side = max(int(SIDE * np.median(distances) / COORDINATE_SCALE), _least_side(records["s"], records["d"]))
     (row, rows), (column, columns) = (_cells(records[name], side) for name in "sd")
     cell = row * np.int32(columns) + column
     places = [(records[name] - records[name][0]).astype(float) for name in "xyz"]
@@ -67,7 +67,7 @@ def may_be_lonely(records, k, looked, distances, limit, lonelier):
     farthest_first = np.argsort(-distances, kind="stable")
     usual.ravel()[cell[looked[farthest_first]]] = distances[farthest_first]
     usual = cv2.erode(usual, np.ones((ABOUT, ABOUT), np.uint8), borderType=cv2.BORDER_CONSTANT, borderValue=NOWHERE).ravel().take(cell)
-    most = np.maximum(np.where(usual < NOWHERE, lonelier * usual, 0.0), limit) / UNIT
+    most = np.maximum(np.where(usual < NOWHERE, lonelier * usual, 0.0), limit) / COORDINATE_SCALE
     return np.flatnonzero((count <= k) | (squares > (count - 1) * most**2))
 
 
@@ -151,8 +151,8 @@ class Neighbours:
         back = np.empty_like(order)
         back[order] = np.arange(len(order))
         # each point is the first or, beside another at its place, one of the first of its own neighbours
-        means = distances.sum(axis=1, dtype=np.float64) * (UNIT / self.k)
-        return means.take(back), distances[:, -1].take(back) * UNIT, nearest[:, 1:].take(back, axis=0)
+        means = distances.sum(axis=1, dtype=np.float64) * (COORDINATE_SCALE / self.k)
+        return means.take(back), distances[:, -1].take(back) * COORDINATE_SCALE, nearest[:, 1:].take(back, axis=0)
 
     def distances(self, rows):
         """Mean distance of some points to their nearest others, and the distance to the last of these, as in `of`: (M,) metres each."""
@@ -235,12 +235,12 @@ def mean_distances(units, k, progress=Progress()):
     for (own, rows), (distances, farthest) in zip(tiles, asked):
         means[rows[:own]] = distances
         # beyond the margin there may be nearer ones
-        unsettled.append(rows[:own][~(farthest <= MARGIN * UNIT) | (len(rows) <= k)])
+        unsettled.append(rows[:own][~(farthest <= MARGIN * COORDINATE_SCALE) | (len(rows) <= k)])
     unsettled = np.concatenate(unsettled)
     if len(unsettled):
         rows = _without_needless(units, k)
         tree = cKDTree(units if rows is None else units.take(rows, axis=0))
-        means[unsettled] = tree.query(units[unsettled], k + 1)[0][:, 1:].mean(axis=1) * UNIT
+        means[unsettled] = tree.query(units[unsettled], k + 1)[0][:, 1:].mean(axis=1) * COORDINATE_SCALE
     return means
 
 
@@ -349,17 +349,17 @@ def _put(kept, points, keep):
     first = 0
     for road, number in points.all_sections():
         records = points.section(road, number).records
-        kept.store.put(road, number, chosen(records, keep[first:first + len(records)]))
+        kept.store.put(road, number, take_rows(records, keep[first:first + len(records)]))
         first += len(records)
 
 
 def _kept_of_window(points, road, number, settings):
     """(N,) bool of the points of a window, without those about it."""
     records = points.window(road, number * WINDOW - HALO, (number + 1) * WINDOW + HALO).records
-    s = records["s"] * UNIT
+    s = records["s"] * COORDINATE_SCALE
     own = np.flatnonzero((s >= number * WINDOW) & (s < (number + 1) * WINDOW))
     neighbours = _Known(Neighbours(_units(records), settings.neighbours))
-    band = np.floor(records["d"].take(own) * UNIT / BAND)
+    band = np.floor(records["d"].take(own) * COORDINATE_SCALE / BAND)
     lonely = [np.empty(0, np.intp)]
     for value in np.unique(band):
         rows = own[band == value]

@@ -11,7 +11,7 @@ from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from ...curves.base import medians
-from ...survey.store.records import UNIT
+from ...survey.store.records import COORDINATE_SCALE
 from .shape import fill_gaps, middle
 
 CELL = 0.04          # m, in station and in offset
@@ -41,7 +41,7 @@ def band(s, d, shape):
     u, v = (s, d) if shape.along else (np.rint(s * c + d * n).astype(np.int64), np.rint(d * c - s * n).astype(np.int64))
     nodes, offsets = middle(u, v)
     all_nodes = np.concatenate([[u.min()], nodes, [u.max()]])
-    offsets, nodes = np.interp(all_nodes, nodes, offsets) * UNIT, all_nodes * UNIT
+    offsets, nodes = np.interp(all_nodes, nodes, offsets) * COORDINATE_SCALE, all_nodes * COORDINATE_SCALE
     keep = np.append(True, np.diff(nodes) > 1e-6)
     nodes, offsets = nodes[keep], offsets[keep]
     ring = np.stack([np.concatenate([nodes, nodes[::-1]]),

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...survey.store.records import UNIT
+from ...survey.store.records import COORDINATE_SCALE
 
 # A window of the road as an array: along the road and across it, so that a bend is straight.
 
@@ -22,10 +22,10 @@ class RoadGrid:
         return self.last - self.first, self.high - self.low
 
     def stations(self):
-        return (np.arange(self.first, self.last) + 0.5) * CELL * UNIT
+        return (np.arange(self.first, self.last) + 0.5) * CELL * COORDINATE_SCALE
 
     def offsets(self):
-        return (np.arange(self.low, self.high) + 0.5) * CELL * UNIT
+        return (np.arange(self.low, self.high) + 0.5) * CELL * COORDINATE_SCALE
 
     def read(self, image, frame, road):
         """(rows, columns) float32 brightness, NaN where nothing was scanned."""
@@ -124,7 +124,7 @@ def pieces(road_points, road, first, last):
     """Yield (first row, end, Points) of the rows of cells from `first` to before `last`, in order; those without points are left out."""
     cuts = [first, *range((first // PIECE + 1) * PIECE, last, PIECE), last]
     for begin, end in zip(cuts[:-1], cuts[1:]):
-        points = road_points.window(road, begin * CELL * UNIT, end * CELL * UNIT)
+        points = road_points.window(road, begin * CELL * COORDINATE_SCALE, end * CELL * COORDINATE_SCALE)
         if len(points):
             yield begin, end, points
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...common.order_statistics import order_by
 from ...curves.base import median, percentiles
-from ...survey.store.records import UNIT
+from ...survey.store.records import COORDINATE_SCALE
 from .connected_cells import occupied
 
 CELL = 400          # units of 0.1 mm: 4 cm, the cells that areas and directions are taken from
@@ -81,23 +81,23 @@ def measure(s, d):
     direction = _principal_direction(cells)
     s0, s1, d0, d1 = s.min(), s.max(), d.min(), d.max()
     if abs(direction) <= ALONG and s1 - s0 > 2 * BIN:
-        length = (s1 - s0) * UNIT
+        length = (s1 - s0) * COORDINATE_SCALE
         nodes, offsets = middle(s, d)
         across = d - np.interp(s, nodes, offsets)
-        begin, finish = offsets[0] * UNIT, offsets[-1] * UNIT
+        begin, finish = offsets[0] * COORDINATE_SCALE, offsets[-1] * COORDINATE_SCALE
     else:
         c, n = np.cos(direction), np.sin(direction)
         along = s * c + d * n
-        length = np.ptp(along) * UNIT
+        length = np.ptp(along) * COORDINATE_SCALE
         across = d * c - s * n
-        begin = finish = median(d) * UNIT
-    if max(s1 - s0, d1 - d0) * UNIT <= SMALL:
+        begin = finish = median(d) * COORDINATE_SCALE
+    if max(s1 - s0, d1 - d0) * COORDINATE_SCALE <= SMALL:
         closed = _closed(cells, SMALL_GAPS)
     else:
         closed = _closed(cells, BAR_GAPS) if abs(direction) > ACROSS else len(cells)
-    area, closed_area = (count * (CELL * UNIT) ** 2 for count in (len(cells), closed))
-    return Shape(s0 * UNIT, s1 * UNIT, d0 * UNIT, d1 * UNIT, median(d) * UNIT, float(length),
-                 spread(across) * UNIT, direction, area, len(s), float(begin), float(finish), closed_area,
+    area, closed_area = (count * (CELL * COORDINATE_SCALE) ** 2 for count in (len(cells), closed))
+    return Shape(s0 * COORDINATE_SCALE, s1 * COORDINATE_SCALE, d0 * COORDINATE_SCALE, d1 * COORDINATE_SCALE, median(d) * COORDINATE_SCALE,
+                 float(length), spread(across) * COORDINATE_SCALE, direction, area, len(s), float(begin), float(finish), closed_area,
                  _stems(cells))
 
 

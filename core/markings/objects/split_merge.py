@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ...common.order_statistics import order_by
-from ...survey.store.records import UNIT
+from ...survey.store.records import COORDINATE_SCALE
 from .classify import STRIPE_WIDTH, columns_of, zebra_stripes
 from .connected_cells import occupied
 from .near_pairs import near_pairs
@@ -49,8 +49,8 @@ def split_compounds(records, labels):
     following = int(labels.max()) + 1
     along, across = records["s"].take(order), records["d"].take(order)
     ranges = [np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts) for values in (along, across)]
-    large = (ranges[0] * UNIT >= LONG) & (ranges[1] * UNIT >= BROADER) \
-        | (ranges[0] * UNIT >= LEAST_BESIDE) & (ranges[1] * UNIT >= BAR)
+    large = (ranges[0] * COORDINATE_SCALE >= LONG) & (ranges[1] * COORDINATE_SCALE >= BROADER) \
+        | (ranges[0] * COORDINATE_SCALE >= LEAST_BESIDE) & (ranges[1] * COORDINATE_SCALE >= BAR)
     for a, b in zip(starts[large], np.r_[starts[1:], len(order)][large]):
         rows = order[a:b]
         cells, member = occupied(along[a:b] // CELL, across[a:b] // CELL)
@@ -63,7 +63,7 @@ def split_compounds(records, labels):
 
 def _parts(cells):
     """(K,) the part of every cell, numbered from 0, and how many parts there are."""
-    size = CELL * UNIT
+    size = CELL * COORDINATE_SCALE
     parts, every = np.full(len(cells), -1), np.arange(len(cells))
     count = _number_strips(parts, 0, cells, every[_in_runs(cells, SCAN_GAP, RUN)], SCAN_GAP, size, LEAST_ALONG)
     rest, turned = np.flatnonzero(parts < 0), cells[:, ::-1]
@@ -89,7 +89,7 @@ def _number_strips(parts, count, cells, rows, gap, gap_across, least):
 
     cells : (K, 2) along the strips and across them; gap, gap_across : m between cells of one; least : m, its length
     """
-    size = CELL * UNIT
+    size = CELL * COORDINATE_SCALE
     strips = _linked(cells[rows], gap / size, gap_across / size)
     number = strips.max(initial=-1) + 1
     first, last = np.full(number, np.inf), np.full(number, -np.inf)
@@ -104,7 +104,7 @@ def _in_runs(cells, longest_gap, shortest_run):
     """(K,) whether a cell lies in a run of paint along the first axis; gaps are closed."""
     if not len(cells):
         return np.zeros(0, bool)
-    size = CELL * UNIT
+    size = CELL * COORDINATE_SCALE
     # OpenCV moves what an even number of cells closes or opens
     gap, run, chunk = round(longest_gap / size) // 2 * 2, round(shortest_run / size) | 1, int(CHUNK / size)
     halo = 2 * (gap + run)

@@ -14,7 +14,7 @@ from scipy import ndimage
 
 from ...common.order_statistics import quantiles
 from ...intensity.asphalt_model import asphalt
-from ...survey.store.records import UNIT
+from ...survey.store.records import COORDINATE_SCALE
 from .gutters import gutter_cells
 
 # The level of asphalt and the threshold above it at any place of a road, between bins and windows.
@@ -196,7 +196,7 @@ def bin_edges(d, low, high):
     """
     if not len(d):
         return np.array([low, high])
-    first, middle, third = (quantiles(d, [0.25, 0.5, 0.75]) * UNIT).tolist()
+    first, middle, third = (quantiles(d, [0.25, 0.5, 0.75]) * COORDINATE_SCALE).tolist()
     # the Gaussian that has the quartiles of the density: far stray points do not widen it
     width = float(np.clip((third - first) / 1.349, NARROWEST, WIDEST))
     left, right = int(max(high - middle, 0) / width) + 1, int(max(middle - low, 0) / width) + 1

@@ -15,7 +15,7 @@ from ...common.parallel import in_order
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...intensity.saturation import clipping_of
-from ...survey.store.records import UNIT, Points, chosen, joined
+from ...survey.store.records import COORDINATE_SCALE, Points, join_columns, take_rows
 from ...survey.store.road_points import RoadPoints
 from ..objects.road_grid import CELL, RoadCells, RoadGrid, cell_numbers, in_cells
 from .asphalt_level import FEWEST, Levels, asphalt_bins, asphalt_profile, bin_edges, flatten, split_bins
@@ -118,7 +118,7 @@ def _extract(road_points, image, frame, settings, progress, burn):
     roads = road_points.roads()
     windows = [(road, window) for road in roads for window in _windows(road_points, road)]
     scatter = Scatter.of(lambda road, window: _window(road_points, road, window), windows, progress.part(0.0, 0.1))
-    progress.say(scatter.line(WINDOW * CELL * UNIT))
+    progress.say(scatter.line(WINDOW * CELL * COORDINATE_SCALE))
     for k, road in enumerate(roads):
         part = progress.part(0.1 + 0.9 * k / len(roads), 0.1 + 0.9 * (k + 1) / len(roads))
         look = _Look(road_points, image, frame, road, settings, burn is not None, scatter.averaged(road))
@@ -135,12 +135,12 @@ def _extract(road_points, image, frame, settings, progress, burn):
 def _windows(road_points, road):
     """Numbers of the windows of a road."""
     start, end = road_points.store.span(road)
-    return range(int(np.floor(start / UNIT / CELL / WINDOW)), int(np.floor(end / UNIT / CELL / WINDOW)) + 1)
+    return range(int(np.floor(start / COORDINATE_SCALE / CELL / WINDOW)), int(np.floor(end / COORDINATE_SCALE / CELL / WINDOW)) + 1)
 
 
 def _window(road_points, road, window):
     """Points of a window."""
-    return road_points.window(road, window * WINDOW * CELL * UNIT, (window + 1) * WINDOW * CELL * UNIT)
+    return road_points.window(road, window * WINDOW * CELL * COORDINATE_SCALE, (window + 1) * WINDOW * CELL * COORDINATE_SCALE)
 
 
 class _Sections:
@@ -152,7 +152,7 @@ class _Sections:
 
     def add(self, records):
         """Add Columns that lie behind all that came before."""
-        section = np.floor(records["s"] * UNIT / self.store.section_length).astype(np.int64)
+        section = np.floor(records["s"] * COORDINATE_SCALE / self.store.section_length).astype(np.int64)
         cuts = np.flatnonzero(np.diff(section)) + 1
         for first, end in zip([0, *cuts], [*cuts, len(section)]):
             if end > first:
@@ -164,7 +164,7 @@ class _Sections:
     def finish(self):
         """Put what waits for more of its section."""
         if self.parts:
-            self.store.put(self.road, self.number, joined(self.parts, self.store.dtype))
+            self.store.put(self.road, self.number, join_columns(self.parts, self.store.dtype))
         self.parts = []
 
 
@@ -191,7 +191,7 @@ class _Look:
         return self.strokes(window) if window in self.averaged else self.paint(window)
 
     def _points(self, first, last):
-        return self.road_points.window(self.road, first * CELL * UNIT, last * CELL * UNIT)
+        return self.road_points.window(self.road, first * CELL * COORDINATE_SCALE, last * CELL * COORDINATE_SCALE)
 
     def _in_cells(self, window):
         """[PieceOfRoad] of a window's own points; they are kept until it is painted, for windows beside it look at them too."""
@@ -245,7 +245,7 @@ class _Look:
             if beside is not None:
                 # the thresholds of a window look at those beside it
                 known.update((w, self.bins(w)) for w in (beside, beside + step) if self.first <= w <= self.last and self.bins(w))
-        return Levels(known, WINDOW * CELL * UNIT, self.settings)
+        return Levels(known, WINDOW * CELL * COORDINATE_SCALE, self.settings)
 
     def _pixels(self, mask, grid):
         """Local x, y of the centres of the image's pixels that lie in painted cells of the window itself."""
@@ -291,15 +291,15 @@ class _Look:
         for part in parts:
             place = part.within(grid)
             rows, cell = part.points_on(mask[place])
-            records = chosen(self._points(part.grid.first, part.grid.last).records, rows)
+            records = take_rows(self._points(part.grid.first, part.grid.last).records, rows)
             if least is not None:
                 bright = np.flatnonzero(Points(records).value > least[place].ravel().take(cell))
-                records, cell = chosen(records, bright), cell.take(bright)
+                records, cell = take_rows(records, bright), cell.take(bright)
             found.append(records)
             own = np.zeros(part.grid.shape, bool)
             own.ravel()[cell] = True
             on[place] = own
-        records = joined(found, self.road_points.store.dtype)
+        records = join_columns(found, self.road_points.store.dtype)
         if not self.masked:
             return records, np.empty(0), np.empty(0)
         # the image spreads a point over its neighbours: a cell whose own points are dark is no marking

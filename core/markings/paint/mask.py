@@ -5,7 +5,7 @@ from contextlib import contextmanager
 import numpy as np
 
 from ...io.geotiff import new_geotiff
-from ...survey.store.records import UNIT
+from ...survey.store.records import COORDINATE_SCALE
 from ..objects.outline import CELL, CLOSE_ALONG, painted_cells
 
 BLOCK = 2048  # px: cells are burnt in blocks of the image, so that a window in a bend takes no more than it touches
@@ -97,6 +97,6 @@ def burn_points(burn, points, image, frame):
             found = points.window(road, (first - halo) * CELL, (last + halo) * CELL).records
             if not len(found):
                 continue
-            cells, corner = painted_cells(found["s"] * UNIT, found["d"] * UNIT)
+            cells, corner = painted_cells(found["s"] * COORDINATE_SCALE, found["d"] * COORDINATE_SCALE)
             top, bottom = max(first - corner[0], 0), max(last - corner[0], 0)
             burn(*painted_pixels(cells[top:bottom], (corner[0] + top, corner[1]), image, frame.origin, frame.road(road)))

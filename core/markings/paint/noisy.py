@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from ...survey.store.records import UNIT
+from ...survey.store.records import COORDINATE_SCALE
 from ..objects.dash_rows import FEWEST, in_rows
 from ..objects.shape import CELL as CELL_UNITS
 from ..objects.shape import Shape, measure
@@ -59,7 +59,7 @@ class Averages:
         count = np.bincount(cell, minlength=shape[0] * shape[1]).reshape(shape).astype(float)
         total = np.bincount(cell, np.rint(value.astype(float) * 64), count.size).reshape(shape) / 64
         low = int(height.min(initial=0))
-        risen = np.bincount(cell, (height - low).astype(float), count.size).reshape(shape) * UNIT
+        risen = np.bincount(cell, (height - low).astype(float), count.size).reshape(shape) * COORDINATE_SCALE
         spot, around = _mean(count, total, SPOT), _mean(count, total, AROUND_SPOT)
         # paint, rails and drains are no ground: a spot beside them is compared with asphalt
         contrast = spot - around

@@ -18,7 +18,7 @@ from scipy.spatial import cKDTree
 from ...common.errors import RoadExtractionError
 from ...common.parallel import in_order
 from ...common.setting import check_limits, setting
-from ...survey.store.records import UNIT, Points, chosen
+from ...survey.store.records import COORDINATE_SCALE, Points, take_rows
 
 WINDOW = 20.0     # m of station looked at together
 CELL = 200        # units of 0.1 mm: a profile has one value every 2 cm
@@ -73,10 +73,10 @@ def points_on_peaks(road_points, road, settings, progress):
     and of the width of a line, chained along the road. The numbers, and that
     a chain must show in three of five of its profiles, are ours: they leave a road without paint empty.
     """
-    profile = int(round(settings.profile_length / UNIT))
+    profile = int(round(settings.profile_length / COORDINATE_SCALE))
     count = max(1, int(round(WINDOW / settings.profile_length)))
     start, end = road_points.store.span(road)
-    windows = list(range(int(np.floor(start / UNIT / profile / count)), int(np.floor(end / UNIT / profile / count)) + 1))
+    windows = list(range(int(np.floor(start / COORDINATE_SCALE / profile / count)), int(np.floor(end / COORDINATE_SCALE / profile / count)) + 1))
 
     def records_of(window):
         return _window(road_points, road, window * count, (window + 1) * count, profile)
@@ -90,10 +90,10 @@ def points_on_peaks(road_points, road, settings, progress):
 
 def _window(road_points, road, first, last, profile):
     """Records of the profiles from `first` to before `last`, and the profile of each."""
-    records = road_points.window(road, (first * profile - 1) * UNIT, (last * profile + 1) * UNIT).records
+    records = road_points.window(road, (first * profile - 1) * COORDINATE_SCALE, (last * profile + 1) * COORDINATE_SCALE).records
     row = (records["s"] // profile).astype(np.int64)
     inside = (row >= first) & (row < last)
-    return chosen(records, inside), row[inside]
+    return take_rows(records, inside), row[inside]
 
 
 def peaks_of(records, row, settings):
@@ -113,10 +113,10 @@ def peaks_of(records, row, settings):
         return none, none, none
     first, low = row.min(), (records["d"] // CELL).min()
     z = _profiles(Points(records).value, row - first, records["d"] // CELL - low)
-    reach = int(np.ceil(2 * settings.widest / (CELL * UNIT)))
+    reach = int(np.ceil(2 * settings.widest / (CELL * COORDINATE_SCALE)))
     # asphalt's level between the rows: a peak's feet are sought in its own profile
     padded = np.pad(z, ((0, 0), (reach, reach)))
-    limits = np.array([settings.narrowest, settings.widest]) / (CELL * UNIT)
+    limits = np.array([settings.narrowest, settings.widest]) / (CELL * COORDINATE_SCALE)
     # a least height besides: asphalt itself is full of small peaks
     _, found = find_peaks(padded.ravel(), height=1e-9, prominence=settings.prominence, width=limits, wlen=2 * reach + 1)
     place = np.stack([found["left_ips"], found["right_ips"]])
@@ -159,7 +159,7 @@ def chained(row, middle, settings):
     if not len(row):
         return np.zeros(0, bool)
     steps = max(1, int(round(settings.gap / settings.profile_length)))
-    pairs = cKDTree(np.c_[row / (steps + 0.5), middle * UNIT / settings.jump]).query_pairs(1.0, p=np.inf, output_type="ndarray")
+    pairs = cKDTree(np.c_[row / (steps + 0.5), middle * COORDINATE_SCALE / settings.jump]).query_pairs(1.0, p=np.inf, output_type="ndarray")
     pairs = pairs[row[pairs[:, 0]] != row[pairs[:, 1]]]  # two lines side by side are not one
     graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(len(row), len(row)))
     number, chain = connected_components(graph, directed=False)
@@ -181,4 +181,4 @@ def _between(records, row, peak_row, left, right):
     keys = peak_row[order] * width + left[order]
     at = np.searchsorted(keys, row * width + records["d"], side="right") - 1
     peak = order[np.maximum(at, 0)]
-    return chosen(records, (at >= 0) & (peak_row[peak] == row) & (records["d"] <= right[peak]))
+    return take_rows(records, (at >= 0) & (peak_row[peak] == row) & (records["d"] <= right[peak]))

@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from ...common.parallel import in_order
 from ...common.setting import check_limits, setting
 from ...intensity.asphalt_model import asphalt
-from ...survey.store.records import UNIT, Points, chosen
+from ...survey.store.records import COORDINATE_SCALE, Points, take_rows
 from ..objects.connected_cells import occupied
 from .asphalt_level import otsu
 
@@ -56,35 +56,35 @@ def points_in_segments(road_points, road, settings, progress):
     are the sizes, the guard that leaves a segment without paint empty, and that
     half of what is usual inside of paint is enough neighbours: its rim has no more.
     """
-    length = int(round(settings.length / UNIT))
+    length = int(round(settings.length / COORDINATE_SCALE))
     start, end = road_points.store.span(road)
-    windows = list(range(int(np.floor(start / UNIT / length)), int(np.floor(end / UNIT / length)) + 1))
+    windows = list(range(int(np.floor(start / COORDINATE_SCALE / length)), int(np.floor(end / COORDINATE_SCALE / length)) + 1))
 
     def limits_of(window):
         records = _window(road_points, road, window * length, (window + 1) * length)
         return segment_thresholds(records, settings)
 
     limits = dict(zip(windows, in_order(limits_of, windows, progress.part(0.0, 0.5))))
-    reach = int(np.ceil(settings.radius / UNIT)) + 1
+    reach = int(np.ceil(settings.radius / COORDINATE_SCALE)) + 1
 
     def paint_of(window):
         first, last = window * length, (window + 1) * length
         records = _bright(_window(road_points, road, first - reach, last + reach), length, limits, settings)
         own = (records["s"] >= first) & (records["s"] < last)
-        return chosen(records, own & dense_enough(records, own, settings))
+        return take_rows(records, own & dense_enough(records, own, settings))
 
     yield from in_order(paint_of, windows, progress.part(0.5, 1.0))
 
 
 def _window(road_points, road, first, last):
     """Records with first <= s < last, units of 0.1 mm."""
-    records = road_points.window(road, (first - 1) * UNIT, (last + 1) * UNIT).records
-    return chosen(records, (records["s"] >= first) & (records["s"] < last))
+    records = road_points.window(road, (first - 1) * COORDINATE_SCALE, (last + 1) * COORDINATE_SCALE).records
+    return take_rows(records, (records["s"] >= first) & (records["s"] < last))
 
 
 def _segments(records, settings):
     """(N,) int, the segment across the road that each record lies in."""
-    return (records["d"] // int(round(settings.width / UNIT))).astype(np.int64)
+    return (records["d"] // int(round(settings.width / COORDINATE_SCALE))).astype(np.int64)
 
 
 def segment_thresholds(records, settings):
@@ -118,7 +118,7 @@ def _bright(records, length, limits, settings):
         for place, value in limits.get(number, {}).items():
             if 0 <= place - first[1] < table.shape[1]:
                 table[number - first[0], place - first[1]] = value
-    return chosen(records, Points(records).value > table[window - first[0], segment - first[1]])
+    return take_rows(records, Points(records).value > table[window - first[0], segment - first[1]])
 
 
 def dense_enough(records, own, settings):
@@ -126,11 +126,11 @@ def dense_enough(records, own, settings):
     keep = np.zeros(len(records), bool)
     if not own.any():
         return keep
-    places = np.c_[records["s"], records["d"]] * UNIT
+    places = np.c_[records["s"], records["d"]] * COORDINATE_SCALE
     rows = np.flatnonzero(own)
     # points at one place have the same neighbours: of a cloud with every point many times each place is asked for once
     asked, member = occupied(records["s"].take(rows), records["d"].take(rows))
-    count = cKDTree(places).query_ball_point(asked * UNIT, settings.radius, return_length=True).take(member) - 1
+    count = cKDTree(places).query_ball_point(asked * COORDINATE_SCALE, settings.radius, return_length=True).take(member) - 1
     segment = _segments(records, settings)[rows]
     for number in np.unique(segment):
         here = np.flatnonzero(segment == number)

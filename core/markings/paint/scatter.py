@@ -13,7 +13,7 @@ from ...common.order_statistics import order_by
 from ...common.parallel import in_order
 from ...common.progress import Progress
 from ...intensity.asphalt_model import LOWER
-from ...survey.store.records import UNIT
+from ...survey.store.records import COORDINATE_SCALE
 
 NOISY = 0.40      # of asphalt's level: single points that scatter more are averaged (multi-beam scanners)
 SQUARE = 1.0      # m
@@ -101,7 +101,7 @@ def squares_of(points):
         return np.empty(0, np.uint8), np.empty(0, int), np.empty(0)
     points = points[::max(len(points) // STREWN, 1)]
     value, scanner = points.intensity, points.scanner
-    side = int(round(SQUARE / UNIT))
+    side = int(round(SQUARE / COORDINATE_SCALE))
     square = np.zeros(len(value), np.int32)
     # another pass is another distance
     for key in (points.records["s"] // side, points.records["d"] // side, scanner, points.pass_number):

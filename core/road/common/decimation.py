@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...survey.store.records import UNIT
+from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.spill_file import SpillFile
 
 # The strip about a track in which the ground is level beyond doubt: no curb is there, and nothing that hides one.
@@ -51,16 +51,16 @@ class LevelStrip:
         def widest(values):
             return np.lib.stride_tricks.sliding_window_view(values, 2 * around + 1).max(axis=1)
 
-        margin = int(round(across / UNIT))
+        margin = int(round(across / COORDINATE_SCALE))
         low, high = widest(self.low) + margin, -widest(-self.high) - margin
-        narrow = high - low < NARROWEST / UNIT
+        narrow = high - low < NARROWEST / COORDINATE_SCALE
         own = slice(around, len(self.height) - around)
         return LevelStrip(self.first + around, self.width, np.where(narrow, NOWHERE, low).astype(np.int32),
                           np.where(narrow, -(NOWHERE), high).astype(np.int32), self.height[own])
 
     def holds(self, s, d):
         """(N,) bool: is a point in the strip? Stations s (ascending) and offsets d in 0.1 mm."""
-        edges = np.ceil((self.first + np.arange(1, len(self.low))) * (self.width / UNIT) - 0.5).astype(np.int32)
+        edges = np.ceil((self.first + np.arange(1, len(self.low))) * (self.width / COORDINATE_SCALE) - 0.5).astype(np.int32)
         counts = np.diff(np.searchsorted(s, edges), prepend=0, append=len(s))
         inside = d > np.repeat(self.low, counts)
         inside &= d < np.repeat(self.high, counts)
@@ -69,7 +69,7 @@ class LevelStrip:
     def at(self, s):
         """Low and high offset, metres, and height at (N,) stations."""
         k = np.clip(np.floor(np.asarray(s) / self.width).astype(np.int64) - self.first, 0, len(self.low) - 1)
-        return self.low[k] * UNIT, self.high[k] * UNIT, self.height[k]
+        return self.low[k] * COORDINATE_SCALE, self.high[k] * COORDINATE_SCALE, self.height[k]
 
 
 def strip_about(track, held, total, squares, size, least):
@@ -87,12 +87,12 @@ def strip_about(track, held, total, squares, size, least):
     -------
     (low, high, height) of a LevelStrip
     """
-    half = min(int(REACH / UNIT) // size, held.shape[2])
+    half = min(int(REACH / COORDINATE_SCALE) // size, held.shape[2])
     held, total, squares = (np.concatenate([v[:, 1, :half][:, ::-1], v[:, 0, :half]], axis=1) for v in (held, total, squares))
     seen = held > 0
     mean = np.where(seen, total / np.maximum(held, 1), np.nan)
-    bad = seen & ((held < LEVEL_TOLD) | (squares > held * (ROUGH / UNIT) ** 2))
-    apart = max(int(round(WITHIN * 0.5 / UNIT / size)), 1)
+    bad = seen & ((held < LEVEL_TOLD) | (squares > held * (ROUGH / COORDINATE_SCALE) ** 2))
+    apart = max(int(round(WITHIN * 0.5 / COORDINATE_SCALE / size)), 1)
     with np.errstate(invalid="ignore"):
         bad[:, apart:-apart] |= np.abs(mean[:, 2 * apart:] - mean[:, :-2 * apart]) > SHARE * least
     bad &= _together(bad) >= STEADY
@@ -104,7 +104,7 @@ def strip_about(track, held, total, squares, size, least):
     known = (left > 0) & (right > 0) & (count > 0)
     low = np.where(known, (own - right + 1 - half) * size, NOWHERE)
     high = np.where(known, (own + left - half) * size, -(NOWHERE))
-    return low, high, (total * inside).sum(axis=1) / np.maximum(count, 1) * UNIT
+    return low, high, (total * inside).sum(axis=1) / np.maximum(count, 1) * COORDINATE_SCALE
 
 
 def _together(bad):
@@ -122,7 +122,8 @@ def _cells_from(own, sign, bad, seen, size):
     on = (column >= 0) & (column <= last)
     column = np.clip(column, 0, last)
     there = np.take_along_axis(seen, column, axis=1)
-    ends = ~on | np.take_along_axis(bad, column, axis=1) | ~there & (np.logical_or.accumulate(there, axis=1) | (away * size * UNIT > BLIND))
+    ends = ~on | np.take_along_axis(bad, column, axis=1)
+    ends |= ~there & (np.logical_or.accumulate(there, axis=1) | (away * size * COORDINATE_SCALE > BLIND))
     return np.argmax(ends, axis=1)
 
 FEW = 12          # points of a cell that tell level ground
@@ -250,7 +251,7 @@ class Crowds:
     def _note_strip(self, strip, cells, p):
         """Fill in the profiles of a strip that some cells are of."""
         middles = (cells.first + np.arange(cells.profiles) + 0.5) * self.width
-        found = strip_about(np.floor(p.at_station(middles)[0] / UNIT), *cells.grids(), cells.size, self.least / UNIT)
+        found = strip_about(np.floor(p.at_station(middles)[0] / COORDINATE_SCALE), *cells.grids(), cells.size, self.least / COORDINATE_SCALE)
         own = slice(cells.first - strip.first, cells.first - strip.first + cells.profiles)
         strip.low[own], strip.high[own], strip.height[own] = found
 
@@ -265,8 +266,8 @@ def in_pieces(points, start, width):
     """Points in runs along the road of whole profiles counted from station `start`, PIECE or so each."""
     cuts = np.arange(0, len(points), PIECE)
     if len(cuts) > 1:
-        edges = np.unique(np.floor((points.records["s"][cuts[1:]] * UNIT - start) / width)) * width + start
-        cuts = np.unique(np.r_[0, np.searchsorted(points.records["s"], np.ceil(edges / UNIT - 0.01).astype(np.int32))])
+        edges = np.unique(np.floor((points.records["s"][cuts[1:]] * COORDINATE_SCALE - start) / width)) * width + start
+        cuts = np.unique(np.r_[0, np.searchsorted(points.records["s"], np.ceil(edges / COORDINATE_SCALE - 0.01).astype(np.int32))])
     return [points[a:b] for a, b in zip(cuts, np.r_[cuts[1:], len(points)]) if b > a]
 
 
@@ -289,12 +290,12 @@ class _Cells:
 
     def __init__(self, s, d, z, width, spacing):
         self.s, self.d, self.z = s, d, z
-        bits = int(np.rint(np.log2(spacing / UNIT)))
+        bits = int(np.rint(np.log2(spacing / COORDINATE_SCALE)))
         self.size, self.half, self.looked_through = 1 << bits, (FARTHEST >> bits) + 1, False
         # stations ascend, so profiles are runs of points; bounds lie off the whole units
-        self.first, last = (int(np.floor((int(end) + 0.5) * UNIT / width)) for end in (s[0], s[-1]))
+        self.first, last = (int(np.floor((int(end) + 0.5) * COORDINATE_SCALE / width)) for end in (s[0], s[-1]))
         self.profiles = last - self.first + 1
-        cuts = np.searchsorted(s, np.ceil(np.arange(self.first + 1, last + 1) * (width / UNIT) - 0.5 - EXACT).astype(np.int32)).tolist()
+        cuts = np.searchsorted(s, np.ceil(np.arange(self.first + 1, last + 1) * (width / COORDINATE_SCALE) - 0.5 - EXACT).astype(np.int32)).tolist()
         # the two sides of a road are parted alike
         cell = np.abs(d)
         np.minimum(cell, FARTHEST, out=cell)
@@ -329,7 +330,7 @@ class _Cells:
         squares = np.bincount(cell, z, len(self.held))
         self.squares = squares - total * total / np.maximum(self.held, 1)
         self.looked_through = own is None
-        return self.squares <= self.held * (LEVEL / UNIT) ** 2
+        return self.squares <= self.held * (LEVEL / COORDINATE_SCALE) ** 2
 
     def grids(self):
         """Of every cell its points, the sum of their heights, and that of the squares off their mean: (profiles, 2 sides, cells outward)."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ...survey.lattice.scan_lattice import time_order
-from ...survey.store.records import UNIT, chosen
+from ...survey.store.records import COORDINATE_SCALE, take_rows
 
 # Where planes cut the mesh, side by side: the vertices of section planes chained into lines.
 
@@ -164,7 +164,7 @@ def scan_lines(records, p, clock, corridor, level=None):
     ----------
     records : survey points of one pass and scanner
     p : Pass
-    clock : MirrorClock
+    clock : MirrorPhase
     corridor : m either side within which points are used
     level : LevelStrip in which none are used, None uses all
 
@@ -173,15 +173,15 @@ def scan_lines(records, p, clock, corridor, level=None):
     ScanLines, or None where fewer than two lines are there
     """
     d = records["d"]
-    used = np.abs(d) <= int(round(corridor / UNIT))
+    used = np.abs(d) <= int(round(corridor / COORDINATE_SCALE))
     if level is not None:
         used &= ~level.holds(records["s"], d)
-    records = chosen(records, used)
+    records = take_rows(records, used)
     if len(records) < 4:
         return None
     time = np.ascontiguousarray(records["time"])
     order = time_order(time)
-    records, time = chosen(records, order), time[order]
+    records, time = take_rows(records, order), time[order]
     first, last = np.floor(clock.turns_at(time[[0, -1]])).astype(int)
     turns = np.arange(first, last + 2)
     begins = clock.times_at(turns)
@@ -195,12 +195,12 @@ def scan_lines(records, p, clock, corridor, level=None):
         return None
     if not new.all():
         kept = np.repeat(new, counts)
-        records, time = chosen(records, kept), time[kept]
+        records, time = take_rows(records, kept), time[kept]
         counts = counts[used]
     line = np.repeat(np.arange(len(used), dtype=np.int32), counts)
     length = (begins[1:] - begins[:-1])[used]
     phase = (time - np.repeat(begins[:-1][used], counts)) / np.repeat(length, counts)
-    s, d, z = (records[name] * UNIT for name in ("s", "d", "z"))
+    s, d, z = (records[name] * COORDINATE_SCALE for name in ("s", "d", "z"))
     reach = _reach(records, p, begins[:-1][used], counts)
     joined = _side_by_side(line, phase, reach, (s, d, z), clock)
     return ScanLines(line, phase, s, d, z, records["intensity"], reach, joined, np.diff(driven)[used])
@@ -227,12 +227,12 @@ def _reach(records, p, time, counts):
     """(N,) float32 m from the vehicle to its points; within a line the vehicle counts as standing."""
     away = np.zeros(len(records), np.float32)
     for name, track in (("s", p.s), ("d", p.d), ("z", p.z)):
-        stood = np.rint(np.interp(time, p.time, track) / UNIT).astype(np.int32)
+        stood = np.rint(np.interp(time, p.time, track) / COORDINATE_SCALE).astype(np.int32)
         across = (records[name] - np.repeat(stood, counts)).astype(np.float32)
         across *= across
         away += across
     np.sqrt(away, out=away)
-    away *= np.float32(UNIT)
+    away *= np.float32(COORDINATE_SCALE)
     return away
 
 
@@ -243,7 +243,7 @@ def ribs_of(lines, direction, clock, interval):
     ----------
     lines : ScanLines
     direction : 1 where the vehicle drove along the road's stations, -1 against them
-    clock : MirrorClock
+    clock : MirrorPhase
     interval : m between planes
 
     Returns

@@ -6,10 +6,10 @@ import numpy as np
 
 from ...common.setting import check_limits, setting
 from ...survey.las.writer import new_laz, scale_for
-from ...survey.store.records import UNIT
+from ...survey.store.records import COORDINATE_SCALE
 
 EXTRA = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", None), ("scanner", "uint8", "Scanner", None),
-         ("station_m", "int32", "Station along the road", UNIT), ("offset_m", "int32", "Offset, left positive", UNIT)]
+         ("station_m", "int32", "Station along the road", COORDINATE_SCALE), ("offset_m", "int32", "Offset, left positive", COORDINATE_SCALE)]
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ class ResampledPoints:
         out["return_number"] = out["number_of_returns"] = np.ones(len(line), np.uint8)
         out["point_source_id"] = lines.scanner[line] + 1
         out.array["road"], out.array["pass"], out.array["scanner"] = road, lines.pass_number[line], lines.scanner[line]
-        out.array["station_m"], out.array["offset_m"] = np.rint(s / UNIT), np.rint(d / UNIT)
+        out.array["station_m"], out.array["offset_m"] = np.rint(s / COORDINATE_SCALE), np.rint(d / COORDINATE_SCALE)
         self._writer.write_points(out)
         self.count += len(line)
 

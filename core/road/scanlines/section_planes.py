@@ -76,20 +76,20 @@ def runs_of(survey, road, start, end, settings=ScanlineSettings(), lattice=None,
         return []
     if lattice is None:
         lattice = find_lattice(survey, settings.rotation_frequency)
-    parts, apart = [], not lattice.clocks
-    if lattice.clocks:
+    parts, apart = [], not lattice.mirror_phases
+    if lattice.mirror_phases:
         margin = max(_margin(survey, road, lattice), LEAST_SLICE, interval)
         window = first * interval - margin, (last - 1) * interval + margin
         records = survey.window(road, *window).records
         for key, own in scanner_runs(records):
-            clock = lattice.clocks.get(key)
+            clock = lattice.mirror_phases.get(key)
             apart |= clock is None
             if clock is not None:
                 parts.append(_cut(own, survey.frame.passes[key[0]], key, clock, (first, last), settings, intensity,
                                   None if level is None else level(key[0], *window)))
     if apart:
         lines = point_scanlines(survey, road, start, end, interval, settings.corridor)
-        meshed = [key in lattice.clocks for key in zip(lines.pass_number.tolist(), lines.scanner.tolist())]
+        meshed = [key in lattice.mirror_phases for key in zip(lines.pass_number.tolist(), lines.scanner.tolist())]
         parts += lines[~np.array(meshed, bool)].runs()
     return [part for part in parts if len(part)]
 
@@ -110,7 +110,7 @@ def all_scanlines(survey, road, settings=ScanlineSettings(), lattice=None, progr
 def _margin(survey, road, lattice):
     """m beyond the outer planes within which points have a part in them."""
     margin = LONGEST_RIB
-    for (number, _), clock in lattice.clocks.items():
+    for (number, _), clock in lattice.mirror_phases.items():
         p = survey.frame.passes[number]
         if p.road == road:
             speed = np.diff(p.progress_at(p.time)).max(initial=0.0) / np.diff(p.time).min(initial=np.inf)

@@ -11,7 +11,7 @@ from ...common.progress import Progress
 from ...common.schemas import ROAD_SURFACE
 from ...common.setting import check_limits, setting
 from ...survey.frame.road_frame import CORRIDOR
-from ...survey.store.records import UNIT
+from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.road_points import RoadPoints
 from .ground_grid import ROW, Cells, ground_cells
 from .limits import edge_offsets
@@ -87,7 +87,7 @@ def extract_road_surface(survey, edges=None, settings=SurfaceSettings(), progres
     RoadExtractionError
         If no road surface is found.
     """
-    road_points = RoadPoints.none_of(survey)
+    road_points = RoadPoints.subset_of(survey)
     surface = Features("PolygonZ", list(ROAD_SURFACE), crs=survey.crs)
     roads = survey.store.roads()
     for k, road in enumerate(roads):
@@ -170,7 +170,7 @@ def _take_points(survey, road, carriageway, road_points, progress):
         first, last = np.searchsorted(stations, np.array([store.first_unit(number), store.first_unit(number + 1)], stations.dtype))
         own = slice(*np.searchsorted(found.surface, [first, last]))
         rows = found.surface[own]
-        row = np.floor(stations.take(rows) * UNIT / ROW).astype(np.int64) - carriageway.cells.first_row
+        row = np.floor(stations.take(rows) * COORDINATE_SCALE / ROW).astype(np.int64) - carriageway.cells.first_row
         counts = np.bincount(np.clip(row, 0, len(per_row) - 1), minlength=len(per_row))
         return number, rows - first, dict(half_width=found.half_width[own], covered=beneath[own].astype(np.uint8)), counts
 

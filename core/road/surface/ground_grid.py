@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...common.order_statistics import order_by
-from ...survey.store.records import UNIT
+from ...survey.store.records import COORDINATE_SCALE
 
 ROW, COLUMN = 0.5, 0.25   # m along and across the road
 LAYER_JUMP = 0.06         # m between two layers: ground below, a car's sill above
@@ -86,12 +86,12 @@ def ground_cells(points, first_row, rows, reach, road_height, row_size=ROW, colu
     kept, cell = _near_ground(points.records, first_row, rows, half, prior, row_size, column_size)
     z = points.records["z"].take(kept)
     order = order_by(z, cell)
-    kept, cell, z = kept[order], cell[order], z[order] * UNIT
+    kept, cell, z = kept[order], cell[order], z[order] * COORDINATE_SCALE
     low = np.flatnonzero(_in_lowest_layer(cell, z, np.bincount(cell, minlength=rows * columns)))
     kept, at, z = kept[low], cell[low], z[low]
     count = np.bincount(at, minlength=rows * columns)
     row, column = np.divmod(np.arange(rows * columns), columns)
-    u, v = (points.records[name].take(kept) * UNIT - np.repeat(middle, count) for name, middle in
+    u, v = (points.records[name].take(kept) * COORDINATE_SCALE - np.repeat(middle, count) for name, middle in
             (("d", (column - half + 0.5) * column_size), ("s", (row + first_row + 0.5) * row_size)))
     height, rough = _planes(count, u, v, z)
     brightness, scatter = _medians(at, count, points.intensity[kept])
@@ -102,8 +102,8 @@ def ground_cells(points, first_row, rows, reach, road_height, row_size=ROW, colu
 
 def _near_ground(records, first_row, rows, half, prior, row_size, column_size):
     """Indices of records in the window and near the road's height, no more of a cell than tell anything, and the cell of each."""
-    prior = np.rint(prior / UNIT).astype(np.int32)
-    along, across = (np.int32(round(size / UNIT)) for size in (row_size, column_size))
+    prior = np.rint(prior / COORDINATE_SCALE).astype(np.int32)
+    along, across = (np.int32(round(size / COORDINATE_SCALE)) for size in (row_size, column_size))
     nowhere = rows * 2 * half
     cell, count = np.empty(len(records), np.int32), np.zeros(nowhere + 1, np.int64)
     for first in range(0, len(records), AT_ONCE):
@@ -117,7 +117,7 @@ def _near_ground(records, first_row, rows, half, prior, row_size, column_size):
         inside &= column.view(np.uint32) < np.uint32(2 * half)
         above = z - prior.take(row, mode="clip")
         reach = np.abs(d * np.float32(PER_METRE))
-        reach += np.float32(NEAR / UNIT)
+        reach += np.float32(NEAR / COORDINATE_SCALE)
         inside &= np.abs(above) < reach
         row *= np.int32(2 * half)
         row += column

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from ...survey.store.records import UNIT
+from ...survey.store.records import COORDINATE_SCALE
 from .ground_grid import AT_ONCE, COLUMN, ROW
 
 # Road beneath something that stands on it or hangs over it: parked cars, tables, bushes.
@@ -40,7 +40,7 @@ def covered(road_points, above):
 
 def _squares(*points):
     """(N,) int32 number of the square that each point of several sets lies in, and the (rows, columns) of all squares."""
-    size = np.int32(round(SQUARE / UNIT))
+    size = np.int32(round(SQUARE / COORDINATE_SCALE))
     low = [min(int(records[name].min()) for records in points) // size - 1 for name in ("s", "d")]
     shape = tuple(max(int(records[name].max()) for records in points) // size - first + 2 for name, first in zip(("s", "d"), low))
     found = []
@@ -109,15 +109,15 @@ class _Window:
         (self.s0, rows), (self.d0, columns) = (
             _middles(values, size, first, count) for values, size, first, count in
             ((s, ROW, cells.first_row, cells.height.shape[0]), (d, COLUMN, cells.first_column, cells.height.shape[1])))
-        height = carriageway.height[np.ix_(rows, columns)].astype(float) / UNIT
+        height = carriageway.height[np.ix_(rows, columns)].astype(float) / COORDINATE_SCALE
         self.columns = len(columns) - 1
-        self.left, self.right = (_half_rows(limit[rows] / UNIT) for limit in (carriageway.left, carriageway.right))
+        self.left, self.right = (_half_rows(limit[rows] / COORDINATE_SCALE) for limit in (carriageway.left, carriageway.right))
         across = np.diff(height, axis=1)
         self.corner = np.rint(height[:-1, :-1]).astype(np.int32).ravel()
         # height = corner + rest + across * v + (along + twist * v) * u, with u, v from 0 to 1 in the cell
         self.tables = [table.astype(np.float32).ravel() for table in (height[:-1, :-1] - np.rint(height[:-1, :-1]), across[:-1],
                                                                       np.diff(height, axis=0)[:, :-1], np.diff(across, axis=0))]
-        self.tolerance, self.low, self.high = (np.float32(metres / UNIT) for metres in (carriageway.tolerance, LOW, HIGH))
+        self.tolerance, self.low, self.high = (np.float32(metres / COORDINATE_SCALE) for metres in (carriageway.tolerance, LOW, HIGH))
 
     def points(self, s, d, z):
         """Indices of points of the road, their half widths (mm), and indices of points above it."""
@@ -142,7 +142,7 @@ class _Window:
         inside &= d > right
         on_road = np.flatnonzero((np.abs(rise) < self.tolerance) & inside)
         width = np.where(d >= 0, left, -right).take(on_road)
-        width *= np.float32(UNIT * 1e3)
+        width *= np.float32(COORDINATE_SCALE * 1e3)
         width += np.float32(0.5)
         np.minimum(width, np.float32(65535), out=width)
         return on_road, width.astype(np.uint16), np.flatnonzero((rise > self.low) & (rise < self.high) & inside)
@@ -150,13 +150,13 @@ class _Window:
 
 def _middles(units, size, first, count):
     """Where the first of the middles of cells lies between which places lie, in units, and the index of each one's cell."""
-    low, high = (int(np.floor(int(end) * UNIT / size - 0.5)) for end in (units.min(), units.max()))
-    return int(round((low + 0.5) * size / UNIT)), np.clip(np.arange(low, high + 2) - first, 0, count - 1)
+    low, high = (int(np.floor(int(end) * COORDINATE_SCALE / size - 0.5)) for end in (units.min(), units.max()))
+    return int(round((low + 0.5) * size / COORDINATE_SCALE)), np.clip(np.arange(low, high + 2) - first, 0, count - 1)
 
 
 def _steps(units, first, size):
     """The step of `size` metres that places lie in, counted from `first`, and the share of it behind them, (N,) int32 and float32."""
-    size = np.int32(round(size / UNIT))
+    size = np.int32(round(size / COORDINATE_SCALE))
     place = units - np.int32(first)
     step = place // size
     place -= step * size

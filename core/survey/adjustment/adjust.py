@@ -14,7 +14,7 @@ from scipy.sparse.linalg import spsolve
 
 from ...common.parallel import in_order
 from ...common.progress import Progress
-from ..store.records import UNIT, to_units
+from ..store.records import COORDINATE_SCALE, to_units
 from ..store.section_store import SectionStore
 from .corrections import STEP, PassMoves
 from .register import AXES, MOST, WINDOW, pass_offsets
@@ -142,7 +142,7 @@ def _moved_points(frame, moves, records):
     for number in np.unique(numbers).tolist():
         if number in moves.by_pass:
             own = np.flatnonzero(numbers == number)
-            change = _change(frame, moves, number, *(records[name].take(own) * UNIT for name in ("s", "d")))
+            change = _change(frame, moves, number, *(records[name].take(own) * COORDINATE_SCALE for name in ("s", "d")))
             for name, metres in zip(COORDINATES, change):
                 moved[name][own] += to_units(metres)
     return records.with_columns(**moved)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..store.records import UNIT, to_units
+from ..store.records import COORDINATE_SCALE, to_units
 
 STEP = 10.0        # m of station between the nodes
 OWNER = "Lanewright"  # of the records in LAS files, one for each pass, numbered from 1
@@ -25,7 +25,7 @@ class PassMoves:
         """East, north and up, (N,) metres, of a pass at (N,) stations."""
         first, values = self.by_pass[number]
         nodes = first + STEP * np.arange(values.shape[1])
-        return tuple(np.interp(s, nodes, row) * UNIT for row in values)
+        return tuple(np.interp(s, nodes, row) * COORDINATE_SCALE for row in values)
 
     def units(self, records):
         """(3, N) int32 in 0.1 mm that the x, y and z of moved points, Columns or structured, lie off what was measured."""
@@ -33,7 +33,7 @@ class PassMoves:
         for number in np.unique(numbers).tolist():
             if number in self.by_pass:
                 own = np.flatnonzero(numbers == number)
-                found[:, own] = [to_units(v) for v in self.metres(number, records["s"].take(own) * UNIT)]
+                found[:, own] = [to_units(v) for v in self.metres(number, records["s"].take(own) * COORDINATE_SCALE)]
         return found
 
     def to_records(self):

@@ -8,11 +8,11 @@ than a hundredth of a millimetre is lost: half the memory of double is moved.
 import numpy as np
 
 from ...common.memory import KeptArrays
-from ..store.records import UNIT, to_units
+from ..store.records import COORDINATE_SCALE, to_units
 from .passes import MOST_TICKS, TICK
 from .reference_line import NODE
 
-STEP = round(NODE / UNIT)  # units from node to node
+STEP = round(NODE / COORDINATE_SCALE)  # units from node to node
 FINE = 4              # bits that places of nodes have beyond the unit
 MOST_STEPS = 3        # from node to node for the few places that one step from the vehicle's node leaves beside their own
 FARTHEST = 300.0      # nodes that a step leads on
@@ -29,12 +29,12 @@ class LineTable:
 
     def __init__(self, road):
         self.road, self.last, self._few = road, len(road.x) - 2, KeptArrays()
-        self.start = round(road.start / UNIT)
+        self.start = round(road.start / COORDINATE_SCALE)
         self.end = self.start + STEP * (len(road.x) - 1)
         # where places have 64 bits, 32 of them tell them apart within the box about the line
-        self._box = [(int(v.min() / UNIT), int(v.max() / UNIT)) for v in (road.x, road.y)]
+        self._box = [(int(v.min() / COORDINATE_SCALE), int(v.max() / COORDINATE_SCALE)) for v in (road.x, road.y)]
         # 32 bits of fine units reach 13 km: what lies nearer to a node is told right wherever both are, for differences wrap as places do
-        self.x, self.y = (np.rint(v / UNIT * 2**FINE).astype(np.int64).astype(np.int32) for v in (road.x, road.y))
+        self.x, self.y = (np.rint(v / COORDINATE_SCALE * 2**FINE).astype(np.int64).astype(np.int32) for v in (road.x, road.y))
         c, n = road._cos, road._sin
         dx, dy, dc, dn = (np.diff(v, append=v[-1:]) / NODE for v in (road.x, road.y, c, n))
         self.cos, self.sin = ((v / (STEP * 2**FINE)).astype(np.float32) for v in (c, n))
@@ -72,7 +72,7 @@ class LineTable:
         k *= STEP
         k += self.start
         np.add(s, k, out=s, casting="unsafe")
-        reach = int(corridor / UNIT)
+        reach = int(corridor / COORDINATE_SCALE)
         if x.dtype == np.int64:
             about = self._about(x, y, reach)
             if not about.all():
@@ -162,8 +162,8 @@ class LineTable:
             return
         road, (x, y) = self.road, (places.take(rows) for places in (x, y))
         k = start.take(rows)
-        ahead = (x * UNIT - road.x[k]) * road._cos[k] + (y * UNIT - road.y[k]) * road._sin[k]
-        s_there, d_there = road.locate(x * UNIT, y * UNIT, road.start + k * NODE + ahead, corridor)
+        ahead = (x * COORDINATE_SCALE - road.x[k]) * road._cos[k] + (y * COORDINATE_SCALE - road.y[k]) * road._sin[k]
+        s_there, d_there = road.locate(x * COORDINATE_SCALE, y * COORDINATE_SCALE, road.start + k * NODE + ahead, corridor)
         found = np.isfinite(s_there)
         rows = rows[found]
         s[rows], d[rows] = to_units(s_there[found]), to_units(d_there[found])
@@ -221,8 +221,8 @@ class Placing:
         s, d : (N,) float64; NaN beyond the corridor or the road's ends, as `Road.locate` tells them
         """
         s, d = np.empty((2, len(x)), np.int32)
-        passes, inside = self.put(*(np.rint(np.asarray(v) / UNIT).astype(np.int64) for v in (x, y)), time, s, d)
-        s, d = s * UNIT, d * UNIT
+        passes, inside = self.put(*(np.rint(np.asarray(v) / COORDINATE_SCALE).astype(np.int64) for v in (x, y)), time, s, d)
+        s, d = s * COORDINATE_SCALE, d * COORDINATE_SCALE
         if inside is not None:
             s[~inside] = d[~inside] = np.nan
         return passes, s, d

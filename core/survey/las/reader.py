@@ -12,14 +12,14 @@ from ...common.errors import Cancelled, RoadExtractionError
 from ...common.parallel import go_on
 from .guard import chunks_of, damage, points_per_chunk
 
-BLOCK = 400_000  # points decoded at a time
+POINTS_PER_BLOCK = 400_000  # points decoded at a time
 SUFFIXES = (".las", ".laz")
 MOST_SCALE, MOST_OFFSET = 1e3, 1e12  # m, of coordinates kept as integers; beyond them nothing on earth lies
 NOT_THE_FILE = (KeyboardInterrupt, SystemExit, GeneratorExit, Cancelled, MemoryError)  # reasons that say nothing about the file
 
 
 @dataclass(frozen=True)
-class CloudFile:
+class CloudHeader:
     """What the header of one LAS/LAZ/COPC file says.
 
     `minimum` and `maximum` are (3,) map coordinates; `crs` is WKT or "";
@@ -81,7 +81,7 @@ def layers(wanted):
 
 
 def read_header(path):
-    """The CloudFile of a path.
+    """The CloudHeader of a path.
 
     Raises
     ------
@@ -100,7 +100,7 @@ def read_header(path):
         there = (header.offsets - reach <= low) & (low <= high) & (high <= header.offsets + reach)
         if count > 1 and not (there.all() and (low < high).any()):
             low, high = _bounds(path)  # a program that never filled them in
-        return CloudFile(
+        return CloudHeader(
             str(path), str(header.version), header.point_format.id, count,
             tuple(map(float, low)), tuple(map(float, high)), tuple(map(float, header.scales)),
             _crs_of(header), "gps_time" in names, "scanner_channel" in names,
@@ -131,7 +131,7 @@ def _crs_of(header):
     return "" if crs is None else crs.to_wkt()
 
 
-def read_blocks(path, size=BLOCK, wanted=None):
+def read_blocks(path, size=POINTS_PER_BLOCK, wanted=None):
     """Yield laspy point records of a file, `size` at a time; `wanted` as in `open_cloud`.
 
     Raises
@@ -187,7 +187,7 @@ def told(read, path, promised, first):
 
 
 def read_headers(paths):
-    """CloudFile of every path, in the order given; a file given twice, by whatever path, is read once.
+    """CloudHeader of every path, in the order given; a file given twice, by whatever path, is read once.
 
     Raises
     ------

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from ..store.records import NARROW, UNIT, in_units
+from ..store.records import COORDINATE_SCALE, MAX_XY_32_BIT, fill_units
 
 # m from the frame's origin: what lies beyond is absurd, and would overflow the units of a record
-FARTHEST = {"X": NARROW, "Y": NARROW, "Z": 2e4}
+FARTHEST = {"X": MAX_XY_32_BIT, "Y": MAX_XY_32_BIT, "Z": 2e4}
 FARTHEST_WIDE = 1e8    # where x and y have 64 bits
 
 
@@ -23,7 +23,7 @@ class LasAxis:
     def __init__(self, name, scale, offset, origin, kind=np.int32):
         self._kind = np.dtype(kind)
         self.name, self.scale, self.shift = name, scale, offset - origin
-        step, start = scale / UNIT, self.shift / UNIT
+        step, start = scale / COORDINATE_SCALE, self.shift / COORDINATE_SCALE
         # units follow from whole numbers by whole numbers for nearly every file; coordinates have 32 bits
         self._whole = abs(step - round(step)) <= 1e-13 * abs(step) and abs(start - round(start)) < 1e-3
         unsigned = np.dtype(f"u{self._kind.itemsize}")
@@ -45,7 +45,7 @@ class LasAxis:
         if not self._whole:
             metres = np.multiply(numbers, self.scale, out=kept("metres"))
             metres += self.shift
-            return in_units(metres, numbers), there
+            return fill_units(metres, numbers), there
         # what is beyond 32 bits on the way is so by a multiple of them
         numbers *= self._step
         numbers += self._start

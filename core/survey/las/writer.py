@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ...common.errors import RoadExtractionError
-from ..store.records import UNIT
+from ..store.records import COORDINATE_SCALE
 
 REACH = 2**31 - 2    # whole numbers either side of the offset that a LAS file can hold
 
@@ -14,7 +14,7 @@ def scale_for(farthest):
     """Metres that one whole number of a LAS file stands for: 0.1 mm, or the least power of ten times it in which `farthest` metres fit."""
     for finer in (10_000, 1_000, 100, 10):
         if farthest * finer <= REACH:
-            return UNIT if finer == 10_000 else 1 / finer
+            return COORDINATE_SCALE if finer == 10_000 else 1 / finer
     raise RoadExtractionError(f"The points lie up to {farthest / 1000:,.0f} km from the start of the survey, farther than a LAS file can hold. "
                               "Check the coordinates of the trajectory, or process the files of each region by themselves.")
 

@@ -13,7 +13,7 @@ JUMP_IN_BINS = 1.5    # of the usual step: farther apart, the phase between is f
 
 
 @dataclass(frozen=True)
-class MirrorClock:
+class MirrorPhase:
     """The turns of one scanner during one pass; a scan line is a turn.
 
     Attributes
@@ -81,7 +81,7 @@ def _beyond(x, nodes, values, rate):
     return found + first * before + last * behind
 
 
-def clock_from_phasors(frequency, time, phasor, count, bin_length, start=0.0, **more):
+def mirror_phase_from_phasors(frequency, time, phasor, count, bin_length, start=0.0, **more):
     """A clock from what the bins of a pass say about the phase.
 
     Parameters
@@ -94,7 +94,7 @@ def clock_from_phasors(frequency, time, phasor, count, bin_length, start=0.0, **
 
     Returns
     -------
-    MirrorClock, or None where no bin tells a phase
+    MirrorPhase, or None where no bin tells a phase
     """
     told = np.flatnonzero((count >= FEWEST_IN_BIN) & (np.abs(phasor) >= LEAST_COHERENT * count))
     if not len(told):
@@ -107,7 +107,7 @@ def clock_from_phasors(frequency, time, phasor, count, bin_length, start=0.0, **
     time, turns = time[rising], turns[rising]
     mean = (turns[-1] - turns[0]) / (time[-1] - time[0]) if len(time) > 1 else abs(frequency)
     time, turns = _smooth(time, turns, bin_length)
-    return MirrorClock(float(np.sign(frequency) * mean), start + time, turns - np.floor(turns[0]), **more)
+    return MirrorPhase(float(np.sign(frequency) * mean), start + time, turns - np.floor(turns[0]), **more)
 
 
 def _smooth(time, turns, bin_length):

@@ -17,8 +17,8 @@ import numpy as np
 from ...common.order_statistics import BITS
 from ...common.parallel import in_order
 from ...common.progress import Progress
-from ..store.records import UNIT, chosen
-from .mirror_phase import clock_from_phasors
+from ..store.records import COORDINATE_SCALE, take_rows
+from .mirror_phase import mirror_phase_from_phasors
 from .rotation_rate import LEAST_PEAK, WINDOW, clearest_rotation, spectrum
 
 SAMPLES = 6           # places along a pass at which the frequency is sought
@@ -44,7 +44,7 @@ class ScanLattice:
     `without` lists the (pass number, scanner) that were looked at in vain, `notes` says so in words.
     """
 
-    clocks: dict = field(default_factory=dict)
+    mirror_phases: dict = field(default_factory=dict)
     without: list = field(default_factory=list)
     notes: list = field(default_factory=list)
 
@@ -78,23 +78,24 @@ def find_lattice(survey, rotation_frequency=0.0, progress=Progress()):
             else:
                 found[key] = rotation
         clocks = _clocks(survey, road, found, samples, progress.part(i / len(roads), (i + 1) / len(roads)))
-        lattice.clocks.update(clocks)
+        lattice.mirror_phases.update(clocks)
         lattice.without += [key for key in found if key not in clocks]
     _tell(lattice, survey, progress)
     return lattice
 
 
 def _tell(lattice, survey, progress):
-    if lattice.clocks:
-        rates = sorted({f"{abs(clock.frequency) / clock.spacing:.2f}" for clock in lattice.clocks.values()}, key=float)
-        progress.say(f"Scan lattice found for {len(lattice.clocks)} run(s) of a scanner: {', '.join(rates)} lines per second.")
-    if not lattice.clocks and not lattice.without:
+    if lattice.mirror_phases:
+        rates = sorted({f"{abs(clock.frequency) / clock.spacing:.2f}" for clock in lattice.mirror_phases.values()}, key=float)
+        progress.say(f"Scan lattice found for {len(lattice.mirror_phases)} run(s) of a scanner: {', '.join(rates)} lines per second.")
+    if not lattice.mirror_phases and not lattice.without:
         lattice.notes.append(f"There are too few points to tell scan lines apart (fewer than {FEWEST} in {WINDOW:g} s of each scanner); "
                              "scanlines are made of the points near each section plane.")
         progress.warn(lattice.notes[-1])
     if lattice.without:
-        note = (f"There are no regular scan lines in {len(lattice.without)} of {len(lattice.clocks) + len(lattice.without)} run(s) of a scanner "
-                "(a head with many beams, a thinned cloud, or times too coarse); there scanlines are made of the points near each section plane.")
+        note = (f"There are no regular scan lines in {len(lattice.without)} of {len(lattice.mirror_phases) + len(lattice.without)} run(s) "
+                "of a scanner (a head with many beams, a thinned cloud, or times too coarse); "
+                "there scanlines are made of the points near each section plane.")
         lattice.notes.append(note)
         progress.warn(note)
 
@@ -124,7 +125,7 @@ def scanner_runs(records):
     first = (records["returns"] & 15) <= 1
     if len(values) == 1 and first.all():
         return [(divmod(values[0], 256), records)]
-    return [(divmod(value, 256), chosen(records, (key == value - 256 * number) & first)) for value in values]
+    return [(divmod(value, 256), take_rows(records, (key == value - 256 * number) & first)) for value in values]
 
 
 def phasors(survey, number, records):
@@ -132,8 +133,8 @@ def phasors(survey, number, records):
     p = survey.frame.passes[number]
     time = np.ascontiguousarray(records["time"])
     raised = max(LOWEST_AXIS - survey.sensor_height.get(number, LOWEST_AXIS), 0.0)
-    across = records["d"] * UNIT - np.interp(time, p.time, p.d)
-    above = records["z"] * UNIT - np.interp(time, p.time, p.z) - raised
+    across = records["d"] * COORDINATE_SCALE - np.interp(time, p.time, p.d)
+    above = records["z"] * COORDINATE_SCALE - np.interp(time, p.time, p.z) - raised
     size = np.hypot(across, above)
     return time, (above + 1j * across) / np.where(size > 0, size, 1.0)
 
@@ -156,8 +157,8 @@ def _samples(survey, road):
             time = own["time"]
             near = np.flatnonzero(np.abs(time - np.median(time[::SPARSE])) <= WINDOW / 2)
             if len(near) >= FEWEST:
-                own = chosen(own, near[time_order(time[near])])
-                seen[key] = _Window(*phasors(survey, number, own), own["d"] * UNIT)
+                own = take_rows(own, near[time_order(time[near])])
+                seen[key] = _Window(*phasors(survey, number, own), own["d"] * COORDINATE_SCALE)
         return seen
 
     samples = {}
@@ -229,7 +230,7 @@ def _clocks(survey, road, rotations, samples, progress):
     clocks = {}
     for key, (frequency, peak, origin) in rotations.items():
         b = bins[key]
-        clock = clock_from_phasors(frequency, b.since, b.phasor, b.count, b.length, b.start, peak=peak, origin=origin)
+        clock = mirror_phase_from_phasors(frequency, b.since, b.phasor, b.count, b.length, b.start, peak=peak, origin=origin)
         if clock is not None:
             clocks[key] = replace(clock, **_usual(samples[key], clock))
     return clocks
@@ -253,7 +254,7 @@ def _mounting(windows, frequency):
         time, seen = w.time[some], w.phasor[some]
         bins = _Bins(w, length)
         first, count, since, phasor = bins.sums_of(time - bins.start, seen * np.exp(-2j * np.pi * frequency * (time - bins.start)))
-        clock = clock_from_phasors(frequency, since, phasor, count, length, bins.start)
+        clock = mirror_phase_from_phasors(frequency, since, phasor, count, length, bins.start)
         if clock is not None:
             ahead = np.exp(2j * np.pi * np.sign(frequency) * clock.turns_at(time)) * np.conj(seen)
             of = _direction(seen)
@@ -301,7 +302,7 @@ def _lines_apart(line, phase):
 
 
 def _usual(windows, clock):
-    """What is usual on the lines of a scanner: the fields of a MirrorClock that only looking at points tells."""
+    """What is usual on the lines of a scanner: the fields of a MirrorPhase that only looking at points tells."""
     gaps, apart, onward = [], [], 0
     for w in windows:
         step = np.diff(w.time)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...common.order_statistics import BITS, above_least, dealt, order_by
-from .records import chosen
+from .records import take_rows
 
 AT_ONCE = 1 << 15      # points sorted at a time: what fits the processor's cache
 CELLS = 7              # bits of a cell of stations, to which points are dealt first: of fewer than a byte holds
@@ -36,7 +36,7 @@ def canonical_order(records, stay=None):
     for names in (ALMOST, KEYS):
         if len(repeated):
             tied = np.union1d(repeated, repeated + 1)
-            some = chosen(records, order[tied])
+            some = take_rows(records, order[tied])
             keys = [some[name] for name in names]
             by_keys = np.lexsort(keys)
             order[tied] = order[tied[by_keys]]

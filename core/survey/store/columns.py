@@ -36,7 +36,7 @@ class Columns:
         return cls({name: np.ascontiguousarray(records[name]) for name in records.dtype.names}, records.dtype, len(records))
 
     @classmethod
-    def joined(cls, parts, dtype):
+    def concatenate(cls, parts, dtype):
         """Several Columns one after the other (none at all give an empty one)."""
         parts = [part for part in parts if len(part)]
         if len(parts) == 1:
@@ -122,7 +122,7 @@ class Columns:
             if b > a:
                 parts.append(part if b - a == len(part) else part[a:b])
             start += len(part)
-        return Columns.joined(parts, self.dtype)
+        return Columns.concatenate(parts, self.dtype)
 
     def __setitem__(self, name, values):
         if self._locked:

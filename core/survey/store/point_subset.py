@@ -8,7 +8,7 @@ from .section_store import SectionStore
 OWN_LIMIT = 16 * 2**20  # bytes of rows, and of columns of their own, kept in memory
 
 
-class ChosenPoints(SectionStore):
+class PointSubset(SectionStore):
     """Points of a store by their rows in its sections.
 
     Parameters
@@ -51,7 +51,7 @@ class ChosenPoints(SectionStore):
     def _read(self, road, section):
         own = self._own.section(road, section)
         if not len(own):
-            return Columns.joined([], self.dtype), False
+            return Columns.concatenate([], self.dtype), False
         rows = np.flatnonzero(np.unpackbits(self._bits.section(road, section)["bits"]).view(bool))
 
         def read(name):

@@ -4,8 +4,8 @@ import numpy as np
 
 from .columns import Columns
 
-UNIT = 1e-4  # m: coordinates are kept as integers of 0.1 mm, exact for every LAS scale in use
-NARROW = 2e5  # m from the origin: up to here x and y have 32 bits
+COORDINATE_SCALE = 1e-4  # m: coordinates are kept as integers of 0.1 mm, exact for every LAS scale in use
+MAX_XY_32_BIT = 2e5  # m from the origin: up to here x and y have 32 bits
 
 # Coordinates are local (map minus the frame's origin); s and d are the road's
 # station and offset. `source` is point_source_id, kept so that a written cloud
@@ -21,19 +21,19 @@ ROAD_POINT = np.dtype(SURVEY_POINT.descr + [("corrected", "f4"), ("half_width", 
 
 
 def point_dtype(dtype, farthest):
-    """The dtype of points that lie up to `farthest` metres of x or y from the origin: beyond NARROW x and y have 64 bits."""
-    wide = {"x": "i8", "y": "i8"} if farthest > NARROW else {}
+    """The dtype of points that lie up to `farthest` metres of x or y from the origin: beyond MAX_XY_32_BIT x and y have 64 bits."""
+    wide = {"x": "i8", "y": "i8"} if farthest > MAX_XY_32_BIT else {}
     return np.dtype([(name, wide.get(name, dtype[name])) for name in dtype.names])
 
 
 def to_units(metres):
     """(N,) metres to (N,) int32 of 0.1 mm."""
-    return np.rint(np.asarray(metres) / UNIT).astype(np.int32)
+    return np.rint(np.asarray(metres) / COORDINATE_SCALE).astype(np.int32)
 
 
-def in_units(metres, units):
+def fill_units(metres, units):
     """Fill (N,) int32 with metres in units of 0.1 mm; the metres are overwritten."""
-    metres /= UNIT
+    metres /= COORDINATE_SCALE
     with np.errstate(invalid="ignore"):
         np.copyto(units, np.rint(metres, out=metres), casting="unsafe")
     return units
@@ -58,7 +58,7 @@ class Points:
         if name.startswith("_") or name == "records":
             raise AttributeError(name)
         if name in self.METRIC:
-            return self.records[name] * UNIT
+            return self.records[name] * COORDINATE_SCALE
         if name == "half_width":
             return self.records["half_width"] * 1e-3
         if name in (self.records.dtype.names or ()):
@@ -67,7 +67,7 @@ class Points:
 
     def __getitem__(self, which):
         """The points of a mask, slice or index array."""
-        return Points(chosen(self.records, which))
+        return Points(take_rows(self.records, which))
 
     @property
     def value(self):
@@ -77,7 +77,7 @@ class Points:
         return np.where(missing, self.records["intensity"].astype(np.float32), corrected) if missing.any() else corrected
 
 
-def chosen(records, which):
+def take_rows(records, which):
     """The records of a mask, index array or slice; of Columns those that are asked for.
 
     Ten times as fast as records[which] of a structured array, which copies a record field by field.
@@ -92,6 +92,6 @@ def chosen(records, which):
     return records.take(which.astype(np.intp, copy=False))
 
 
-def joined(parts, dtype):
+def join_columns(parts, dtype):
     """Several records one after the other, as Columns (none at all give an empty one)."""
-    return Columns.joined([Columns.of(part) for part in parts], dtype)
+    return Columns.concatenate([Columns.of(part) for part in parts], dtype)

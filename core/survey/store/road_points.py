@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .point_subset import ChosenPoints
-from .records import ROAD_POINT, Points, joined, point_dtype
+from .point_subset import PointSubset
+from .records import ROAD_POINT, Points, join_columns, point_dtype
 from .section_store import SectionStore
 
 
@@ -37,13 +37,13 @@ class RoadPoints:
         return cls(SectionStore(ROAD_POINT), np.asarray(origin, float), crs)
 
     @classmethod
-    def none_of(cls, survey):
+    def subset_of(cls, survey):
         """An empty set into which rows of a survey's sections are put, with `half_width` and `covered`.
 
         The points stay in the survey's store, which lives as long as the road points and is closed with them.
         """
         dtype = point_dtype(ROAD_POINT, np.inf if survey.store.dtype["x"] == np.int64 else 0.0)
-        store = ChosenPoints(survey.store, dtype, ("half_width", "covered"), dict(corrected=np.nan, cluster=0))
+        store = PointSubset(survey.store, dtype, ("half_width", "covered"), dict(corrected=np.nan, cluster=0))
         return cls(store, np.asarray(survey.frame.origin, float), survey.crs, moves=survey.moves)
 
     def close(self):
@@ -74,4 +74,4 @@ class RoadPoints:
     def all_points(self):
         """Every point in one structured array, road by road and section by section (for sets known to be small: paint)."""
         parts = [self.store.section(road, number) for road, number in self.all_sections()]
-        return Points(np.asarray(joined(parts, self.store.dtype)))
+        return Points(np.asarray(join_columns(parts, self.store.dtype)))

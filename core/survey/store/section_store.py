@@ -13,7 +13,7 @@ from ...common.order_statistics import dealt
 from ...common.parallel import go_on
 from .canonical_order import canonical_order
 from .columns import Columns, in_columns
-from .records import UNIT, Points
+from .records import COORDINATE_SCALE, Points
 from .spill_file import SpillFile
 
 # The points of one section of a store: some parts in memory, others in its temporary file, in one part once they are in order.
@@ -145,7 +145,7 @@ class SectionStore:
 
         `own` is a mask of those that are meant, all by default.
         """
-        strip = np.multiply(records["s"], UNIT, out=self._arrays.of(len(records))("strip"))
+        strip = np.multiply(records["s"], COORDINATE_SCALE, out=self._arrays.of(len(records))("strip"))
         strip /= self.section_length
         low, high = int(np.floor(strip.min())), int(np.floor(strip.max()))
         strip *= STRIPS
@@ -217,7 +217,7 @@ class SectionStore:
             with self._lock:
                 self._waiting_bytes += section.nbytes - before
         if section is None or not section.parts:
-            return Columns.joined([], self.dtype), False
+            return Columns.concatenate([], self.dtype), False
         records = section.parts[0]
         return (records, False) if isinstance(records, Columns) else (self._in_file(records), True)
 
@@ -228,10 +228,10 @@ class SectionStore:
 
     def first_unit(self, section):
         """The least station, in units of 0.1 mm, that lies in a section."""
-        unit = int(round(section * self.section_length / UNIT))
-        while np.floor((unit - 1) * UNIT / self.section_length) >= section:
+        unit = int(round(section * self.section_length / COORDINATE_SCALE))
+        while np.floor((unit - 1) * COORDINATE_SCALE / self.section_length) >= section:
             unit -= 1
-        while np.floor(unit * UNIT / self.section_length) < section:
+        while np.floor(unit * COORDINATE_SCALE / self.section_length) < section:
             unit += 1
         return unit
 
@@ -260,13 +260,13 @@ class SectionStore:
         for number in range(first, last + 1):
             records = self.section(road, number)
             # of a section that lies inside, stations need not be looked at
-            low, high = self.first_unit(number) * UNIT, (self.first_unit(number + 1) - 1) * UNIT
+            low, high = self.first_unit(number) * COORDINATE_SCALE, (self.first_unit(number + 1) - 1) * COORDINATE_SCALE
             if len(records) and (low < start or high >= end):
                 stations = _Metres(records["s"])
                 a, b = bisect_left(stations, start), bisect_left(stations, end)
                 records = records if b - a == len(records) else records.run(a, b)
             parts.append(records)
-        return Points(Columns.joined(parts, self.dtype))
+        return Points(Columns.concatenate(parts, self.dtype))
 
     def span(self, road):
         """Stations between which the points of a road lie, start <= station < end; (0, 0) where there are none."""
@@ -278,7 +278,7 @@ class SectionStore:
             if stations is None:
                 return 0.0, 0.0
             ends.append(int(stations[row]))
-        return ends[0] * UNIT, (ends[1] + 1) * UNIT
+        return ends[0] * COORDINATE_SCALE, (ends[1] + 1) * COORDINATE_SCALE
 
     def with_column(self, name):
         """A store of the same points in which one column is put anew, section by section; it shares all others with this one."""
@@ -356,4 +356,4 @@ class _Metres:
         return len(self.column)
 
     def __getitem__(self, k):
-        return self.column[k] * UNIT
+        return self.column[k] * COORDINATE_SCALE

@@ -9,7 +9,7 @@ from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.intensity.coverage import check_image_shows
 from lanewright.core.intensity.image import ImageSettings, IntensityImage, write_display_image, write_intensity_image
 from lanewright.core.markings.paint.mask import marking_mask
-from lanewright.core.survey.store.records import ROAD_POINT, UNIT, point_dtype, to_units
+from lanewright.core.survey.store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
 from lanewright.core.survey.store.section_store import SectionStore
 
@@ -104,7 +104,7 @@ def test_without_the_brightness_rule_a_pixel_is_plain_inverse_distance(tmp_path)
     records = painted_street(length=3.0)
     image = image_of(records, tmp_path / "i.tif", ImageSettings(beta=0.0))
     pixels = all_pixels(image)
-    px, py = records["x"] * UNIT + ORIGIN[0], records["y"] * UNIT + ORIGIN[1]
+    px, py = records["x"] * COORDINATE_SCALE + ORIGIN[0], records["y"] * COORDINATE_SCALE + ORIGIN[1]
     left, cell, _, top, _, _ = image.geotransform
     for row, column in [(20, 11), (50, 40), (77, 3), (100, 60), (0, 0)]:
         distance = np.hypot(px - left - (column + 0.5) * cell, py - top + (row + 0.5) * cell)
@@ -123,7 +123,7 @@ def test_without_the_brightness_rule_it_agrees_with_gdal_grid(tmp_path):
     ogr.UseExceptions()
     source = gdal.GetDriverByName("Memory").Create("", 0, 0, 0)
     layer = source.CreateLayer("points", geom_type=ogr.wkbPoint25D)
-    for x, y, value in zip(records["x"] * UNIT + ORIGIN[0], records["y"] * UNIT + ORIGIN[1], records["intensity"]):
+    for x, y, value in zip(records["x"] * COORDINATE_SCALE + ORIGIN[0], records["y"] * COORDINATE_SCALE + ORIGIN[1], records["intensity"]):
         feature = ogr.Feature(layer.GetLayerDefn())
         feature.SetGeometry(ogr.CreateGeometryFromWkt(f"POINT ({x:.4f} {y:.4f} {value})"))
         layer.CreateFeature(feature)
@@ -198,7 +198,7 @@ def test_cells_are_multiples_of_the_cell_size_wherever_the_origin_is(tmp_path):
 
 def test_where_no_point_lies_within_two_cells_there_is_no_data(tmp_path):
     records = painted_street(length=10.0)
-    x = records["x"] * UNIT
+    x = records["x"] * COORDINATE_SCALE
     image = image_of(records[(x < 4) | (x > 6)], tmp_path / "i.tif")
     values = image.sample(np.array([2.0, 4.05, 4.2, 5.0, 5.8, 5.95, 8.0]), np.zeros(7), ORIGIN)
     np.testing.assert_array_equal(np.isnan(values), [False, False, True, True, True, False, False])
@@ -240,7 +240,7 @@ def test_an_image_of_two_towns_a_thousand_kilometres_apart_is_only_as_large_as_t
     points = RoadPoints(SectionStore(kind), ORIGIN, "")
     for road, east in ((0, 0.0), (1, 1e6)):
         records = here.astype(kind)
-        records["x"] += int(east / UNIT)
+        records["x"] += int(east / COORDINATE_SCALE)
         points.store.append(road, records)
     write_intensity_image(points, tmp_path / "i.tif")
     image, alone = IntensityImage.open(tmp_path / "i.tif"), image_of(here, tmp_path / "alone.tif")

@@ -82,7 +82,7 @@ def test_what_32_bits_cannot_tell_from_a_street_is_not_on_it(towns, tmp_path):
 
 
 def test_road_points_of_both_towns_come_back_from_a_file(survey, tmp_path):
-    road_points = RoadPoints.none_of(survey)
+    road_points = RoadPoints.subset_of(survey)
     for road in survey.store.roads():
         for number in survey.store.sections(road):
             rows = np.arange(len(survey.section(road, number)))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from curbed_streets import driven, survey_of
 from lanewright.core.road.common.decimation import FEW, LEVEL, Crowds
-from lanewright.core.survey.store.records import UNIT
+from lanewright.core.survey.store.records import COORDINATE_SCALE
 
 WIDTH, SPACING = 0.25, 0.025
 CURB, HEIGHT = 1.004, 0.12
@@ -28,8 +28,8 @@ def taken(survey, profiles=(36, 60), **most):
 
 def in_cells(points):
     """How many points lie in every occupied cell of level ground, well inside the scan and away from the face."""
-    s, d = points[:, 0] * UNIT, points[:, 1]
-    own = (s > 10.5) & (s < 13.5) & (np.abs(d * UNIT - CURB) > 0.05) & (np.abs(d * UNIT) < 1.4)
+    s, d = points[:, 0] * COORDINATE_SCALE, points[:, 1]
+    own = (s > 10.5) & (s < 13.5) & (np.abs(d * COORDINATE_SCALE - CURB) > 0.05) & (np.abs(d * COORDINATE_SCALE) < 1.4)
     return np.unique(np.c_[np.floor(s[own] / WIDTH), d[own] // 256], axis=0, return_counts=True)[1]
 
 
@@ -44,7 +44,7 @@ def test_a_curbs_face_keeps_its_points():
     survey = survey_of(crowded(), driven(20.0))
     faces = []
     for points in (taken(survey, most=None), taken(survey)):
-        d, h = points[:, 1] * UNIT, (points[:, 2] - points[:, 2].min()) * UNIT
+        d, h = points[:, 1] * COORDINATE_SCALE, (points[:, 2] - points[:, 2].min()) * COORDINATE_SCALE
         faces.append(np.count_nonzero((np.abs(d - CURB) < 0.01) & (h > 0.04) & (h < 0.10)))
     assert faces[0] > 100
     assert faces[1] > 0.7 * faces[0]
@@ -59,7 +59,7 @@ def test_what_a_noisy_scanner_saw_is_taken_as_far_as_it_tells():
 def test_what_is_taken_does_not_depend_on_where_reading_begins_or_on_sections(profiles):
     points = crowded()
     whole = taken(survey_of(points, driven(20.0)))
-    there = np.floor(whole[:, 0] * UNIT / WIDTH)
+    there = np.floor(whole[:, 0] * COORDINATE_SCALE / WIDTH)
     wanted = whole[(there >= profiles[0]) & (there < profiles[1])]
     for length in (20.0, 1.7):
         np.testing.assert_array_equal(taken(survey_of(points, driven(20.0), section_length=length), profiles), wanted)

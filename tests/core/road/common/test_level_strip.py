@@ -8,7 +8,7 @@ from lanewright.core.road.common.occlusion import Sight
 from lanewright.core.road.detect_boundaries import BoundarySettings, find_curb_points
 from lanewright.core.road.scanlines.detect import curbs_from_scanlines
 from lanewright.core.road.scanlines.source import SurveyScanlines
-from lanewright.core.survey.store.records import UNIT
+from lanewright.core.survey.store.records import COORDINATE_SCALE
 from scanned_streets import scanned
 from scanned_streets import survey_of as survey_of_scan
 
@@ -29,7 +29,7 @@ def crowded(height=0.03, noise=0.003, strays=0, skew=0.0, seed=5):
 def strip(points, profiles=(38, 58), **survey):
     """The LevelStrip of 5 m in the middle, and its offsets in metres."""
     found = Crowds(survey_of(points, driven(20.0), **survey), WIDTH, SPACING).level_strip(0, 0, profiles, ACROSS, ALONG)
-    return found, found.low * UNIT, found.high * UNIT
+    return found, found.low * COORDINATE_SCALE, found.high * COORDINATE_SCALE
 
 
 @pytest.mark.parametrize("height", [0.03, 0.12])
@@ -84,9 +84,9 @@ def test_points_are_held_profile_by_profile():
     s = np.sort(np.random.default_rng(1).uniform(9.5, 14.5, 2000))
     d = np.random.default_rng(2).uniform(-3.0, 3.0, 2000)
     profile = np.floor(s / WIDTH).astype(int) - found.first
-    expected = (d > found.low[profile] * UNIT) & (d < found.high[profile] * UNIT)
+    expected = (d > found.low[profile] * COORDINATE_SCALE) & (d < found.high[profile] * COORDINATE_SCALE)
     clear = np.abs(s / WIDTH - np.rint(s / WIDTH)) > 0.01
-    held = found.holds(np.rint(s / UNIT).astype(np.int32), np.rint(d / UNIT).astype(np.int32))
+    held = found.holds(np.rint(s / COORDINATE_SCALE).astype(np.int32), np.rint(d / COORDINATE_SCALE).astype(np.int32))
     np.testing.assert_array_equal(held[clear], expected[clear])
 
 
@@ -112,7 +112,7 @@ def test_most_of_a_dense_street_is_left_out():
 
     crowds = Crowds(survey, WIDTH, SPACING)
     SurveyScanlines(survey, level=level).runs(0, 20.0, 30.0)
-    width = np.concatenate([(found.high - found.low) * UNIT for found in seen])
+    width = np.concatenate([(found.high - found.low) * COORDINATE_SCALE for found in seen])
     assert np.median(width) > 4.0
 
 

@@ -5,7 +5,7 @@ import pytest
 from drives import ahead, bend, chain, drive
 from lanewright.core.survey.frame.projection import Placing
 from lanewright.core.survey.frame.road_frame import build_frame
-from lanewright.core.survey.store.records import UNIT, to_units
+from lanewright.core.survey.store.records import COORDINATE_SCALE, to_units
 
 CORRIDOR = 25.0
 
@@ -17,7 +17,7 @@ def around(frame, count=20_000, seed=1):
     time = rng.uniform(p.time[0], p.time[-1], count)
     x, y, _ = p.position(time)
     # as points are kept
-    return to_units(x + rng.uniform(-30, 30, count)) * UNIT, to_units(y + rng.uniform(-30, 30, count)) * UNIT, time
+    return to_units(x + rng.uniform(-30, 30, count)) * COORDINATE_SCALE, to_units(y + rng.uniform(-30, 30, count)) * COORDINATE_SCALE, time
 
 
 def exactly(frame, x, y, time):
@@ -42,7 +42,7 @@ def test_places_are_those_of_the_exact_foot_in_bends_of_any_radius(radius):
     # inside a bend as tight as the corridor is wide a place has more than one foot
     apart = np.maximum(np.abs(s - expected_s), np.abs(d - expected_d))[both]
     # half a unit in which points are kept, and a tenth of one
-    assert np.quantile(apart, 1.0 if radius is None or radius >= 60 else 0.99) < 0.6 * UNIT
+    assert np.quantile(apart, 1.0 if radius is None or radius >= 60 else 0.99) < 0.6 * COORDINATE_SCALE
 
 
 def test_how_points_are_grouped_does_not_show():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.memory import KeptArrays
 from lanewright.core.survey.las.scale import LasAxis
-from lanewright.core.survey.store.records import UNIT
+from lanewright.core.survey.store.records import COORDINATE_SCALE
 
 RAW = np.dtype([("X", "i4"), ("Y", "i4"), ("Z", "i4"), ("intensity", "u2")])
 
@@ -23,7 +23,7 @@ def test_units_are_the_nearest_to_the_metres_of_the_header(scale, offset):
     numbers = numbers[np.abs(numbers) < 2**31].astype(np.int32)
     found, there = units(LasAxis("X", scale, offset, origin), numbers)
     assert there is None
-    np.testing.assert_array_less(np.abs(found * UNIT - (numbers * scale + offset - origin)), 0.5001 * UNIT)
+    np.testing.assert_array_less(np.abs(found * COORDINATE_SCALE - (numbers * scale + offset - origin)), 0.5001 * COORDINATE_SCALE)
 
 
 @pytest.mark.parametrize("scale", [0.01, 0.0123])
@@ -31,5 +31,5 @@ def test_places_that_are_not_on_earth_are_named(scale):
     numbers = np.array([-2**31, -25_000_000, 0, 10_000_000, 2**31 - 1], np.int32)
     found, there = units(LasAxis("Y", scale, 0.0, 0.0), numbers)
     assert there.tolist() == [False, False, True, True, False]
-    np.testing.assert_array_equal(found[2:4], np.rint(numbers[2:4] * scale / UNIT))
+    np.testing.assert_array_equal(found[2:4], np.rint(numbers[2:4] * scale / COORDINATE_SCALE))
     assert not units(LasAxis("Z", scale, 0.0, 0.0), numbers[3:4])[1].any()

@@ -9,7 +9,7 @@ from scanned_streets import START, TUNNEL, Cloud, driven, scanned, survey_of
 
 def lines_found(cloud, lattice, key=(0, 0)):
     """Share of a cloud's points whose line is right but for a constant."""
-    line, _ = lattice.clocks[key].lines_and_phase(cloud.time, cloud.angle)
+    line, _ = lattice.mirror_phases[key].lines_and_phase(cloud.time, cloud.angle)
     apart = line - cloud.line
     return np.mean(apart == np.median(apart))
 
@@ -28,7 +28,7 @@ CASES = {
 def test_every_point_gets_its_line(case):
     cloud = scanned(**case)
     lattice = find_lattice(survey_of(cloud))
-    assert lattice.clocks[0, 0].frequency == pytest.approx(case.get("rotation", 100.0), rel=0.005)
+    assert lattice.mirror_phases[0, 0].frequency == pytest.approx(case.get("rotation", 100.0), rel=0.005)
     assert lines_found(cloud, lattice) >= 0.9999
 
 
@@ -37,17 +37,17 @@ def test_two_scanners_and_two_passes_have_clocks_of_their_own():
     back = time + 100.0, x[::-1]
     left, right = scanned(drive=(time, x), rotation=120.0), scanned(drive=(time, x), rotation=120.0, yaw=-45.0)
     lattice = find_lattice(survey_of(left, right, drive=(time, x)))
-    assert sorted(lattice.clocks) == [(0, 0), (0, 1)]
+    assert sorted(lattice.mirror_phases) == [(0, 0), (0, 1)]
     lattice = find_lattice(survey_of(left, scanned(drive=back, rotation=80.0), drives=[(time, x), back]))
-    assert lattice.clocks[0, 0].frequency == pytest.approx(120.0, rel=1e-3)
-    assert lattice.clocks[1, 0].frequency == pytest.approx(80.0, rel=1e-3)
+    assert lattice.mirror_phases[0, 0].frequency == pytest.approx(120.0, rel=1e-3)
+    assert lattice.mirror_phases[1, 0].frequency == pytest.approx(80.0, rel=1e-3)
 
 
 def test_the_order_of_sections_and_their_length_change_no_line():
     cloud = scanned(wander=0.01, lost=0.1)
     short, long = find_lattice(survey_of(cloud, section_length=5.0)), find_lattice(survey_of(cloud, section_length=60.0))
     for number in (0, 1):
-        a, b = (lattice.clocks[0, 0].lines_and_phase(cloud.time)[number] for lattice in (short, long))
+        a, b = (lattice.mirror_phases[0, 0].lines_and_phase(cloud.time)[number] for lattice in (short, long))
         np.testing.assert_allclose(a, b, atol=5e-4)
 
 
@@ -60,15 +60,15 @@ def test_a_vehicle_that_waits_keeps_its_lines():
 
 def test_a_frequency_that_is_given_is_taken():
     cloud = scanned(rotation=100.0)
-    assert find_lattice(survey_of(cloud), rotation_frequency=100.0).clocks[0, 0].frequency == pytest.approx(100.0, rel=1e-4)
-    assert find_lattice(survey_of(cloud), rotation_frequency=63.0).clocks == {}
+    assert find_lattice(survey_of(cloud), rotation_frequency=100.0).mirror_phases[0, 0].frequency == pytest.approx(100.0, rel=1e-4)
+    assert find_lattice(survey_of(cloud), rotation_frequency=63.0).mirror_phases == {}
 
 
 def test_lines_left_out_of_the_cloud_leave_the_others_where_they_are():
     cloud = scanned()
     cloud = cloud[cloud.line % 8 == 0]
     lattice = find_lattice(survey_of(cloud))
-    clock = lattice.clocks[0, 0]
+    clock = lattice.mirror_phases[0, 0]
     # of one line in eight nobody can say whether it took the mirror seven turns or eight
     assert abs(clock.spacing - 8) <= 1 and clock.frequency / clock.spacing == pytest.approx(12.5, rel=1e-4)
     line, _ = clock.lines_and_phase(cloud.time)
@@ -80,7 +80,7 @@ def test_where_angles_say_nothing_the_sky_between_the_lines_does():
     cloud = scanned(offset=0.0, clipped=8.0)
     time, x = driven()
     lattice = find_lattice(survey_of(cloud, drives=[(time, x, 18.0)]))
-    clock = lattice.clocks[0, 0]
+    clock = lattice.mirror_phases[0, 0]
     assert clock.origin == "gap"
     assert clock.frequency == pytest.approx(100.0, rel=1e-3) and not clock.leftward
     line, _ = clock.lines_and_phase(cloud.time)
@@ -109,7 +109,7 @@ def test_a_spinning_head_of_many_beams_is_said_to_have_no_lines():
             told.append(text)
 
     lattice = find_lattice(survey_of(Cloud(time, x, y, z, np.zeros(len(x)), np.zeros(len(x)))), progress=Log())
-    assert lattice.clocks == {} and lattice.without == [(0, 0)]
+    assert lattice.mirror_phases == {} and lattice.without == [(0, 0)]
     assert len(told) == 1 and "no regular scan lines" in told[0]
 
 
@@ -120,11 +120,11 @@ def test_times_too_coarse_for_the_order_of_points_are_no_lattice():
 
 def test_without_times_there_are_no_lines_to_tell():
     lattice = find_lattice(survey_of(scanned(), has_time=False))
-    assert lattice.clocks == {} and "no gps_time" in lattice.notes[0]
+    assert lattice.mirror_phases == {} and "no gps_time" in lattice.notes[0]
 
 
 def test_one_line_is_too_little():
     cloud = scanned()
     cloud = cloud[cloud.line == 200][:150]
     lattice = find_lattice(survey_of(cloud))
-    assert lattice.clocks == {} and "too few points" in lattice.notes[0]
+    assert lattice.mirror_phases == {} and "too few points" in lattice.notes[0]

@@ -42,7 +42,7 @@ def test_what_was_chosen_may_be_changed_and_leaves_its_source_alone():
 def test_rows_of_joined_parts_are_those_of_the_whole(which):
     records = some()
     parts = [Columns.of(records[a:b]) for a, b in ((0, 33), (33, 34), (34, 70), (70, 100))]
-    joined = Columns.joined(parts, records.dtype)
+    joined = Columns.concatenate(parts, records.dtype)
     np.testing.assert_array_equal(joined[which], records[which])
     np.testing.assert_array_equal(joined[10:95][:80][1::3], records[10:95][:80][1::3])
     few = joined[10:95][np.array([0, 23, 24, 60])]
@@ -52,7 +52,7 @@ def test_rows_of_joined_parts_are_those_of_the_whole(which):
 
 
 def test_a_row_beyond_joined_parts_is_refused():
-    joined = Columns.joined([Columns.of(some(5)), Columns.of(some(5))], some().dtype)
+    joined = Columns.concatenate([Columns.of(some(5)), Columns.of(some(5))], some().dtype)
     with pytest.raises(IndexError):
         joined[np.array([3, 10])]["s"]
 
@@ -62,7 +62,7 @@ def test_only_those_parts_are_read_that_chosen_rows_lie_in():
         raise AssertionError(f"{name} was read")
 
     parts = [Columns({}, some().dtype, 100, unread), Columns.of(some())]
-    joined = Columns.joined(parts, some().dtype)
+    joined = Columns.concatenate(parts, some().dtype)
     assert joined[np.array([100, 150])]["s"].tolist() == [0, 50]
     assert joined[120:130][np.array([1])]["s"].tolist() == [21]
 
@@ -90,8 +90,8 @@ def test_few_rows_are_fetched_alone_and_where_they_grow_many_the_column_once():
 
 def test_parts_are_joined_in_order_and_none_are_none():
     records = some()
-    np.testing.assert_array_equal(Columns.joined([Columns.of(records[:30]), Columns.of(records[30:])], records.dtype), records)
-    assert len(Columns.joined([], records.dtype)) == len(Columns.joined([], records.dtype)["time"]) == 0
+    np.testing.assert_array_equal(Columns.concatenate([Columns.of(records[:30]), Columns.of(records[30:])], records.dtype), records)
+    assert len(Columns.concatenate([], records.dtype)) == len(Columns.concatenate([], records.dtype)["time"]) == 0
 
 
 @pytest.mark.parametrize("count", [0, 1, 5000])

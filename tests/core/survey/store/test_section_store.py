@@ -7,7 +7,7 @@ import warnings
 import numpy as np
 import pytest
 from lanewright.core.survey.store.canonical_order import canonical_order
-from lanewright.core.survey.store.records import SURVEY_POINT, joined, to_units
+from lanewright.core.survey.store.records import SURVEY_POINT, join_columns, to_units
 from lanewright.core.survey.store.section_store import SectionStore
 
 
@@ -32,7 +32,7 @@ def filled(parts, **settings):
 def test_what_went_in_comes_out_sorted_along_the_road(limit):
     made = records()
     store = filled(np.array_split(made, 7), section_length=20.0, memory_limit=limit)
-    read = np.asarray(joined([store.section(0, number) for number in store.sections(0)], SURVEY_POINT))
+    read = np.asarray(join_columns([store.section(0, number) for number in store.sections(0)], SURVEY_POINT))
     assert store.count == len(read) == len(made)
     assert (np.diff(read["s"]) >= 0).all()
     np.testing.assert_array_equal(np.sort(read, order=["time", "x"]), np.sort(made, order=["time", "x"]))
