@@ -27,7 +27,7 @@ def texts():
         for text in texts_of(ast.parse(path.read_text(encoding="utf-8"))):
             found.setdefault(text, path.relative_to(ROOT).as_posix())
     for text in aliases():
-        found.setdefault(text, "core/schemas.py")
+        found.setdefault(text, "core/common/schemas.py")
     for recipe in RECIPES:
         found.setdefault(recipe.description, "tools/models.py")
     for path in sorted((ROOT / "resources" / "styles").glob("*.qml")):
@@ -69,7 +69,7 @@ def legend(path):
 
 def aliases():
     """The spelled-out names of the fields of every layer."""
-    tree = ast.parse((ROOT / "core" / "schemas.py").read_text(encoding="utf-8"))
+    tree = ast.parse((ROOT / "core" / "common" / "schemas.py").read_text(encoding="utf-8"))
     for node in ast.walk(tree):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Field" and len(node.args) > 2:
             yield from constants(node.args[2])

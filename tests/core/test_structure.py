@@ -1,0 +1,83 @@
+"""The order of the folders of `core`, and the words in it, read from the code itself."""
+
+import ast
+from collections import defaultdict
+from pathlib import Path
+
+import pytest
+
+CORE = Path(__file__).resolve().parents[2] / "core"
+FILES = sorted(path for path in CORE.rglob("*.py") if "__pycache__" not in path.parts)
+MODULES = [path for path in FILES if path.name != "__init__.py"]
+# Each folder imports only from those before it
+ORDER = ("common", "countries", "io", "curves", "survey", "road", "intensity", "markings", "driving", "assess", "overlay", "sample",
+         "report", "pipeline", "declarations")
+MOST_FILES = 15   # of a folder: more cannot be taken in at a glance
+
+
+def name_of(path):
+    """`core/road/edges/fit.py` -> ("road", "edges", "fit")."""
+    return path.relative_to(CORE).with_suffix("").parts
+
+
+def imported(path):
+    """(module imported, line) of every import from within core, also those inside functions."""
+    package = list(name_of(path))[:-1]
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if not isinstance(node, ast.ImportFrom) or not node.level:
+            continue
+        base = package[:len(package) - (node.level - 1)] + (node.module.split(".") if node.module else [])
+        for alias in node.names:
+            inner = (*base, alias.name)
+            is_module = CORE.joinpath(*inner).with_suffix(".py").exists() or CORE.joinpath(*inner, "__init__.py").exists()
+            yield (inner if is_module else tuple(base)), node.lineno
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: "/".join(name_of(path)))
+def test_imports_run_one_way_between_folders(path):
+    here = name_of(path)
+    for target, line in imported(path):
+        if len(here) == 1 or not target or len(target) == 1:
+            continue
+        assert ORDER.index(target[0]) <= ORDER.index(here[0]), f"{'/'.join(here)}.py, line {line}: {here[0]} imports {'/'.join(target)}"
+
+
+def test_no_two_folders_import_each_other():
+    """Sub-folders too: `road/edges` -> `road/common` never comes with `road/common` -> `road/edges`."""
+    arrows = defaultdict(dict)
+    for path in MODULES:
+        folder = name_of(path)[:-1]
+        for target, line in imported(path):
+            there = target if CORE.joinpath(*target).is_dir() else target[:-1]
+            if there != folder:
+                arrows[folder][there] = f"{'/'.join(name_of(path))}.py, line {line}"
+
+    def reach(start, goal, way):
+        for there, where in arrows[start].items():
+            if there == goal:
+                return [*way, where]
+            if there not in seen:
+                seen.add(there)
+                found = reach(there, goal, [*way, where])
+                if found:
+                    return found
+        return None
+
+    for folder in list(arrows):
+        seen = set()
+        circle = reach(folder, folder, [])
+        assert not circle, "these imports run in a circle: " + " -> ".join(circle)
+
+
+@pytest.mark.parametrize("folder", sorted({path.parent for path in FILES}), ids=lambda folder: folder.relative_to(CORE).as_posix())
+def test_a_folder_can_be_taken_in_at_a_glance(folder):
+    assert len([path for path in folder.glob("*.py") if path.name != "__init__.py"]) <= MOST_FILES
+    assert len(ast.get_docstring(ast.parse((folder / "__init__.py").read_text(encoding="utf-8"))) or "") > 40
+
+
+def test_the_core_never_imports_qgis():
+    for path in FILES:
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else \
+                [node.module or ""] if isinstance(node, ast.ImportFrom) and not node.level else []
+            assert not any(name.split(".")[0] == "qgis" for name in names), path
