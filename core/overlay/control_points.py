@@ -16,7 +16,7 @@ from ..common.errors import RoadExtractionError
 
 # Which column of a table of control points is which, by their names or, without names, by the image's size.
 
-NAMES = {
+COLUMN_ALIASES = {
     "pixel": "pixel pixelx sourcex srcx column col sample px imagex imgx imx xpixel ximage xsource u".split(),
     "line": "line pixely sourcey srcy row py imagey imgy imy ypixel yimage ysource v".split(),
     "easting": "mapx easting east e geox worldx utme xmap xworld rechtswert rw".split(),
@@ -27,7 +27,7 @@ NAMES = {
     "role": "role type".split(),
     "check": "check ischeck checkpoint".split(),
 }
-NEEDED = ("pixel", "line", "easting", "northing")
+REQUIRED_COLUMNS = ("pixel", "line", "easting", "northing")
 
 
 def find_columns(names, what):
@@ -42,7 +42,7 @@ def find_columns(names, what):
     """
     plain = [re.sub(r"[^a-z]", "", re.sub(r"\(.*?\)|\[.*?\]", "", str(name).lower())) for name in names]
     found = {}
-    for key, aliases in NAMES.items():
+    for key, aliases in COLUMN_ALIASES.items():
         places = [plain.index(alias) for alias in aliases if alias in plain]
         if places:
             found[key] = places[0]
@@ -50,7 +50,7 @@ def find_columns(names, what):
         free = [key for key in keys if key not in found]
         if bare in plain and free:
             found[free[0]] = plain.index(bare)
-    missing = [key for key in NEEDED if key not in found]
+    missing = [key for key in REQUIRED_COLUMNS if key not in found]
     if missing:
         raise RoadExtractionError(
             f"{what} has the columns {', '.join(map(str, names))}; {' and '.join(missing)} cannot be told among them. "
@@ -101,7 +101,7 @@ def as_number(value):
 
 # Control points from a file: QGIS's `.points` in its old and new forms, or CSV with any delimiter.
 
-LARGEST = 20_000_000  # bytes; a table of control points is a few thousand
+MAX_TABLE_BYTES = 20_000_000  # bytes; a table of control points is a few thousand
 
 
 def read_control_points(path, image, crs=""):
@@ -133,7 +133,7 @@ def read_control_points(path, image, crs=""):
 def _lines(path):
     """The lines of the table, and the CRS named above it."""
     try:
-        if Path(path).stat().st_size > LARGEST:
+        if Path(path).stat().st_size > MAX_TABLE_BYTES:
             raise RoadExtractionError(f"{path} is too large for a table of control points. Was the image chosen in its place?")
         data = Path(path).read_bytes()
     except OSError as problem:
@@ -151,7 +151,7 @@ def _lines(path):
                 named = words[4:].strip()
                 continue
             # A header may be written as a comment
-            if _delimiter([words]) == " " or not any(word.strip().lower().replace("_", "") in NAMES["easting"] + NAMES["pixel"]
+            if _delimiter([words]) == " " or not any(word.strip().lower().replace("_", "") in COLUMN_ALIASES["easting"] + COLUMN_ALIASES["pixel"]
                                                      for word in words.split(_delimiter([words]))):
                 continue
             bare = words
@@ -178,8 +178,8 @@ def _wkt(named, path):
                                   "Correct its first line (#CRS: EPSG:number) or remove it and give the CRS.") from problem
 
 CONTROL, CHECK, DISABLED = "control", "check", "disabled"
-_OFF = ("0", "false", "no", "off", "n", "f")
-_CHECK = ("check", "checkpoint", "check point", "chk", "cp", "test")
+_FALSE_TEXTS = ("0", "false", "no", "off", "n", "f")
+_CHECK_TEXTS = ("check", "checkpoint", "check point", "chk", "cp", "test")
 
 
 @dataclass(frozen=True)
@@ -293,8 +293,8 @@ def _roles(rows, where):
     for number, row in enumerate(rows):
         role = _text(row, where["role"]).lower() if "role" in where else ""
         check = _text(row, where["check"]).lower() if "check" in where else ""
-        if role in _CHECK or (check and check not in _OFF):
+        if role in _CHECK_TEXTS or (check and check not in _FALSE_TEXTS):
             roles[number] = CHECK
-        if role.startswith(("disab", "off", "unused")) or ("enable" in where and _text(row, where["enable"]).lower() in _OFF):
+        if role.startswith(("disab", "off", "unused")) or ("enable" in where and _text(row, where["enable"]).lower() in _FALSE_TEXTS):
             roles[number] = DISABLED
     return roles

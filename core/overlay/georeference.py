@@ -10,7 +10,16 @@ from ..common.features import Features
 from ..common.schemas import RESIDUALS
 from ..common.setting import check_limits, setting
 from .control_points import CONTROL, ControlPoints
-from .polynomial import FEWEST, LINE, WEAK, Fit, fit_polynomial, fit_shift, spread, weakness
+from .polynomial import (
+    COLLINEAR_RATIO,
+    MIN_CONTROL_POINTS,
+    MIN_INVERSE_CONDITION,
+    ControlPointFit,
+    fit_image_polynomial,
+    fit_shift,
+    inverse_condition,
+    principal_extents,
+)
 from .source_image import SourceImage
 
 # The residuals of control and check points as vectors on the map.
@@ -39,10 +48,10 @@ def residual_vectors(found):
 
 EXTRAPOLATIONS = ("automatic", "draw", "leave-out")
 RESAMPLINGS = ("bilinear", "nearest", "cubic")
-_ENOUGH = 1.5     # times the fewest points: below this the residuals flatter
-_MISFIT = 5.0     # studentised residual from which a point is named
-_BEYOND = 0.05    # share of the image outside the hull of the points from which it is worth a word
-_RING = 200       # places along the outline of the image
+_SUFFICIENT_RATIO = 1.5     # times the fewest points: below this the residuals flatter
+_MISFIT_RESIDUAL = 5.0     # studentised residual from which a point is named
+_NOTED_OUTSIDE_SHARE = 0.05    # share of the image outside the hull of the points from which it is worth a word
+_OUTLINE_PLACES = 200       # places along the outline of the image
 
 
 @dataclass(frozen=True)
@@ -72,7 +81,7 @@ class Georeferencing:
     Attributes
     ----------
     image, points, settings : as given; a disabled point that serves as a check is one here
-    fit : Fit of the control points alone
+    fit : ControlPointFit of the control points alone
     pixel_size : m, of the image to be drawn
     hull : shapely polygon around the control points, pixel and line; None for a shift
     outside : share of the image's area outside the hull, 0 to 1
@@ -85,7 +94,7 @@ class Georeferencing:
     image: SourceImage
     points: ControlPoints
     settings: GeoreferenceSettings
-    fit: Fit
+    fit: ControlPointFit
     pixel_size: float
     hull: object
     outside: float
@@ -142,7 +151,7 @@ def georeference(image, points, settings=None):
         fit = fit_shift(*place, _rough_position(image, points, settings))
     else:
         _well_spread(*place, settings.order)
-        fit = fit_polynomial(*place, settings.order)
+        fit = fit_image_polynomial(*place, settings.order)
     hull = shapely.convex_hull(shapely.multipoints(np.column_stack(place[:2]))) if settings.order else None
     frame = shapely.box(0, 0, image.width, image.height)
     outside = 1.0 - hull.intersection(frame).area / frame.area if settings.order else 0.0
@@ -160,13 +169,13 @@ def georeference(image, points, settings=None):
 
 
 def _enough(count, rows, order):
-    if count >= FEWEST[order]:
+    if count >= MIN_CONTROL_POINTS[order]:
         return
     kind = "a shift" if order == 0 else f"a polynomial of order {order}"
     apart = f" ({rows - count} more are disabled or check points)" if rows > count else ""
-    lower = [k for k in range(1, order) if FEWEST[k] <= count]
+    lower = [k for k in range(1, order) if MIN_CONTROL_POINTS[k] <= count]
     way = f"Measure more points, or choose order {lower[-1]}." if lower else "Measure more points."
-    raise RoadExtractionError(f"There are {count} control points{apart}; {kind} needs {FEWEST[order]} or more. {way}")
+    raise RoadExtractionError(f"There are {count} control points{apart}; {kind} needs {MIN_CONTROL_POINTS[order]} or more. {way}")
 
 
 def _rough_position(image, points, settings):
@@ -190,12 +199,12 @@ def _rough_position(image, points, settings):
 def _well_spread(pixel, line, easting, northing, order):
     """Refuse points in a line, in the image or on the map, and those that leave a higher order open."""
     for places, unit, digits in ((np.column_stack([pixel, line]), "pixels", 0), (np.column_stack([easting, northing]), "m", 2)):
-        along, across = spread(places)
-        if across <= LINE * along:
+        along, across = principal_extents(places)
+        if across <= COLLINEAR_RATIO * along:
             raise RoadExtractionError(
                 f"The {len(pixel)} control points lie in a line: they spread {along:.{digits}f} {unit} along it and "
                 f"{across:.{digits}f} {unit} across. Measure points on both sides of it, spread over the image.")
-    if order > 1 and weakness(pixel, line, order) < WEAK:
+    if order > 1 and inverse_condition(pixel, line, order) < MIN_INVERSE_CONDITION:
         raise RoadExtractionError(
             f"The {len(pixel)} control points lie so (in few rows, on one curve, or several in one place) that a polynomial of order "
             f"{order} is not determined between them. Add points away from the others, or choose order {order - 1}.")
@@ -203,7 +212,7 @@ def _well_spread(pixel, line, easting, northing, order):
 
 def _unfolded(fit, area, hull, points, used, order):
     """Refuse a polynomial that mirrors the image or turns it over where it is drawn."""
-    pixel, line = lattice(area.bounds, 25)
+    pixel, line = node_grid(area.bounds, 25)
     inside = shapely.contains_xy(area.buffer(1e-6), pixel, line)
     turn = np.linalg.det(fit.polynomial.jacobian(pixel[inside], line[inside]))
     if (turn < 0).all():
@@ -222,7 +231,7 @@ def _unfolded(fit, area, hull, points, used, order):
         "measure points nearer to the image's corners, or leave out what lies outside the points (extrapolation).")
 
 
-def lattice(bounds, count):
+def node_grid(bounds, count):
     """(pixel, line), (count², ) each, evenly over (min, min, max, max)."""
     across, down = np.meshgrid(np.linspace(bounds[0], bounds[2], count), np.linspace(bounds[1], bounds[3], count))
     return across.ravel(), down.ravel()
@@ -230,7 +239,7 @@ def lattice(bounds, count):
 
 def own_pixel_size(fit, area):
     """The pixel size of the image on the map, m: median over a polygon of pixels and lines."""
-    pixel, line = lattice(area.bounds, 9)
+    pixel, line = node_grid(area.bounds, 9)
     inside = shapely.contains_xy(area, pixel, line)
     return float(np.sqrt(np.median(np.abs(np.linalg.det(fit.polynomial.jacobian(pixel[inside], line[inside]))))))
 
@@ -252,10 +261,10 @@ def _notes(found):
     if order and fit.free == 0:
         yield (f"{len(used)} control points are the fewest for order {order}: the polynomial passes through all of them, and the "
                "residuals are 0 whatever the points are worth. Measure more points, or choose a lower order.")
-    elif order and len(used) < _ENOUGH * FEWEST[order]:
-        yield (f"{len(used)} control points are few for order {order} ({FEWEST[order]} at least): the residuals flatter. "
+    elif order and len(used) < _SUFFICIENT_RATIO * MIN_CONTROL_POINTS[order]:
+        yield (f"{len(used)} control points are few for order {order} ({MIN_CONTROL_POINTS[order]} at least): the residuals flatter. "
                "Look at the leave-one-out error instead.")
-    if order and found.outside > _BEYOND:
+    if order and found.outside > _NOTED_OUTSIDE_SHARE:
         times = float(np.sqrt(_ring_leverage(found).max()))
         share = f"{100 * found.outside:.0f} % of the image lies outside the hull of the control points"
         if found.cut:
@@ -298,7 +307,7 @@ def _ring_leverage(found):
     """Leverage along the outline of what is drawn."""
     frame = shapely.box(0, 0, found.image.width, found.image.height)
     places = shapely.get_coordinates(shapely.line_interpolate_point(
-        frame.exterior, np.linspace(0, 1, _RING), normalized=True))
+        frame.exterior, np.linspace(0, 1, _OUTLINE_PLACES), normalized=True))
     return found.fit.leverage_at(places[:, 0], places[:, 1])
 
 
@@ -316,5 +325,5 @@ def _misfits(found):
     own = _burden(fit)
     others = np.maximum(np.sum(fit.residuals**2) - own, 0.0) / freedom
     floor = (0.1 * found.pixel_size) ** 2  # no point is measured better than a tenth of a pixel
-    strange = own / 2 > _MISFIT**2 * np.maximum(others, floor)
+    strange = own / 2 > _MISFIT_RESIDUAL**2 * np.maximum(others, floor)
     return used[strange][np.argsort(-own[strange])][:3]

@@ -4,18 +4,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-LINE = 0.01        # spread across over spread along, below which points lie in a line
-WEAK = 1e-3        # smallest over largest singular value, below which the points do not tell the coefficients
-FEWEST = (1, 3, 6, 10)
+COLLINEAR_RATIO = 0.01         # extent across over extent along, below which points lie on a line
+MIN_INVERSE_CONDITION = 1e-3        # smallest over largest singular value, below which the points do not tell the coefficients
+MIN_CONTROL_POINTS = (1, 3, 6, 10)
 
 
-def exponents(order):
+def term_powers(order):
     """(K, 2) powers of the terms u^a v^b with a + b <= order; K = (order + 1)(order + 2) / 2."""
     return np.array([(total - b, b) for total in range(order + 1) for b in range(total + 1)])
 
 
 @dataclass(frozen=True)
-class Polynomial:
+class ImagePolynomial:
     """From pixel and line to the map.
 
     Coordinates are centred and turned to their principal axes, then scaled to unit spread,
@@ -27,7 +27,7 @@ class Polynomial:
     centre : (2,) pixel, line
     whiten : (2, 2)
     origin : (2,) map coordinates subtracted before the fit
-    coefficients : (K, 2) of the terms in `exponents(order)`, for easting and northing
+    coefficients : (K, 2) of the terms in `term_powers(order)`, for easting and northing
     """
 
     order: int
@@ -46,7 +46,7 @@ class Polynomial:
 
     def jacobian(self, pixel, line):
         """(N, 2, 2): metres east and north (rows) per pixel and line (columns)."""
-        u, powers = self._scaled(pixel, line), exponents(self.order)
+        u, powers = self._scaled(pixel, line), term_powers(self.order)
         slopes = []
         for axis in (0, 1):
             lower = powers.copy()
@@ -83,17 +83,17 @@ class Polynomial:
 
 
 def _terms(u, order):
-    powers = exponents(order)
+    powers = term_powers(order)
     return u[:, :1] ** powers[:, 0] * u[:, 1:] ** powers[:, 1]
 
 
 @dataclass(frozen=True)
-class Fit:
+class ControlPointFit:
     """A polynomial with what the control points say about it.
 
     Attributes
     ----------
-    polynomial : Polynomial
+    polynomial : ImagePolynomial
     residuals : (N, 2) m, map coordinates of the points minus the polynomial's
     leverage : (N,) how much each point pulls the polynomial to itself, 0 to 1
     triangle : (K, K) R of the fit's QR, for the leverage of other places
@@ -101,7 +101,7 @@ class Fit:
     free : points beyond the smallest number
     """
 
-    polynomial: Polynomial
+    polynomial: ImagePolynomial
     residuals: np.ndarray
     leverage: np.ndarray
     triangle: np.ndarray
@@ -109,7 +109,7 @@ class Fit:
 
     @property
     def free(self):
-        return len(self.residuals) - FEWEST[self.order]
+        return len(self.residuals) - MIN_CONTROL_POINTS[self.order]
 
     @property
     def left_out(self):
@@ -124,14 +124,14 @@ class Fit:
         return np.sum(np.linalg.solve(self.triangle.T, terms.T) ** 2, axis=0)
 
 
-def spread(places):
+def principal_extents(places):
     """(along, across): how far places, (N, 2), reach along their principal axes."""
     _, _, turned = np.linalg.svd(places - places.mean(axis=0), full_matrices=False)
     along, across = np.ptp((places - places.mean(axis=0)) @ turned.T, axis=0)
     return float(along), float(across)
 
 
-def weakness(pixel, line, order):
+def inverse_condition(pixel, line, order):
     """Smallest over largest singular value of the terms at control points; 0 where they are no full set."""
     centre, whiten = _frame(np.column_stack([pixel, line]))
     singular = np.linalg.svd(_terms((np.column_stack([pixel, line]) - centre) @ whiten, order), compute_uv=False)
@@ -145,12 +145,12 @@ def _frame(places):
     return centre, turned.T / (singular / np.sqrt(len(places)))
 
 
-def fit_polynomial(pixel, line, easting, northing, order):
+def fit_image_polynomial(pixel, line, easting, northing, order):
     """Fit of order 1 to 3: X = sum a_ij u^i v^j, Y likewise, by QR of the centred and scaled terms.
 
     Parameters
     ----------
-    pixel, line, easting, northing : (N,), N at least FEWEST[order], neither in a line nor weak
+    pixel, line, easting, northing : (N,), N at least MIN_CONTROL_POINTS[order], neither in a line nor weak
 
     Notes
     -----
@@ -165,7 +165,7 @@ def fit_polynomial(pixel, line, easting, northing, order):
     basis, triangle = np.linalg.qr(terms)
     coefficients = np.linalg.solve(triangle, basis.T @ (target - origin))
     residuals = target - origin - terms @ coefficients
-    return Fit(Polynomial(order, centre, whiten, origin, coefficients), residuals, np.sum(basis**2, axis=1), triangle, order)
+    return ControlPointFit(ImagePolynomial(order, centre, whiten, origin, coefficients), residuals, np.sum(basis**2, axis=1), triangle, order)
 
 
 def fit_shift(pixel, line, easting, northing, geotransform):
@@ -182,5 +182,5 @@ def fit_shift(pixel, line, easting, northing, geotransform):
     origin = target.mean(axis=0)
     coefficients = np.vstack([np.zeros(2), slope.T])
     residuals = target - origin - (places - centre) @ slope.T
-    return Fit(Polynomial(1, centre, np.eye(2), origin, coefficients), residuals,
+    return ControlPointFit(ImagePolynomial(1, centre, np.eye(2), origin, coefficients), residuals,
                np.full(count, 1.0 / count), np.array([[np.sqrt(count)]]), 0)

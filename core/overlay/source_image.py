@@ -8,7 +8,7 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..io.gdal_errors import gdal_exceptions
 
-_NOWHERE = (0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+_NO_GEOTRANSFORM = (0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def open_image(path):
     if dataset.RasterCount == 0:
         raise RoadExtractionError(f"{path} holds several images and none of its own. Name one of them, or export it as a TIFF.")
     transform = dataset.GetGeoTransform(can_return_null=True)
-    placed = transform is not None and tuple(transform) != _NOWHERE
+    placed = transform is not None and tuple(transform) != _NO_GEOTRANSFORM
     first, last = dataset.GetRasterBand(1), dataset.GetRasterBand(dataset.RasterCount)
     kind = ("byte" if first.DataType == gdal.GDT_Byte else
             "real" if first.DataType in (gdal.GDT_Float32, gdal.GDT_Float64) else "integer")

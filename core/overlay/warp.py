@@ -9,14 +9,14 @@ import shapely
 from ..common.errors import Cancelled, RoadExtractionError
 from ..common.progress import Progress
 from ..io.gdal_errors import gdal_exceptions
-from .georeference import lattice, own_pixel_size
+from ..io.geotiff import TILE
+from .georeference import node_grid, own_pixel_size
 
-TILE = 512
-MEMORY = 128_000_000     # bytes of GDAL's cache: blocks beyond it are written while the work goes on, not all at its end
-LARGEST = 4e9            # pixels of the result; beyond this the polynomial or the pixel size is wrong
+GDAL_CACHE = 128_000_000     # bytes of GDAL's cache: blocks beyond it are written while the work goes on, not all at its end
+MAX_RESULT_PIXELS = 4e9            # pixels of the result; beyond this the polynomial or the pixel size is wrong
 _APPROXIMATION = 0.05    # px, within which GDAL interpolates places along a row
-_NODES = 21              # per side, of the lattice that tells GDAL the polynomial
-_MARGINS = (0.2, 0.1, 0.04, 0.0)  # of the area, by which the lattice reaches beyond it
+_NODES = 21              # per side, of the node_grid that tells GDAL the polynomial
+_MARGINS = (0.2, 0.1, 0.04, 0.0)  # of the area, by which the node_grid reaches beyond it
 _SMALLEST_OVERVIEW = 256
 _ALGORITHMS = {"nearest": "near", "bilinear": "bilinear", "cubic": "cubic"}
 
@@ -41,7 +41,7 @@ def output_grid(found):
     if not _keeps_its_pixels(found):
         x0, y0 = np.floor(x0 / size + 1e-6) * size, np.floor(y0 / size + 1e-6) * size
     width, height = (max(int(np.ceil((b - a) / size - 1e-6)), 1) for a, b in ((x0, x1), (y0, y1)))
-    if width * height > LARGEST:
+    if width * height > MAX_RESULT_PIXELS:
         raise RoadExtractionError(
             f"The result would have {width} by {height} pixels of {size:g} m. Give a larger pixel size, choose a lower order, "
             "or look for a wrong control point.")
@@ -83,7 +83,7 @@ def draw_image(found, path, progress=None):
     source = view = result = None
     cancelled, failure = [], ""
     cache = gdal.GetCacheMax()
-    gdal.SetCacheMax(min(cache, MEMORY))
+    gdal.SetCacheMax(min(cache, GDAL_CACHE))
     try:
         source = _with_lattice(gdal, found, _tiled(gdal, found.image, tiled, _callback(progress, 0.0, 0.1, cancelled)))
         off = _departure(gdal, source, found) + _APPROXIMATION
@@ -140,7 +140,7 @@ def _tiled(gdal, image, path, callback):
     dataset = gdal.Open(image.path)
     band = dataset.GetRasterBand(1)
     size = image.width * image.height * image.bands * gdal.GetDataTypeSize(band.DataType) // 8
-    if size < MEMORY // 2 or band.GetBlockSize()[0] < image.width:
+    if size < GDAL_CACHE // 2 or band.GetBlockSize()[0] < image.width:
         return image.path
     gdal.Translate(str(path), dataset, format="GTiff", creationOptions=["TILED=YES", "BIGTIFF=IF_SAFER", "COMPRESS=LZW"], callback=callback)
     return str(path)
@@ -150,14 +150,14 @@ def _with_lattice(gdal, found, path):
     """The image as GDAL opens it, with points in place of a position.
 
     GDAL would fit a polynomial of its own from the map to the image, which is no
-    inverse of ours: tens of pixels beside it in a tilted picture. It is given a dense lattice that obeys our
+    inverse of ours: tens of pixels beside it in a tilted picture. It is given a dense node_grid that obeys our
     polynomial instead, for splines between the nodes (an affine needs no more than any three).
     """
     area, polynomial = drawn_area(found), found.fit.polynomial
     x0, y0, x1, y1 = area.bounds
     for margin in _MARGINS:
         reach = margin * max(x1 - x0, y1 - y0)
-        pixel, line = lattice((x0 - reach, y0 - reach, x1 + reach, y1 + reach), _NODES)
+        pixel, line = node_grid((x0 - reach, y0 - reach, x1 + reach, y1 + reach), _NODES)
         if (np.linalg.det(polynomial.jacobian(pixel, line)) < 0).all():
             break
     easting, northing = polynomial.to_map(pixel, line)
@@ -173,7 +173,7 @@ def _method(found):
 def _departure(gdal, source, found):
     """Pixels between where GDAL's transformer and the polynomial's inverse look for places of the result."""
     area = drawn_area(found)
-    pixel, line = lattice(area.bounds, 33)
+    pixel, line = node_grid(area.bounds, 33)
     inside = shapely.contains_xy(area, pixel, line)
     pixel, line = pixel[inside], line[inside]
     easting, northing = found.fit.polynomial.to_map(pixel, line)

@@ -14,7 +14,7 @@ from .common.nearest_pass import name_passes
 from .curb_returns.detect import add_turned_curbs
 from .edges.fit import EdgeSettings, fit_road_edges
 from .profiles.detect import CurbSettings, detect_curbs
-from .scanlines.candidates import FILLED
+from .scanlines.candidates import GAP_FILL_REACH
 from .scanlines.detect import ScanlineBoundarySettings, curbs_from_scanlines
 from .scanlines.section_planes import ScanlineSettings
 from .scanlines.source import SurveyScanlines
@@ -89,7 +89,7 @@ def _curb_points_from(crowds, settings, progress):
 
 def _level_for(crowds, settings):
     """The function by which SurveyScanlines leaves out where no corner can be."""
-    across, along = (distance + CLEAR for distance in (settings.distance_across, settings.distance_along + FILLED))
+    across, along = (distance + CLEAR for distance in (settings.distance_across, settings.distance_along + GAP_FILL_REACH))
 
     def level(road, number, start, end):
         profiles = int(np.floor(start / crowds.width)), int(np.ceil(end / crowds.width))

@@ -21,8 +21,8 @@ from .street import LABEL
 
 # Where the pixels of the made UAV image lie on the map: an image along the road, with lens-like distortion.
 
-LONGEST = 150.0    # m of road that one image shows
-BESIDE = 7.0       # m of ground shown beyond the edges of the carriageway
+MAX_IMAGE_LENGTH = 150.0    # m of road that one image shows
+IMAGE_MARGIN = 7.0       # m of ground shown beyond the edges of the carriageway
 GROUND_PIXEL = 0.04  # m
 _END = 2.0         # m of ground before and after the road
 _TILT = (0.022, -0.013)   # share of the half diagonal: what a camera not quite upright does
@@ -89,12 +89,12 @@ class Camera:
 
 def camera_over(scene):
     """The Camera that shows the beginning of a road, 150 m of it at most."""
-    length = min(scene.length, LONGEST)
+    length = min(scene.length, MAX_IMAGE_LENGTH)
     s = np.linspace(0.0, length, 200)
     x, y = scene.axis.to_map(s, np.zeros(200))
     heading = float(np.arctan2(y[-1] - y[0], x[-1] - x[0]))
     cos, sin = np.cos(heading), np.sin(heading)
-    rims = [scene.axis.to_map(s, np.full(200, d)) for d in (scene.left.edge + BESIDE, -scene.right.edge - BESIDE)]
+    rims = [scene.axis.to_map(s, np.full(200, d)) for d in (scene.left.edge + IMAGE_MARGIN, -scene.right.edge - IMAGE_MARGIN)]
     x, y = (np.concatenate([rim[k] for rim in rims]) for k in (0, 1))
     along, across = x * cos + y * sin, y * cos - x * sin
     low = np.array([along.min() - _END, across.min()])
@@ -106,7 +106,7 @@ def camera_over(scene):
 
 # The ground control points of the made UAV image: corners of paint, and plates laid out beside the road.
 
-PLATE = 0.6            # m, side of a plate
+PLATE_SIDE = 0.6            # m, side of a plate
 _PLATE_EVERY = 40.0    # m along each rim of the image
 _CORNERS = 18          # corners of paint
 _CLEAR = 0.4           # m between a corner and what stands on the street
@@ -125,7 +125,7 @@ def plates(scene, camera):
             down = 0.05 + 0.04 * np.arange(8)
             x, y = camera.to_map(np.full(8, share * camera.width), (down if inward > 0 else 1.0 - down) * camera.height)
             s, d = camera.to_road(scene, x, y)
-            free = np.flatnonzero(_is_free(scene, x, y, PLATE) & ((d > scene.left.edge + PLATE) | (d < -scene.right.edge - PLATE)))
+            free = np.flatnonzero(_is_free(scene, x, y, PLATE_SIDE) & ((d > scene.left.edge + PLATE_SIDE) | (d < -scene.right.edge - PLATE_SIDE)))
             if len(free):
                 k = free[0]
                 found.append((float(x[k]), float(y[k]), float(scene.axis.heading(s[k:k + 1])[0])))
@@ -256,10 +256,10 @@ class StreetSeen:
     def _lay_plates(self, colours, x, y):
         """Signalised points: plates in black and white quarters, their middle the point."""
         for at_x, at_y, turn in self._plates:
-            near = _within(x, y, at_x, at_y, PLATE)
+            near = _within(x, y, at_x, at_y, PLATE_SIDE)
             a = (x[near] - at_x) * np.cos(turn) + (y[near] - at_y) * np.sin(turn)
             b = (y[near] - at_y) * np.cos(turn) - (x[near] - at_x) * np.sin(turn)
-            on = np.maximum(np.abs(a), np.abs(b)) < PLATE / 2
+            on = np.maximum(np.abs(a), np.abs(b)) < PLATE_SIDE / 2
             colours[near[on]] = np.where((a * b > 0)[on, None], 236.0, 26.0)
 
     def _shade(self, colours, obstacle, x, y, z):

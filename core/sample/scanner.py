@@ -18,11 +18,11 @@ from .vehicle import attitude
 # How strong the pulses come back.
 
 # Share of near-infrared light sent back by each ground.
-_BRIGHTNESS = {"road": 0.100, "worn paint": 0.125, "paint": 0.46, "manhole": 0.30, "gutter": 0.21, "curb face": 0.21,
+_REFLECTANCE = {"road": 0.100, "worn paint": 0.125, "paint": 0.46, "manhole": 0.30, "gutter": 0.21, "curb face": 0.21,
                "curb stone": 0.22, "sidewalk": 0.17, "shoulder": 0.16, "verge": 0.30, "stray": 0.05}
-_TABLE = np.zeros(len(LABEL))
-for _name, _value in _BRIGHTNESS.items():
-    _TABLE[LABEL[_name]] = _value
+_REFLECTANCE_OF_LABEL = np.zeros(len(LABEL))
+for _name, _value in _REFLECTANCE.items():
+    _REFLECTANCE_OF_LABEL[LABEL[_name]] = _value
 _FULL_SCALE = 64000.0  # counts from a white surface met head-on at no distance
 _HALF_RANGE = 11.0     # m, where the strength has fallen to one half
 
@@ -45,7 +45,7 @@ def brightness_of(scene, label, s, d, own):
     `own` is the brightness of hits on obstacles.
     """
     texture = scene.texture
-    bright = np.where(_TABLE[label] > 0, _TABLE[label], own)
+    bright = np.where(_REFLECTANCE_OF_LABEL[label] > 0, _REFLECTANCE_OF_LABEL[label], own)
     asphalt = np.flatnonzero((label == LABEL["road"]) | (label == LABEL["worn paint"]))
     at_s, at_d = s[asphalt], d[asphalt]
     patchy = 1.0 + 0.07 * texture.at(at_s, at_d, 1.7) + 0.08 * texture.at(at_s, at_d, 0.06)

@@ -32,7 +32,7 @@ class Texture:
 
 # One side of the road across: from the edge of the carriageway outwards.
 
-LOWERED = 0.02  # m, what is left of a curb at a driveway or crossing
+LOWERED_CURB_HEIGHT = 0.02  # m, what is left of a curb at a driveway or crossing
 _RAMP = 1.0     # m along the road from full to lowered curb
 
 
@@ -69,7 +69,7 @@ class Side:
         height = np.full(np.shape(s), self.curb_height)
         for start, end in self.lowered:
             way = np.clip(np.maximum(start - s, s - end) / _RAMP, 0.0, 1.0)
-            height = np.minimum(height, LOWERED + (self.curb_height - LOWERED) * way * way * (3 - 2 * way))
+            height = np.minimum(height, LOWERED_CURB_HEIGHT + (self.curb_height - LOWERED_CURB_HEIGHT) * way * way * (3 - 2 * way))
         return height
 
     def border_rise(self, k, s):
@@ -222,7 +222,7 @@ def winding_road(length, radius, straight=30.0, transition=20.0, arc=45.0, run_i
 LABELS = ("nothing", "road", "paint", "worn paint", "manhole", "gutter", "curb face", "curb stone", "sidewalk",
           "shoulder", "verge", "car", "tree", "pole", "stray")
 LABEL = {name: number for number, name in enumerate(LABELS)}
-CARRIAGEWAY = tuple(LABEL[name] for name in ("road", "paint", "worn paint", "manhole", "gutter"))
+CARRIAGEWAY_LABELS = tuple(LABEL[name] for name in ("road", "paint", "worn paint", "manhole", "gutter"))
 
 
 @dataclass(frozen=True)

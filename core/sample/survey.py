@@ -34,7 +34,7 @@ _RANGE_NOISE = 0.005
 _VERGE_NOISE = 0.02  # blades of grass above the ground
 _LOST, _STRAY = 0.004, 0.00015
 
-POINT = np.dtype([("x", "f8"), ("y", "f8"), ("z", "f8"), ("time", "f8"), ("intensity", "u2"), ("scanner", "u1"),
+SAMPLE_POINT = np.dtype([("x", "f8"), ("y", "f8"), ("z", "f8"), ("time", "f8"), ("intensity", "u2"), ("scanner", "u1"),
                   ("scan_angle", "f4"), ("label", "u1"), ("pass", "u1"), ("range", "f4"), ("station", "f8"), ("offset", "f8")])
 
 
@@ -135,7 +135,7 @@ class SampleSurvey:
                     yield number, drive, scanner, lines[start:start + turns]
 
     def blocks(self, noise=True, progress=None):
-        """The points in blocks of time and scanner, as POINT arrays in map coordinates; some may be empty.
+        """The points in blocks of time and scanner, as SAMPLE_POINT arrays in map coordinates; some may be empty.
 
         Without `noise` every point lies where its pulse met the street, none is
         lost and intensities have no speckle.
@@ -157,7 +157,7 @@ class SampleSurvey:
                     job.cancel()
 
     def points(self, noise=True, progress=None):
-        """All points in memory: a POINT array with labels (see scene.LABELS), true station and offset."""
+        """All points in memory: a SAMPLE_POINT array with labels (see scene.LABELS), true station and offset."""
         return np.concatenate(list(self.blocks(noise, progress)))
 
     def _measure(self, number, drive, scanner, lines, noise):
@@ -191,7 +191,7 @@ class SampleSurvey:
         if noise:
             grass = np.flatnonzero(label == LABEL["verge"])
             place[2, grass] += _VERGE_NOISE * np.abs(normal[2, grass])
-        points = np.zeros(int(kept.sum()), dtype=POINT)
+        points = np.zeros(int(kept.sum()), dtype=SAMPLE_POINT)
         for axis, name in enumerate("xyz"):
             points[name] = place[axis, kept] + settings.origin[axis]
         points["time"] = drive.start_time + times[found][kept]

@@ -5,19 +5,19 @@ import numpy as np
 from ..common.features import Features, Field
 from ..common.schemas import DRIVING_LINES, END, HEIGHT, LENGTH, PART, ROAD, SIDE, STATION, WIDTH
 
-_STEP = 0.25      # m between vertices along the road
+_VERTEX_STEP = 0.25      # m between vertices along the road
 _DROPPED = 0.05   # m, a curb lower than this is a dropped one
 
-BOUNDARIES = [ROAD, SIDE, PART, Field("kind", str, "Kind (curb/dropped)"), STATION, END, HEIGHT, LENGTH]
-MARKINGS = [ROAD, Field("class", str, "Class"), Field("line", int, "Line"), Field("pattern", str, "Pattern"),
+TRUE_BOUNDARIES = [ROAD, SIDE, PART, Field("kind", str, "Kind (curb/dropped)"), STATION, END, HEIGHT, LENGTH]
+TRUE_MARKINGS = [ROAD, Field("class", str, "Class"), Field("line", int, "Line"), Field("pattern", str, "Pattern"),
             STATION, END, WIDTH, Field("wear", float, "Share of paint worn away")]
-DRIVING = [field for field in DRIVING_LINES if field.name in
+TRUE_DRIVING_LINES = [field for field in DRIVING_LINES if field.name in
            ("road", "lane", "direction", "radius_m", "station_m", "end_m", "length_m")]
-SURFACE = [ROAD, Field("area_m2", float, "Area (m²)")]
+TRUE_SURFACE = [ROAD, Field("area_m2", float, "Area (m²)")]
 
 
 def _stations(start, end):
-    return np.linspace(start, end, max(2, int(np.ceil((end - start) / _STEP)) + 1))
+    return np.linspace(start, end, max(2, int(np.ceil((end - start) / _VERTEX_STEP)) + 1))
 
 
 def _coordinates(scene, origin, s, d):
@@ -29,7 +29,7 @@ def true_boundaries(scene, origin, crs):
     """Curb bottoms and tops, in pieces of one kind; nothing where there is no curb."""
     from shapely import LineString
 
-    layer = Features("LineStringZ", BOUNDARIES, crs=crs)
+    layer = Features("LineStringZ", TRUE_BOUNDARIES, crs=crs)
     for side, name in ((scene.left, "left"), (scene.right, "right")):
         if not side.curb_height:
             continue
@@ -54,7 +54,7 @@ def true_markings(scene, origin, crs):
     """Every painted piece as it was painted, worn places included."""
     from shapely import Polygon
 
-    layer = Features("PolygonZ", MARKINGS, crs=crs)
+    layer = Features("PolygonZ", TRUE_MARKINGS, crs=crs)
     for marking in scene.paint.markings:
         dash = getattr(marking, "dash", None)
         pattern = None if marking.line is None else "solid" if dash is None else "dashed"
@@ -69,7 +69,7 @@ def true_markings(scene, origin, crs):
 
 def _densified(outline):
     closed = np.vstack([outline, outline[:1]])
-    sides = [a + np.linspace(0, 1, max(1, int(np.ceil(np.hypot(*(b - a)) / _STEP))), endpoint=False)[:, None] * (b - a)
+    sides = [a + np.linspace(0, 1, max(1, int(np.ceil(np.hypot(*(b - a)) / _VERTEX_STEP))), endpoint=False)[:, None] * (b - a)
              for a, b in zip(closed[:-1], closed[1:])]
     return np.vstack([*sides, outline[:1]])
 
@@ -78,7 +78,7 @@ def true_driving_lines(scene, origin, crs):
     """The middle of every lane, in its direction of travel; radius_m is that of its sharpest bend."""
     from shapely import LineString
 
-    layer = Features("LineStringZ", DRIVING, crs=crs)
+    layer = Features("LineStringZ", TRUE_DRIVING_LINES, crs=crs)
     for lane in scene.lanes:
         s = _stations(lane.stations[0], lane.stations[-1])
         d = np.interp(s, lane.stations, lane.offsets)
@@ -100,6 +100,6 @@ def true_surface(scene, origin, crs):
     left = _coordinates(scene, origin, s, scene.left.edge)
     right = _coordinates(scene, origin, s[::-1], -scene.right.edge)
     polygon = Polygon(np.vstack([left, right]))
-    layer = Features("PolygonZ", SURFACE, crs=crs)
+    layer = Features("PolygonZ", TRUE_SURFACE, crs=crs)
     layer.add(polygon, road=1, area_m2=float(polygon.area))
     return layer

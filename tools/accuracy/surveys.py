@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import shapely
 from lanewright.core.io.geotiff import new_geotiff
-from lanewright.core.sample.street import CARRIAGEWAY
+from lanewright.core.sample.street import CARRIAGEWAY_LABELS
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 
 # What a truth layer may be called; the first is the name in the sample survey
@@ -159,7 +159,7 @@ class _Seen:
 
     def watched(self, blocks):
         for points in blocks:
-            road = points[np.isin(points["label"], CARRIAGEWAY)]
+            road = points[np.isin(points["label"], CARRIAGEWAY_LABELS)]
             cells = [np.floor(road[axis] / CELL).astype(np.int64) for axis in "xy"]
             self.found.update(np.unique(cells[0] * 2**32 + cells[1]).tolist())
             yield points

@@ -15,17 +15,17 @@ import cv2
 import numpy as np
 
 from ..common.corners import CLEARANCE, ROAD_SIDE, STEEPEST_ROAD
-from .grid import DEPTH, FAR, SPACING, row_of_lines
+from .grid import LINE_SEPARATION, MAX_GROUND_DEPTH, SCANLINE_RESOLUTION, row_of_lines
 
 # Vertices at equal steps along normalized scanlines, about the places where a curb may be.
 
-UPRIGHT = 2.0       # m that a metre of height counts as, so that low faces keep vertices enough
-CELL = 0.10         # m across: the grain in which places are marked
+HEIGHT_WEIGHT = 2.0       # m that a metre of height counts as, so that low faces keep vertices enough
+PLACE_CELL = 0.10         # m across: the grain in which places are marked
 
 
 @dataclass
-class Samples:
-    """Vertices SPACING apart along scanlines, in the order of the lines or, of one side, by row and outward offset.
+class ScanlineSamples:
+    """Vertices SCANLINE_RESOLUTION apart along scanlines, in the order of the lines or, of one side, by row and outward offset.
 
     Attributes
     ----------
@@ -47,8 +47,8 @@ class Samples:
         """Those of one side, 1 left or -1 right, sorted by row and outward offset."""
         u = sign * self.u[::sign]
         row = self.row[::sign]
-        order = np.argsort(row * FAR + u, kind="stable")
-        return Samples(self.first, self.interval, self.rows, row[order], u[order], self.h[::sign][order], self.steep[::sign][order])
+        order = np.argsort(row * LINE_SEPARATION + u, kind="stable")
+        return ScanlineSamples(self.first, self.interval, self.rows, row[order], u[order], self.h[::sign][order], self.steep[::sign][order])
 
 
 def samples_near(lines, heights, rows, interval, places, across, along, clipping_height):
@@ -68,27 +68,27 @@ def samples_near(lines, heights, rows, interval, places, across, along, clipping
 
     Returns
     -------
-    Samples: all that lie so near, and some that do not
+    ScanlineSamples: all that lie so near, and some that do not
     """
     row = row_of_lines(lines, rows, interval)
     segments, line = _segments_near(lines, row, rows[1] - rows[0], *places, across, along)
     line, d, h, steep = _at_equal_steps(lines, heights, segments, line)
-    kept = np.flatnonzero((h > -DEPTH) & (h <= clipping_height))
-    return Samples(rows[0], interval, rows[1] - rows[0], row[line[kept]], d[kept], h[kept], steep[kept])
+    kept = np.flatnonzero((h > -MAX_GROUND_DEPTH) & (h <= clipping_height))
+    return ScanlineSamples(rows[0], interval, rows[1] - rows[0], row[line[kept]], d[kept], h[kept], steep[kept])
 
 
 def _segments_near(lines, row, count, place_row, place_d, across, along):
     """Vertices, and their lines, from which a line goes on past marked cells."""
     low, high = lines.d.min(), lines.d.max()
-    cells = int((high - low) / CELL) + 1
+    cells = int((high - low) / PLACE_CELL) + 1
     marked = np.zeros((count, cells), np.uint8)
-    marked[place_row, np.clip(((place_d - low) / CELL).astype(np.int64), 0, cells - 1)] = 1
+    marked[place_row, np.clip(((place_d - low) / PLACE_CELL).astype(np.int64), 0, cells - 1)] = 1
     # a cell more than asked for, so that every vertex has the neighbours that tell its steepness
-    aside = int(np.ceil(across / CELL)) + 2
+    aside = int(np.ceil(across / PLACE_CELL)) + 2
     marked = cv2.dilate(marked, np.ones((2 * along + 1, 2 * aside + 1), np.uint8))
     before = np.zeros((count, cells + 1), np.int32)
     np.cumsum(marked, axis=1, out=before[:, 1:])
-    cell = ((lines.d - low) * (1.0 / CELL)).astype(np.int32)
+    cell = ((lines.d - low) * (1.0 / PLACE_CELL)).astype(np.int32)
     inside = (row >= 0) & (row < count)
     line = np.repeat(np.arange(len(lines), dtype=np.int32), np.diff(lines.first))
     cell += (np.where(inside, row, 0) * (cells + 1)).astype(np.int32)[line]
@@ -100,22 +100,22 @@ def _segments_near(lines, row, count, place_row, place_d, across, along):
 
 
 def _at_equal_steps(lines, heights, segment, line):
-    """(line, d, h, steepness) at equal steps along lines on some of their segments; a metre of height counts as UPRIGHT metres."""
+    """(line, d, h, steepness) at equal steps along lines on some of their segments; a metre of height counts as HEIGHT_WEIGHT metres."""
     step = np.abs(np.diff(lines.d))
-    step += UPRIGHT * np.abs(np.diff(heights))
+    step += HEIGHT_WEIGHT * np.abs(np.diff(heights))
     step[lines.first[1:-1] - 1] = 0.0
     along = np.concatenate([[0.0], np.cumsum(step)])
     begin, end = along[segment], along[segment + 1]
     start = along[lines.first[:-1]][line]
     begin, end = begin - start, end - start
-    first = np.ceil(begin / SPACING - 1e-9).astype(np.int64)
-    last = np.ceil(end / SPACING - 1e-9).astype(np.int64)
+    first = np.ceil(begin / SCANLINE_RESOLUTION - 1e-9).astype(np.int64)
+    last = np.ceil(end / SCANLINE_RESOLUTION - 1e-9).astype(np.int64)
     # the end of a line is a vertex too where a step falls on it
-    closing = (segment + 2 == lines.first[1:][line]) & (last * SPACING <= end)
+    closing = (segment + 2 == lines.first[1:][line]) & (last * SCANLINE_RESOLUTION <= end)
     number = last + closing - first
     which = np.repeat(np.arange(len(segment), dtype=np.int32), number)
     count = np.arange(len(which)) + (first - (np.cumsum(number) - number))[which]
-    share = np.clip((count * SPACING - begin[which]) / np.maximum(end - begin, 1e-9)[which], 0.0, 1.0)
+    share = np.clip((count * SCANLINE_RESOLUTION - begin[which]) / np.maximum(end - begin, 1e-9)[which], 0.0, 1.0)
     d0, h0 = lines.d[segment], heights[segment]
     d = d0[which] + share * (lines.d[segment + 1] - d0)[which]
     h = h0[which] + share * (heights[segment + 1] - h0)[which]
@@ -134,20 +134,20 @@ def _steepness(line, count, d, h):
     after[:-1] -= parted
     return np.abs(h[after] - h[before]) / np.maximum(np.abs(d[after] - d[before]), 1e-6)
 
-LOWEST = 0.7         # share of MIN_HEIGHT that a rise must show before its planes measure it
-ROUGH_SHARE = 0.4    # of a rise at most that the road before it scatters
-LEAST_ROAD = 6       # cells of road before a rise
-BEHIND = (0.06, 0.40)  # m beyond a rise where the ground must stay up
-LOW_SHARE = 0.25     # share of it that may lie below half the rise
-FEWEST_BEHIND = 4    # cells of it that must be seen
-FILLED = 0.30        # m along the road to either side from which a scanline's gaps are closed
-SAME_ACROSS, SAME_UP = 0.08, 0.04  # m that candidates of neighbouring scanlines differ at most
-NEIGHBOURS, PERSISTENT = 2, 3      # scanlines either side; of those, itself included, that must show a candidate
-PIECE = 8192         # places looked at together, small enough for the processor's cache
+MIN_RISE_SHARE = 0.7         # share of MIN_HEIGHT that a rise must show before its planes measure it
+MAX_ROUGHNESS_SHARE = 0.4    # of a rise at most that the road before it scatters
+MIN_ROAD_CELLS = 6       # cells of road before a rise
+BEHIND_RISE = (0.06, 0.40)  # m beyond a rise where the ground must stay up
+MAX_SUNK_SHARE = 0.25     # share of it that may lie below half the rise
+MIN_CELLS_BEHIND = 4    # cells of it that must be seen
+GAP_FILL_REACH = 0.30        # m along the road to either side from which a scanline's gaps are closed
+MATCH_ACROSS, MATCH_UP = 0.08, 0.04  # m that candidates of neighbouring scanlines differ at most
+NEIGHBOUR_LINES, MIN_LINES_SHOWING = 2, 3      # scanlines either side; of those, itself included, that must show a candidate
+PLACES_PER_BATCH = 8192         # places looked at together, small enough for the processor's cache
 
 
 @dataclass
-class Candidates:
+class CurbCandidates:
     """Rises on the scanlines of one side, pass and scanner, sorted by row, then outward.
 
     row, cell : (M,) where each crosses the middle of its height
@@ -168,7 +168,7 @@ class Candidates:
         return len(self.row)
 
     def __getitem__(self, which):
-        return Candidates(*(getattr(self, name)[which] for name in self.__dataclass_fields__))
+        return CurbCandidates(*(getattr(self, name)[which] for name in self.__dataclass_fields__))
 
 
 def find_candidates(side, seen, nearest, settings):
@@ -183,29 +183,29 @@ def find_candidates(side, seen, nearest, settings):
 
     Returns
     -------
-    Candidates
+    CurbCandidates
     """
     low = side.low
-    span = max(int(round(settings.search_width / SPACING)), 2)
-    row, cell, before, top = _rising(low, span, LOWEST * settings.min_height)
+    span = max(int(round(settings.search_width / SCANLINE_RESOLUTION)), 2)
+    row, cell, before, top = _rising(low, span, MIN_RISE_SHARE * settings.min_height)
     outside = side.offset(cell) > np.asarray(nearest)[row]
     row, cell, before, top = (values[outside] for values in (row, cell, before, top))
     base, slope, rough, count = _road_before(low, row, cell)
     step = top - base
     middle = base + 0.5 * step
-    found = np.flatnonzero((count >= LEAST_ROAD) & (step >= LOWEST * settings.min_height) & (step <= settings.clipping_height)
-                           & (rough <= ROUGH_SHARE * step) & (low[row, cell] >= middle) & (before < middle))
+    found = np.flatnonzero((count >= MIN_ROAD_CELLS) & (step >= MIN_RISE_SHARE * settings.min_height) & (step <= settings.clipping_height)
+                           & (rough <= MAX_ROUGHNESS_SHARE * step) & (low[row, cell] >= middle) & (before < middle))
     best = found[_best_within((row * low.shape[1] + cell)[found], row[found], (step - 2 * rough)[found], span)]
     row, cell = row[best], cell[best]
-    chosen = Candidates(row, cell, side.offset(cell), *(values[best].astype(float) for values in (base, slope, step, rough)))
-    chosen = chosen[_stays_up(low, chosen) & _own(seen, chosen, span)]
+    chosen = CurbCandidates(row, cell, side.offset(cell), *(values[best].astype(float) for values in (base, slope, step, rough)))
+    chosen = chosen[_stays_up(low, chosen) & _measured_itself(seen, chosen, span)]
     return chosen[_persistent(chosen)]
 
 
 def _rising(low, span, least):
     """(row, cell, height before, height reached ahead) of cells at which half of a rise of `least` may be crossed."""
     there = np.isfinite(low)
-    filled = np.where(there, low, np.float32(-FAR))
+    filled = np.where(there, low, np.float32(-LINE_SEPARATION))
     top = cv2.dilate(filled, np.ones((1, span + 1), np.uint8), anchor=(0, 0))
     # the nearest occupied cell before each, as far as the span goes
     before = np.empty_like(low)
@@ -228,14 +228,14 @@ def _rising(low, span, least):
 
 def _road_before(low, row, cell):
     """Line through the ground before some cells: its height there, slope, scatter, and count of cells."""
-    reach, skip = int(round(ROAD_SIDE / SPACING)), int(round(CLEARANCE / SPACING))
+    reach, skip = int(round(ROAD_SIDE / SCANLINE_RESOLUTION)), int(round(CLEARANCE / SCANLINE_RESOLUTION))
     back = np.arange(-reach - skip + 1, -skip + 1)
     padded = cv2.copyMakeBorder(low, 0, 0, reach + skip, 0, cv2.BORDER_CONSTANT, value=np.nan)
     place = row * padded.shape[1] + cell + reach + skip
-    powers = np.stack([np.ones(reach), back * SPACING, (back * SPACING) ** 2], axis=1).astype(np.float32)
+    powers = np.stack([np.ones(reach), back * SCANLINE_RESOLUTION, (back * SCANLINE_RESOLUTION) ** 2], axis=1).astype(np.float32)
     found = []
-    for first in range(0, len(place), PIECE):
-        heights = padded.reshape(-1).take(place[first:first + PIECE, None] + back)
+    for first in range(0, len(place), PLACES_PER_BATCH):
+        heights = padded.reshape(-1).take(place[first:first + PLACES_PER_BATCH, None] + back)
         there = np.isfinite(heights)
         np.copyto(heights, 0.0, where=~there)
         n, su, suu = (there.astype(np.float32) @ powers).T
@@ -260,12 +260,12 @@ def _best_within(place, row, score, span):
     return best
 
 
-def rows_filled(interval):
+def gap_fill_rows(interval):
     """Scanlines either side that close a scanline's gaps."""
-    return max(int(round(FILLED / interval)), 1)
+    return max(int(round(GAP_FILL_REACH / interval)), 1)
 
 
-def _own(low, candidates, span):
+def _measured_itself(low, candidates, span):
     """Did the scanline itself see something about the rise? Its neighbours alone would draw it beyond their ends."""
     cells = np.clip(candidates.cell[:, None] + np.arange(-span, span + 1), 0, low.shape[1] - 1)
     return np.isfinite(low[candidates.row[:, None], cells]).any(1)
@@ -273,13 +273,13 @@ def _own(low, candidates, span):
 
 def _stays_up(low, candidates):
     """Does the ground behind stay above half the rise?"""
-    first, last = (int(round(reach / SPACING)) for reach in BEHIND)
+    first, last = (int(round(reach / SCANLINE_RESOLUTION)) for reach in BEHIND_RISE)
     cells = candidates.cell[:, None] + np.arange(first, last + 1)
     heights = np.where(cells < low.shape[1], low[candidates.row[:, None], np.minimum(cells, low.shape[1] - 1)], np.nan)
     seen = np.isfinite(heights).sum(1)
     with np.errstate(invalid="ignore"):
         sunk = (heights < (candidates.base + 0.5 * candidates.step)[:, None]).sum(1)
-    return (seen >= FEWEST_BEHIND) & (sunk <= LOW_SHARE * seen)
+    return (seen >= MIN_CELLS_BEHIND) & (sunk <= MAX_SUNK_SHARE * seen)
 
 
 def _persistent(candidates):
@@ -291,7 +291,7 @@ def _persistent(candidates):
     order = np.lexsort((candidates.u, candidates.row))
     key = (candidates.row * span + candidates.u)[order]
     seen = np.ones(count, np.int64)
-    for ahead in range(-NEIGHBOURS, NEIGHBOURS + 1):
+    for ahead in range(-NEIGHBOUR_LINES, NEIGHBOUR_LINES + 1):
         if not ahead:
             continue
         right = np.searchsorted(key, (candidates.row + ahead) * span + candidates.u)
@@ -299,7 +299,7 @@ def _persistent(candidates):
         for k in (np.clip(right - 1, 0, count - 1), np.clip(right, 0, count - 1)):
             other = order[k]
             partner |= (candidates.row[other] == candidates.row + ahead) \
-                & (np.abs(candidates.u[other] - candidates.u) <= SAME_ACROSS * max(abs(ahead), 1)) \
-                & (np.abs(candidates.base[other] - candidates.base) <= SAME_UP)
+                & (np.abs(candidates.u[other] - candidates.u) <= MATCH_ACROSS * max(abs(ahead), 1)) \
+                & (np.abs(candidates.base[other] - candidates.base) <= MATCH_UP)
         seen += partner
-    return seen >= PERSISTENT
+    return seen >= MIN_LINES_SHOWING

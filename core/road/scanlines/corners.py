@@ -15,20 +15,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..common.corners import Steps
+from ..common.corners import MOST_SKEW, Steps
 
 # Planes about many candidates at once, by RANSAC and least squares.
 
-TRIALS = 32          # the points are parted by height before, so most of them are of the plane
-SEED = 20
-SCORED = 48          # points by which trials are told apart
-SIGMAS = 1.5         # inliers lie within so many sigmas of the plane, or the given distance
-WHOLE_SIGMA = 1.35   # a normal distribution's sigma over that of its part within SIGMAS
-REFITS = 3
-BATCH = 96           # sets of points worked on at once, few enough for the processor's cache
-LEAST_SPREAD = 1e-6  # m², keeps the plane of points in one line from tilting
+RANSAC_TRIALS = 32          # the points are parted by height before, so most of them are of the plane
+RANSAC_SEED = 20
+SCORED_POINTS = 48          # points by which trials are compared
+INLIER_SIGMAS = 1.5         # inliers lie within so many sigmas of the plane, or the given distance
+TRUNCATED_SIGMA_FACTOR = 1.35   # a normal distribution's sigma over that of its part within INLIER_SIGMAS
+RANSAC_REFITS = 3
+SETS_PER_BATCH = 96           # sets of points worked on at once, few enough for the processor's cache
+MIN_PLANE_VARIANCE = 1e-6  # m², keeps the plane of points in one line from tilting
 
-_TABLE = np.random.default_rng(SEED).random((TRIALS, 3))
+_RANSAC_DRAWS = np.random.default_rng(RANSAC_SEED).random((RANSAC_TRIALS, 3))
 
 
 @dataclass
@@ -71,8 +71,8 @@ def fit_planes(v, p, q, count, distance, tolerance=0.0):
     coefficients, sigma = np.full((sets, 3), np.nan), np.full(sets, np.nan)
     inliers = np.zeros(sets, np.int64)
     reach = np.broadcast_to(np.maximum(distance, tolerance), sets)
-    for first in range(0, sets, BATCH):
-        part = slice(first, first + BATCH)
+    for first in range(0, sets, SETS_PER_BATCH):
+        part = slice(first, first + SETS_PER_BATCH)
         found = _fit_batch(v[part], p[part], q[part], count[part], reach[part].astype(np.float32), np.float32(distance))
         coefficients[part], sigma[part], inliers[part] = found
     return Planes(coefficients, sigma, inliers, count)
@@ -81,7 +81,7 @@ def fit_planes(v, p, q, count, distance, tolerance=0.0):
 def _fit_batch(v, p, q, count, reach, distance):
     there = np.arange(v.shape[1]) < count[:, None]
     coefficients = _best_trial(v, p, q, count, reach)
-    for _ in range(REFITS):
+    for _ in range(RANSAC_REFITS):
         off = v - coefficients[:, :1]
         off -= coefficients[:, 1:2] * p
         off -= coefficients[:, 2:] * q
@@ -89,16 +89,16 @@ def _fit_batch(v, p, q, count, reach, distance):
         off /= np.sqrt(1 + coefficients[:, 1:2] ** 2 + coefficients[:, 2:] ** 2)
         inside = there & (off <= reach[:, None])
         coefficients, sigma = _least_squares(v, p, q, inside.astype(np.float32))
-        reach = np.maximum(distance, SIGMAS * WHOLE_SIGMA * sigma)
+        reach = np.maximum(distance, INLIER_SIGMAS * TRUNCATED_SIGMA_FACTOR * sigma)
     few = count < 3
     coefficients[few], sigma[few] = np.nan, np.nan
     return coefficients, sigma, np.where(few, 0, inside.sum(1))
 
 
 def _best_trial(v, p, q, count, reach):
-    """(B, 3) the plane through three points, of TRIALS, that has the most points near it."""
+    """(B, 3) the plane through three points, of RANSAC_TRIALS, that has the most points near it."""
     first = np.arange(0, v.size, v.shape[1])[:, None]
-    drawn = (_TABLE[None] * np.maximum(count, 1)[:, None, None]).astype(np.int64) + first[:, None]
+    drawn = (_RANSAC_DRAWS[None] * np.maximum(count, 1)[:, None, None]).astype(np.int64) + first[:, None]
     dv, dp, dq = (values.take(drawn) for values in (v, p, q))
     v1, v2 = dv[..., 1] - dv[..., 0], dv[..., 2] - dv[..., 0]
     p1, p2 = dp[..., 1] - dp[..., 0], dp[..., 2] - dp[..., 0]
@@ -109,11 +109,11 @@ def _best_trial(v, p, q, count, reach):
     c1, c2 = (v1 * q2 - v2 * q1) / det, (p1 * v2 - p2 * v1) / det
     c0 = dv[..., 0] - c1 * dp[..., 0] - c2 * dq[..., 0]
     # an even choice of the points tells the trials apart
-    size = min(SCORED, v.shape[1])
-    told = (np.arange(size) * np.maximum(count, 1)[:, None]) // size + first
-    points = np.stack([np.ones(told.shape, np.float32), p.take(told), q.take(told)], axis=1)
+    size = min(SCORED_POINTS, v.shape[1])
+    scored = (np.arange(size) * np.maximum(count, 1)[:, None]) // size + first
+    points = np.stack([np.ones(scored.shape, np.float32), p.take(scored), q.take(scored)], axis=1)
     off = np.matmul(np.stack([c0, c1, c2], axis=-1).astype(np.float32), points)
-    off -= v.take(told)[:, None]
+    off -= v.take(scored)[:, None]
     np.abs(off, out=off)
     limit = reach[:, None] * np.sqrt(1 + c1 * c1 + c2 * c2)
     # near points cost less, so that of two planes with the same points the one through their middle wins
@@ -129,7 +129,7 @@ def _least_squares(v, p, q, weight):
     mv, mp, mq = ((weight * values).sum(1) / n for values in (v, p, q))
     dv, dp, dq = v - mv[:, None], p - mp[:, None], q - mq[:, None]
     wp, wq, wv = weight * dp, weight * dq, weight * dv
-    spp, spq, sqq = (wp * dp).sum(1) / n + LEAST_SPREAD, (wp * dq).sum(1) / n, (wq * dq).sum(1) / n + LEAST_SPREAD
+    spp, spq, sqq = (wp * dp).sum(1) / n + MIN_PLANE_VARIANCE, (wp * dq).sum(1) / n, (wq * dq).sum(1) / n + MIN_PLANE_VARIANCE
     spv, sqv = (wp * dv).sum(1) / n, (wq * dv).sum(1) / n
     det = spp * sqq - spq * spq
     c1, c2 = (spv * sqq - sqv * spq) / det, (sqv * spp - spv * spq) / det
@@ -138,20 +138,19 @@ def _least_squares(v, p, q, weight):
     sigma = sigma / np.sqrt(1 + c1 * c1 + c2 * c2)
     return np.stack([mv - c1 * mp - c2 * mq, c1, c2], axis=1), sigma
 
-MOST_ROAD, MOST_FACE = 96, 64  # vertices of road, and of raised ground, that give a plane; and of the face
-MOST_ROWS = 9         # scanlines of a neighbourhood; narrower intervals leave some out
-FEWEST = 15           # inliers of a plane
-LEAST_SHARE = 0.5     # inliers of a plane among its vertices
-MEAN_SIGMA = 1.2533   # mean distances from the mean of a normal distribution that are its sigma
-LOWER, UPPER = 0.30, 0.70  # share of the rise up to which a vertex is road, and from which it is raised ground
-FACE = (0.12, 0.88)   # share of the rise within which it may be face
-FACE_REACH = 0.12     # m across from the middle of the rise within which the face lies
-SLANT = 20.0          # degrees that a scanline's own slope on a face may fall short of the face's
-CLEAR = 0.02          # m from the middle of the rise at which road ends and raised ground begins
-UNDER, OVER = 0.12, 0.10   # m below the road's line, and above the rise, that belong to it: gutters; slopes
-FARTHEST = 0.10       # m from a corner to the nearest inlier
-LEAST_MEETING = 0.1   # 1 - product of the slopes: planes that meet flatter give no corner
-MOST_SKEW = 1.0       # m outward per m along
+MAX_LEVEL_VERTICES, MAX_FACE_VERTICES = 96, 64  # vertices of road, and of raised ground, that give a plane; and of the face
+MAX_PLANE_ROWS = 9         # scanlines of a neighbourhood; narrower intervals leave some out
+MIN_PLANE_INLIERS = 15           # inliers of a plane
+MIN_INLIER_SHARE = 0.5     # inliers of a plane among its vertices
+SIGMA_PER_MEAN_DEVIATION = 1.2533   # mean distances from the mean of a normal distribution that are its sigma
+MAX_ROAD_SHARE, MIN_RAISED_SHARE = 0.30, 0.70  # share of the rise up to which a vertex is road, and from which it is raised ground
+FACE_SHARE = (0.12, 0.88)   # share of the rise within which it may be face
+FACE_HALF_WIDTH = 0.12     # m across from the middle of the rise within which the face lies
+FACE_SLOPE_TOLERANCE = 20.0          # degrees that a scanline's own slope on a face may fall short of the face's
+FACE_CLEARANCE = 0.02          # m from the middle of the rise at which road ends and raised ground begins
+GUTTER_DEPTH, RAISED_MARGIN = 0.12, 0.10   # m below the road's line, and above the rise, that belong to it: gutters; slopes
+MAX_CORNER_DISTANCE = 0.10       # m from a corner to the nearest inlier
+MIN_MEETING = 0.1   # 1 - product of the slopes: planes that meet flatter give no corner
 
 
 @dataclass
@@ -172,8 +171,8 @@ def corners_of(side, candidates, settings):
 
     Parameters
     ----------
-    side : Samples walked outward
-    candidates : Candidates
+    side : ScanlineSamples walked outward
+    candidates : CurbCandidates
     settings : ScanlineBoundarySettings
 
     Returns
@@ -185,28 +184,28 @@ def corners_of(side, candidates, settings):
     # heights over the road's own line, so that its slope does not count as part of the rise
     over = h - candidates.slope.astype(np.float32)[owner] * u
     share = over / candidates.step.astype(np.float32)[owner]
-    road = (u < -CLEAR) & (share < LOWER) & (over > -UNDER)
+    road = (u < -FACE_CLEARANCE) & (share < MAX_ROAD_SHARE) & (over > -GUTTER_DEPTH)
     # where points lie sparse a scanline slants from the last one on the road to the first on the face
-    upright = steep > np.tan(np.radians(settings.vertical_angle - SLANT))
-    face = upright & (np.abs(u) < FACE_REACH) & (share > FACE[0]) & (share < FACE[1])
-    raised = (u > CLEAR) & (share > UPPER) & (over < (candidates.step + OVER).astype(np.float32)[owner])
+    upright = steep > np.tan(np.radians(settings.vertical_angle - FACE_SLOPE_TOLERANCE))
+    face = upright & (np.abs(u) < FACE_HALF_WIDTH) & (share > FACE_SHARE[0]) & (share < FACE_SHARE[1])
+    raised = (u > FACE_CLEARANCE) & (share > MIN_RAISED_SHARE) & (over < (candidates.step + RAISED_MARGIN).astype(np.float32)[owner])
     count = len(candidates)
-    parts = [_Part(np.flatnonzero(part), owner, count) for part in (road, face, raised)]
+    parts = [_VertexSet(np.flatnonzero(part), owner, count) for part in (road, face, raised)]
     # grass behind a curb scatters more than the road before it
     scatter = np.maximum(candidates.rough, _scatter(owner, over, parts[2].vertices, count))
-    alive = np.flatnonzero(np.all([part.number >= FEWEST for part in parts], axis=0))
+    alive = np.flatnonzero(np.all([part.number >= MIN_PLANE_INLIERS for part in parts], axis=0))
     lean = np.tan(np.radians(settings.horizontal_angle))
     # the fewer points first, and of what they leave the next
-    front, front_points, good = _planes(parts[1], alive, MOST_FACE, (u, h, s), candidates.rough, settings)
+    front, front_points, good = _planes(parts[1], alive, MAX_FACE_VERTICES, (u, h, s), candidates.rough, settings)
     with np.errstate(invalid="ignore"):
         # the angle of the face's normal from the vertical: its slope against height makes it lean
         over_run = np.abs(front.coefficients[:, 1] / np.hypot(1.0, front.coefficients[:, 2]))
         good &= (np.degrees(np.arctan2(1.0, over_run)) >= settings.vertical_angle) & (np.abs(front.coefficients[:, 2]) <= MOST_SKEW)
     alive, front, front_points = alive[good], front[good], front_points[good]
-    ground, ground_points, good = _planes(parts[0], alive, MOST_ROAD, (h, u, s), candidates.rough, settings)
+    ground, ground_points, good = _planes(parts[0], alive, MAX_LEVEL_VERTICES, (h, u, s), candidates.rough, settings)
     good &= ground.steepness() <= lean
     alive, front, front_points, ground, ground_points = (x[good] for x in (alive, front, front_points, ground, ground_points))
-    top, top_points, good = _planes(parts[2], alive, MOST_ROAD, (h, u, s), scatter, settings)
+    top, top_points, good = _planes(parts[2], alive, MAX_LEVEL_VERTICES, (h, u, s), scatter, settings)
     good &= top.steepness() <= lean
     bottom_u, bottom_h, bottom_meets = _meeting(ground, front)
     top_u, top_h, top_meets = _meeting(top, front)
@@ -214,7 +213,7 @@ def corners_of(side, candidates, settings):
         good &= (bottom_meets & top_meets & (top_h - bottom_h >= settings.min_height) & (top_h - bottom_h <= settings.clipping_height))
     for points, plane, at_u, at_h in ((ground_points, ground, bottom_u, bottom_h), (front_points, front, bottom_u, bottom_h),
                                       (front_points, front, top_u, top_h), (top_points, top, top_u, top_h)):
-        good &= _distance(u, h, points, plane.points, at_u, at_h) <= FARTHEST
+        good &= _distance(u, h, points, plane.points, at_u, at_h) <= MAX_CORNER_DISTANCE
     total = ground.inliers + front.inliers + top.inliers
     residual = np.sqrt((ground.sigma**2 * ground.inliers + front.sigma**2 * front.inliers + top.sigma**2 * top.inliers)
                        / np.maximum(total, 1))
@@ -227,7 +226,7 @@ def corners_of(side, candidates, settings):
     return found[good]
 
 
-class _Part:
+class _VertexSet:
     """The vertices of one part, road, face or raised ground, about every candidate."""
 
     def __init__(self, vertices, owner, count):
@@ -247,8 +246,8 @@ class _Part:
 def _planes(part, which, most, coordinates, scatter, settings):
     """Planes of a part of some candidates, the vertices they were made of, and whether enough lie in them."""
     index, number = part.evenly(which, most)
-    planes = fit_planes(*(values[index] for values in coordinates), number, settings.ransac_distance, SIGMAS * scatter[which])
-    return planes, index, (planes.inliers >= FEWEST) & (planes.inliers >= LEAST_SHARE * planes.points)
+    planes = fit_planes(*(values[index] for values in coordinates), number, settings.ransac_distance, INLIER_SIGMAS * scatter[which])
+    return planes, index, (planes.inliers >= MIN_PLANE_INLIERS) & (planes.inliers >= MIN_INLIER_SHARE * planes.points)
 
 
 def _scatter(owner, values, chosen, count):
@@ -256,18 +255,18 @@ def _scatter(owner, values, chosen, count):
     owner, values = owner[chosen], values[chosen]
     n = np.maximum(np.bincount(owner, minlength=count), 1)
     middle = np.bincount(owner, values, count) / n
-    return MEAN_SIGMA * np.bincount(owner, np.abs(values - middle[owner]), count) / n
+    return SIGMA_PER_MEAN_DEVIATION * np.bincount(owner, np.abs(values - middle[owner]), count) / n
 
 
-def rows_along(interval, settings):
+def plane_fit_rows(interval, settings):
     """Scanlines either side of a candidate from which its planes are made."""
     return max(int(np.floor(settings.distance_along / interval + 1e-9)), 1)
 
 
 def _neighbourhood(side, candidates, settings):
     """(owner, s, u, h, steepness) of the vertices about every candidate, from its own place."""
-    reach = rows_along(side.interval, settings)
-    stride = max(int(np.ceil((2 * reach + 1) / MOST_ROWS)), 1)
+    reach = plane_fit_rows(side.interval, settings)
+    stride = max(int(np.ceil((2 * reach + 1) / MAX_PLANE_ROWS)), 1)
     key = side.row * 1000.0 + side.u
     ahead = np.arange(-(reach // stride), reach // stride + 1) * stride
     row = candidates.row[:, None] + ahead
@@ -294,7 +293,7 @@ def _meeting(level, face):
     det = 1.0 - b * d
     with np.errstate(invalid="ignore", divide="ignore"):
         u = (c + d * a) / det
-        return u, a + b * u, np.abs(det) > LEAST_MEETING
+        return u, a + b * u, np.abs(det) > MIN_MEETING
 
 
 def _distance(u, h, points, count, at_u, at_h):

@@ -27,13 +27,13 @@ from ..common.sides import REACH, SECTION, SIDES, Track, expected_height
 from ..common.tracking import choose_along, curb_chains, link_chains, long_enough
 from ..edges.fit import HIDDEN_SHARE, HIDDEN_STEP, SHARPEST, SHORTEST, STEP_ACROSS, VERTEX, EdgeCurve, without_outliers
 from ..profiles.detect import MERGE_ACROSS, MERGE_UP, VEHICLE_HALF, block_edges, block_numbers, hidden_points
-from .candidates import NEIGHBOURS, find_candidates, rows_filled, samples_near
-from .corners import CurbCorners, corners_of, rows_along
+from .candidates import NEIGHBOUR_LINES, find_candidates, gap_fill_rows, samples_near
+from .corners import CurbCorners, corners_of, plane_fit_rows
 from .grid import height_grid
 
 # Boundary lines through the corners of curbs: bottom and top, left and right, cut by what was measured.
 
-MEASURED_GAP = 1.0   # m between corners that follow on each other; wider gaps are joined, but not measured
+MAX_MEASURED_GAP = 1.0   # m between corners that follow on each other; wider gaps are joined, but not measured
 
 _POINT = [("s", float), ("d", float), ("x", float), ("y", float), ("z", float), ("height", float), ("chain", int)]
 
@@ -83,7 +83,7 @@ def _pieces(points, hidden, max_gap):
     if len(points) < 2:
         return []
     gap, across = np.diff(points["s"]), np.abs(np.diff(points["d"]))
-    near = gap <= MEASURED_GAP
+    near = gap <= MAX_MEASURED_GAP
     joined = (near | (gap <= max_gap)) & (across <= STEP_ACROSS + SHARPEST * gap)
     covered = HIDDEN_STEP * (np.searchsorted(hidden, points["s"][1:]) - np.searchsorted(hidden, points["s"][:-1], side="right"))
     status = np.where(near, "measured", np.where(covered >= HIDDEN_SHARE * gap, "occluded", "bridged"))
@@ -106,7 +106,7 @@ def _draw(lines, points, status, **fields):
                   length_m=round(float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), 3),
                   rmse_m=round(float(np.sqrt(np.mean(curve.residual[i:j + 1] ** 2))), 4), **fields)
 
-MOST_NOISE = 0.005   # m: where planes scatter more, it is the ground that is rough, as verges are
+MAX_USUAL_NOISE = 0.005   # m: where planes scatter more, it is the ground that is rough, as verges are
 CORNER_BLOCK = 0.5   # m of road per corner where corners are asked for
 
 
@@ -180,7 +180,7 @@ def _corners_of_road(source, road, settings, progress):
     interval = source.interval
     sections = _sections(*source.span(road), interval)
     first, last = sections[0][0], sections[-1][1]
-    margin = max(rows_along(interval, settings), NEIGHBOURS + rows_filled(interval)) + 1
+    margin = max(plane_fit_rows(interval, settings), NEIGHBOUR_LINES + gap_fill_rows(interval)) + 1
     sight = {side: Sight(interval, first, last - first, REACH) for side in SIDES}
     tracks = {side: Track(source.frame, road, sign) for side, sign in SIDES.items()}
 
@@ -193,7 +193,7 @@ def _corners_of_road(source, road, settings, progress):
         for lines in source.runs(road, (rows[0] - 0.5) * interval, (rows[1] - 0.5) * interval):
             heights = lines.z - np.repeat(expected_height(source, road, lines.station), np.diff(lines.first))
             grid = height_grid(lines, heights, rows, interval, min(REACH, source.corridor), settings.clipping_height)
-            closed = grid.closed(rows_filled(interval))
+            closed = grid.closed(gap_fill_rows(interval))
             tall = _tall(lines, heights, interval)
             candidates, strip = {}, _level_beside(source, road, int(lines.pass_number[0]), stations[margin:-margin])
             for side, sign in SIDES.items():
@@ -244,7 +244,7 @@ def _corners(lines, heights, rows, interval, candidates, settings):
     if not any(map(len, candidates.values())):
         return
     places = (np.concatenate([c.row for c in candidates.values()]), np.concatenate([SIDES[side] * c.u for side, c in candidates.items()]))
-    samples = samples_near(lines, heights, rows, interval, places, settings.distance_across, rows_along(interval, settings),
+    samples = samples_near(lines, heights, rows, interval, places, settings.distance_across, plane_fit_rows(interval, settings),
                            settings.clipping_height)
     for side, of_side in candidates.items():
         if len(of_side):
@@ -271,7 +271,7 @@ def merged_corners(found):
 def _with_usual_noise(corners):
     """The corners, each with the scatter that is usual about the planes of this road."""
     if len(corners):
-        corners.usual = np.full(len(corners), np.clip(np.median(corners.noise), LEAST_NOISE, MOST_NOISE))
+        corners.usual = np.full(len(corners), np.clip(np.median(corners.noise), LEAST_NOISE, MAX_USUAL_NOISE))
     return corners
 
 

@@ -8,20 +8,20 @@ stands above the ground is kept as lines of its own, for it tells what hides a c
 
 import numpy as np
 
+from ..common.occlusion import TALL
 from ..common.pseudo_scanlines import pseudo_scan_lines
 from ..common.sides import expected_height
+from .grid import SCANLINE_RESOLUTION
 from .mesh import increasing
 from .scanlines import Scanlines
 
-SPACING = 0.02      # m across between vertices
-UPWARD = 0.01       # m of height between them where the ground is steep
-LAYER_JUMP = 0.05   # m of height that parts ground from what is above it
-STEEP, STEEP_SIGMAS = 0.02, 6.0  # m of height within one bin, and times the noise, beyond which it gets a vertex for every UPWARD
-TALL = 0.45         # m above the expected road from which what is not ground is kept
-WIDEST_GAP = 0.30   # m between neighbouring vertices of one line
-FEWEST = 3          # vertices of a line
-SLACK = 0.01        # m more than the slices need are read: which points belong to a slice the slice decides
-LEAST_SLICE = 0.20  # m along the road: thinner slices fall between two turns of a scanner
+SLICE_LAYER_JUMP = 0.05   # m of height that parts ground from what is above it
+MIN_STEEP_RISE, STEEP_NOISE_SIGMAS = 0.02, 6.0  # m of height within one cell, and times the noise: more is a face,
+FACE_VERTEX_STEP = 0.01       # m of height between the vertices of a face
+MAX_VERTEX_GAP = 0.30   # m between neighbouring vertices of one line
+MIN_SLICE_LINE_VERTICES = 3          # vertices of a line
+SLICE_MARGIN = 0.01        # m more than the slices need are read: which points belong to a slice the slice decides
+MIN_SLICE_LENGTH = 0.20  # m along the road: thinner slices fall between two turns of a scanner
 
 
 def point_scanlines(survey, road, start, end, interval, corridor):
@@ -36,13 +36,13 @@ def point_scanlines(survey, road, start, end, interval, corridor):
     Returns
     -------
     Scanlines; a slice takes the points within interval / 2 of its plane, or within
-    LEAST_SLICE / 2 where that is more
+    MIN_SLICE_LENGTH / 2 where that is more
     """
     first, last = int(np.ceil(start / interval - 1e-9)), int(np.ceil(end / interval - 1e-9))
-    half = 0.5 * max(LEAST_SLICE, interval)
+    half = 0.5 * max(MIN_SLICE_LENGTH, interval)
     if last <= first:
         return Scanlines.none()
-    points = survey.window(road, first * interval - half - SLACK, (last - 1) * interval + half + SLACK)
+    points = survey.window(road, first * interval - half - SLICE_MARGIN, (last - 1) * interval + half + SLICE_MARGIN)
     points = points[np.abs(points.d) < corridor]
     s, d = points.s, points.d
     h = points.z - expected_height(survey, road, s)
@@ -54,7 +54,7 @@ def point_scanlines(survey, road, start, end, interval, corridor):
         index = own[index]
         # the row stands in the station's place, so that slices may overlap
         cells = pseudo_scan_lines(d[index], rows + 0.5, h[index], points.intensity[index].astype(float), (first, last), 1.0,
-                                  SPACING, LAYER_JUMP, -corridor, corridor)
+                                  SCANLINE_RESOLUTION, SLICE_LAYER_JUMP, -corridor, corridor)
         for chosen, at in ((cells.ground, 0.5), (~cells.ground & (cells.h > TALL), 1.0)):
             parts.append(_joined(*_vertices(cells, np.flatnonzero(chosen), at), first, interval, int(value) // 256, int(value) % 256))
     lines = Scanlines.join(parts)
@@ -88,8 +88,8 @@ def _vertices(cells, chosen, quantile):
     cell = np.cumsum(begins) - 1
     lowest, highest = h[first], h[np.r_[first[1:], len(h)] - 1]
     noise = cells.noise[place[first] // count]
-    steep = (highest - lowest > np.maximum(STEEP, STEEP_SIGMAS * noise)) & (quantile < 1.0)
-    level = np.where(steep[cell], np.floor((h - lowest[cell]) / UPWARD), 0.0).astype(np.int64)
+    steep = (highest - lowest > np.maximum(MIN_STEEP_RISE, STEEP_NOISE_SIGMAS * noise)) & (quantile < 1.0)
+    level = np.where(steep[cell], np.floor((h - lowest[cell]) / FACE_VERTEX_STEP), 0.0).astype(np.int64)
     begins = begins | np.r_[True, np.diff(level) != 0]
     start = np.flatnonzero(begins)
     number = np.diff(np.r_[start, len(h)])
@@ -106,11 +106,11 @@ def _joined(row, d, h, intensity, first, interval, pass_number, scanner):
     """Vertices in order made lines, parted where they lie far apart."""
     if not len(row):
         return Scanlines.none()
-    new = np.r_[True, (np.diff(row) != 0) | (np.diff(d) > WIDEST_GAP) | (np.abs(np.diff(h)) > 2 * WIDEST_GAP)]
+    new = np.r_[True, (np.diff(row) != 0) | (np.diff(d) > MAX_VERTEX_GAP) | (np.abs(np.diff(h)) > 2 * MAX_VERTEX_GAP)]
     begins = np.flatnonzero(new)
     count = len(begins)
     # noise brings points of a face out of order
     d = increasing(d, np.r_[begins, len(row)])
     lines = Scanlines((row[begins] + first) * interval, np.full(count, pass_number), np.full(count, scanner),
                       np.r_[begins, len(row)], d, h, intensity.astype(np.float32))
-    return lines[np.diff(lines.first) >= FEWEST]
+    return lines[np.diff(lines.first) >= MIN_SLICE_LINE_VERTICES]

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-SPACING = 0.02      # m across between cells, and along a scanline between resampled vertices
-DEPTH = 1.0         # m below the road to which ground is sought
-FAR = 1e3           # m: parts lines that follow on each other in one array
+SCANLINE_RESOLUTION = 0.02      # m across between cells, and along a scanline between resampled vertices
+MAX_GROUND_DEPTH = 1.0         # m below the road to which ground is sought
+LINE_SEPARATION = 1e3           # m: parts lines that follow on each other in one array
 
 
 @dataclass
@@ -37,12 +37,12 @@ class HeightGrid:
 
     def offset(self, cell):
         """Offset of the middle of cells, metres."""
-        return self.origin + (np.asarray(cell) + 0.5) * SPACING
+        return self.origin + (np.asarray(cell) + 0.5) * SCANLINE_RESOLUTION
 
     def outward(self, sign, origin):
         """The grid of one side, 1 left or -1 right: from `origin` (whole cells from the reference line) outward."""
         low = self.low[:, ::sign]
-        skipped = int(round((origin - self.origin) / SPACING))
+        skipped = int(round((origin - self.origin) / SCANLINE_RESOLUTION))
         if skipped < 0:
             low = np.concatenate([np.full((len(low), -skipped), np.nan, np.float32), low], axis=1)
         return HeightGrid(self.first, self.interval, origin, np.ascontiguousarray(low[:, max(skipped, 0):]))
@@ -72,13 +72,13 @@ def height_grid(lines, heights, rows, interval, reach, clipping_height):
     -------
     HeightGrid, its origin -reach or up to a cell less
     """
-    half = int(np.ceil(reach / SPACING))
+    half = int(np.ceil(reach / SCANLINE_RESOLUTION))
     low = np.full((rows[1] - rows[0], 2 * half), np.nan, np.float32)
-    found = HeightGrid(rows[0], interval, -half * SPACING, low)
+    found = HeightGrid(rows[0], interval, -half * SCANLINE_RESOLUTION, low)
     row = row_of_lines(lines, rows, interval)
     if len(heights) < 2:
         return found
-    column = lines.d * (1.0 / SPACING)
+    column = lines.d * (1.0 / SCANLINE_RESOLUTION)
     column += half - 0.5
     cell = np.clip(np.floor(column), -1, 2 * half - 1).astype(np.int32)
     number = np.diff(cell)
@@ -108,7 +108,7 @@ def height_grid(lines, heights, rows, interval, reach, clipping_height):
             place, height = place[lower], height[lower]
             flat[place] = height
     with np.errstate(invalid="ignore"):
-        flat[(flat > clipping_height) | (flat <= -DEPTH)] = np.nan
+        flat[(flat > clipping_height) | (flat <= -MAX_GROUND_DEPTH)] = np.nan
     return found
 
 

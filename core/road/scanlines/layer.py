@@ -1,4 +1,4 @@
-"""Normalized scanlines as a layer: thinned lines in map coordinates, intensity as measure, and back again."""
+"""Normalized scanlines as a layer: simplified lines in map coordinates, intensity as measure, and back again."""
 
 import tempfile
 from dataclasses import dataclass
@@ -16,9 +16,9 @@ from .section_planes import ScanlineSettings, all_scanlines
 
 # Many long lines on their way into a layer: written down as they come, read back one by one.
 
-IN_MEMORY = 32 * 2**20  # bytes before a temporary file is used
+SPOOL_MEMORY = 32 * 2**20  # bytes before a temporary file is used
 WKB_TYPE = 3002         # ISO: LineString with Z and M
-HEADER = np.dtype([("order", "u1"), ("type", "<u4"), ("count", "<u4")])
+WKB_HEADER = np.dtype([("order", "u1"), ("type", "<u4"), ("count", "<u4")])
 
 
 class LineSpool:
@@ -29,7 +29,7 @@ class LineSpool:
 
     def __init__(self, geometry_type, schema, crs=""):
         self.geometry_type, self.schema, self.crs = geometry_type, list(schema), crs
-        self._file = tempfile.SpooledTemporaryFile(IN_MEMORY, prefix="lanewright-")
+        self._file = tempfile.SpooledTemporaryFile(SPOOL_MEMORY, prefix="lanewright-")
         self._chunks = []
 
     def add(self, coordinates, first, **columns):
@@ -55,7 +55,7 @@ class LineSpool:
     def __iter__(self):
         self._file.seek(0)
         for counts, columns in self._chunks:
-            sizes = HEADER.itemsize + 32 * counts
+            sizes = WKB_HEADER.itemsize + 32 * counts
             data = memoryview(self._file.read(int(sizes.sum())))
             ends = np.cumsum(sizes).tolist()
             names = list(columns)
@@ -66,9 +66,9 @@ class LineSpool:
 def lines_as_wkb(coordinates, first):
     """(bytes,) uint8: the WKB of lines, one after the other."""
     counts = np.diff(first)
-    headers = np.empty(len(counts), HEADER)
+    headers = np.empty(len(counts), WKB_HEADER)
     headers["order"], headers["type"], headers["count"] = 1, WKB_TYPE, counts
-    size = HEADER.itemsize
+    size = WKB_HEADER.itemsize
     out = np.empty(size * len(counts) + 32 * len(coordinates), np.uint8)
     in_header = np.zeros(len(out), bool)
     begins = 32 * np.asarray(first[:-1]) + size * np.arange(len(counts))
@@ -80,17 +80,17 @@ def lines_as_wkb(coordinates, first):
 
 def coordinates_of(wkb):
     """(V, 4) x, y, z, m of a line's WKB (little endian, ISO), as QGIS and LineSpool write it."""
-    header = np.frombuffer(wkb, HEADER, 1)[0]
+    header = np.frombuffer(wkb, WKB_HEADER, 1)[0]
     if header["order"] != 1 or header["type"] != WKB_TYPE:
         raise ValueError(f"not a LineString with Z and M: WKB type {header['type']}")
-    return np.frombuffer(wkb, "<f8", 4 * int(header["count"]), HEADER.itemsize).reshape(-1, 4)
+    return np.frombuffer(wkb, "<f8", 4 * int(header["count"]), WKB_HEADER.itemsize).reshape(-1, 4)
 
-SHORTEST = 0.10    # m: pieces of leaves and railings are left out of the layer
+MIN_LAYER_LINE = 0.10    # m: pieces of leaves and railings are left out of the layer
 
 
 @dataclass(frozen=True)
 class ScanlineLayerSettings:
-    """How scanlines are written. simplify : m that a thinned line may lie beside the measured one; 0 = not thinned."""
+    """How scanlines are written. simplify : m that a simplified line may deviate from the measured one; 0 = not simplified."""
 
     simplify: float = setting(0.002, 0.0, 1.0, "The simplification", "m")
 
@@ -125,21 +125,21 @@ def write_scanlines(survey, settings=ScanlineSettings(), layer=None, points=None
                 points.add(lines, survey.frame, road)
     short = count - len(spool) if layer is not None else 0
     progress.say(f"Scanlines: {count:,}, {settings.interval:g} m apart"
-                 + (f"; {short:,} pieces shorter than {SHORTEST:g} m are not in the layer." if short else "."))
+                 + (f"; {short:,} pieces shorter than {MIN_LAYER_LINE:g} m are not in the layer." if short else "."))
     return spool, count
 
 
 def add_to_layer(spool, lines, frame, road, interval, simplify):
     """Append the scanlines of a road to a LineSpool."""
-    length = lengths(lines)
-    lines, length = lines[length >= SHORTEST], length[length >= SHORTEST]
-    lines = thinned(lines, simplify)
+    length = line_lengths(lines)
+    lines, length = lines[length >= MIN_LAYER_LINE], length[length >= MIN_LAYER_LINE]
+    lines = simplified_lines(lines, simplify)
     x, y, z = frame.to_map(road, np.repeat(lines.station, np.diff(lines.first)), lines.d, lines.z)
     spool.add(np.c_[x, y, z, lines.intensity], lines.first, road=road, station_m=np.round(lines.station, 4), length_m=np.round(length, 3),
               interval_m=interval, scanner=lines.scanner, **{"pass": lines.pass_number})
 
 
-def lengths(lines):
+def line_lengths(lines):
     """(L,) metres along each line."""
     step = np.hypot(np.diff(lines.d), np.diff(lines.z))
     step[lines.first[1:-1] - 1] = 0.0
@@ -147,7 +147,7 @@ def lengths(lines):
     return along[lines.first[1:] - 1] - along[lines.first[:-1]]
 
 
-def thinned(lines, tolerance):
+def simplified_lines(lines, tolerance):
     """The lines without the vertices that lie within `tolerance` metres of the line through the others (Douglas-Peucker)."""
     if tolerance <= 0 or not len(lines):
         return lines

@@ -15,12 +15,12 @@ from ...survey.store.records import COORDINATE_SCALE, take_rows
 
 # Where planes cut the mesh, side by side: the vertices of section planes chained into lines.
 
-BACKWARD = 0.05   # m that a line may go back across the road (noise on a face) before it is parted
-BETWEEN = 3       # pieces of something else that may lie between two pieces of one line: a scanner that looks ahead
+MAX_BACKWARD = 0.05   # m that a line may go back across the road (noise on a face) before it is parted
+MAX_PIECES_BETWEEN = 3       # pieces of something else that may lie between two pieces of one line: a scanner that looks ahead
 #                   sees a car and the ground beside it at one phase of its mirror, in different turns
-STEP = 1e-7       # m in which offsets are counted where they are put in order
-APART = 2 * 10**10  # of them, 2 km, lie between the offsets of one line and the next
-FINENESS = 65535  # steps of a turn by which vertices are put in order
+OFFSET_UNIT = 1e-7       # m in which offsets are counted where they are put in order
+LINE_OFFSET_UNITS = 2 * 10**10  # of them, 2 km, lie between the offsets of one line and the next
+PHASE_STEPS = 65535  # steps of a turn by which vertices are put in order
 
 
 @dataclass
@@ -43,7 +43,7 @@ class PlaneVertices:
         """The vertices as the track of pass `p` sees them."""
         first = int(plane[0])
         track_d, track_z = p.at_station(np.arange(first, int(plane[-1]) + 1) * interval)
-        return cls(plane, phase, d, z, d - track_d[plane - first], z - track_z[plane - first], (MISSING + 1.5) * clock.pulse)
+        return cls(plane, phase, d, z, d - track_d[plane - first], z - track_z[plane - first], (MAX_MISSING_PULSES + 1.5) * clock.pulse)
 
     def __post_init__(self):
         self.away = np.sqrt(self.across * self.across + self.above * self.above)
@@ -51,16 +51,16 @@ class PlaneVertices:
     def side_by_side(self, i, j):
         """Whether vertices j are the next ones to the left of vertices i on one surface (i and j index alike)."""
         step = self.d[j] - self.d[i]
-        side = (self.plane[j] == self.plane[i]) & (step >= -BACKWARD) & (step <= LONGEST_EDGE)
+        side = (self.plane[j] == self.plane[i]) & (step >= -MAX_BACKWARD) & (step <= MAX_EDGE)
         leap = np.abs(self.away[j] - self.away[i])
         # few pairs need a closer look: those with points missing between them, and those with a jump of range
         far = np.flatnonzero(side & (np.abs(self.phase[j] - self.phase[i]) > self.gap))
-        side[far] = step[far] ** 2 + (self.z[j] - self.z[i])[far] ** 2 <= NEIGHBOURS**2
+        side[far] = step[far] ** 2 + (self.z[j] - self.z[i])[far] ** 2 <= MAX_NEIGHBOUR_DISTANCE**2
         # seen from the track one behind the other: the edge of a thing and what lies behind
         jump = np.flatnonzero(side & (leap > RANGE_JUMP))
         across, above, away = ((values[i][jump], values[j][jump]) for values in (self.across, self.above, self.away))
         aside = np.abs(across[1] * above[0] - across[0] * above[1])
-        side[jump[aside < GRAZING * leap[jump] * away[0]]] = False
+        side[jump[aside < GRAZING_TANGENT * leap[jump] * away[0]]] = False
         return side
 
     def lines(self):
@@ -70,7 +70,7 @@ class PlaneVertices:
         end = np.r_[begin[1:], count] - 1
         before = np.full(len(begin), -1)   # the piece that a piece goes on from
         ahead = np.zeros(len(begin), bool)
-        for lag in range(2, min(BETWEEN + 2, len(begin))):
+        for lag in range(2, min(MAX_PIECES_BETWEEN + 2, len(begin))):
             free = np.flatnonzero(~ahead[:-lag] & (before[lag:] < 0))
             free = free[self.side_by_side(end[free], begin[free + lag])]
             before[free + lag], ahead[free] = free, True
@@ -88,7 +88,7 @@ class PlaneVertices:
 
 def plane_order(plane, phase):
     """Indices that sort by plane (whole numbers from 0), then phase; short integers are sorted by their digits, in linear time."""
-    by_phase = np.argsort((phase * FINENESS).astype(np.uint16), kind="stable")
+    by_phase = np.argsort((phase * PHASE_STEPS).astype(np.uint16), kind="stable")
     plane = plane[by_phase]
     return by_phase[np.argsort(plane.astype(np.int16) if plane.max() < 2**15 else plane, kind="stable")]
 
@@ -96,29 +96,29 @@ def plane_order(plane, phase):
 def increasing(d, first):
     """Offsets that do not decrease within a line: midway between the greatest before and the least behind.
 
-    They are counted in whole STEPs, so that those of a line do not depend on how many lines come before it.
+    They are counted in whole OFFSET_UNITs, so that those of a line do not depend on how many lines come before it.
     """
-    place = np.rint(d / STEP).astype(np.int64)
-    place += np.repeat(np.arange(len(first) - 1) * APART, np.diff(first))
+    place = np.rint(d / OFFSET_UNIT).astype(np.int64)
+    place += np.repeat(np.arange(len(first) - 1) * LINE_OFFSET_UNITS, np.diff(first))
     middle = np.maximum.accumulate(place)
     middle += np.minimum.accumulate(place[::-1])[::-1]
-    middle -= np.repeat(np.arange(len(first) - 1) * (2 * APART), np.diff(first))
-    return middle * (0.5 * STEP)
+    middle -= np.repeat(np.arange(len(first) - 1) * (2 * LINE_OFFSET_UNITS), np.diff(first))
+    return middle * (0.5 * OFFSET_UNIT)
 
-SLOW = 0.01          # m of driving between lines: nearer ones, of a vehicle that waits, tell nothing new
-LONGEST_RIB = 0.30   # m, or LINES_AHEAD times what was driven during a turn where that is more
-LINES_AHEAD = 3      # at which a point of the same phase is sought
-MISSING = 3          # pulses that may be missing between neighbours on a line,
-NEIGHBOURS = 0.15    # or m between them, whatever is missing
-LONGEST_EDGE = 1.0   # m along a line: ground seen at so flat an angle tells little
+MIN_DRIVEN = 0.01          # m of driving between lines: nearer ones, of a vehicle that waits, tell nothing new
+MAX_RIB = 0.30   # m, or MAX_LINES_AHEAD times what was driven during a turn where that is more
+MAX_LINES_AHEAD = 3      # at which a point of the same phase is sought
+MAX_MISSING_PULSES = 3          # pulses that may be missing between neighbours on a line,
+MAX_NEIGHBOUR_DISTANCE = 0.15    # or m between them, whatever is missing
+MAX_EDGE = 1.0   # m along a line: ground seen at so flat an angle tells little
 RANGE_JUMP = 0.30    # m
-SAME = 1e-6          # of the way between two points: nearer is the point itself
-SLANT = 0.5          # of what was driven during a turn
-GRAZING = 0.09       # tangent of the angle to the beam below which a jump of range is the edge of something, not ground
+RIB_TOLERANCE = 1e-6          # of the way between two points: nearer is the point itself
+SLANT_SHARE = 0.5          # of what was driven during a turn
+GRAZING_TANGENT = 0.09       # tangent of the angle to the beam below which a jump of range is the edge of something, not ground
 
 
 @dataclass
-class ScanLines:
+class ScannerLines:
     """Points of one pass and scanner in a window, in order of time.
 
     line is compact and counts kept lines of the window; phase is the mirror's, in turns; reach is how far
@@ -157,7 +157,7 @@ class Ribs:
         return cls(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(cls)))
 
 
-def scan_lines(records, p, clock, corridor, level=None):
+def scanner_lines(records, p, clock, corridor, level=None):
     """The points of a scanner as lines.
 
     Parameters
@@ -170,7 +170,7 @@ def scan_lines(records, p, clock, corridor, level=None):
 
     Returns
     -------
-    ScanLines, or None where fewer than two lines are there
+    ScannerLines, or None where fewer than two lines are there
     """
     d = records["d"]
     used = np.abs(d) <= int(round(corridor / COORDINATE_SCALE))
@@ -187,7 +187,7 @@ def scan_lines(records, p, clock, corridor, level=None):
     begins = clock.times_at(turns)
     begins[0], begins[-1] = min(begins[0], time[0]), max(begins[-1], np.nextafter(time[-1], np.inf))
     driven = p.progress_at(begins)
-    new = np.floor(driven[:-1] / SLOW) > np.floor(p.progress_at(clock.times_at(turns[:-1] - 1)) / SLOW)
+    new = np.floor(driven[:-1] / MIN_DRIVEN) > np.floor(p.progress_at(clock.times_at(turns[:-1] - 1)) / MIN_DRIVEN)
     bounds = np.searchsorted(time, begins)
     counts = np.diff(bounds)
     used = np.flatnonzero(new)
@@ -203,7 +203,7 @@ def scan_lines(records, p, clock, corridor, level=None):
     s, d, z = (records[name] * COORDINATE_SCALE for name in ("s", "d", "z"))
     reach = _reach(records, p, begins[:-1][used], counts)
     joined = _side_by_side(line, phase, reach, (s, d, z), clock)
-    return ScanLines(line, phase, s, d, z, records["intensity"], reach, joined, np.diff(driven)[used])
+    return ScannerLines(line, phase, s, d, z, records["intensity"], reach, joined, np.diff(driven)[used])
 
 
 def _side_by_side(line, phase, reach, places, clock):
@@ -212,13 +212,13 @@ def _side_by_side(line, phase, reach, places, clock):
     joined = np.zeros(len(phase), bool)
     joined[:-1] = same = line[1:] == line[:-1]
     # few pairs need a closer look: those with points missing between them, and those with a jump of range
-    far = np.flatnonzero(same & (apart > (MISSING + 1.5) * clock.pulse))
-    joined[far[sum((c[far + 1] - c[far]) ** 2 for c in places) > NEIGHBOURS**2]] = False
+    far = np.flatnonzero(same & (apart > (MAX_MISSING_PULSES + 1.5) * clock.pulse))
+    joined[far[sum((c[far + 1] - c[far]) ** 2 for c in places) > MAX_NEIGHBOUR_DISTANCE**2]] = False
     leap = np.abs(np.diff(reach))
     jump = np.flatnonzero(same & (leap > RANGE_JUMP))
-    edge = GRAZING * leap[jump] > 2 * np.pi * apart[jump] * reach[jump]
+    edge = GRAZING_TANGENT * leap[jump] > 2 * np.pi * apart[jump] * reach[jump]
     for c in places[:2]:
-        edge |= np.abs(c[jump + 1] - c[jump]) > LONGEST_EDGE
+        edge |= np.abs(c[jump + 1] - c[jump]) > MAX_EDGE
     joined[jump[edge]] = False
     return joined
 
@@ -241,7 +241,7 @@ def ribs_of(lines, direction, clock, interval):
 
     Parameters
     ----------
-    lines : ScanLines
+    lines : ScannerLines
     direction : 1 where the vehicle drove along the road's stations, -1 against them
     clock : MirrorPhase
     interval : m between planes
@@ -255,12 +255,12 @@ def ribs_of(lines, direction, clock, interval):
     station = lines.s / interval
     cell = np.ceil(station).astype(np.int32)
     cell_after = np.append(cell[1:], cell[-1:])
-    longest = np.maximum(LONGEST_RIB, LINES_AHEAD * clock.spacing * lines.driven) / interval
+    longest = np.maximum(MAX_RIB, MAX_LINES_AHEAD * clock.spacing * lines.driven) / interval
     found, rest = [], None   # rest: points that have no neighbour ahead yet, None for all
-    for step in range(1, LINES_AHEAD * clock.spacing + 1):
+    for step in range(1, MAX_LINES_AHEAD * clock.spacing + 1):
         own_key, own_line, own_cell = (values if rest is None else values[rest] for values in (key, lines.line, cell))
         place = np.interp(own_key + step, key, number)
-        place += SAME
+        place += RIB_TOLERANCE
         ahead = place.astype(np.int64)
         hit = lines.joined.take(ahead)
         hit &= lines.line.take(ahead) == own_line + step
@@ -280,7 +280,7 @@ def _steep_enough(lines, station, longest, direction, point, ahead, place):
     """The Ribs from points to places ahead of them that planes cut and that lie on a surface."""
     share = place - ahead
     # a rib that meets a point ends in it exactly, so that no plane slips through between it and the next one
-    share = np.where(share < 2 * SAME, 0.0, share - SAME)
+    share = np.where(share < 2 * RIB_TOLERANCE, 0.0, share - RIB_TOLERANCE)
     near, far = station[point], station[ahead]
     far += share * (station[ahead + 1] - far)
     onward = far - near
@@ -296,6 +296,6 @@ def _steep_enough(lines, station, longest, direction, point, ahead, place):
 
 def slanting_edges(lines, clock, interval):
     """The sides along lines that go so far along the road that a plane may pass between their ends and no rib."""
-    far = np.abs(np.diff(lines.s)) > SLANT * clock.spacing * lines.driven[lines.line[:-1]]
+    far = np.abs(np.diff(lines.s)) > SLANT_SHARE * clock.spacing * lines.driven[lines.line[:-1]]
     point = np.flatnonzero(far & lines.joined[:-1])
     return Ribs(point, point, np.ones(len(point)), lines.s[point] / interval, lines.s[point + 1] / interval)

@@ -8,7 +8,7 @@ from ...common.setting import check_limits, setting
 from ...survey.las.writer import new_laz, scale_for
 from ...survey.store.records import COORDINATE_SCALE
 
-EXTRA = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", None), ("scanner", "uint8", "Scanner", None),
+SCANLINE_DIMENSIONS = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", None), ("scanner", "uint8", "Scanner", None),
          ("station_m", "int32", "Station along the road", COORDINATE_SCALE), ("offset_m", "int32", "Offset, left positive", COORDINATE_SCALE)]
 
 
@@ -22,7 +22,7 @@ class ResamplingSettings:
         check_limits(self)
 
 
-def resampled(lines, spacing):
+def resample_scanlines(lines, spacing):
     """Points at equal steps along every scanline, from its first vertex on.
 
     Parameters
@@ -64,7 +64,7 @@ class ResampledPoints:
         self._header.add_extra_dims([
             laspy.ExtraBytesParams(name=name, type=kind, description=text,
                                    **({} if scale is None else dict(scales=np.array([scale]), offsets=np.array([0.0]))))
-            for name, kind, text, scale in EXTRA])
+            for name, kind, text, scale in SCANLINE_DIMENSIONS])
         if crs:
             from ...io.crs import parse_crs
 
@@ -80,7 +80,7 @@ class ResampledPoints:
         """Append the points of the scanlines of a road."""
         import laspy
 
-        line, d, z, intensity = resampled(lines, self.settings.spacing)
+        line, d, z, intensity = resample_scanlines(lines, self.settings.spacing)
         if not len(line):
             return
         s = lines.station[line]

@@ -18,11 +18,11 @@ from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...survey.lattice.scan_lattice import find_lattice, scanner_runs
 from ..common.sides import SECTION
-from .from_points import LEAST_SLICE, point_scanlines
-from .mesh import LINES_AHEAD, LONGEST_EDGE, LONGEST_RIB, PlaneVertices, Ribs, increasing, plane_order, ribs_of, scan_lines, slanting_edges
+from .from_points import MIN_SLICE_LENGTH, point_scanlines
+from .mesh import MAX_EDGE, MAX_LINES_AHEAD, MAX_RIB, PlaneVertices, Ribs, increasing, plane_order, ribs_of, scanner_lines, slanting_edges
 from .scanlines import Scanlines
 
-FEWEST = 2  # vertices of a line
+MIN_PLANE_LINE_VERTICES = 2  # vertices of a line
 
 
 @dataclass(frozen=True)
@@ -57,14 +57,14 @@ def scanlines_of(survey, road, start, end, settings=ScanlineSettings(), lattice=
     -------
     Scanlines: where a scanner has no lattice, those of the points near the planes
     """
-    lines = Scanlines.join(runs_of(survey, road, start, end, settings, lattice))
+    lines = Scanlines.join(scanline_runs(survey, road, start, end, settings, lattice))
     if not len(lines):
         return lines
     order = np.lexsort((lines.d[lines.first[:-1]], lines.scanner, lines.pass_number, np.rint(lines.station / settings.interval)))
     return lines if (np.diff(order) == 1).all() else lines[order]
 
 
-def runs_of(survey, road, start, end, settings=ScanlineSettings(), lattice=None, intensity=True, level=None):
+def scanline_runs(survey, road, start, end, settings=ScanlineSettings(), lattice=None, intensity=True, level=None):
     """The scanlines of `scanlines_of` as a list, each of one pass and scanner.
 
     intensity : whether theirs is wanted, else it is 0
@@ -78,7 +78,7 @@ def runs_of(survey, road, start, end, settings=ScanlineSettings(), lattice=None,
         lattice = find_lattice(survey, settings.rotation_frequency)
     parts, apart = [], not lattice.mirror_phases
     if lattice.mirror_phases:
-        margin = max(_margin(survey, road, lattice), LEAST_SLICE, interval)
+        margin = max(_margin(survey, road, lattice), MIN_SLICE_LENGTH, interval)
         window = first * interval - margin, (last - 1) * interval + margin
         records = survey.window(road, *window).records
         for key, own in scanner_runs(records):
@@ -109,18 +109,18 @@ def all_scanlines(survey, road, settings=ScanlineSettings(), lattice=None, progr
 
 def _margin(survey, road, lattice):
     """m beyond the outer planes within which points have a part in them."""
-    margin = LONGEST_RIB
+    margin = MAX_RIB
     for (number, _), clock in lattice.mirror_phases.items():
         p = survey.frame.passes[number]
         if p.road == road:
             speed = np.diff(p.progress_at(p.time)).max(initial=0.0) / np.diff(p.time).min(initial=np.inf)
-            margin = max(margin, LINES_AHEAD * clock.spacing * min(speed, 60.0) / abs(clock.frequency))
-    return margin + LONGEST_EDGE
+            margin = max(margin, MAX_LINES_AHEAD * clock.spacing * min(speed, 60.0) / abs(clock.frequency))
+    return margin + MAX_EDGE
 
 
 def _cut(records, p, key, clock, planes, settings, intensity, level):
     """Scanlines of one pass and scanner."""
-    lines = scan_lines(records, p, clock, settings.corridor, level)
+    lines = scanner_lines(records, p, clock, settings.corridor, level)
     if lines is None:
         return Scanlines.none()
     ribs = Ribs.joined([ribs_of(lines, p.direction, clock, settings.interval), slanting_edges(lines, clock, settings.interval)])
@@ -139,7 +139,7 @@ def _cut(records, p, key, clock, planes, settings, intensity, level):
     count = len(first) - 1
     found = Scanlines(plane[first[:-1]] * settings.interval, np.full(count, key[0]), np.full(count, key[1]), first,
                       increasing(d, first), z, bright)
-    return found[np.diff(first) >= FEWEST]
+    return found[np.diff(first) >= MIN_PLANE_LINE_VERTICES]
 
 
 def _planes_through(ribs, planes):

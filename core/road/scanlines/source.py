@@ -8,8 +8,8 @@ from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...survey.lattice.scan_lattice import find_lattice
 from ...survey.sensor_height import DEFAULT_HEIGHT, height_above
-from .grid import FAR
-from .section_planes import ScanlineSettings, runs_of
+from .grid import LINE_SEPARATION
+from .section_planes import ScanlineSettings, scanline_runs
 
 
 class SurveyScanlines:
@@ -42,7 +42,7 @@ class SurveyScanlines:
     def runs(self, road, start, end):
         """List of Scanlines with start <= station < end, each of one pass and scanner; intensity is left out."""
         level = None if self.level is None else partial(self.level, road)
-        return runs_of(self.survey, road, start, end, self.settings, self.lattice, intensity=False, level=level)
+        return scanline_runs(self.survey, road, start, end, self.settings, self.lattice, intensity=False, level=level)
 
 
 class LayerScanlines:
@@ -108,6 +108,6 @@ def _drops(lines, track_d, track_z):
     if not len(lines):
         return np.empty(0)
     under = (lines.d[lines.first[:-1]] <= track_d) & (lines.d[lines.first[1:] - 1] >= track_d)
-    number = np.arange(len(lines)) * FAR
+    number = np.arange(len(lines)) * LINE_SEPARATION
     z = np.interp(number + track_d, np.repeat(number, np.diff(lines.first)) + lines.d, lines.z)
     return (track_z - z)[under]

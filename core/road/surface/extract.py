@@ -13,12 +13,12 @@ from ...common.setting import check_limits, setting
 from ...survey.frame.road_frame import CORRIDOR
 from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.road_points import RoadPoints
-from .ground_grid import ROW, Cells, ground_cells
+from .ground_grid import ROW_LENGTH, GroundCells, ground_cells
 from .limits import edge_offsets
 from .outline import add_outlines
-from .pavement_edge import Profiles, grown_offsets
+from .pavement_edge import SurfaceProfiles, grown_offsets
 from .region_growing import follow_road, smooth_road
-from .road_points import SQUARE, covered, points_on_road
+from .road_points import OBSTACLE_SQUARE, covered_by_obstacles, points_on_road
 
 WINDOW_ROWS = 10      # rows of cells made at a time: 5 m
 TOLERANCE_FLOOR = 0.03  # m
@@ -51,7 +51,7 @@ class Carriageway:
     tolerance : m about the height
     """
 
-    cells: Cells
+    cells: GroundCells
     height: np.ndarray
     ground: np.ndarray
     right: np.ndarray
@@ -110,24 +110,24 @@ def extract_road_surface(survey, edges=None, settings=SurfaceSettings(), progres
 def find_carriageway(survey, road, edges, settings, progress=Progress()):
     """Height and limits of one road, row by row; None where nothing lies near its track."""
     start, end = survey.store.span(road)
-    windows = [WINDOW_ROWS * k for k in range(int(np.floor(start / ROW / WINDOW_ROWS)), int(np.ceil(end / ROW / WINDOW_ROWS)))]
+    windows = [WINDOW_ROWS * k for k in range(int(np.floor(start / ROW_LENGTH / WINDOW_ROWS)), int(np.ceil(end / ROW_LENGTH / WINDOW_ROWS)))]
 
-    stations = (windows[0] + np.arange(WINDOW_ROWS * len(windows)) + 0.5) * ROW
+    stations = (windows[0] + np.arange(WINDOW_ROWS * len(windows)) + 0.5) * ROW_LENGTH
     measured = edge_offsets(edges, survey.frame, road, stations)
     missing = np.isnan(measured["left"][0]) | np.isnan(measured["right"][0])
 
     def look(row):
-        points = survey.window(road, row * ROW, (row + WINDOW_ROWS) * ROW)
+        points = survey.window(road, row * ROW_LENGTH, (row + WINDOW_ROWS) * ROW_LENGTH)
         profiles = None
         if missing[row - windows[0]:row - windows[0] + WINDOW_ROWS].any():
-            profiles = Profiles.of(points, row * ROW, WINDOW_ROWS * ROW, CORRIDOR, road_height)
+            profiles = SurfaceProfiles.of(points, row * ROW_LENGTH, WINDOW_ROWS * ROW_LENGTH, CORRIDOR, road_height)
         return ground_cells(points, row, WINDOW_ROWS, CORRIDOR, road_height), profiles
 
     def road_height(s):
         return survey.road_height(road, s)
 
     seen = list(in_order(look, windows, progress))
-    cells = Cells.joined([part for part, _ in seen])
+    cells = GroundCells.joined([part for part, _ in seen])
     profiles = [part for _, part in seen if part is not None]
     prior = road_height(stations)
     followed = follow_road(cells, prior)
@@ -139,7 +139,7 @@ def find_carriageway(survey, road, edges, settings, progress=Progress()):
     for side, sign, track in (("left", 1.0, tracks.max(axis=0)), ("right", -1.0, tracks.min(axis=0))):
         offset, known = measured[side]
         if np.isnan(offset).any():
-            grown = grown_offsets(Profiles.joined(profiles), cells, height - prior[:, None], sign, track, settings.max_width)
+            grown = grown_offsets(SurfaceProfiles.joined(profiles), cells, height - prior[:, None], sign, track, settings.max_width)
             offset = np.where(np.isnan(offset), grown, offset)
         limits[side] = offset, known
     there = _has_road(followed.ground, cells.offsets) & (limits["left"][0] > limits["right"][0] + 0.5)
@@ -162,15 +162,16 @@ def _take_points(survey, road, carriageway, road_points, progress):
     def take(number):
         start, end = (np.array([number, number + 1]) * store.section_length).tolist()
         # what stands beside a point may stand in the next section
-        points = survey.window(road, np.floor(start / SQUARE - 1.01) * SQUARE, np.ceil(end / SQUARE + 1.01) * SQUARE)
+        first_square, last_square = np.floor(start / OBSTACLE_SQUARE - 1.01), np.ceil(end / OBSTACLE_SQUARE + 1.01)
+        points = survey.window(road, first_square * OBSTACLE_SQUARE, last_square * OBSTACLE_SQUARE)
         found = points_on_road(points, carriageway)
-        beneath = covered(points[found.surface], points[found.above])
+        beneath = covered_by_obstacles(points[found.surface], points[found.above])
         # points come in order of station
         stations = points.records["s"]
         first, last = np.searchsorted(stations, np.array([store.first_unit(number), store.first_unit(number + 1)], stations.dtype))
         own = slice(*np.searchsorted(found.surface, [first, last]))
         rows = found.surface[own]
-        row = np.floor(stations.take(rows) * COORDINATE_SCALE / ROW).astype(np.int64) - carriageway.cells.first_row
+        row = np.floor(stations.take(rows) * COORDINATE_SCALE / ROW_LENGTH).astype(np.int64) - carriageway.cells.first_row
         counts = np.bincount(np.clip(row, 0, len(per_row) - 1), minlength=len(per_row))
         return number, rows - first, dict(half_width=found.half_width[own], covered=beneath[own].astype(np.uint8)), counts
 

@@ -7,20 +7,20 @@ import numpy as np
 from ...common.order_statistics import order_by
 from ...survey.store.records import COORDINATE_SCALE
 
-ROW, COLUMN = 0.5, 0.25   # m along and across the road
-LAYER_JUMP = 0.06         # m between two layers: ground below, a car's sill above
-LAYER_DEPTH = 0.12        # m of the lowest layer that count as ground: a wall has no upper end
-SHARE = 0.08              # of a cell's points that the lowest layer holds at least: less is multipath below the road
-GOLDEN = 0x9E3779B9       # of 2^32
-MOST = 100                # points of a cell that are looked at: more tell nothing new of it
-AT_ONCE = 1 << 15         # points worked at a time: what fits the processor's cache
-FEWEST_LAYER = 3          # points of a layer
-FEWEST_TILT = 6           # points from which a cell's plane and roughness are taken
-NEAR, PER_METRE = 0.7, 0.12  # m about the vehicle's road height, and per metre beside the track, where ground may lie
+ROW_LENGTH, COLUMN_WIDTH = 0.5, 0.25   # m along and across the road
+GROUND_LAYER_JUMP = 0.06         # m between two layers: ground below, a car's sill above
+GROUND_LAYER_DEPTH = 0.12        # m of the lowest layer that count as ground: a wall has no upper end
+MIN_LAYER_SHARE = 0.08              # of a cell's points that the lowest layer holds at least: less is multipath below the road
+GOLDEN_RATIO_32 = 0x9E3779B9       # of 2^32
+MAX_POINTS_PER_CELL = 100                # points of a cell that are looked at: more tell nothing new of it
+POINTS_PER_BATCH = 1 << 15         # points worked at a time: what fits the processor's cache
+MIN_LAYER_POINTS = 3          # points of a layer
+MIN_PLANE_POINTS = 6           # points from which a cell's plane and roughness are taken
+GROUND_REACH, GROUND_REACH_PER_METRE = 0.7, 0.12  # m about the vehicle's road height, and per metre beside the track, where ground may lie
 
 
 @dataclass
-class Cells:
+class GroundCells:
     """(rows, columns) float32 arrays, NaN where there is no ground: `height` (local z of a cell's middle),
     `rough` (m about the cell's own plane), `brightness` (median intensity), `scatter` (its lower spread as a sigma), and `count`.
 
@@ -65,7 +65,7 @@ def known_median(values, axis):
     return np.squeeze(0.5 * (low + high), axis)
 
 
-def ground_cells(points, first_row, rows, reach, road_height, row_size=ROW, column_size=COLUMN):
+def ground_cells(points, first_row, rows, reach, road_height, row_size=ROW_LENGTH, column_size=COLUMN_WIDTH):
     """Cells of a window of the road.
 
     Parameters
@@ -78,7 +78,7 @@ def ground_cells(points, first_row, rows, reach, road_height, row_size=ROW, colu
 
     Returns
     -------
-    Cells
+    GroundCells
     """
     half = int(np.ceil(reach / column_size))
     columns = 2 * half
@@ -96,7 +96,7 @@ def ground_cells(points, first_row, rows, reach, road_height, row_size=ROW, colu
     height, rough = _planes(count, u, v, z)
     brightness, scatter = _medians(at, count, points.intensity[kept])
     shape = rows, columns
-    return Cells(first_row, -half, row_size, column_size,
+    return GroundCells(first_row, -half, row_size, column_size,
                  *(values.reshape(shape).astype(np.float32) for values in (height, rough, brightness, scatter, count)))
 
 
@@ -106,8 +106,8 @@ def _near_ground(records, first_row, rows, half, prior, row_size, column_size):
     along, across = (np.int32(round(size / COORDINATE_SCALE)) for size in (row_size, column_size))
     nowhere = rows * 2 * half
     cell, count = np.empty(len(records), np.int32), np.zeros(nowhere + 1, np.int64)
-    for first in range(0, len(records), AT_ONCE):
-        s, d, z = (records[name][first:first + AT_ONCE] for name in ("s", "d", "z"))
+    for first in range(0, len(records), POINTS_PER_BATCH):
+        s, d, z = (records[name][first:first + POINTS_PER_BATCH] for name in ("s", "d", "z"))
         row = s // along
         row -= np.int32(first_row)
         column = d // across
@@ -116,22 +116,22 @@ def _near_ground(records, first_row, rows, half, prior, row_size, column_size):
         inside = row.view(np.uint32) < np.uint32(rows)
         inside &= column.view(np.uint32) < np.uint32(2 * half)
         above = z - prior.take(row, mode="clip")
-        reach = np.abs(d * np.float32(PER_METRE))
-        reach += np.float32(NEAR / COORDINATE_SCALE)
+        reach = np.abs(d * np.float32(GROUND_REACH_PER_METRE))
+        reach += np.float32(GROUND_REACH / COORDINATE_SCALE)
         inside &= np.abs(above) < reach
         row *= np.int32(2 * half)
         row += column
         row[~inside] = nowhere
-        cell[first:first + AT_ONCE] = row
+        cell[first:first + POINTS_PER_BATCH] = row
         count += np.bincount(row, minlength=nowhere + 1)
     # multiples of the golden section lie evenly whatever run of them is looked at
-    share = np.floor(0xFFFFFFFF * np.minimum(MOST / np.maximum(count, 1), 1.0)).astype(np.uint32)
+    share = np.floor(0xFFFFFFFF * np.minimum(MAX_POINTS_PER_CELL / np.maximum(count, 1), 1.0)).astype(np.uint32)
     share[nowhere] = 0
-    turn = np.arange(1, AT_ONCE + 1, dtype=np.uint32) * np.uint32(GOLDEN)
+    turn = np.arange(1, POINTS_PER_BATCH + 1, dtype=np.uint32) * np.uint32(GOLDEN_RATIO_32)
     kept = [np.empty(0, np.intp)]
-    for first in range(0, len(cell), AT_ONCE):
-        here = share.take(cell[first:first + AT_ONCE])
-        some = np.flatnonzero(turn[:len(here)] + np.uint32(first * GOLDEN % 2**32) < here)
+    for first in range(0, len(cell), POINTS_PER_BATCH):
+        here = share.take(cell[first:first + POINTS_PER_BATCH])
+        some = np.flatnonzero(turn[:len(here)] + np.uint32(first * GOLDEN_RATIO_32 % 2**32) < here)
         some += first
         kept.append(some)
     kept = np.concatenate(kept)
@@ -142,16 +142,16 @@ def _in_lowest_layer(cell, z, total):
     """Mask of points, sorted by cell and height, that belong to the lowest layer of their cell that is no stray."""
     if not len(cell):
         return np.zeros(0, bool)
-    begins = np.r_[True, (np.diff(cell) > 0) | (np.diff(z) > LAYER_JUMP)]
+    begins = np.r_[True, (np.diff(cell) > 0) | (np.diff(z) > GROUND_LAYER_JUMP)]
     layer = np.cumsum(begins) - 1
     size = np.bincount(layer)
     of_cell = cell[begins]
-    solid = size >= np.maximum(FEWEST_LAYER, SHARE * total[of_cell])
+    solid = size >= np.maximum(MIN_LAYER_POINTS, MIN_LAYER_SHARE * total[of_cell])
     chosen = np.full(len(total), -1)
     numbers = np.flatnonzero(solid)[::-1]
     chosen[of_cell[numbers]] = numbers
     lowest = z[begins]
-    return (chosen[cell] == layer) & (z - lowest[layer] < LAYER_DEPTH)
+    return (chosen[cell] == layer) & (z - lowest[layer] < GROUND_LAYER_DEPTH)
 
 
 def _planes(count, u, v, z):
@@ -174,7 +174,7 @@ def _planes(count, u, v, z):
     determinant = uu * vv - uv * uv
     across, along = (uz * vv - vz * uv) / determinant, (vz * uu - uz * uv) / determinant
     rest = np.maximum(zz - across * uz - along * vz, 0.0)
-    enough, any_ground = count >= FEWEST_TILT, count >= FEWEST_LAYER
+    enough, any_ground = count >= MIN_PLANE_POINTS, count >= MIN_LAYER_POINTS
     rough = np.sqrt(rest * n / np.maximum(n - 3, 1))
     height = np.where(enough, mz - across * mu - along * mv, mz)
     return np.where(any_ground, height, np.nan), np.where(enough, rough, np.nan)
@@ -184,7 +184,7 @@ def _medians(at, count, intensity):
     """Median of each cell's intensities (16 bits) and the lower spread about it."""
     values = intensity[order_by(intensity, at)].astype(float)
     start = np.cumsum(count) - count
-    filled = count >= FEWEST_LAYER
+    filled = count >= MIN_LAYER_POINTS
     median, spread = np.full(len(count), np.nan), np.full(len(count), np.nan)
     median[filled] = values[(start + count // 2)[filled]]
     spread[filled] = (median[filled] - values[(start + count // 4)[filled]]) / 0.6745

@@ -5,8 +5,8 @@ import shapely
 
 from ...common.schemas import of_main_curb
 
-OPENING = 30.0   # m of missing edge across which the road keeps the line from one end to the other
-BEYOND = 5.0     # m that an edge's offset holds on before its first and after its last vertex
+MAX_OPENING = 30.0   # m of missing edge across which the road keeps the line from one end to the other
+EDGE_CONTINUATION = 5.0     # m that an edge's offset holds on before its first and after its last vertex
 
 
 def edge_offsets(edges, frame, road, stations):
@@ -42,7 +42,7 @@ def edge_offsets(edges, frame, road, stations):
             take = inside & ~(sign * offset > sign * here)
             offset[take] = here[take]
             seen[take] = row.get("status") != "inferred"
-        found[side] = _carried_on(stations, offset), seen
+        found[side] = _continued(stations, offset), seen
     return found
 
 
@@ -57,7 +57,7 @@ def _along(geometry, frame, road):
     return s[order], d[order]
 
 
-def _carried_on(stations, offset):
+def _continued(stations, offset):
     """Offsets with short openings closed by a straight line and the ends held on a little."""
     known = np.flatnonzero(np.isfinite(offset))
     if not len(known):
@@ -67,5 +67,5 @@ def _carried_on(stations, offset):
     s0 = stations[known][np.maximum(after - 1, 0)]
     s1 = stations[known][np.minimum(after, len(known) - 1)]
     between = (after > 0) & (after < len(known))
-    near = np.minimum(np.abs(stations - s0), np.abs(stations - s1)) <= BEYOND
-    return np.where(np.isfinite(offset), offset, np.where((between & (s1 - s0 <= OPENING)) | near, filled, np.nan))
+    near = np.minimum(np.abs(stations - s0), np.abs(stations - s1)) <= EDGE_CONTINUATION
+    return np.where(np.isfinite(offset), offset, np.where((between & (s1 - s0 <= MAX_OPENING)) | near, filled, np.nan))

@@ -3,9 +3,9 @@
 import numpy as np
 import shapely
 
-from .ground_grid import COLUMN, ROW
+from .ground_grid import COLUMN_WIDTH, ROW_LENGTH
 
-SHORTEST = 5.0  # m: a shorter change of status is not drawn
+MIN_STATUS_LENGTH = 5.0  # m: a shorter change of status is not drawn
 
 
 def add_outlines(surface, frame, road, carriageway, points_per_row):
@@ -15,7 +15,7 @@ def add_outlines(surface, frame, road, carriageway, points_per_row):
     """
     cells = carriageway.cells
     there = np.isfinite(carriageway.left) & np.isfinite(carriageway.right)
-    measured = _without_short_runs(carriageway.left_bounded & carriageway.right_bounded, int(SHORTEST / ROW))
+    measured = _without_short_runs(carriageway.left_bounded & carriageway.right_bounded, int(MIN_STATUS_LENGTH / ROW_LENGTH))
     kind = np.where(there, np.where(measured, 2, 1), 0)
     cuts = np.r_[0, np.flatnonzero(np.diff(kind)) + 1, len(kind)]
     for a, b in zip(cuts[:-1], cuts[1:]):
@@ -29,7 +29,7 @@ def add_outlines(surface, frame, road, carriageway, points_per_row):
         stations = cells.stations[rows]
         sides = []
         for offset in (carriageway.left[rows], carriageway.right[rows]):
-            column = np.clip(np.floor(offset / COLUMN).astype(int) - cells.first_column, 0, cells.height.shape[1] - 1)
+            column = np.clip(np.floor(offset / COLUMN_WIDTH).astype(int) - cells.first_column, 0, cells.height.shape[1] - 1)
             x, y, z = frame.to_map(road, stations, offset, carriageway.height[rows, column].astype(float))
             sides.append(np.c_[x, y, z])
         ring = np.round(np.concatenate([sides[0], sides[1][::-1]]), 4)

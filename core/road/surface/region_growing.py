@@ -5,15 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import correlate1d, uniform_filter1d
 
-from .ground_grid import COLUMN, ROW, known_median
+from .ground_grid import COLUMN_WIDTH, ROW_LENGTH, known_median
 
-STEP = 0.035          # m off the height that the road promised: a curb, a car, an island
-NOISE = 2.0           # times the error of a cell's height on top
-FOUND_AGAIN, MOST = 0.02, 0.05  # m on top per metre passed over unseen, at most: behind an island the promise is less sure
-TRACK = 0.6           # m either side of the reference line from which the road starts
-FOLLOW, TURN = 0.5, 0.15   # how fast height and tilt follow what is seen
-STEEPEST = 0.12       # m per m across a road
-ALONG = 1.0           # m, sigma: neighbouring rows are one road
+MAX_HEIGHT_DEVIATION = 0.035          # m off the height that the road promised: a curb, a car, an island
+NOISE_FACTOR = 2.0           # times the error of a cell's height on top
+TOLERANCE_GAIN, MAX_TOLERANCE_GAIN = 0.02, 0.05  # m on top per metre passed over unseen, at most: behind an island the promise is less sure
+TRACK_HALF_WIDTH = 0.6           # m either side of the reference line from which the road starts
+HEIGHT_GAIN, TILT_GAIN = 0.5, 0.15   # how fast height and tilt follow what is seen
+MAX_CROSS_SLOPE = 0.12       # m per m across a road
+ROW_SMOOTHING_SIGMA = 1.0           # m, sigma: neighbouring rows are one road
 
 
 @dataclass
@@ -35,7 +35,7 @@ def follow_road(cells, prior):
 
     Parameters
     ----------
-    cells : Cells of a road
+    cells : GroundCells of a road
     prior : (rows,) the road's local z under the vehicle, good to decimetres
 
     Returns
@@ -43,7 +43,7 @@ def follow_road(cells, prior):
     RoadHeight, or None where nothing lies near the track
     """
     offsets = cells.offsets
-    track = np.abs(offsets) < TRACK
+    track = np.abs(offsets) < TRACK_HALF_WIDTH
     base = known_median(cells.height[:, track] - prior[:, None], 1)
     noise = float(known_median(cells.rough[:, np.abs(offsets) < 3.0].ravel(), 0))
     if not np.isfinite(base).any():
@@ -72,11 +72,11 @@ def _running_median(values, reach):
 
 def _starting_tilt(relative, offsets):
     """Tilt across under the vehicle, (rows,)."""
-    near = np.abs(offsets) < 2 * TRACK
+    near = np.abs(offsets) < 2 * TRACK_HALF_WIDTH
     left = known_median(relative[:, near & (offsets > 0)], 1)
     right = known_median(relative[:, near & (offsets < 0)], 1)
-    tilt = (left - right) / (2 * TRACK)
-    return np.clip(_running_median(tilt, 5), -STEEPEST, STEEPEST) if np.isfinite(tilt).any() else np.zeros(len(tilt))
+    tilt = (left - right) / (2 * TRACK_HALF_WIDTH)
+    return np.clip(_running_median(tilt, 5), -MAX_CROSS_SLOPE, MAX_CROSS_SLOPE) if np.isfinite(tilt).any() else np.zeros(len(tilt))
 
 
 def _walk(relative, count, columns, start, noise, height, ground):
@@ -84,13 +84,13 @@ def _walk(relative, count, columns, start, noise, height, ground):
     tilt = np.stack([start, -start])
     z, unseen = np.zeros_like(tilt), np.zeros_like(tilt)
     count = np.nan_to_num(count)
-    error, most = NOISE * noise / np.sqrt(np.clip(count, 1.0, 25.0)), np.minimum(count, 20.0)
-    kernel = _bell(ALONG / ROW)
+    error, most = NOISE_FACTOR * noise / np.sqrt(np.clip(count, 1.0, 25.0)), np.minimum(count, 20.0)
+    kernel = _bell(ROW_SMOOTHING_SIGMA / ROW_LENGTH)
     for k, pair in enumerate(columns):
-        promised = z + tilt * (0.5 * COLUMN if k == 0 else COLUMN)
+        promised = z + tilt * (0.5 * COLUMN_WIDTH if k == 0 else COLUMN_WIDTH)
         there = relative[:, pair].T
         off = there - promised
-        tolerance = STEP + error[:, pair].T + np.minimum(FOUND_AGAIN * np.maximum(unseen - 0.5, 0.0), MOST)
+        tolerance = MAX_HEIGHT_DEVIATION + error[:, pair].T + np.minimum(TOLERANCE_GAIN * np.maximum(unseen - 0.5, 0.0), MAX_TOLERANCE_GAIN)
         seen = np.abs(off) < tolerance   # not where there is nothing
         off = np.where(seen, off, 0.0)
         # what is nearly off the road teaches little: a low curb must not be climbed
@@ -98,12 +98,12 @@ def _walk(relative, count, columns, start, noise, height, ground):
         # what the rows around see, weighed by their points: one row's gap is filled by its neighbours
         total, around = correlate1d(np.stack([weight, off * weight]), kernel, mode="nearest")
         around /= np.maximum(total, 1e-9)
-        told = np.minimum(total / 3.0, 1.0)
+        certainty = np.minimum(total / 3.0, 1.0)
         # found again behind something, the height is taken as it is seen
-        z = promised + np.where(unseen > 0.5, 1.0, FOLLOW) * told * around
-        tilt = np.clip(tilt + TURN * told * around / COLUMN, -STEEPEST, STEEPEST)
+        z = promised + np.where(unseen > 0.5, 1.0, HEIGHT_GAIN) * certainty * around
+        tilt = np.clip(tilt + TILT_GAIN * certainty * around / COLUMN_WIDTH, -MAX_CROSS_SLOPE, MAX_CROSS_SLOPE)
         tilt = correlate1d(tilt, kernel, mode="nearest")
-        unseen = np.where(told > 0.5, 0.0, unseen + COLUMN)
+        unseen = np.where(certainty > 0.5, 0.0, unseen + COLUMN_WIDTH)
         height[:, pair] = z.T
         ground[:, pair] = (np.abs(there - z) < tolerance).T
 

@@ -6,22 +6,21 @@ import numpy as np
 from scipy import ndimage
 
 from ...survey.store.records import COORDINATE_SCALE
-from .ground_grid import AT_ONCE, COLUMN, ROW
+from .ground_grid import COLUMN_WIDTH, POINTS_PER_BATCH, ROW_LENGTH
 
 # Road beneath something that stands on it or hangs over it: parked cars, tables, bushes.
 
-LOW, HIGH = 0.25, 2.0   # m above the road: curbs and stray points end below, signs and branches begin above
-SQUARE = 0.20           # m
-SQUARES_AT_ONCE = 1 << 15       # points worked at a time: what fits the processor's cache
-SHARE = 1 / 3           # of all points within a square and those about it
+MIN_OBSTACLE_HEIGHT, MAX_OBSTACLE_HEIGHT = 0.25, 2.0   # m above the road: curbs and stray points end below, signs and branches begin above
+OBSTACLE_SQUARE = 0.20           # m
+MIN_OBSTACLE_SHARE = 1 / 3           # of all points within a square and those about it
 
 
-def covered(road_points, above):
+def covered_by_obstacles(road_points, above):
     """Which road points lie beneath or right beside something.
 
     Parameters
     ----------
-    road_points, above : Points of the road and of what is LOW to HIGH above it,
+    road_points, above : Points of the road and of what is MIN_OBSTACLE_HEIGHT to MAX_OBSTACLE_HEIGHT above it,
         a square farther along the road either way than is asked about
 
     Returns
@@ -34,24 +33,24 @@ def covered(road_points, above):
     road, high = (ndimage.uniform_filter(np.bincount(p, minlength=shape[0] * shape[1]).reshape(shape).astype(float), 3, mode="constant")
                   for p in (places, high_places))
     # means of whole numbers over nine squares: exact enough to be compared
-    dark = np.rint(9 * high) > SHARE * np.rint(9 * (road + high))
+    dark = np.rint(9 * high) > MIN_OBSTACLE_SHARE * np.rint(9 * (road + high))
     return dark.ravel().take(places) if dark.any() else np.zeros(len(road_points), bool)
 
 
 def _squares(*points):
     """(N,) int32 number of the square that each point of several sets lies in, and the (rows, columns) of all squares."""
-    size = np.int32(round(SQUARE / COORDINATE_SCALE))
+    size = np.int32(round(OBSTACLE_SQUARE / COORDINATE_SCALE))
     low = [min(int(records[name].min()) for records in points) // size - 1 for name in ("s", "d")]
     shape = tuple(max(int(records[name].max()) for records in points) // size - first + 2 for name, first in zip(("s", "d"), low))
     found = []
     for records in points:
         place = np.empty(len(records), np.int32)
-        for first in range(0, len(place), SQUARES_AT_ONCE):
-            run = place[first:first + SQUARES_AT_ONCE]
-            np.floor_divide(records["s"][first:first + SQUARES_AT_ONCE], size, out=run)
+        for first in range(0, len(place), POINTS_PER_BATCH):
+            run = place[first:first + POINTS_PER_BATCH]
+            np.floor_divide(records["s"][first:first + POINTS_PER_BATCH], size, out=run)
             run -= np.int32(low[0])
             run *= np.int32(shape[1])
-            run += records["d"][first:first + SQUARES_AT_ONCE] // size
+            run += records["d"][first:first + POINTS_PER_BATCH] // size
             run -= np.int32(low[1])
         found.append(place)
     return *found, shape
@@ -61,7 +60,7 @@ class OnRoad:
     """Points of a window by index.
 
     surface : (M,) those of the road itself; half_width : (M,) uint16 mm from the reference line to the limit of each one's side
-    above : (K,) what is LOW to HIGH above it
+    above : (K,) what is MIN_OBSTACLE_HEIGHT to MAX_OBSTACLE_HEIGHT above it
     """
 
     surface: np.ndarray
@@ -92,15 +91,15 @@ def points_on_road(points, carriageway):
     records = points.records
     if not len(records):
         return OnRoad(np.empty(0, np.intp), np.empty(0, np.uint16), np.empty(0, np.intp))
-    here = _Window(carriageway, records["s"], records["d"])
+    here = _SurfaceTables(carriageway, records["s"], records["d"])
     parts = []
-    for first in range(0, len(records), AT_ONCE):
-        found = here.points(*(records[name][first:first + AT_ONCE] for name in ("s", "d", "z")))
+    for first in range(0, len(records), POINTS_PER_BATCH):
+        found = here.points(*(records[name][first:first + POINTS_PER_BATCH] for name in ("s", "d", "z")))
         parts.append((found[0] + first, found[1], found[2] + first))
     return OnRoad(*(np.concatenate(part) for part in zip(*parts)))
 
 
-class _Window:
+class _SurfaceTables:
     """Limits and height of the rows about a window, as tables of half rows and of cells."""
 
     def __init__(self, carriageway, s, d):
@@ -108,7 +107,7 @@ class _Window:
         # as many rows and columns as the points need: beyond the outermost cells height and limits stay as they are there
         (self.s0, rows), (self.d0, columns) = (
             _middles(values, size, first, count) for values, size, first, count in
-            ((s, ROW, cells.first_row, cells.height.shape[0]), (d, COLUMN, cells.first_column, cells.height.shape[1])))
+            ((s, ROW_LENGTH, cells.first_row, cells.height.shape[0]), (d, COLUMN_WIDTH, cells.first_column, cells.height.shape[1])))
         height = carriageway.height[np.ix_(rows, columns)].astype(float) / COORDINATE_SCALE
         self.columns = len(columns) - 1
         self.left, self.right = (_half_rows(limit[rows] / COORDINATE_SCALE) for limit in (carriageway.left, carriageway.right))
@@ -117,15 +116,16 @@ class _Window:
         # height = corner + rest + across * v + (along + twist * v) * u, with u, v from 0 to 1 in the cell
         self.tables = [table.astype(np.float32).ravel() for table in (height[:-1, :-1] - np.rint(height[:-1, :-1]), across[:-1],
                                                                       np.diff(height, axis=0)[:, :-1], np.diff(across, axis=0))]
-        self.tolerance, self.low, self.high = (np.float32(metres / COORDINATE_SCALE) for metres in (carriageway.tolerance, LOW, HIGH))
+        self.tolerance, self.low, self.high = (np.float32(metres / COORDINATE_SCALE) for metres in
+                                               (carriageway.tolerance, MIN_OBSTACLE_HEIGHT, MAX_OBSTACLE_HEIGHT))
 
     def points(self, s, d, z):
         """Indices of points of the road, their half widths (mm), and indices of points above it."""
-        row, u = _steps(s, self.s0, ROW)
+        row, u = _steps(s, self.s0, ROW_LENGTH)
         half = row + row
         half += u >= np.float32(0.5)
         left, right = (_line(*limit, half, u) for limit in (self.left, self.right))
-        cell, v = _steps(d, self.d0, COLUMN)
+        cell, v = _steps(d, self.d0, COLUMN_WIDTH)
         row *= np.int32(self.columns)
         cell += row
         rest, across, along, twist = (table.take(cell, mode="clip") for table in self.tables)

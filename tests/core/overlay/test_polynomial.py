@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from flown_images import HEIGHT, WIDTH, ground, measured
-from lanewright.core.overlay.polynomial import FEWEST, exponents, fit_polynomial, fit_shift
+from lanewright.core.overlay.polynomial import MIN_CONTROL_POINTS, fit_image_polynomial, fit_shift, term_powers
 from osgeo import gdal
 
 ORDERS = [1, 2, 3]
@@ -11,7 +11,7 @@ ORDERS = [1, 2, 3]
 
 def fitted(order, count=24, noise=0.02, seed=1, **distortion):
     points = measured(count, noise, seed, **distortion)
-    return points, fit_polynomial(points.pixel, points.line, points.easting, points.northing, order)
+    return points, fit_image_polynomial(points.pixel, points.line, points.easting, points.northing, order)
 
 
 def by_hand(points, order):
@@ -24,7 +24,7 @@ def by_hand(points, order):
 
 @pytest.mark.parametrize("order", range(4))
 def test_the_fewest_points_are_the_coefficients_of_an_axis(order):
-    assert len(exponents(order)) == FEWEST[order] == (order + 1) * (order + 2) // 2
+    assert len(term_powers(order)) == MIN_CONTROL_POINTS[order] == (order + 1) * (order + 2) // 2
 
 
 @pytest.mark.parametrize("order", ORDERS)
@@ -57,7 +57,7 @@ def test_the_error_without_a_point_is_that_of_a_fit_without_it(order):
     points, fit = fitted(order)
     for k in (0, 7):
         rest = np.delete(np.arange(len(points)), k)
-        without = fit_polynomial(points.pixel[rest], points.line[rest], points.easting[rest], points.northing[rest], order)
+        without = fit_image_polynomial(points.pixel[rest], points.line[rest], points.easting[rest], points.northing[rest], order)
         east, north = without.polynomial.to_map(points.pixel[[k]], points.line[[k]])
         np.testing.assert_allclose(fit.left_out[k], [points.easting[k] - east[0], points.northing[k] - north[0]], atol=1e-7)
 
@@ -85,7 +85,7 @@ def test_a_place_goes_to_the_map_and_back(order):
 
 def test_moving_the_survey_moves_the_map_and_nothing_else():
     points, fit = fitted(3)
-    moved = fit_polynomial(points.pixel, points.line, points.easting + 5e5, points.northing - 3e6, 3)
+    moved = fit_image_polynomial(points.pixel, points.line, points.easting + 5e5, points.northing - 3e6, 3)
     np.testing.assert_allclose(moved.residuals, fit.residuals, atol=1e-7)
 
 

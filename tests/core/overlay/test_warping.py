@@ -67,7 +67,7 @@ def test_a_large_image_stored_by_lines_is_drawn_like_any_other(tmp_path, monkeyp
     from lanewright.core.overlay import warp as warping
 
     before = gdal.GetCacheMax()
-    monkeypatch.setattr(warping, "MEMORY", 500_000)
+    monkeypatch.setattr(warping, "GDAL_CACHE", 500_000)
     dataset, found = drawn(tmp_path, 2, driver="PNG", suffix="png", distortion={"bend": 0.03, "turn": 1.4})
     fields_lie_where_they_are(dataset, found)
     assert gdal.GetCacheMax() == before

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.sample.street import CARRIAGEWAY, LABEL
+from lanewright.core.sample.street import CARRIAGEWAY_LABELS, LABEL
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 
 GROUND = [LABEL[name] for name in ("road", "paint", "worn paint", "manhole", "gutter", "curb face", "curb stone",
@@ -96,7 +96,7 @@ def test_the_truth_of_a_curb_is_its_height_in_the_points(street, true_points):
         sign, edge = (1, street.scene.left.edge) if row["side"] == "left" else (-1, street.scene.right.edge)
         along = (true_points["station"] > row["station_m"] + 2) & (true_points["station"] < row["end_m"] - 2)
         away = sign * true_points["offset"] - edge
-        below = true_points[along & (away > -0.05) & (away < 0) & np.isin(true_points["label"], CARRIAGEWAY)]
+        below = true_points[along & (away > -0.05) & (away < 0) & np.isin(true_points["label"], CARRIAGEWAY_LABELS)]
         above = true_points[along & (away > 0.025) & (away < 0.175) & (true_points["label"] == LABEL["curb stone"])]
         assert len(below) > 5 and len(above) > 5
         level = [np.median(part["z"] - street.settings.origin[2] - street.scene.grade_line(part["station"]))
@@ -290,7 +290,7 @@ def test_the_true_surface_holds_the_carriageway_and_nothing_else(street, true_po
     polygon = shapely.force_2d(street.truth_surface.geometries[0])
     inside = shapely.contains_xy(polygon, true_points["x"], true_points["y"])
     ground = np.isin(true_points["label"], GROUND)
-    on_road = np.isin(true_points["label"], CARRIAGEWAY)
+    on_road = np.isin(true_points["label"], CARRIAGEWAY_LABELS)
     assert np.mean(inside[ground] == on_road[ground]) > 0.9995
 
 

@@ -9,12 +9,12 @@ from lanewright.core.road.scanlines.layer import (
     LineSpool,
     ScanlineLayerSettings,
     coordinates_of,
-    lengths,
+    line_lengths,
     scanlines_from_features,
-    thinned,
+    simplified_lines,
     write_scanlines,
 )
-from lanewright.core.road.scanlines.resampling import ResampledPoints, ResamplingSettings, resampled
+from lanewright.core.road.scanlines.resampling import ResampledPoints, ResamplingSettings, resample_scanlines
 from lanewright.core.road.scanlines.scanlines import Scanlines
 from lanewright.core.road.scanlines.section_planes import ScanlineSettings, all_scanlines
 from scanned_streets import CURB, scanned, survey_of
@@ -44,7 +44,7 @@ def test_what_a_layer_says_is_what_was_cut(survey):
     spool, count = write_scanlines(survey, settings, ScanlineLayerSettings(simplify=0.0))
     assert count == len(cut)
     found, interval = scanlines_from_features(as_features(spool), survey.frame)
-    long = cut[lengths(cut) >= 0.10]
+    long = cut[line_lengths(cut) >= 0.10]
     assert interval == 0.5 and list(found) == [0] and len(found[0]) == len(long)
     np.testing.assert_array_equal(found[0].first, long.first)
     np.testing.assert_allclose(found[0].station, long.station, atol=1e-4)
@@ -57,7 +57,7 @@ def test_a_thinned_scanline_lies_within_its_deviation():
     d = np.linspace(-5.0, 5.0, 1001)
     z = np.where(np.abs(d) > 3.5, CURB, 0.0) + 0.001 * np.sin(40 * d)
     lines = profile(d, z)
-    fewer = thinned(lines, 0.002)
+    fewer = simplified_lines(lines, 0.002)
     assert len(fewer.d) < 30
     assert fewer.d[0] == -5.0 and fewer.d[-1] == 5.0
     upright = np.abs(np.abs(d) - 3.5) < 0.02
@@ -67,7 +67,7 @@ def test_a_thinned_scanline_lies_within_its_deviation():
 
 
 def test_points_along_a_scanline_are_evenly_spaced_around_corners_too():
-    line, d, z, intensity = resampled(profile([-2.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.5, 0.5]), 0.25)
+    line, d, z, intensity = resample_scanlines(profile([-2.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.5, 0.5]), 0.25)
     assert (line == 0).all() and len(d) == 15
     np.testing.assert_allclose(np.hypot(np.diff(d), np.diff(z)), 0.25)
     np.testing.assert_allclose(intensity[[0, 4, 8, 10, 14]], [0.0, 0.5, 1.0, 2.0, 3.0])
