@@ -9,7 +9,7 @@ import shapely
 from ..common.errors import Cancelled, RoadExtractionError
 from ..common.progress import Progress
 from ..io.gdal_errors import gdal_exceptions
-from ..io.geotiff import TILE
+from ..io.geotiff import GEOTIFF_TILE
 from .georeference import node_grid, own_pixel_size
 
 GDAL_CACHE = 128_000_000     # bytes of GDAL's cache: blocks beyond it are written while the work goes on, not all at its end
@@ -204,5 +204,5 @@ def _warp_options(found, bounds):
 
 
 def _file_options(image):
-    return ["TILED=YES", f"BLOCKXSIZE={TILE}", f"BLOCKYSIZE={TILE}", "COMPRESS=DEFLATE", "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS",
+    return ["TILED=YES", f"BLOCKXSIZE={GEOTIFF_TILE}", f"BLOCKYSIZE={GEOTIFF_TILE}", "COMPRESS=DEFLATE", "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS",
             f"PREDICTOR={3 if image.kind == 'real' else 2}"]
