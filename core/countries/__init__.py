@@ -1,0 +1,11 @@
+"""What road authorities prescribe, country by country.
+
+In: the name of a country. Out: a `Country` with lane widths, line widths, dash patterns and a design code, each with its source.
+"""
+
+from __future__ import annotations
+
+from ..lazy import public
+
+__getattr__, __all__ = public(__name__, {"Country": "catalogue", "DesignSpeed": "catalogue",
+                                            "COUNTRIES": "catalogue", "country": "catalogue"})

@@ -1,0 +1,22 @@
+"""China: city roads."""
+
+from __future__ import annotations
+
+from .model import Country, DashPattern
+from .neutral import NEUTRAL
+
+CHINA = Country(
+    name="china",
+    narrowest_lane=2.75,
+    widest_lane=5.0,
+    usual_lane=3.5,
+    longest_dash=7.5,
+    line_widths=(0.10, 0.15, 0.20),
+    dash_patterns=(DashPattern(2.0, 4.0, "below 60 km/h"), DashPattern(6.0, 9.0, "60 km/h and more")),
+    design_code=NEUTRAL.design_code,
+    design_speeds=NEUTRAL.design_speeds,
+    sources=(
+        "Dashes and widths of lane lines: GB 51038-2015, 12.3.2 (6 m and 9 m, 15 cm wide, at 60 km/h and more; 2 m and 4 m, 10 cm, below).",
+        "Design code: CJJ 37-2012 as printed in the driving-line thesis (University of Waterloo, 2018), table 4.11.",
+    ),
+)

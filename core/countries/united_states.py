@@ -1,0 +1,29 @@
+"""United States of America."""
+
+from __future__ import annotations
+
+from .model import Country, DashPattern, DesignSpeed
+
+FOOT = 0.3048            # m
+MILE = 1.609344          # km
+SUPERELEVATION = 0.08    # greatest crossfall in curves
+# Design speed, miles per hour, and the greatest side friction at it
+SIDE_FRICTION = ((20, 0.27), (30, 0.20), (40, 0.16), (50, 0.14), (60, 0.12), (70, 0.10))
+
+UNITED_STATES = Country(
+    name="united-states",
+    narrowest_lane=2.7,
+    widest_lane=5.0,
+    usual_lane=12 * FOOT,
+    longest_dash=4.5,
+    line_widths=(4 * FOOT / 12, 6 * FOOT / 12, 8 * FOOT / 12, 12 * FOOT / 12),
+    dash_patterns=(DashPattern(10 * FOOT, 30 * FOOT, "lane and centre lines"), DashPattern(3 * FOOT, 9 * FOOT, "line extensions")),
+    design_code="AASHTO Green Book, 8 % superelevation",
+    design_speeds=tuple(DesignSpeed(round(speed * MILE), speed**2 / (15 * (SUPERELEVATION + friction)) * FOOT)
+                        for speed, friction in SIDE_FRICTION),
+    sources=(
+        "Lines and dashes: MUTCD 3A.06: dashes of 10 ft, gaps of 30 ft; a normal line is 4 to 6 in wide, a wide line at least twice as much.",
+        "Design code: AASHTO, A Policy on Geometric Design of Highways and Streets: R = V^2 / (15 (e + f)), V in mph, R in ft, "
+        "with the side friction factors of its 2004 edition.",
+    ),
+)
