@@ -16,6 +16,7 @@ from ..intensity.correction import IntensitySettings, correct_intensity
 from ..intensity.image import ImageSettings, IntensityImage, check_fits, write_intensity_image
 from ..markings.lines.fit import LineSettings, fit_marking_lines, named_by_lines
 from ..markings.objects.cluster import ClusterSettings, cluster_markings
+from ..markings.objects.marking_objects import markings_to_features
 from ..markings.objects.outliers import OutlierSettings, remove_outliers
 from ..markings.paint.extract import MarkingSettings, extract_markings
 from ..road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
@@ -179,11 +180,10 @@ def _paint(result, image_path, settings, stages):
     if len(points):
         points = stages.run("outliers", "Removing outliers …", remove_outliers, points, settings.outliers)
     result.counts["marking_points_kept"] = len(points)
-    result.markings, clustered = stages.run("clusters", "Clustering markings …", cluster_markings,
-                                            points, frame, settings.clusters)
+    markings, clustered = stages.run("clusters", "Clustering markings …", cluster_markings, points, frame, settings.clusters)
     result.marking_lines = stages.run("lines", "Fitting marking lines …", fit_marking_lines,
-                                      clustered, result.markings, frame, settings.lines)
-    named_by_lines(result.markings, result.marking_lines)
+                                      clustered, markings, frame, settings.lines)
+    result.markings = markings_to_features(named_by_lines(markings, result.marking_lines, frame), frame)
     result.marking_curvature = marking_curvature(_places(clustered), result.marking_lines.geometries, frame.origin)
     result.driving_lines, result.curve_elements = stages.run(
         "driving", "Making driving lines …", driving_lines, result.marking_lines, frame, settings.driving,

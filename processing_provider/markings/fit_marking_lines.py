@@ -54,12 +54,13 @@ class FitMarkingLines(LanewrightAlgorithm):
 
     def work(self, call, progress):
         from ...core.markings.lines.fit import fit_marking_lines, named_by_lines
+        from ...core.markings.objects.marking_objects import markings_from_features, with_kinds_of
 
-        markings = call.features("MARKINGS", MARKINGS, "PolygonZ")
+        layer = call.features("MARKINGS", MARKINGS, "PolygonZ")
         points = paint_of(call, "CLUSTERED_POINTS", progress.part(0.0, 0.2))
-        frame = frame_of(call, points.crs, progress, points, {"MARKINGS": markings})
+        frame = frame_of(call, points.crs, progress, points, {"MARKINGS": layer})
+        markings = markings_from_features(layer, frame)
         lines = fit_marking_lines(points, markings, frame, call.settings(LINE_KNOBS), progress.part(0.2, 1.0))
         call.layer("MARKING_LINES", lines)
         if call.wants("NAMED_MARKINGS"):
-            named_by_lines(markings, lines)
-            call.layer("NAMED_MARKINGS", markings)
+            call.layer("NAMED_MARKINGS", with_kinds_of(layer, named_by_lines(markings, lines, frame)))

@@ -10,6 +10,7 @@ from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.intensity.image import IntensityImage, write_intensity_image
 from lanewright.core.markings.lines.fit import fit_marking_lines
 from lanewright.core.markings.objects.cluster import cluster_markings
+from lanewright.core.markings.objects.marking_objects import markings_to_features
 from lanewright.core.markings.objects.outliers import remove_outliers
 from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.pipeline.road_map import RoadMapSettings
@@ -63,11 +64,12 @@ def _outliers(w, settings):
 
 
 def _clusters(w, settings):
-    w.markings, w.clustered = cluster_markings(w.kept, w.frame, settings.clusters)
+    w.marking_objects, w.clustered = cluster_markings(w.kept, w.frame, settings.clusters)
+    w.markings = markings_to_features(w.marking_objects, w.frame)
 
 
 def _lines(w, settings):
-    w.lines = fit_marking_lines(w.clustered, w.markings, w.frame, settings.lines)
+    w.lines = fit_marking_lines(w.clustered, w.marking_objects, w.frame, settings.lines)
 
 
 def _driving(w, settings):

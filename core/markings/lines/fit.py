@@ -27,31 +27,30 @@ from .strands import line_paint, trace
 ON_LINE = 0.15   # m between a marking and the line along it
 
 
-def named_by_lines(markings, lines):
-    """Give markings of lines (use keep) the `kind` of the marking line that runs along them.
+def named_by_lines(markings, lines, frame):
+    """Markings of lines (use keep) with the `kind` of the marking line that runs along them.
 
     Parameters
     ----------
-    markings : Features MARKINGS, whose rows are changed
+    markings : MarkingObjects
     lines : Features MARKING_LINES fitted to them
+    frame : RoadFrame
 
     Returns
     -------
-    how many rows have another class now
+    MarkingObjects, the same with the new names
     """
-    rows = [k for k, row in enumerate(markings.rows) if row["class"] in LINES and row["use"] == "keep"]
-    if not rows or not len(lines):
-        return 0
-    places = shapely.point_on_surface(np.array([markings.geometries[k] for k in rows], object))
+    rows = np.flatnonzero(markings.keep & np.isin(markings.kind.astype(str), LINES))
+    if not len(rows) or not len(lines):
+        return markings
+    places = shapely.point_on_surface(markings.outlines.polygons(frame.origin)[rows])
     tree = shapely.STRtree(np.array(lines.geometries, object))
     of, line = tree.query_nearest(places, max_distance=ON_LINE, all_matches=False)
-    changed = 0
-    for k, j in zip(of.tolist(), line.tolist()):
-        row, found = markings.rows[rows[k]], lines.rows[j]
-        if row["road"] == found["road"] and row["class"] != found["kind"]:
-            row["class"] = found["kind"]
-            changed += 1
-    return changed
+    kind = markings.kind.copy()
+    for k, j in zip(rows[of].tolist(), line.tolist()):
+        if markings.road[k] == lines.rows[j]["road"]:
+            kind[k] = lines.rows[j]["kind"]
+    return markings.with_kinds(kind)
 
 @dataclass(frozen=True)
 class LineSettings:
@@ -85,7 +84,7 @@ def fit_marking_lines(clustered_points, markings, frame, settings=LineSettings()
     Parameters
     ----------
     clustered_points : RoadPoints with `cluster`
-    markings : Features MARKINGS of the same clusters
+    markings : MarkingObjects of the same clusters
     frame : RoadFrame
 
     Returns
@@ -112,14 +111,14 @@ def fit_marking_lines(clustered_points, markings, frame, settings=LineSettings()
         part.at(0.1)
         strands = trace(records, rank)
         part.at(0.4)
-        hatched = line_choice.bars(markings, road, frame)
+        hatched = line_choice.bars(markings, road)
         lines, drift = _linked(strands, settings)
         # a line that leads up to a hatched area may be taken for its border: linked anew without that, it goes on behind the area
         while borders := line_choice.hatching_borders(lines, hatched):
             strands = [strand for strand in strands if not any(strand is border for border in borders)]
             lines, drift = _linked(strands, settings)
         part.at(0.5)
-        chosen = line_choice.choose(lines, drift, line_choice.crossings(markings, road, frame), settings.min_paint,
+        chosen = line_choice.choose(lines, drift, line_choice.crossings(markings, road), settings.min_paint,
                                     hatched, frame.passes_of(road))
         dropped += len(lines) - len(chosen)
         shapes, unwanted = shapes_of([one.line for one in chosen], [one.span for one in chosen], frame.road(road), drift,

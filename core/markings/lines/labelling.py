@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-import shapely
 
 from ...curves.base import median
 from ..objects.classify import LANE
@@ -136,27 +135,21 @@ class Chosen:
         return self.pieces[0].first, self.pieces[-1].last
 
 
-def crossings(markings, road, frame):
+def crossings(markings, road):
     """(K, 4) first and last station, least and greatest offset of zebra crossings and stop lines of a road."""
-    return _extents(markings, road, frame, ("zebra", "stop"))
+    return _extents(markings, road, ("zebra", "stop"))
 
 
-def bars(markings, road, frame):
+def bars(markings, road):
     """(K, 4) the same of the bars of hatched areas."""
-    found = _extents(markings, road, frame, ("hatch",))
+    found = _extents(markings, road, ("hatch",))
     return found[found[:, 1] - found[:, 0] < BAR]
 
 
-def _extents(markings, road, frame, classes):
-    shown = [geometry for geometry, row in markings if row["road"] == road and row["class"] in classes]
-    places, owner = shapely.get_coordinates(np.asarray(shown, object), return_index=True)
-    s, d = frame.road(road).locate(*frame.to_local(places[:, 0], places[:, 1])) if len(places) else np.empty((2, 0))
-    known = np.isfinite(s)
-    s, d, owner = s[known], d[known], owner[known]
-    if not len(s):
-        return np.empty((0, 4))
-    starts = np.flatnonzero(np.r_[True, np.diff(owner) != 0])
-    return np.stack([end.reduceat(values, starts) for values in (s, d) for end in (np.minimum, np.maximum)], axis=1)
+def _extents(markings, road, kinds):
+    shown = (markings.road == road) & np.isin(markings.kind.astype(str), kinds)
+    found = markings.extent[shown]
+    return found[np.isfinite(found[:, 0])]
 
 
 def choose(lines, drift, crossed, min_paint, hatched=np.empty((0, 4)), passes=()):

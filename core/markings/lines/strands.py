@@ -62,28 +62,28 @@ def line_paint(records, markings, road):
     Parameters
     ----------
     records : N points of one road with `cluster`
-    markings : Features MARKINGS
+    markings : MarkingObjects
     road : number
 
     Returns
     -------
     records, and the class of each as an index into LINES, or len(LINES) for a mixed marking
     """
-    kind, length = {}, {}
-    for row in markings.rows:
-        if row["road"] == road:
-            kind[row["cluster"]] = LINES.index(row["class"]) if row["use"] == "keep" and row["class"] in LINES else None
-            length[row["cluster"]] = row.get("length_m") or 0.0
-    known = sorted(kind)
-    if not known or not len(records):
+    here = np.flatnonzero(markings.road == road)
+    if not len(here) or not len(records):
         return records[:0], np.empty(0, np.int64)
+    # of a marking of several parts the last one counts
+    known, last = np.unique(markings.cluster[here][::-1], return_index=True)
+    here = here[::-1][last]
+    ranks = np.full(len(known), len(LINES))
+    for k, name in enumerate(LINES):
+        ranks[markings.keep[here] & (markings.kind[here] == name)] = k
+    mixed_ones = (ranks == len(LINES)) & (markings.length[here] > LONGER_THAN_SYMBOLS)
     number = records["cluster"]
     place = np.clip(np.searchsorted(known, number), 0, len(known) - 1)
-    listed = np.asarray(known)[place] == number
-    rank = np.array([len(LINES) if kind[k] is None else kind[k] for k in known])[place]
-    mixed_ones = np.array([kind[k] is None and length[k] > LONGER_THAN_SYMBOLS for k in known])[place]
+    listed, rank = known[place] == number, ranks[place]
     is_line = listed & (rank < len(LINES))
-    mixed = listed & mixed_ones
+    mixed = listed & mixed_ones[place]
     keep = is_line | (mixed & _narrow_there(records, number, mixed))
     return records[keep], rank[keep]
 

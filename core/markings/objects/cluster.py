@@ -12,16 +12,15 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from ...common.features import Features
 from ...common.order_statistics import order_by
 from ...common.progress import Progress
-from ...common.schemas import MARKINGS
 from ...common.setting import check_limits, setting
 from ...curves.base import median
 from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
-from ..objects import outline as polygons
 from .classify import LINES, NOT_PAINT, ClassSettings, classify, contrast, too_pale
 from .connected_cells import components, occupied
+from .marking_objects import marking_objects
+from .outline import band, cell_outline, painted_cells, parts, to_local
 from .shape import CELL, measure
 from .split_merge import join_fragments, split_compounds
 
@@ -60,11 +59,11 @@ def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress
 
     Returns
     -------
-    MARKINGS : Features, one polygon a marking; one that wear or a shadow cut apart has
+    markings : MarkingObjects, one polygon a marking; one that wear or a shadow cut apart has
         several, with one `cluster` number
     clustered : RoadPoints with `cluster`, the number of the marking; 0 on what is no marking
     """
-    markings = Features("PolygonZ", MARKINGS, crs=marking_points.crs)
+    rows, polygons = [], []
     clustered = replace(marking_points, store=marking_points.store.with_column("cluster"), has_cluster=True)
     number, refused = 0, 0
     roads = marking_points.roads()
@@ -78,31 +77,33 @@ def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress
         joins = join_fragments(pieces, settings.classes.max_width)
         again, starts, labels = _by_cluster(_relabelled(records, starts, joins), settings.min_points)
         records, order = records.take(again), order[again]
-        rows = list(zip(starts[:-1].tolist(), starts[1:].tolist()))
+        bounds = list(zip(starts[:-1].tolist(), starts[1:].tolist()))
         s, d = records["s"], records["d"]
         alone = _alone(pieces, joins)
-        shapes = [alone.get(label) or measure(s[a:b], d[a:b]) for label, (a, b) in zip(labels.tolist(), rows)]
+        shapes = [alone.get(label) or measure(s[a:b], d[a:b]) for label, (a, b) in zip(labels.tolist(), bounds)]
         half_width, hidden = records["half_width"].astype(float), records["covered"]
-        half_widths = [median(half_width[a:b]) * 1e-3 for a, b in rows]
-        covered = [float(np.count_nonzero(hidden[a:b])) / (b - a) for a, b in rows]
+        half_widths = [median(half_width[a:b]) * 1e-3 for a, b in bounds]
+        covered = [float(np.count_nonzero(hidden[a:b])) / (b - a) for a, b in bounds]
         kinds = classify(shapes, half_widths, settings.classes, covered)
         if marking_points.has_corrected:
             bright = contrast(Points(records).value, records["s"], starts)
             kinds = [(NOT_PAINT, "other") if too_pale(share, kind) else (kind, use) for share, (kind, use) in zip(bright.tolist(), kinds)]
         cluster = np.zeros(len(records), np.int32)
-        for i in sorted(range(len(rows)), key=lambda i: (shapes[i].s0, shapes[i].d0, shapes[i].s1)):
+        for i in sorted(range(len(bounds)), key=lambda i: (shapes[i].s0, shapes[i].d0, shapes[i].s1)):
             if kinds[i][0] == NOT_PAINT:
                 refused += 1
                 continue
             number += 1
-            a, b = rows[i]
+            a, b = bounds[i]
             cluster[order[a:b]] = number
-            _add(markings, records[a:b], shapes[i], kinds[i], number, road, frame)
-            part.at(0.4 + 0.6 * number / max(len(rows), 1))
+            for polygon in _outline(records[a:b], shapes[i], kinds[i][0], frame.road(road)):
+                polygons.append(polygon)
+                rows.append(_row(records[a:b], shapes[i], kinds[i], number, road, frame))
+            part.at(0.4 + 0.6 * number / max(len(bounds), 1))
         _put(clustered.store, road, cluster, marking_points)
     progress.say(f"Markings: {number} found; {refused} clusters were left out as gutters, seams, covers, specks or the feet of what "
                  "stands on the road.")
-    return markings, clustered
+    return marking_objects(rows, polygons, frame, marking_points.crs), clustered
 
 
 def _put(store, road, cluster, points):
@@ -207,18 +208,21 @@ def _by_cluster(labels, fewest):
     return order, np.r_[starts, len(labels)], labels[starts]
 
 
-def _add(markings, records, shape, kind, number, road, frame):
-    if kind[0] in STRIPS and not (kind[0] == "zebra" and abs(shape.direction) > SQUARE_TO_ROAD):
-        drawn = polygons.band(records["s"], records["d"], shape)
+def _outline(records, shape, kind, road):
+    """The polygons of one marking in local coordinates, from the road's start on."""
+    if kind in STRIPS and not (kind == "zebra" and abs(shape.direction) > SQUARE_TO_ROAD):
+        drawn = band(records["s"], records["d"], shape)
     else:
-        drawn = polygons.outline(*polygons.painted_cells(records["s"] * COORDINATE_SCALE, records["d"] * COORDINATE_SCALE))
+        drawn = cell_outline(*painted_cells(records["s"] * COORDINATE_SCALE, records["d"] * COORDINATE_SCALE))
     places = np.stack([records["x"], records["y"], records["z"]], axis=1) * COORDINATE_SCALE
-    scanned_from = _scanning_distance(records, frame)
-    for part in polygons.parts(drawn):
-        geometry = polygons.to_map(part, frame.road(road), frame.origin, places)
-        markings.add(geometry, road=int(road), cluster=number, use=kind[1], station_m=shape.s0, offset_m=shape.offset,
-                     length_m=shape.length, width_m=shape.width, elongation=shape.elongation, scan_m=scanned_from,
-                     area_m2=float(geometry.area), points=shape.points, **{"class": kind[0]})
+    return [to_local(part, road, places) for part in parts(drawn)]
+
+
+def _row(records, shape, kind, number, road, frame):
+    """The fields of one marking."""
+    return dict(road=int(road), cluster=number, use=kind[1], station_m=shape.s0, offset_m=shape.offset, length_m=shape.length,
+                width_m=shape.width, elongation=shape.elongation, scan_m=_scanning_distance(records, frame),
+                points=shape.points, **{"class": kind[0]})
 
 
 def _scanning_distance(records, frame):

@@ -80,7 +80,7 @@ def _without_small_holes(mask):
     return mask
 
 
-def outline(mask, first):
+def cell_outline(mask, first):
     """Shapely polygon or multipolygon in (s, d) of the cells that are on, its staircase smoothed."""
     edges = np.diff(np.pad(mask, ((1, 1), (0, 0))).astype(np.int8), axis=0)
     column, start = np.nonzero(edges.T == 1)
@@ -98,14 +98,13 @@ def parts(shape):
     return sorted(pieces, key=lambda piece: piece.bounds)
 
 
-def to_map(shape, road, origin, places):
-    """The outline in map coordinates with Z.
+def to_local(shape, road, places):
+    """The outline in local coordinates with Z.
 
     Parameters
     ----------
     shape : polygon in (s, d)
     road : Road
-    origin : (3,) what local coordinates leave out
     places : (N, 3) local x, y, z of the cluster's points
 
     Returns
@@ -119,4 +118,4 @@ def to_map(shape, road, origin, places):
     _, nearest = cKDTree(places[:, :2], balanced_tree=False, compact_nodes=False).query(np.c_[x, y], k)
     z = medians(places[:, 2][nearest.reshape(len(x), k)])[:, 0]
     lifted = shapely.force_3d(shape)
-    return shapely.set_coordinates(lifted, np.c_[x + origin[0], y + origin[1], z + origin[2]])
+    return shapely.set_coordinates(lifted, np.c_[x, y, z])

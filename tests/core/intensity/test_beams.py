@@ -66,4 +66,4 @@ def test_a_hatched_island_under_unequal_beams_is_found_and_grey_asphalt_is_not(t
     assert paint(found.x, found.y).mean() > 0.8
     assert paint(found.x, found.y).sum() > 0.6 * paint(everything.x, everything.y).sum()
     markings, _ = cluster_markings(marked, frame)
-    assert 3.0 < sum(g.area for g in markings.geometries) < 8.0
+    assert 3.0 < sum(g.area for g in markings.outlines.polygons()) < 8.0

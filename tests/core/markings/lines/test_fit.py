@@ -11,6 +11,7 @@ from lanewright.core.common.progress import Progress
 from lanewright.core.common.schemas import MARKINGS
 from lanewright.core.curves.model_selection import curve_of
 from lanewright.core.markings.lines.fit import LineSettings, fit_marking_lines
+from lanewright.core.markings.objects.marking_objects import markings_from_features
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
@@ -92,7 +93,7 @@ class Street:
             outline = shapely.force_3d(shapely.convex_hull(shapely.multipoints(place[mine])), UP)
             markings.add(outline, road=0, cluster=k + 1, station_m=float(station[mine].min()),
                          offset_m=float(np.median(offset[mine])), **row)
-        return fit_marking_lines(points, markings, self.frame, settings, progress)
+        return fit_marking_lines(points, markings_from_features(markings, self.frame), self.frame, settings, progress)
 
     def distance(self, geometry, offset):
         """(M,) distances in plan of a drawn line's vertices to the axis' parallel."""
@@ -422,7 +423,7 @@ def test_points_that_were_not_clustered_are_refused():
     street = Street()
     points = RoadPoints.empty_like(origin=street.frame.origin)
     with pytest.raises(RoadExtractionError, match="Cluster markings"):
-        fit_marking_lines(points, Features("PolygonZ", MARKINGS), street.frame)
+        fit_marking_lines(points, markings_from_features(Features("PolygonZ", MARKINGS), street.frame), street.frame)
 
 
 def test_settings_out_of_range_are_refused():

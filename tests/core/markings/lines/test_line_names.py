@@ -1,9 +1,16 @@
 """Markings have the names of the lines they make."""
 
+import numpy as np
 import shapely
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import MARKING_LINES, MARKINGS
 from lanewright.core.markings.lines.fit import named_by_lines
+from lanewright.core.markings.objects.marking_objects import markings_from_features
+from lanewright.core.survey.frame.road_frame import build_frame
+from lanewright.core.survey.trajectory.trajectory import Trajectory
+
+EAST = np.arange(-5.0, 30.0, 0.1)
+FRAME = build_frame(Trajectory(0.01 * np.arange(len(EAST)), EAST, np.full(len(EAST), -2.0), np.full(len(EAST), 2.0)))
 
 
 def street(*lines):
@@ -20,11 +27,13 @@ def street(*lines):
 
 def test_the_dashes_of_a_centre_line_are_centre_line_and_nothing_else_changes_its_name():
     markings, lines = street((0.0, "centre"), (4.0, "edge"))
-    assert named_by_lines(markings, lines) == 3
-    assert markings.column("class") == ["centre"] * 3 + ["arrow", "edge"]
+    objects = markings_from_features(markings, FRAME)
+    assert named_by_lines(objects, lines, FRAME).kind.tolist() == ["centre"] * 3 + ["arrow", "edge"]
+    assert objects.kind.tolist() == ["lane"] * 3 + ["arrow", "edge"]
 
 
 def test_a_line_beside_a_marking_does_not_name_it():
     markings, lines = street((0.4, "centre"))
-    assert named_by_lines(markings, lines) == 0
-    assert named_by_lines(markings, Features("LineStringZ", MARKING_LINES)) == 0
+    objects = markings_from_features(markings, FRAME)
+    for some in (lines, Features("LineStringZ", MARKING_LINES)):
+        assert named_by_lines(objects, some, FRAME).kind.tolist() == objects.kind.tolist()

@@ -3,15 +3,25 @@
 import numpy as np
 import pytest
 import shapely
+import shapely.affinity
 from lanewright.core.common.errors import RoadExtractionError
+from lanewright.core.common.features import Features
+from lanewright.core.common.schemas import MARKINGS
 from lanewright.core.markings.objects.cluster import ClusterSettings, cluster_markings
+from lanewright.core.markings.objects.marking_objects import markings_from_features, markings_to_features, with_kinds_of
 from painted_streets import assert_same_points, disc, drive, paint, records_at, road_points, shuffled, strip
 
 FRAME = drive()
 
 
+def layer_of(points, frame):
+    """The layer of the markings in some points, and the clustered points."""
+    markings, clustered = cluster_markings(points, frame)
+    return markings_to_features(markings, frame), clustered
+
+
 def markings_of(marks, frame=FRAME, **kind):
-    return cluster_markings(road_points(paint(frame, marks, **kind), frame), frame)[0]
+    return layer_of(road_points(paint(frame, marks, **kind), frame), frame)[0]
 
 
 def classes(markings):
@@ -103,7 +113,7 @@ def test_what_shines_at_the_foot_of_a_parked_car_is_no_marking_and_a_long_line_b
     sides = [strip(20, 24.4, 2.0, 2.1), strip(20, 20.1, 2.0, 3.8), strip(24.3, 24.4, 2.0, 3.8)]
     records = paint(FRAME, [*sides, strip(10, 50, -3.0, -2.85), strip(20, 24.4, 0.0, 0.15)], density=4000)
     records["covered"] = (records["d"] > 15000) | (records["d"] < -20000)
-    markings, _ = cluster_markings(road_points(records, FRAME), FRAME)
+    markings, _ = layer_of(road_points(records, FRAME), FRAME)
     assert sorted(markings.column("offset_m")) == pytest.approx([-2.92, 0.07], abs=0.03)
 
 
@@ -143,14 +153,14 @@ def test_a_stop_line_and_the_dash_that_touches_it_are_what_they_are(side, apart)
     records = paint(FRAME, [strip(20, 20.4, near, far), strip(20.4, 24.4, *sorted((-0.02 * side, 0.13 * side)))], density=4000)
     if apart:
         records = records[(records["s"] + records["d"]) * 1e-4 / apart % 1.0 < 0.15]
-    markings, _ = cluster_markings(road_points(records, FRAME), FRAME)
+    markings, _ = layer_of(road_points(records, FRAME), FRAME)
     assert classes(markings) == ["lane", "stop"]
 
 
 @pytest.mark.parametrize("diameter", [0.40, 0.60, 0.90])
 def test_a_manhole_cover_is_no_marking(diameter):
     points = road_points(paint(FRAME, [disc(30, 1.5, diameter), strip(10, 20, 0.0, 0.15)]), FRAME)
-    markings, clustered = cluster_markings(points, FRAME)
+    markings, clustered = layer_of(points, FRAME)
     assert len(markings) == 1
     found = clustered.all_points()
     assert (found.cluster[found.s > 25] == 0).all() and (found.cluster[found.s < 25] == 1).all()
@@ -159,7 +169,7 @@ def test_a_manhole_cover_is_no_marking(diameter):
 def test_a_manhole_cover_is_none_where_scan_lines_lie_apart():
     records = paint(FRAME, [disc(30, 1.5, 0.60), strip(10, 20, 0.0, 0.15)], density=6000)
     records = records[records["s"] * 1e-4 / 0.125 % 1.0 < 0.2]
-    markings, _ = cluster_markings(road_points(records, FRAME), FRAME)
+    markings, _ = layer_of(road_points(records, FRAME), FRAME)
     assert classes(markings) == ["lane"]
 
 
@@ -215,7 +225,7 @@ def test_a_line_that_every_scan_line_meets_once_is_a_line():
     rng = np.random.default_rng(4)
     s = np.arange(10.0, 30.0, 0.28)
     records = records_at(FRAME, s, rng.uniform(-3.15, -3.0, len(s)), np.full(len(s), 4000.0), 6.0)
-    markings, _ = cluster_markings(road_points(records, FRAME), FRAME)
+    markings, _ = layer_of(road_points(records, FRAME), FRAME)
     assert set(classes(markings)) <= {"lane", "centre"}
     assert sum(markings.column("length_m")) > 15.0
 
@@ -223,7 +233,7 @@ def test_a_line_that_every_scan_line_meets_once_is_a_line():
 def test_a_long_line_so_far_off_that_its_width_cannot_be_told_is_a_line():
     s = np.arange(5.0, 60.0, 0.1)
     records = records_at(FRAME, s, 5.5 + 0.02 * np.sin(7 * s), np.full(len(s), 4000.0), 6.0)
-    markings, _ = cluster_markings(road_points(records, FRAME), FRAME)
+    markings, _ = layer_of(road_points(records, FRAME), FRAME)
     assert set(classes(markings)) == {"edge"}
     assert markings.rows[0]["width_m"] < 0.06
 
@@ -252,7 +262,7 @@ def with_values(marks, value):
     records["corrected"] = value(s, d) * np.random.default_rng(3).normal(1.0, 0.05, len(s))
     points = road_points(records, FRAME)
     points.has_corrected = True
-    return cluster_markings(points, FRAME)[0]
+    return layer_of(points, FRAME)[0]
 
 
 def test_a_seam_and_the_joint_of_a_bridge_that_are_far_paler_than_the_paint_about_are_no_markings():
@@ -294,8 +304,8 @@ def test_a_strip_of_verge_outside_an_edge_line_is_no_marking():
 def test_neither_the_order_of_points_nor_the_length_of_sections_matters():
     marks = [strip(5, 70, 3.0, 3.15), strip(38, 42, 0, 0.45), strip(38, 42, 1, 1.45), strip(38, 42, -1, -0.55)]
     records = paint(FRAME, marks)
-    plain, points = cluster_markings(road_points(records, FRAME), FRAME)
-    other, others = cluster_markings(road_points(shuffled(records), FRAME, section_length=7.0), FRAME)
+    plain, points = layer_of(road_points(records, FRAME), FRAME)
+    other, others = layer_of(road_points(shuffled(records), FRAME, section_length=7.0), FRAME)
     assert plain.rows == other.rows
     assert all(a.equals_exact(b, 0.0) for a, b in zip(plain.geometries, other.geometries))
     assert_same_points(points.all_points().records, others.all_points().records)
@@ -313,7 +323,7 @@ def test_500_km_to_the_east_the_markings_are_the_same():
 
 def test_where_there_is_no_paint_there_are_no_markings():
     points = road_points(paint(FRAME, [strip(10, 20, 0, 0.15)])[:0], FRAME)
-    markings, clustered = cluster_markings(points, FRAME)
+    markings, clustered = layer_of(points, FRAME)
     assert len(markings) == 0 and len(clustered) == 0
 
 
@@ -342,3 +352,27 @@ def test_the_outline_of_hatching_across_the_road_is_hatching_and_no_stop_line():
     assert classes(markings_of(outline + [bar])) == ["hatch", "hatch"]
     assert "stop" not in classes(markings_of(outline))
     assert classes(markings_of([strip(20, 20.4, -3, 0)])) == ["stop"]
+
+
+def test_a_layer_of_markings_that_is_read_again_gives_the_same_objects_and_with_other_names_the_same_polygons():
+    askew_crossing = [lambda s, d, k=k: (np.abs((s - 30) * 0.87 + d * 0.5) < 1.5) & (np.abs(d * 0.87 - (s - 30) * 0.5 - k) < 0.25)
+                      for k in (-1, 0, 1)]
+    points = road_points(paint(FRAME, [strip(5, 20, 3.0, 3.15), *askew_crossing], density=2500), FRAME)
+    objects, _ = cluster_markings(points, FRAME)
+    layer = markings_to_features(objects, FRAME)
+    again = markings_from_features(layer, FRAME)
+    for name in ("road", "cluster", "kind", "keep", "length", "extent"):
+        np.testing.assert_array_equal(getattr(again, name), getattr(objects, name))
+    np.testing.assert_allclose(again.outlines.vertices, objects.outlines.vertices, rtol=0, atol=1e-8)
+    renamed = with_kinds_of(layer, again.with_kinds(np.where(again.kind == "zebra", "hatch", again.kind)))
+    assert "zebra" in classes(layer) and classes(renamed) == sorted(name.replace("zebra", "hatch") for name in classes(layer))
+    assert renamed.geometries == layer.geometries
+
+
+def test_a_layer_drawn_by_hand_without_fields_or_with_an_empty_polygon_is_read():
+    pole = shapely.box(*np.r_[FRAME.to_map(0, 10.0, 1.0), FRAME.to_map(0, 12.0, 1.2)].tolist())
+    drawn = Features("PolygonZ", MARKINGS, [pole, None, shapely.union_all([pole, shapely.affinity.translate(pole, 5.0)])], [{}, {}, {}])
+    found = markings_from_features(drawn, FRAME)
+    assert found.road.tolist() == [-1] * 3 and not found.keep.any()
+    shapes = found.outlines.polygons(FRAME.origin)
+    assert [shape.area for shape in shapes] == pytest.approx([pole.area, 0.0, 2 * pole.area])
