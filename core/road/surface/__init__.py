@@ -1,4 +1,8 @@
 """The road surface.
 
-In: a `Survey` and road edges. Out: the points of the road and the outline of its surface.
+In: a `Survey` and, optionally, road edges. Out: the points of the road and the outline of its surface.
 """
+
+from ...lazy import public
+
+__getattr__, __all__ = public(__name__, {"SurfaceSettings": "extract", "extract_road_surface": "extract", "edge_offsets": "limits"})

@@ -1,6 +1,13 @@
-"""The road surface: the points between the road edges, or as far as the ground stays a road, and their outline."""
+"""The road surface: the points between the road edges, or up to where the ground stops being a road, and their outline.
+
+The height of the road is followed outward from the driven track on a grid of station and offset. Points near that height
+and between the limits of the road belong to its surface.
+"""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,35 +27,47 @@ from .pavement_edge import SurfaceProfiles, grown_offsets
 from .region_growing import follow_road, smooth_road
 from .road_points import OBSTACLE_SQUARE, covered_by_obstacles, points_on_road
 
-WINDOW_ROWS = 10      # rows of cells made at a time: 5 m
-TOLERANCE_FLOOR = 0.03  # m
-TOLERANCE_SIGMAS = 4.0
+if TYPE_CHECKING:
+    from ...survey.open_survey import Survey
+
+WINDOW_ROWS = 10              # rows of cells in memory at a time: 5 m
+TOLERANCE_FLOOR = 0.03        # m, height tolerance of a scanner without noise
+TOLERANCE_SIGMAS = 4.0        # times the noise of the heights, added to it
+TRACK_REACH = 1.5             # m either side of the reference line where ground must be measured
+MIN_ROAD_WIDTH = 0.5          # m between the limits of a row with road
 
 
 @dataclass(frozen=True)
 class SurfaceSettings:
     """What counts as road surface.
 
-    max_width : m from the vehicle's track that a surface without an edge grows at most
-    height_tolerance : m about the road's own height that a point may lie at most;
-        where the scanner's noise allows, less is taken
+    Attributes
+    ----------
+    max_width : m from the vehicle's track; a surface without an edge ends there at the latest
+    height_tolerance : m; points farther above or below the height of the road do not belong to it.
+        A smaller tolerance is used where the noise of the scanner allows it
     """
 
     max_width: float = setting(17.0, 0.5, 100.0, "The farthest surface from the trajectory", "m")
     height_tolerance: float = setting(0.15, 0.01, 1.0, "The height tolerance", "m")
 
     def __post_init__(self):
+        """Check the limits of all settings."""
         check_limits(self)
 
 
 @dataclass
 class Carriageway:
-    """One road's surface in rows of stations.
+    """The surface of one road in rows of station.
 
-    cells, height : the grid (height is the smoothed road's, (rows, columns))
-    right, left : (rows,) offsets of its limits; NaN in rows without road
-    right_bounded, left_bounded : (rows,) whether an edge bounds it there
-    tolerance : m about the height
+    Attributes
+    ----------
+    cells : GroundCells of the road, R rows and C columns
+    height : (R, C) float32 m, local z of the smoothed road
+    ground : (R, C) bool, cells that show the road itself
+    right, left : (R,) m, offsets of its limits; NaN in rows without road
+    right_bounded, left_bounded : (R,) bool, rows in which a measured or bridged edge is the limit
+    tolerance : m above or below the height
     """
 
     cells: GroundCells
@@ -61,26 +80,28 @@ class Carriageway:
     tolerance: float
 
 
-def extract_road_surface(survey, edges=None, settings=SurfaceSettings(), progress=Progress()):
-    """Keep the points of the road surface.
+def extract_road_surface(survey: Survey, edges: Features | None = None, settings: SurfaceSettings = SurfaceSettings(),
+                         progress: Progress = Progress()) -> tuple[RoadPoints, Features]:
+    """Select the points of the road surface and draw its outline.
 
-    Between road edges everything belongs that lies on the road's own height,
-    which is followed from under the vehicle outward: parked cars, people and
-    islands do not. On a side, or a stretch of it, without an edge the surface
-    ends where the ground stops being a road (a step, another slope, rough or
-    differently bright ground), at most `max_width` from the track. Across an
-    opening up to 30 m long the line from edge to edge bounds it.
+    Between road edges, all points at the height of the road belong to the surface. The height is followed from the
+    track of the vehicle outward; parked cars, people and islands are not at this height. Where a side has no
+    edge, the surface ends where the ground stops being a road (a step, another slope, rougher or differently
+    bright ground), at most `max_width` from the track. An opening of up to 30 m in an edge is closed by a
+    straight line.
 
     Parameters
     ----------
     survey : Survey
     edges : Features ROAD_EDGES in map coordinates, or None
+    settings : SurfaceSettings
+    progress : Progress
 
     Returns
     -------
-    RoadPoints with `half_width`, which stay in the survey's store, and Features
-    ROAD_SURFACE: PolygonZ, `status` measured where both sides have an edge
-    (measured or bridged), grown elsewhere.
+    road_points : RoadPoints with `half_width` and `covered`; they stay in the survey's store
+    surface : Features ROAD_SURFACE, PolygonZ in map coordinates. `status` is measured where both sides have a
+        measured or bridged edge, else grown
 
     Raises
     ------
@@ -94,21 +115,35 @@ def extract_road_surface(survey, edges=None, settings=SurfaceSettings(), progres
         part = progress.part(k / len(roads), (k + 1) / len(roads))
         carriageway = find_carriageway(survey, road, edges, settings, part.part(0.0, 0.5))
         if carriageway is None:
-            progress.warn(f"Road {road}: nothing was scanned near the track, so it has no surface.")
+            progress.warn(f"Road {road}: no ground was measured near the track, so this road has no surface.")
             continue
         per_row = _take_points(survey, road, carriageway, road_points, part.part(0.5, 1.0))
         add_outlines(surface, survey.frame, road, carriageway, per_row)
     if not len(road_points):
-        raise RoadExtractionError("No road surface was found: nothing was scanned under or beside the trajectory at the height "
+        raise RoadExtractionError("No road surface was found: no points lie under or beside the trajectory at the height "
                                   "of the road. Check that the trajectory belongs to the point cloud.")
     grown = sum(g.area for g, r in surface if r["status"] == "grown")
     progress.say(f"Road surface: {len(road_points):,} points, {sum(g.area for g in surface.geometries):.0f} m², "
-                 f"{grown:.0f} m² of it grown without an edge.")
+                 f"{grown:.0f} m² of it without a measured edge on both sides.")
     return road_points, surface
 
 
-def find_carriageway(survey, road, edges, settings, progress=Progress()):
-    """Height and limits of one road, row by row; None where nothing lies near its track."""
+def find_carriageway(survey: Survey, road: int, edges: Features | None, settings: SurfaceSettings,
+                     progress: Progress = Progress()) -> Carriageway | None:
+    """Height and limits of one road, row by row.
+
+    Parameters
+    ----------
+    survey : Survey
+    road : number of the road
+    edges : Features ROAD_EDGES in map coordinates, or None
+    settings : SurfaceSettings
+    progress : Progress
+
+    Returns
+    -------
+    Carriageway, or None where no ground was measured near the track
+    """
     start, end = survey.store.span(road)
     windows = [WINDOW_ROWS * k for k in range(int(np.floor(start / ROW_LENGTH / WINDOW_ROWS)), int(np.ceil(end / ROW_LENGTH / WINDOW_ROWS)))]
 
@@ -116,7 +151,7 @@ def find_carriageway(survey, road, edges, settings, progress=Progress()):
     measured = edge_offsets(edges, survey.frame, road, stations)
     missing = np.isnan(measured["left"][0]) | np.isnan(measured["right"][0])
 
-    def look(row):
+    def measure(row):
         points = survey.window(road, row * ROW_LENGTH, (row + WINDOW_ROWS) * ROW_LENGTH)
         profiles = None
         if missing[row - windows[0]:row - windows[0] + WINDOW_ROWS].any():
@@ -126,9 +161,9 @@ def find_carriageway(survey, road, edges, settings, progress=Progress()):
     def road_height(s):
         return survey.road_height(road, s)
 
-    seen = list(in_order(look, windows, progress))
-    cells = GroundCells.joined([part for part, _ in seen])
-    profiles = [part for _, part in seen if part is not None]
+    measured_windows = list(in_order(measure, windows, progress))
+    cells = GroundCells.joined([part for part, _ in measured_windows])
+    profiles = [part for _, part in measured_windows if part is not None]
     prior = road_height(stations)
     followed = follow_road(cells, prior)
     if followed is None:
@@ -142,31 +177,31 @@ def find_carriageway(survey, road, edges, settings, progress=Progress()):
             grown = grown_offsets(SurfaceProfiles.joined(profiles), cells, height - prior[:, None], sign, track, settings.max_width)
             offset = np.where(np.isnan(offset), grown, offset)
         limits[side] = offset, known
-    there = _has_road(followed.ground, cells.offsets) & (limits["left"][0] > limits["right"][0] + 0.5)
+    there = _has_road(followed.ground, cells.offsets) & (limits["left"][0] > limits["right"][0] + MIN_ROAD_WIDTH)
     tolerance = float(np.clip(TOLERANCE_FLOOR + TOLERANCE_SIGMAS * followed.noise, 0.0, settings.height_tolerance))
     return Carriageway(cells, height, followed.ground, np.where(there, limits["right"][0], np.nan),
                        np.where(there, limits["left"][0], np.nan), limits["right"][1], limits["left"][1], tolerance)
 
 
 def _has_road(ground, offsets):
-    """Rows that show ground near the reference line, or lie within 2.5 m of such."""
-    seen = ground[:, np.abs(offsets) < 1.5].any(axis=1)
-    return np.convolve(seen, np.ones(11), "same") > 0
+    """Rows that show ground near the reference line, or lie within 2.5 m of such a row."""
+    measured = ground[:, np.abs(offsets) < TRACK_REACH].any(axis=1)
+    return np.convolve(measured, np.ones(11), "same") > 0
 
 
 def _take_points(survey, road, carriageway, road_points, progress):
-    """Choose one road's points; returns how many lie in each row of cells."""
+    """Put the surface points of one road into `road_points`; returns the number of points in each row of cells."""
     per_row = np.zeros(len(carriageway.height), np.int64)
     store = survey.store
 
     def take(number):
         start, end = (np.array([number, number + 1]) * store.section_length).tolist()
-        # what stands beside a point may stand in the next section
+        # an obstacle beside a point may lie in the next section
         first_square, last_square = np.floor(start / OBSTACLE_SQUARE - 1.01), np.ceil(end / OBSTACLE_SQUARE + 1.01)
         points = survey.window(road, first_square * OBSTACLE_SQUARE, last_square * OBSTACLE_SQUARE)
         found = points_on_road(points, carriageway)
         beneath = covered_by_obstacles(points[found.surface], points[found.above])
-        # points come in order of station
+        # points are sorted by station
         stations = points.records["s"]
         first, last = np.searchsorted(stations, np.array([store.first_unit(number), store.first_unit(number + 1)], stations.dtype))
         own = slice(*np.searchsorted(found.surface, [first, last]))

@@ -1,30 +1,46 @@
-"""The ground in cells of station and offset: how high the lowest layer lies, how rough and how bright it is."""
+"""The ground in cells of station and offset: height, roughness and brightness of the lowest layer of points.
 
+Parked cars, branches and signs lie above the lowest layer. The cells are the input of the road's height
+(`region_growing`) and of its limits (`pavement_edge`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ...common.order_statistics import order_by
-from ...survey.store.records import COORDINATE_SCALE
+from ...survey.store.records import COORDINATE_SCALE, Points
 
-ROW_LENGTH, COLUMN_WIDTH = 0.5, 0.25   # m along and across the road
-GROUND_LAYER_JUMP = 0.06         # m between two layers: ground below, a car's sill above
-GROUND_LAYER_DEPTH = 0.12        # m of the lowest layer that count as ground: a wall has no upper end
-MIN_LAYER_SHARE = 0.08              # of a cell's points that the lowest layer holds at least: less is multipath below the road
-GOLDEN_RATIO_32 = 0x9E3779B9       # of 2^32
-MAX_POINTS_PER_CELL = 100                # points of a cell that are looked at: more tell nothing new of it
-POINTS_PER_BATCH = 1 << 15         # points worked at a time: what fits the processor's cache
-MIN_LAYER_POINTS = 3          # points of a layer
-MIN_PLANE_POINTS = 6           # points from which a cell's plane and roughness are taken
-GROUND_REACH, GROUND_REACH_PER_METRE = 0.7, 0.12  # m about the vehicle's road height, and per metre beside the track, where ground may lie
+ROW_LENGTH, COLUMN_WIDTH = 0.5, 0.25  # m along and across the road
+GROUND_LAYER_JUMP = 0.06    # m of height between two layers: the ground and the sill of a car
+GROUND_LAYER_DEPTH = 0.12   # m of the lowest layer that count as ground: a wall is one layer up to its top
+MIN_LAYER_SHARE = 0.08      # of the points of a cell: a smaller lowest layer is multipath below the road
+GOLDEN_RATIO_32 = 0x9E3779B9  # golden ratio times 2^32: its multiples, modulo 2^32, are evenly distributed
+MAX_POINTS_PER_CELL = 100   # denser cells are subsampled: more points do not change the result
+POINTS_PER_BATCH = 1 << 15  # points processed at a time; they fit into the cache of the processor
+MIN_LAYER_POINTS = 3        # points of a layer
+MIN_PLANE_POINTS = 6        # points of a plane; cells with fewer have a mean height and no roughness
+GROUND_REACH, GROUND_REACH_PER_METRE = 0.7, 0.12  # m above or below the road under the vehicle, and more per m of offset
 
 
 @dataclass
 class GroundCells:
-    """(rows, columns) float32 arrays, NaN where there is no ground: `height` (local z of a cell's middle),
-    `rough` (m about the cell's own plane), `brightness` (median intensity), `scatter` (its lower spread as a sigma), and `count`.
+    """Ground on a grid of R rows of station and C columns of offset.
 
-    Row k reaches from row_size * (first_row + k), column j from column_size * (first_column + j).
+    Row k begins at station row_size * (first_row + k), column j at offset column_size * (first_column + j).
+
+    Attributes
+    ----------
+    first_row, first_column : numbers of the first row and column
+    row_size, column_size : m
+    height : (R, C) float32 m, local z at the middle of a cell; NaN where there is no ground
+    rough : (R, C) float32 m, standard deviation about the plane of the cell; NaN where it has no plane
+    brightness : (R, C) float32 raw counts, median intensity; NaN where there is no ground
+    scatter : (R, C) float32 raw counts, standard deviation of the intensity, estimated from the lower quartile
+    count : (R, C) float32, points of the lowest layer
     """
 
     first_row: int
@@ -40,24 +56,36 @@ class GroundCells:
     NAMES = ("height", "rough", "brightness", "scatter", "count")
 
     @classmethod
-    def joined(cls, parts):
-        """The cells of windows that follow on each other."""
+    def joined(cls, parts: Sequence[GroundCells]) -> GroundCells:
+        """The cells of consecutive windows as one grid."""
         return cls(parts[0].first_row, parts[0].first_column, parts[0].row_size, parts[0].column_size,
                    *(np.concatenate([getattr(part, name) for part in parts]) for name in cls.NAMES))
 
     @property
-    def stations(self):
-        """Middles of the rows."""
+    def stations(self) -> np.ndarray:
+        """(R,) m, stations of the middles of the rows."""
         return (self.first_row + np.arange(len(self.height)) + 0.5) * self.row_size
 
     @property
-    def offsets(self):
-        """Middles of the columns."""
+    def offsets(self) -> np.ndarray:
+        """(C,) m, offsets of the middles of the columns."""
         return (self.first_column + np.arange(self.height.shape[1]) + 0.5) * self.column_size
 
 
-def known_median(values, axis):
-    """Median of what is not NaN along an axis; NaN where nothing is known (and no warning in some thread)."""
+def known_median(values: np.ndarray, axis: int) -> np.ndarray:
+    """Median along an axis without the NaN; NaN where all values are NaN.
+
+    Unlike `numpy.nanmedian` it raises no warning, so it can run in worker threads.
+
+    Parameters
+    ----------
+    values : array of floats
+    axis : to be reduced
+
+    Returns
+    -------
+    array of floats without that axis
+    """
     ordered = np.sort(values, axis=axis)
     count = np.isfinite(ordered).sum(axis=axis, keepdims=True)
     low = np.take_along_axis(ordered, np.maximum(count - 1, 0) // 2, axis)
@@ -65,16 +93,17 @@ def known_median(values, axis):
     return np.squeeze(0.5 * (low + high), axis)
 
 
-def ground_cells(points, first_row, rows, reach, road_height, row_size=ROW_LENGTH, column_size=COLUMN_WIDTH):
-    """Cells of a window of the road.
+def ground_cells(points: Points, first_row: int, rows: int, reach: float, road_height: Callable[[np.ndarray], np.ndarray],
+                 row_size: float = ROW_LENGTH, column_size: float = COLUMN_WIDTH) -> GroundCells:
+    """The ground cells of a window of the road.
 
     Parameters
     ----------
     points : Points of the window
-    first_row, rows : which rows to make
-    reach : m either side
-    road_height : function of stations, local z of the road under the vehicle, good to decimetres
-    row_size, column_size : m along and across
+    first_row, rows : number of the first row, and count of rows
+    reach : m either side of the reference line
+    road_height : function of (N,) stations in m; (N,) local z of the road under the vehicle, accurate to decimetres
+    row_size, column_size : m along and across the road
 
     Returns
     -------
@@ -101,7 +130,7 @@ def ground_cells(points, first_row, rows, reach, road_height, row_size=ROW_LENGT
 
 
 def _near_ground(records, first_row, rows, half, prior, row_size, column_size):
-    """Indices of records in the window and near the road's height, no more of a cell than tell anything, and the cell of each."""
+    """Indices of the records near the height of the road, at most MAX_POINTS_PER_CELL per cell, and the cell of each."""
     prior = np.rint(prior / COORDINATE_SCALE).astype(np.int32)
     along, across = (np.int32(round(size / COORDINATE_SCALE)) for size in (row_size, column_size))
     nowhere = rows * 2 * half
@@ -112,7 +141,7 @@ def _near_ground(records, first_row, rows, half, prior, row_size, column_size):
         row -= np.int32(first_row)
         column = d // across
         column += np.int32(half)
-        # below 0 is far above as a number without a sign
+        # a negative number is very large without its sign
         inside = row.view(np.uint32) < np.uint32(rows)
         inside &= column.view(np.uint32) < np.uint32(2 * half)
         above = z - prior.take(row, mode="clip")
@@ -124,22 +153,22 @@ def _near_ground(records, first_row, rows, half, prior, row_size, column_size):
         row[~inside] = nowhere
         cell[first:first + POINTS_PER_BATCH] = row
         count += np.bincount(row, minlength=nowhere + 1)
-    # multiples of the golden section lie evenly whatever run of them is looked at
+    # multiples of the golden ratio: an even subset whichever points of a cell come one after the other
     share = np.floor(0xFFFFFFFF * np.minimum(MAX_POINTS_PER_CELL / np.maximum(count, 1), 1.0)).astype(np.uint32)
     share[nowhere] = 0
     turn = np.arange(1, POINTS_PER_BATCH + 1, dtype=np.uint32) * np.uint32(GOLDEN_RATIO_32)
     kept = [np.empty(0, np.intp)]
     for first in range(0, len(cell), POINTS_PER_BATCH):
         here = share.take(cell[first:first + POINTS_PER_BATCH])
-        some = np.flatnonzero(turn[:len(here)] + np.uint32(first * GOLDEN_RATIO_32 % 2**32) < here)
-        some += first
-        kept.append(some)
+        selected = np.flatnonzero(turn[:len(here)] + np.uint32(first * GOLDEN_RATIO_32 % 2**32) < here)
+        selected += first
+        kept.append(selected)
     kept = np.concatenate(kept)
     return kept, cell.take(kept)
 
 
 def _in_lowest_layer(cell, z, total):
-    """Mask of points, sorted by cell and height, that belong to the lowest layer of their cell that is no stray."""
+    """Mask of the points in the lowest sufficiently large layer of their cell; points are sorted by cell and height."""
     if not len(cell):
         return np.zeros(0, bool)
     begins = np.r_[True, (np.diff(cell) > 0) | (np.diff(z) > GROUND_LAYER_JUMP)]
@@ -147,15 +176,15 @@ def _in_lowest_layer(cell, z, total):
     size = np.bincount(layer)
     of_cell = cell[begins]
     solid = size >= np.maximum(MIN_LAYER_POINTS, MIN_LAYER_SHARE * total[of_cell])
-    chosen = np.full(len(total), -1)
+    layer_of_cell = np.full(len(total), -1)
     numbers = np.flatnonzero(solid)[::-1]
-    chosen[of_cell[numbers]] = numbers
+    layer_of_cell[of_cell[numbers]] = numbers
     lowest = z[begins]
-    return (chosen[cell] == layer) & (z - lowest[layer] < GROUND_LAYER_DEPTH)
+    return (layer_of_cell[cell] == layer) & (z - lowest[layer] < GROUND_LAYER_DEPTH)
 
 
 def _planes(count, u, v, z):
-    """Height at the middle and roughness of the plane through each cell's points, which lie cell by cell."""
+    """Height at the middle of each cell, and roughness, from a least-squares plane; points are sorted by cell."""
     n = np.maximum(count, 1).astype(float)
     filled = np.flatnonzero(count)
     starts = (np.cumsum(count) - count)[filled]
@@ -169,7 +198,7 @@ def _planes(count, u, v, z):
     mu, mv, mz = mean(u), mean(v), mean(z)
     du, dv, dz = (values - np.repeat(middle, count) for values, middle in ((u, mu), (v, mv), (z, mz)))
     uu, uv, vv, uz, vz, zz = mean(du * du), mean(du * dv), mean(dv * dv), mean(du * dz), mean(dv * dz), mean(dz * dz)
-    # a little ridge keeps cells whose points lie on one line from tilting at will
+    # ridge: the plane of points on one line stays level across that line
     uu, vv = uu + 1e-4, vv + 1e-4
     determinant = uu * vv - uv * uv
     across, along = (uz * vv - vz * uv) / determinant, (vz * uu - uz * uv) / determinant
@@ -181,7 +210,7 @@ def _planes(count, u, v, z):
 
 
 def _medians(at, count, intensity):
-    """Median of each cell's intensities (16 bits) and the lower spread about it."""
+    """Median of the 16-bit intensities of each cell, and their standard deviation from the lower quartile."""
     values = intensity[order_by(intensity, at)].astype(float)
     start = np.cumsum(count) - count
     filled = count >= MIN_LAYER_POINTS

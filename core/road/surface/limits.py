@@ -1,34 +1,42 @@
-"""How far the road reaches on each side: to the road edge, and where none was found as far as edges before and after say."""
+"""The limits of the road from its edges, as offsets at given stations."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 
+from ...common.features import Features
 from ...common.schemas import of_main_curb
 
-MAX_OPENING = 30.0   # m of missing edge across which the road keeps the line from one end to the other
-EDGE_CONTINUATION = 5.0     # m that an edge's offset holds on before its first and after its last vertex
+if TYPE_CHECKING:
+    from ...survey.frame.road_frame import RoadFrame
+
+MAX_OPENING = 30.0       # m of missing edge that is closed by a straight line
+EDGE_CONTINUATION = 5.0  # m by which the offset of an edge holds before its first and after its last vertex
 
 
-def edge_offsets(edges, frame, road, stations):
+def edge_offsets(edges: Features | None, frame: RoadFrame, road: int, stations: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Offsets of the road edges at stations.
 
     Parameters
     ----------
-    edges : Features ROAD_EDGES, or None
+    edges : Features ROAD_EDGES in map coordinates, or None
     frame : RoadFrame
-    road : number
-    stations : (N,) metres, ascending
+    road : number of the road
+    stations : (N,) m, ascending
 
     Returns
     -------
-    dict side -> (offset (N,), seen (N,)): offset is NaN where no edge tells it,
-    `seen` is where a measured or bridged edge does: not an inferred one, and not
-    one carried on across an opening.
+    dict of side (left, right) to (offset, measured): `offset` is (N,) m, NaN where there is no edge;
+    `measured` is (N,) bool, True where a measured or bridged edge gives the offset. It is False for inferred
+    edges and for closed openings.
     """
     found = {}
     for side, sign in (("left", 1.0), ("right", -1.0)):
         offset = np.full(len(stations), np.nan)
-        seen = np.zeros(len(stations), bool)
+        measured = np.zeros(len(stations), bool)
         for geometry, row in edges or ():
             if row.get("side") != side or row.get("part", "bottom") == "top" or not of_main_curb(row) \
                     or (row.get("road") or 0) != road:
@@ -38,16 +46,16 @@ def edge_offsets(edges, frame, road, stations):
                 continue
             inside = (stations >= s[0]) & (stations <= s[-1])
             here = np.interp(stations, s, d)
-            # where two lines run side by side the outer one bounds the road
+            # of two parallel lines the outer one is the limit of the road
             take = inside & ~(sign * offset > sign * here)
             offset[take] = here[take]
-            seen[take] = row.get("status") != "inferred"
-        found[side] = _continued(stations, offset), seen
+            measured[take] = row.get("status") != "inferred"
+        found[side] = _continued(stations, offset), measured
     return found
 
 
 def _along(geometry, frame, road):
-    """Stations and offsets of a line's vertices, ascending."""
+    """Stations and offsets of the vertices of a line, sorted by station."""
     parts = getattr(geometry, "geoms", [geometry])
     places = np.concatenate([shapely.get_coordinates(part) for part in parts]) if geometry is not None else np.empty((0, 2))
     s, d = frame.road(road).locate(*frame.to_local(*places.T)) if len(places) else (np.empty(0), np.empty(0))
@@ -58,7 +66,7 @@ def _along(geometry, frame, road):
 
 
 def _continued(stations, offset):
-    """Offsets with short openings closed by a straight line and the ends held on a little."""
+    """Offsets with short openings closed by a straight line and the ends continued."""
     known = np.flatnonzero(np.isfinite(offset))
     if not len(known):
         return offset

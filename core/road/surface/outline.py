@@ -1,17 +1,32 @@
 """Outlines of the road surface: one polygon for each stretch of one status."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 import shapely
 
+from ...common.features import Features
 from .ground_grid import COLUMN_WIDTH, ROW_LENGTH
 
-MIN_STATUS_LENGTH = 5.0  # m: a shorter change of status is not drawn
+if TYPE_CHECKING:
+    from ...survey.frame.road_frame import RoadFrame
+    from .extract import Carriageway
+
+MIN_STATUS_LENGTH = 5.0  # m: shorter changes of status are not drawn
 
 
-def add_outlines(surface, frame, road, carriageway, points_per_row):
-    """Add the polygons of one road, left limit forth and right limit back, to `surface`.
+def add_outlines(surface: Features, frame: RoadFrame, road: int, carriageway: Carriageway, points_per_row: np.ndarray) -> None:
+    """Add the polygons of one road to a layer; consecutive polygons share two vertices.
 
-    Stretches of one status meet in the two vertices they share.
+    Parameters
+    ----------
+    surface : Features ROAD_SURFACE, to which PolygonZ in map coordinates are added
+    frame : RoadFrame
+    road : number of the road
+    carriageway : Carriageway with R rows
+    points_per_row : (R,) int, points of the surface in each row
     """
     cells = carriageway.cells
     there = np.isfinite(carriageway.left) & np.isfinite(carriageway.right)
@@ -21,7 +36,7 @@ def add_outlines(surface, frame, road, carriageway, points_per_row):
     for a, b in zip(cuts[:-1], cuts[1:]):
         if not kind[a]:
             continue
-        # the next stretch begins at this one's last vertices
+        # the next stretch begins with the last vertices of this one
         last = min(b, len(kind) - 1) if b < len(kind) and kind[b] else b - 1
         rows = np.arange(a, last + 1)
         if len(rows) < 2:
@@ -44,7 +59,7 @@ def add_outlines(surface, frame, road, carriageway, points_per_row):
 
 
 def _without_short_runs(mask, shortest):
-    """The mask with runs shorter than `shortest` rows given to their surroundings, True runs first."""
+    """The mask with runs of fewer than `shortest` rows changed to the value around them, True runs first."""
     mask = mask.copy()
     for value in (True, False):
         cuts = np.r_[0, np.flatnonzero(np.diff(mask.astype(int))) + 1, len(mask)]
@@ -55,6 +70,6 @@ def _without_short_runs(mask, shortest):
 
 
 def _largest(geometry):
-    """The largest polygon of a geometry, None where there is none."""
+    """The largest polygon of a geometry, or None."""
     parts = [part for part in getattr(geometry, "geoms", [geometry]) if part.geom_type == "Polygon"]
     return max(parts, key=lambda part: part.area) if parts else None

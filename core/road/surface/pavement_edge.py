@@ -1,39 +1,51 @@
-"""Where a road without a curb ends: its edge towards verge, ditch or yard, told from height, roughness and brightness."""
+"""Pavement edges: where a road without a curb ends at a verge, a ditch or a yard.
 
+The edge is a change of height, tilt, roughness or brightness across profiles of 5 m of road. The rules are our own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from .ground_grid import ground_cells, known_median
+from ...survey.store.records import Points
+from .ground_grid import GroundCells, ground_cells, known_median
 from .region_growing import MAX_HEIGHT_DEVIATION
 
-PROFILE_ROW, PROFILE_COLUMN = 1.0, 0.1   # m, cells of the profile across the side
-ROWS_PER_PROFILE = 5                # rows that make one profile: 5 m
-CERTAIN_ROAD = 1.2                 # m beside the track that are road in any case: the vehicle drove there
-MIN_CHANGE_CELLS = 4               # cells over which a change must last
-MAX_HEIGHT_CHANGE = 0.025  # m off the height of the cells before, within 0.2 m
-UNEVENNESS_FACTOR = 2.0               # times the road's own unevenness on top of either
-ROUGHNESS_FACTOR, ROUGHNESS_FLOOR = 1.6, 0.0025  # times the road's roughness, and m on top
-MIN_TILT_CHANGE = 0.10                # change of tilt that begins a bank or a ditch
-MAX_EMPTY_CELLS = 5                  # cells without a point at which the road is lost sight of,
-MAX_BLIND_CELLS = 12                 # unless no more are empty and road lies behind: where a scanner does not look beside its own vehicle
-MAX_STRIP_CELLS = 8                  # cells before the verge in which a strip of gravel is looked for
-INNER_CELLS = 3                 # cells of road that such a strip is compared with
-MIN_STRIP_CONTRAST, MAX_STRIP_CONTRAST = 0.4, 2.0  # times the points' scatter by which its brightness differs at least; at most, or it is paint
-TREND_CELLS = 12                 # cells of road that tell how brightness falls with the distance
-MAX_LINE_CELLS = 3                   # cells that a line painted along the road is wide at most
-EDGE_INSET = 0.05               # m kept off a limit: too wide a road takes verge for paint, too narrow a one loses nothing
-PROFILES_AROUND, PROFILE_RANK = 2, 1        # profiles either side, the second nearest of which counts: a missed verge is no wider road
-MIN_WIDENING = 3.0                # m by which two profiles side by side say the road is wider: a junction or a square, no missed verge
+PROFILE_ROW, PROFILE_COLUMN = 1.0, 0.1  # m along and across the road, size of a cell
+ROWS_PER_PROFILE = 5         # rows of cells that make one profile: 5 m
+CERTAIN_ROAD = 1.2           # m beside the track that belong to the road: the vehicle drove there
+MIN_CHANGE_CELLS = 4         # cells over which a change must last
+MAX_HEIGHT_CHANGE = 0.025    # m from the median height of the cells before
+UNEVENNESS_FACTOR = 2.0      # times the unevenness of the road, added to either height limit
+ROUGHNESS_FACTOR, ROUGHNESS_FLOOR = 1.6, 0.0025  # times the roughness of the road, and m added to it
+MIN_TILT_CHANGE = 0.10       # m per m: change of tilt at which a bank or a ditch begins
+MAX_EMPTY_CELLS = 5          # consecutive cells without points at which the road ends,
+MAX_BLIND_CELLS = 12         # unless at most so many are empty and road follows: the blind zone beside the vehicle
+MAX_STRIP_CELLS = 8          # cells before the edge in which a strip of gravel is searched
+INNER_CELLS = 3              # cells of road with which the strip is compared
+MIN_STRIP_CONTRAST, MAX_STRIP_CONTRAST = 0.4, 2.0  # times the scatter of single points; a higher contrast is paint
+TREND_CELLS = 12             # cells of road from which the decrease of brightness with the distance is estimated
+MAX_LINE_CELLS = 3           # cells across a painted line
+EDGE_INSET = 0.05            # m subtracted from the edge: on a road that is too wide, verge is extracted as paint
+PROFILES_AROUND, PROFILE_RANK = 2, 1  # profiles either side, and the rank (from 0) of the edge that counts: the second nearest
+MIN_AGREEING_SHARE = 0.7     # of the cells ahead that must show the change
+MIN_WIDENING = 3.0           # m by which two consecutive profiles must be wider to be a junction or a square
 
 
 @dataclass
 class SurfaceProfiles:
-    """What the ground is like across the road, one row for 5 m, one column for 0.1 m.
+    """The ground across the road: P profiles of 5 m length with K cells of 0.1 m.
 
-    stations : (P,) middles; offsets : (K,) middles, ascending
-    height : (P, K) m above the road's height under the vehicle as known beforehand
-    rough, brightness, scatter : (P, K) as in GroundCells; all NaN where nothing is seen
+    Attributes
+    ----------
+    stations : (P,) m, middles of the profiles
+    offsets : (K,) m, middles of the cells, ascending
+    height : (P, K) m above the expected height of the road under the vehicle
+    rough : (P, K) m
+    brightness, scatter : (P, K) raw counts, as in GroundCells; NaN where nothing was measured
     """
 
     stations: np.ndarray
@@ -46,8 +58,22 @@ class SurfaceProfiles:
     NAMES = ("height", "rough", "brightness", "scatter")
 
     @classmethod
-    def of(cls, points, start, length, reach, road_height):
-        """Profiles of a window of the road from station `start` on, both whole metres and a multiple of 5 m long."""
+    def of(cls, points: Points, start: float, length: float, reach: float,
+           road_height: Callable[[np.ndarray], np.ndarray]) -> SurfaceProfiles:
+        """The profiles of a window of the road.
+
+        Parameters
+        ----------
+        points : Points of the window
+        start : m, station at which it begins, a whole number
+        length : m, a multiple of 5
+        reach : m either side of the reference line
+        road_height : function of (N,) stations in m; (N,) local z of the road under the vehicle, accurate to decimetres
+
+        Returns
+        -------
+        SurfaceProfiles
+        """
         first_row, rows = int(round(start / PROFILE_ROW)), int(round(length / PROFILE_ROW))
         cells = ground_cells(points, first_row, rows, reach, road_height, PROFILE_ROW, PROFILE_COLUMN)
         above = cells.height - road_height(cells.stations)[:, None]
@@ -56,32 +82,32 @@ class SurfaceProfiles:
         return cls(cells.stations.reshape(-1, ROWS_PER_PROFILE).mean(axis=1), cells.offsets, *(v.astype(np.float32) for v in pooled))
 
     @classmethod
-    def joined(cls, parts):
+    def joined(cls, parts: Sequence[SurfaceProfiles]) -> SurfaceProfiles:
         """The profiles of several windows."""
         return cls(np.concatenate([part.stations for part in parts]), parts[0].offsets,
                    *(np.concatenate([getattr(part, name) for part in parts]) for name in cls.NAMES))
 
 
-def grown_offsets(profiles, cells, above, sign, track, max_width):
-    """How far the road reaches on a side where no edge says so.
+def grown_offsets(profiles: SurfaceProfiles, cells: GroundCells, above: np.ndarray, sign: int | float, track: np.ndarray,
+                  max_width: float) -> np.ndarray:
+    """Offsets of the limit of the road on a side without an edge.
 
-    SurfaceProfiles of 5 m are followed outward from the track. The road ends where for
-    0.4 m the ground is off its height, tilts away, or is rougher than the road
-    so far; a strip of another brightness before that (gravel along the asphalt)
-    is left out too.
+    Every profile is searched outward from the track. The road ends where, over 0.4 m, the ground is off the height of the
+    road, tilts away, or is rougher than the road before it. A strip of another brightness before that place (gravel along
+    the asphalt) does not belong to the road either.
 
     Parameters
     ----------
     profiles : SurfaceProfiles
-    cells : GroundCells of the road, whose rows the result has
-    above : (rows, columns) the followed road's height above its height known beforehand
+    cells : GroundCells of the road, R rows and C columns
+    above : (R, C) m, height of the road above its expected height
     sign : 1 for the left side, -1 for the right
-    track : (rows,) offset of the outermost track on that side
+    track : (R,) m, offset of the outermost track on that side
     max_width : m from the track
 
     Returns
     -------
-    (rows,) offsets
+    (R,) m, offsets
     """
     stations = cells.stations
     u = sign * profiles.offsets
@@ -100,10 +126,10 @@ def grown_offsets(profiles, cells, above, sign, track, max_width):
 
 
 def _reliable(ends):
-    """Where profiles end, one after the other, freed of single profiles that ran on over a verge.
+    """Edges of consecutive profiles without single outliers, where an edge was missed.
 
-    A profile is held back to the second nearest of the five about it, unless it
-    and one beside it both reach metres farther: there a street joins.
+    The second nearest edge of five profiles counts. Where a profile and one next to it are both wider by metres, a street
+    joins and the wider edge counts.
     """
     padded = np.pad(ends, PROFILES_AROUND, mode="reflect") if len(ends) > PROFILES_AROUND else np.pad(ends, PROFILES_AROUND, mode="edge")
     held = np.sort(np.lib.stride_tricks.sliding_window_view(padded, 2 * PROFILES_AROUND + 1), axis=1)[:, PROFILE_RANK]
@@ -113,7 +139,7 @@ def _reliable(ends):
 
 
 def _at(grid, cells, stations, offsets):
-    """A grid of cells at the middles of finer ones."""
+    """Bilinear values of a grid of cells at stations and offsets."""
     row = np.clip(stations / cells.row_size - cells.first_row - 0.5, 0, len(grid) - 1)
     column = np.clip(offsets / cells.column_size - cells.first_column - 0.5, 0, grid.shape[1] - 1)
     i, j = np.minimum(row.astype(int), len(grid) - 2), np.minimum(column.astype(int), grid.shape[1] - 2)
@@ -123,17 +149,31 @@ def _at(grid, cells, stations, offsets):
 
 
 class HalfProfile:
-    """Cells of PROFILE_COLUMN metres from the reference line outward.
+    """Cells of one profile from the reference line outward.
 
-    u : middles, ascending; off : height off the followed road; rough; brightness and the scatter of single
-        points about it: NaN where a cell shows nothing
+    Attributes
+    ----------
+    u : (K,) m, outward offsets of the middles of the cells, ascending
+    off : (K,) m above the height of the road
+    rough : (K,) m
+    brightness, scatter : (K,) raw counts, and their standard deviation for single points; NaN where nothing was measured
     """
 
-    def __init__(self, u, off, rough, brightness, scatter):
+    def __init__(self, u: np.ndarray, off: np.ndarray, rough: np.ndarray, brightness: np.ndarray, scatter: np.ndarray):
         self.u, self.off, self.rough, self.brightness, self.scatter = u, off, rough, brightness, scatter
 
-    def end(self, beside, max_width):
-        """Distance at which the road ends, at most `max_width` beyond `beside`, the track's own distance."""
+    def end(self, beside: float, max_width: float) -> float:
+        """Outward offset at which the road ends.
+
+        Parameters
+        ----------
+        beside : m, outward offset of the track
+        max_width : m from the track
+
+        Returns
+        -------
+        m, at most beside + max_width; NaN where nothing was measured between the reference line and that offset
+        """
         reach = beside + max_width
         start = int(np.searchsorted(self.u, beside + CERTAIN_ROAD))
         stop = min(int(np.searchsorted(self.u, reach)), len(self.u))
@@ -154,10 +194,10 @@ class HalfProfile:
         return reach
 
     def _road_behind(self, k, uneven):
-        """The cell at which the road is seen again after the blind strip that begins at cell k; 0 where it is not.
+        """The first cell behind a blind zone that begins at cell k, or 0 where no road follows.
 
-        What is behind must be at the road's height and as smooth. Its brightness says nothing: it was seen
-        from another part of the scanner's turn.
+        The ground behind must be at the height of the road and as smooth. Its brightness is not compared, because it was
+        measured in another part of the scanner's turn.
         """
         seen = np.flatnonzero(np.isfinite(self.off[k:k + MAX_BLIND_CELLS + 1]))
         if not len(seen):
@@ -171,13 +211,13 @@ class HalfProfile:
         return again if smooth else 0
 
     def _differs(self, k, ahead, uneven):
-        """Whether from cell k on the ground is no longer the road's."""
+        """Whether the ground from cell k on is no longer that of the road."""
         off, before = self.off[ahead], self.off[max(k - MIN_CHANGE_CELLS, 0):k]
         off, before = off[np.isfinite(off)], before[np.isfinite(before)]
         limit = MAX_HEIGHT_DEVIATION + UNEVENNESS_FACTOR * uneven
-        if len(off) > 1 and abs(self.off[k]) > limit and (np.abs(off) > limit).mean() > 0.7:
+        if len(off) > 1 and abs(self.off[k]) > limit and (np.abs(off) > limit).mean() > MIN_AGREEING_SHARE:
             return True
-        # the first cell may lie half on the step
+        # the step may cut the first cell
         if len(off) > 2 and len(before) > 2 and (np.abs(off[1:] - np.median(before)) > MAX_HEIGHT_CHANGE + UNEVENNESS_FACTOR * uneven).all():
             return True
         inner = slice(max(k - 15, 0), k)
@@ -185,27 +225,27 @@ class HalfProfile:
         rough, usual = rough[np.isfinite(rough)], usual[np.isfinite(usual)]
         if len(rough) > 1 and len(usual) > 3:
             limit = ROUGHNESS_FACTOR * np.median(usual) + ROUGHNESS_FLOOR
-            if self.rough[k] > limit and (rough > limit).mean() > 0.7:
+            if self.rough[k] > limit and (rough > limit).mean() > MIN_AGREEING_SHARE:
                 return True
         return self._turns(k, uneven)
 
     def _turns(self, k, uneven):
-        """Whether the ground tilts away from cell k on, over 0.6 m, against the metre before."""
+        """Whether the ground from cell k on tilts away, over 0.6 m, from the metre before."""
         inner = slice(max(k - 10, 0), k)
         after, before = self.off[k:k + 6], self.off[inner]
         a, b = np.isfinite(after), np.isfinite(before)
         if a.sum() < 4 or b.sum() < 5 or not a[0]:
             return False
         line = np.polyfit(self.u[inner][b], before[b], 1)
-        # a bank that begins further out has not begun here
+        # the bank begins farther out
         if abs(after[0] - np.polyval(line, self.u[k])) < 0.5 * MIN_TILT_CHANGE * PROFILE_COLUMN + UNEVENNESS_FACTOR * uneven:
             return False
         return abs(np.polyfit(self.u[k:k + 6][a], after[a], 1)[0] - line[0]) > MIN_TILT_CHANGE
 
     def _before_strip(self, k):
-        """The near side of a strip of another brightness that ends at cell k, or k itself.
+        """Near side of a strip of another brightness that ends at cell k, or cell k itself.
 
-        It is told from asphalt by less than paint is: a line painted along the verge stays on the road.
+        Its contrast is lower than that of paint: a line painted along the verge belongs to the road.
         """
         best, at = 0.0, k
         scatter = self.scatter[max(k - 20, 0):k]
@@ -224,7 +264,7 @@ class HalfProfile:
         return self.u[at] - PROFILE_COLUMN / 2
 
     def _breaks(self, before, first, k, scatter):
-        """Whether cells first to k differ, all one way, from what cells `before` promise: brightness falls with the distance, too."""
+        """Whether cells first to k all deviate in one direction from the trend of brightness over the cells `before`."""
         values = self.brightness[before]
         before, values = before[np.isfinite(values)], values[np.isfinite(values)]
         i, j = np.triu_indices(len(before), 1)

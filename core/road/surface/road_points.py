@@ -1,44 +1,49 @@
-"""Which points lie on a road whose height and limits are known, and which stand on it."""
+"""Points on a road surface of known height and limits, and points under obstacles such as parked cars, tables or bushes."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import ndimage
 
-from ...survey.store.records import COORDINATE_SCALE
+from ...survey.store.records import COORDINATE_SCALE, Points
 from .ground_grid import COLUMN_WIDTH, POINTS_PER_BATCH, ROW_LENGTH
 
-# Road beneath something that stands on it or hangs over it: parked cars, tables, bushes.
+if TYPE_CHECKING:
+    from .extract import Carriageway
 
-MIN_OBSTACLE_HEIGHT, MAX_OBSTACLE_HEIGHT = 0.25, 2.0   # m above the road: curbs and stray points end below, signs and branches begin above
-OBSTACLE_SQUARE = 0.20           # m
-MIN_OBSTACLE_SHARE = 1 / 3           # of all points within a square and those about it
+MIN_OBSTACLE_HEIGHT, MAX_OBSTACLE_HEIGHT = 0.25, 2.0  # m above the road: curbs and stray points are lower, signs and branches higher
+OBSTACLE_SQUARE = 0.20       # m, side of the squares in which obstacles are counted
+MIN_OBSTACLE_SHARE = 1 / 3   # of the points in a square and the eight around it
 
 
-def covered_by_obstacles(road_points, above):
-    """Which road points lie beneath or right beside something.
+def covered_by_obstacles(road_points: Points, above: Points) -> np.ndarray:
+    """Road points under or right beside an obstacle.
 
     Parameters
     ----------
-    road_points, above : Points of the road and of what is MIN_OBSTACLE_HEIGHT to MAX_OBSTACLE_HEIGHT above it,
-        a square farther along the road either way than is asked about
+    road_points : N Points of the road
+    above : Points MIN_OBSTACLE_HEIGHT to MAX_OBSTACLE_HEIGHT above it; both must reach one square farther along the road
+        than the points that are asked for
 
     Returns
     -------
-    (N,) bool, one for each road point
+    (N,) bool
     """
     if not len(above) or not len(road_points):
         return np.zeros(len(road_points), bool)
     places, high_places, shape = _squares(road_points.records, above.records)
     road, high = (ndimage.uniform_filter(np.bincount(p, minlength=shape[0] * shape[1]).reshape(shape).astype(float), 3, mode="constant")
                   for p in (places, high_places))
-    # means of whole numbers over nine squares: exact enough to be compared
+    # counts of nine squares: rounding removes the error of the running mean
     dark = np.rint(9 * high) > MIN_OBSTACLE_SHARE * np.rint(9 * (road + high))
     return dark.ravel().take(places) if dark.any() else np.zeros(len(road_points), bool)
 
 
 def _squares(*points):
-    """(N,) int32 number of the square that each point of several sets lies in, and the (rows, columns) of all squares."""
+    """(N,) int32 number of the square of each point, for several sets of points, and the (rows, columns) of all squares."""
     size = np.int32(round(OBSTACLE_SQUARE / COORDINATE_SCALE))
     low = [min(int(records[name].min()) for records in points) // size - 1 for name in ("s", "d")]
     shape = tuple(max(int(records[name].max()) for records in points) // size - first + 2 for name, first in zip(("s", "d"), low))
@@ -57,10 +62,13 @@ def _squares(*points):
 
 @dataclass(frozen=True)
 class OnRoad:
-    """Points of a window by index.
+    """Points of a window by their index.
 
-    surface : (M,) those of the road itself; half_width : (M,) uint16 mm from the reference line to the limit of each one's side
-    above : (K,) what is MIN_OBSTACLE_HEIGHT to MAX_OBSTACLE_HEIGHT above it
+    Attributes
+    ----------
+    surface : (M,) int, points of the road surface
+    half_width : (M,) uint16 mm, from the reference line to the limit of the road on the side of each point
+    above : (K,) int, points MIN_OBSTACLE_HEIGHT to MAX_OBSTACLE_HEIGHT above the surface
     """
 
     surface: np.ndarray
@@ -68,11 +76,11 @@ class OnRoad:
     above: np.ndarray
 
 
-def points_on_road(points, carriageway):
+def points_on_road(points: Points, carriageway: Carriageway) -> OnRoad:
     """The points of a window that lie on the road or stand above it.
 
-    Between the middles of rows the limits are straight; beside a row without road the nearer row counts.
-    Between the middles of cells the height is bilinear.
+    Limits are interpolated linearly between the middles of rows; beside a row without road those of the nearer row are
+    used. Heights are bilinear between the middles of cells.
 
     Parameters
     ----------
@@ -85,8 +93,8 @@ def points_on_road(points, carriageway):
 
     Notes
     -----
-    It is reckoned in units of 0.1 mm from a corner of each cell in single precision, which
-    is finer than coordinates are, and the same from whichever window a point is looked at.
+    Single precision is enough: lengths are in units of 0.1 mm and count from a corner of each cell, so that the rounding
+    is below the resolution of the coordinates. The result does not depend on the window.
     """
     records = points.records
     if not len(records):
@@ -100,11 +108,11 @@ def points_on_road(points, carriageway):
 
 
 class _SurfaceTables:
-    """Limits and height of the rows about a window, as tables of half rows and of cells."""
+    """Limits of half rows and heights of cells about a window, as tables."""
 
     def __init__(self, carriageway, s, d):
         cells = carriageway.cells
-        # as many rows and columns as the points need: beyond the outermost cells height and limits stay as they are there
+        # as many rows and columns as the points need; beyond the outermost cells height and limits are constant
         (self.s0, rows), (self.d0, columns) = (
             _middles(values, size, first, count) for values, size, first, count in
             ((s, ROW_LENGTH, cells.first_row, cells.height.shape[0]), (d, COLUMN_WIDTH, cells.first_column, cells.height.shape[1])))
@@ -120,7 +128,7 @@ class _SurfaceTables:
                                                (carriageway.tolerance, MIN_OBSTACLE_HEIGHT, MAX_OBSTACLE_HEIGHT))
 
     def points(self, s, d, z):
-        """Indices of points of the road, their half widths (mm), and indices of points above it."""
+        """Indices of the points on the road, their half widths (mm), and indices of the points above it."""
         row, u = _steps(s, self.s0, ROW_LENGTH)
         half = row + row
         half += u >= np.float32(0.5)
@@ -149,13 +157,13 @@ class _SurfaceTables:
 
 
 def _middles(units, size, first, count):
-    """Where the first of the middles of cells lies between which places lie, in units, and the index of each one's cell."""
+    """First of the middles of cells about some places, in units of 0.1 mm, and the index of the cell of each middle."""
     low, high = (int(np.floor(int(end) * COORDINATE_SCALE / size - 0.5)) for end in (units.min(), units.max()))
     return int(round((low + 0.5) * size / COORDINATE_SCALE)), np.clip(np.arange(low, high + 2) - first, 0, count - 1)
 
 
 def _steps(units, first, size):
-    """The step of `size` metres that places lie in, counted from `first`, and the share of it behind them, (N,) int32 and float32."""
+    """Number of the step of `size` metres that each place lies in, from `first`, and the share of it, (N,) int32 and float32."""
     size = np.int32(round(size / COORDINATE_SCALE))
     place = units - np.int32(first)
     step = place // size
@@ -172,7 +180,7 @@ def _line(start, slope, half, u):
 
 
 def _half_rows(limit):
-    """(start, slope) of a limit, (2 (R - 1),) float32 each: what it is, of u from 0 to 1 between rows, in each half row."""
+    """(start, slope) of a limit in each half row, (2 (R - 1),) float32 each: start + slope * u with u from 0 to 1 between rows."""
     before, after = limit[:-1], limit[1:]
     whole = np.isfinite(before) & np.isfinite(after)
     slope = np.where(whole, after - before, 0.0)
