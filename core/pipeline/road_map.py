@@ -133,7 +133,7 @@ def _map_of(survey, image_path, settings, stages):
                  roads=len(survey.frame.roads), sensor_height=survey.sensor_height, **survey.counts)
     density = tuple(_density(points, store, stages.progress, stages.done)
                     for points, store in ((survey, survey.store), (road_points, road_points)))
-    survey.store.let_go()
+    survey.store.clear_cache()
     result = RoadMap(survey.frame, survey.crs, boundaries.curb_points, boundaries.edges, surface, road_points,
                      boundaries.differences, boundaries.length_by_method, seconds=stages.seconds, survey_facts=facts,
                      density=density)

@@ -86,7 +86,7 @@ class SurveyReader:
         """Points by section, for the store; those on the track are counted."""
         for number, drops in self.tracks.drops(road, points, own):
             self._tally.add(number, drops)
-        return self.store.parted(road, points, own)
+        return self.store.partition(road, points, own)
 
     def _take(self, found, parts, parted, count):
         """One block, in the order of the files."""
@@ -128,7 +128,7 @@ class SurveyReader:
 
 def _copied(points, own):
     """Points that are meant (None for all) as Columns that stay."""
-    return points.copy() if own is None else points.take(own).whole()
+    return points.copy() if own is None else points.take(own).load_all()
 
 ABOVE, BELOW = 3.5, 4.0  # m about the road kept: vehicles that hide a curb above, ditches below
 # m more that are stored: the height of the road is rough while reading, and exact when points are handed out,

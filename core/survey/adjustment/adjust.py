@@ -164,12 +164,12 @@ def _move(survey, moves, progress):
 
     def part(key):
         records = _moved_points(frame, moves, before.section(*key))
-        return store.parted(key[0], records) if len(records) else None
+        return store.partition(key[0], records) if len(records) else None
 
     try:
-        for parted in in_order(part, [(road, number) for road in before.roads() for number in before.sections(road)], progress):
-            if parted is not None:
-                store.add(parted)
+        for points in in_order(part, [(road, number) for road in before.roads() for number in before.sections(road)], progress):
+            if points is not None:
+                store.add(points)
     except BaseException:
         store.close()
         raise

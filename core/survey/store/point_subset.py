@@ -1,11 +1,16 @@
-"""Some of the points of a store, with columns of their own: which points these are is kept, and not the points again."""
+"""A subset of the points of a store, with additional columns: it stores which points are in it, not the points."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from .columns import Columns
 from .section_store import SectionStore
 
-OWN_LIMIT = 16 * 2**20  # bytes of rows, and of columns of their own, kept in memory
+SUBSET_MEMORY_LIMIT = 16 * 2**20  # bytes of masks, and as many of additional columns, in memory
 
 
 class PointSubset(SectionStore):
@@ -14,29 +19,38 @@ class PointSubset(SectionStore):
     Parameters
     ----------
     points : SectionStore; no points may be added to it any more, and it is closed with this one
-    dtype : columns of the points that are handed out
-    own : names of those columns that are put with the rows
-    alike : {name: value} of those that are the same for all; the others are the store's
+    dtype : columns of the points that are returned
+    own : names of the columns whose values are stored here, with the rows
+    constants : {name: value} of the columns that have one value for all points; the other columns are the store's
     """
 
-    def __init__(self, points, dtype, own, alike):
+    def __init__(self, points: SectionStore, dtype: Any, own: Sequence[str], constants: dict[str, Any]):
         super().__init__(dtype, points.section_length, points.memory_limit)
         self._points = points
-        # what is read of these is kept with the points
-        self._bits, self._own = (SectionStore(kind, points.section_length, min(OWN_LIMIT, points.memory_limit), kept=0)
-                                 for kind in ([("bits", "u1")], [(name, self.dtype[name]) for name in own]))
-        self._alike = {name: np.array(value, self.dtype[name]) for name, value in alike.items()}
+        # What is read from these two is cached with the points.
+        self._masks, self._own = (
+            SectionStore(kind, points.section_length, min(SUBSET_MEMORY_LIMIT, points.memory_limit), cache_limit=0)
+            for kind in ([("bits", "u1")], [(name, self.dtype[name]) for name in own]))
+        self._constants = {name: np.array(value, self.dtype[name]) for name, value in constants.items()}
 
     @property
-    def count(self):
+    def count(self) -> int:
+        """Points in the subset."""
         return self._own.count
 
-    def put(self, road, section, rows, **columns):
-        """Choose rows, (M,) ascending, of a section of the store, with (M,) values of each own column."""
+    def put(self, road: int, section: int, rows: np.ndarray, **columns: np.ndarray) -> None:  # type: ignore[override]
+        """Add points of a section of the store.
+
+        Parameters
+        ----------
+        road, section : numbers
+        rows : (M,) indices into the section, ascending
+        columns : (M,) values of each own column
+        """
         if len(rows):
-            chosen = np.zeros(rows[-1] + 1, bool)
-            chosen[rows] = True
-            self._bits.put(road, section, Columns({"bits": np.packbits(chosen)}, self._bits.dtype))
+            mask = np.zeros(rows[-1] + 1, bool)
+            mask[rows] = True
+            self._masks.put(road, section, Columns({"bits": np.packbits(mask)}, self._masks.dtype))
             self._own.put(road, section, Columns(columns, self._own.dtype))
 
     def append(self, road, records):
@@ -52,21 +66,21 @@ class PointSubset(SectionStore):
         own = self._own.section(road, section)
         if not len(own):
             return Columns.concatenate([], self.dtype), False
-        rows = np.flatnonzero(np.unpackbits(self._bits.section(road, section)["bits"]).view(bool))
+        rows = np.flatnonzero(np.unpackbits(self._masks.section(road, section)["bits"]).view(bool))
 
-        def read(name):
-            if name in self._alike:
-                return np.broadcast_to(self._alike[name], len(rows))
+        def load(name):
+            if name in self._constants:
+                return np.broadcast_to(self._constants[name], len(rows))
             return own[name] if name in self._own.dtype.names else self._points.column(road, section, name, rows)
 
-        def pick(name, some):
-            if name in self._alike:
-                return np.broadcast_to(self._alike[name], len(some))
+        def load_rows(name, some):
+            if name in self._constants:
+                return np.broadcast_to(self._constants[name], len(some))
             return own[name].take(some) if name in self._own.dtype.names else self._points.column(road, section, name, rows.take(some))
 
-        return Columns({}, self.dtype, len(rows), read, pick=pick), True
+        return Columns({}, self.dtype, len(rows), load, load_rows=load_rows), True
 
     def close(self):
         super().close()
-        for store in (self._bits, self._own, self._points):
+        for store in (self._masks, self._own, self._points):
             store.close()

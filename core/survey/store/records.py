@@ -1,14 +1,19 @@
-"""The compact record in which a point travels through the work, and its metric view."""
+"""The compact record of a point, with coordinates as integers, and its metric view."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from .columns import Columns
 
-COORDINATE_SCALE = 1e-4  # m: coordinates are kept as integers of 0.1 mm, exact for every LAS scale in use
-MAX_XY_32_BIT = 2e5  # m from the origin: up to here x and y have 32 bits
+COORDINATE_SCALE = 1e-4  # m: coordinates are integers of 0.1 mm, exact for every LAS scale in use
+MAX_XY_32_BIT = 2e5      # m from the origin: up to here x and y have 32 bits
 
 # Coordinates are local (map minus the frame's origin); s and d are the road's
-# station and offset. `source` is point_source_id, kept so that a written cloud
+# station and offset. `source` is point_source_id, so that a written cloud
 # can be traced back; `returns` is return number + 16 * number of returns.
 SURVEY_POINT = np.dtype([
     ("time", "f8"), ("x", "i4"), ("y", "i4"), ("z", "i4"), ("s", "i4"), ("d", "i4"),
@@ -16,23 +21,33 @@ SURVEY_POINT = np.dtype([
 ])
 
 # `half_width` is in millimetres; `corrected` is NaN where intensity was not corrected;
-# `cluster` is 0 before clustering; `covered` is 1 beneath and right beside what stands on the road.
+# `cluster` is 0 before clustering; `covered` is 1 beneath objects on the road and directly beside them.
 ROAD_POINT = np.dtype(SURVEY_POINT.descr + [("corrected", "f4"), ("half_width", "u2"), ("cluster", "i4"), ("covered", "u1")])
 
 
-def point_dtype(dtype, farthest):
-    """The dtype of points that lie up to `farthest` metres of x or y from the origin: beyond MAX_XY_32_BIT x and y have 64 bits."""
+def point_dtype(dtype: np.dtype, farthest: float) -> np.dtype:
+    """The dtype of points at a distance from the origin.
+
+    Parameters
+    ----------
+    dtype : SURVEY_POINT or ROAD_POINT
+    farthest : metres, the largest x or y of the points, counted from the origin
+
+    Returns
+    -------
+    The dtype, with 64 bits for x and y beyond MAX_XY_32_BIT
+    """
     wide = {"x": "i8", "y": "i8"} if farthest > MAX_XY_32_BIT else {}
-    return np.dtype([(name, wide.get(name, dtype[name])) for name in dtype.names])
+    return np.dtype([(name, wide.get(name, dtype[name])) for name in dtype.names or ()])
 
 
-def to_units(metres):
-    """(N,) metres to (N,) int32 of 0.1 mm."""
+def to_units(metres: np.ndarray) -> np.ndarray:
+    """(N,) metres as (N,) int32 of 0.1 mm."""
     return np.rint(np.asarray(metres) / COORDINATE_SCALE).astype(np.int32)
 
 
-def fill_units(metres, units):
-    """Fill (N,) int32 with metres in units of 0.1 mm; the metres are overwritten."""
+def fill_units(metres: np.ndarray, units: np.ndarray) -> np.ndarray:
+    """Fill and return (N,) integers of 0.1 mm from (N,) metres; the metres are overwritten."""
     metres /= COORDINATE_SCALE
     with np.errstate(invalid="ignore"):
         np.copyto(units, np.rint(metres, out=metres), casting="unsafe")
@@ -40,21 +55,26 @@ def fill_units(metres, units):
 
 
 class Points:
-    """A metric view over Columns (or a structured array) of points; metres are computed on access.
+    """A metric view of the records of points; metres are computed on access.
 
-    Attributes: x, y, z, s, d, half_width (metres, float64), time (seconds), and the raw
-    columns intensity, corrected, source, pass_number, scanner, returns, cluster, covered.
+    Attributes
+    ----------
+    records : (N,) Columns or structured array
+    x, y, z, s, d : (N,) float64, metres
+    half_width : (N,) float64, metres
+    time : (N,) float64, seconds
+    intensity, corrected, source, pass_number, scanner, returns, cluster, covered : (N,) the columns as they are
     """
 
-    METRIC = {"x", "y", "z", "s", "d"}
+    METRIC = frozenset("xyzsd")
 
-    def __init__(self, records):
+    def __init__(self, records: np.ndarray | Columns):
         self.records = records
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.records)
 
-    def __getattr__(self, name):
+    def __getattr__(self, name: str) -> np.ndarray:
         if name.startswith("_") or name == "records":
             raise AttributeError(name)
         if name in self.METRIC:
@@ -65,22 +85,36 @@ class Points:
             return self.records[name]
         raise AttributeError(f"points have no column {name!r}")
 
-    def __getitem__(self, which):
+    def __getitem__(self, which: Any) -> Points:
         """The points of a mask, slice or index array."""
         return Points(take_rows(self.records, which))
 
     @property
-    def value(self):
+    def value(self) -> np.ndarray:
         """(N,) float32: corrected intensity where there is one, raw intensity elsewhere."""
         corrected = self.records["corrected"]
         missing = np.isnan(corrected)
         return np.where(missing, self.records["intensity"].astype(np.float32), corrected) if missing.any() else corrected
 
 
-def take_rows(records, which):
-    """The records of a mask, index array or slice; of Columns those that are asked for.
+def take_rows(records: np.ndarray | Columns, which: Any) -> Any:
+    """Some rows of records.
 
-    Ten times as fast as records[which] of a structured array, which copies a record field by field.
+    For a structured array this is ten times as fast as records[which], which copies field by field.
+
+    Parameters
+    ----------
+    records : (N,) structured array or Columns
+    which : (N,) bool, (M,) indices, or a slice
+
+    Returns
+    -------
+    (M,) of the kind of `records`; rows of Columns are read when a column is asked for
+
+    Raises
+    ------
+    IndexError
+        If a mask has another length than the records.
     """
     if isinstance(which, slice) or isinstance(records, Columns):
         return records[which]
@@ -92,6 +126,6 @@ def take_rows(records, which):
     return records.take(which.astype(np.intp, copy=False))
 
 
-def join_columns(parts, dtype):
-    """Several records one after the other, as Columns (none at all give an empty one)."""
-    return Columns.concatenate([Columns.of(part) for part in parts], dtype)
+def join_columns(parts: Sequence[np.ndarray | Columns], dtype: np.dtype) -> Columns:
+    """Several records one after the other, as Columns; no parts give empty Columns of the dtype."""
+    return Columns.concatenate([Columns.from_records(part) for part in parts], dtype)

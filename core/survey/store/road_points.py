@@ -1,6 +1,9 @@
 """The points of the road surface, as they pass from stage to stage."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -9,17 +12,17 @@ from .records import ROAD_POINT, Points, join_columns, point_dtype
 from .section_store import SectionStore
 
 
-def _store_like(store):
-    return SectionStore(store.dtype, store.section_length, store.memory_limit)
-
-
 @dataclass
 class RoadPoints:
-    """Road points in their sections, with what a later stage must know of them.
+    """Road points by section, and the properties that later stages need.
 
-    `origin` (3 integers, map coordinates) is what was subtracted from x, y, z.
-    `has_corrected` and `has_cluster` say whether those columns carry anything. `moves` are the PassMoves by
-    which they lie off the coordinates that were measured, None where they do not.
+    Attributes
+    ----------
+    store : SectionStore of ROAD_POINT records
+    origin : (3,) whole numbers, map coordinates in metres that were subtracted from x, y, z
+    crs : WKT, "" where unknown
+    has_corrected, has_cluster : whether the columns `corrected` and `cluster` hold values
+    moves : PassMoves, the shifts of the passes against the coordinates that were measured; None where there are none
     """
 
     store: SectionStore
@@ -27,51 +30,54 @@ class RoadPoints:
     crs: str = ""
     has_corrected: bool = False
     has_cluster: bool = False
-    moves: object = None
+    moves: Any = None
 
     @classmethod
-    def empty_like(cls, other=None, origin=None, crs=""):
-        """A new, empty set; with `other` given, its sections, origin, CRS and columns."""
+    def empty_like(cls, other: RoadPoints | None = None, origin: Any = None, crs: str = "") -> RoadPoints:
+        """A new, empty set: with the sections, origin, CRS and columns of `other`, or with the given origin and CRS."""
         if other is not None:
-            return cls(_store_like(other.store), other.origin, other.crs, other.has_corrected, other.has_cluster, other.moves)
+            store = SectionStore(other.store.dtype, other.store.section_length, other.store.memory_limit)
+            return cls(store, other.origin, other.crs, other.has_corrected, other.has_cluster, other.moves)
         return cls(SectionStore(ROAD_POINT), np.asarray(origin, float), crs)
 
     @classmethod
-    def subset_of(cls, survey):
+    def subset_of(cls, survey: Any) -> RoadPoints:
         """An empty set into which rows of a survey's sections are put, with `half_width` and `covered`.
 
-        The points stay in the survey's store, which lives as long as the road points and is closed with them.
+        The points stay in the store of the Survey, which lives as long as the road points and is closed with them.
         """
         dtype = point_dtype(ROAD_POINT, np.inf if survey.store.dtype["x"] == np.int64 else 0.0)
         store = PointSubset(survey.store, dtype, ("half_width", "covered"), dict(corrected=np.nan, cluster=0))
         return cls(store, np.asarray(survey.frame.origin, float), survey.crs, moves=survey.moves)
 
-    def close(self):
-        """Forget the points, and give back the disk space they took."""
+    def close(self) -> None:
+        """Release the points and their disk space."""
         self.store.close()
 
-    def __len__(self):
+    def __len__(self) -> int:
         return self.store.count
 
-    def roads(self):
+    def roads(self) -> list[int]:
+        """Numbers of the roads that have points, ascending."""
         return self.store.roads()
 
-    def sections(self, road):
+    def sections(self, road: int) -> list[int]:
+        """Numbers of the sections of a road that have points, ascending."""
         return self.store.sections(road)
 
-    def section(self, road, number):
+    def section(self, road: int, number: int) -> Points:
         """Points of one section, in canonical order."""
         return Points(self.store.section(road, number))
 
-    def window(self, road, start, end):
-        """Points with start <= station < end."""
+    def window(self, road: int, start: float, end: float) -> Points:
+        """Points with start <= station < end (metres)."""
         return self.store.window(road, start, end)
 
-    def all_sections(self):
+    def all_sections(self) -> list[tuple[int, int]]:
         """(road, section number) of every section that has points, in order."""
         return [(road, number) for road in self.roads() for number in self.sections(road)]
 
-    def all_points(self):
-        """Every point in one structured array, road by road and section by section (for sets known to be small: paint)."""
+    def all_points(self) -> Points:
+        """All points in one structured array, ordered by road and section; only for sets known to be small, such as paint."""
         parts = [self.store.section(road, number) for road, number in self.all_sections()]
         return Points(np.asarray(join_columns(parts, self.store.dtype)))

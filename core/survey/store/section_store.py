@@ -1,10 +1,14 @@
 """A bounded store of points by road section: memory up to a limit, then a temporary file."""
 
+from __future__ import annotations
+
 import threading
 from bisect import bisect_left
 from collections import OrderedDict
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -12,64 +16,83 @@ from ...common.memory import KeptArrays, columns_kept
 from ...common.order_statistics import dealt
 from ...common.parallel import go_on
 from .canonical_order import canonical_order
-from .columns import Columns, in_columns
+from .columns import Columns, columns_in_order
 from .records import COORDINATE_SCALE, Points
-from .spill_file import SpillFile
+from .spill_file import SpillFile, StoredColumn
 
-# The points of one section of a store: some parts in memory, others in its temporary file, in one part once they are in order.
+SECTION_LENGTH = 5.0       # m of station; results do not depend on it
+MEMORY_LIMIT = 64 * 2**20  # bytes of records in memory before they are spilled
+CACHE_LIMIT = 64 * 2**20   # bytes of spilled sections cached as last read: neighbouring windows ask for them again
+STRIPS_PER_SECTION = 16    # points wait strip by strip until a section is sorted, so that points sorted together lie together in memory
+SECTION_LOCKS = 16         # locks that the sections share while they are read
+
 
 class StoredSection:
-    """Points in parts: Columns in memory, and dicts of what lies in the file by name of column.
+    """The points of one section: some parts in memory, others in the temporary file; one part once they are sorted.
 
-    Columns are moved one after the other: what a column was read into is still in the processor's cache then.
+    Points are moved column by column, since a column that was just read is still in the processor's cache.
+
+    Attributes
+    ----------
+    dtype : structured dtype of the points
+    in_order : whether the points are in canonical order
+    parts : Columns of points in memory, and {name: StoredColumn} of points in the file
     """
 
     __slots__ = ("parts", "in_order", "dtype")
 
-    def __init__(self, dtype, in_order):
-        self.dtype, self.in_order, self.parts = dtype, in_order, []
+    def __init__(self, dtype: np.dtype, in_order: bool):
+        self.dtype, self.in_order = dtype, in_order
+        self.parts: list[Columns | dict[str, StoredColumn]] = []
 
     @property
-    def nbytes(self):
+    def nbytes(self) -> int:
         """Bytes in memory."""
         return sum(part.nbytes for part in self.parts if isinstance(part, Columns))
 
-    def spill(self, file):
-        """Put the parts that wait in memory down as one."""
+    def spill(self, file: SpillFile) -> None:
+        """Write the parts in memory to the file, as one part."""
         waiting = [part for part in self.parts if isinstance(part, Columns)]
         if waiting:
-            stored = {name: file.put(_end_to_end([part[name] for part in waiting])) for name in self.dtype.names}
-            self.parts = [part for part in self.parts if not isinstance(part, Columns)] + [stored]
+            stored = {name: file.put(_concatenate_into_buffer([part[name] for part in waiting])) for name in self.dtype.names or ()}
+            self.parts = [part for part in self.parts if not isinstance(part, Columns)]
+            self.parts.append(stored)
 
-    def put_in_order(self, file, finish):
-        """Finish and sort the points into one part; it is in the file then where some of them were.
+    def sort(self, file: SpillFile | None, finish: Callable[[Columns], np.ndarray | None] | None) -> None:
+        """Finish the points and sort them into one part, which is in the file if any of them were.
 
-        `finish` is a function of Columns, in no order, which it may change; it returns which of them stay, a mask or None for all.
+        Parameters
+        ----------
+        file : holds the spilled parts
+        finish : function of Columns, in no order, which it may change; it returns a mask of the points to keep, or None for all
         """
         parts, count = self.parts, sum(map(self._count, self.parts))
-        kept = columns_kept.of(count)
-        records = Columns({}, self.dtype, count, lambda name: self._column(file, name, kept(name, self.dtype[name])))
-        stay = None if finish is None else finish(records)
-        order = canonical_order(records, stay)
+        names = self.dtype.names or ()
+        buffer = columns_kept.of(count)
+        records = Columns({}, self.dtype, count, lambda name: self._fill(file, name, buffer(name, self.dtype[name])))
+        mask = None if finish is None else finish(records)
+        order = canonical_order(records, mask)
         spilled = [part for part in parts if not isinstance(part, Columns)]
-        ordered, moved = {}, columns_kept.of(len(order))
-        for name in self.dtype.names if len(order) else ():
+        arrays: dict[str, np.ndarray] = {}
+        stored: dict[str, StoredColumn] = {}
+        sorted_buffer = columns_kept.of(len(order))
+        for name in names if len(order) else ():
             column = records[name]
+            if file is None or not spilled:
+                arrays[name] = column.take(order)
+                continue
             for part in spilled:
-                file.give_back(part[name])
-            if spilled:
-                ordered[name] = file.put(np.take(column, order, out=moved("moved", column.dtype), mode="clip"))
-            else:
-                ordered[name] = column.take(order)
+                file.release(part[name])
+            stored[name] = file.put(np.take(column, order, out=sorted_buffer("moved", column.dtype), mode="clip"))
         self.parts, self.in_order = [], True
         if len(order):
-            self.parts = [ordered if spilled else Columns(ordered, self.dtype)]
+            self.parts = [stored if spilled else Columns(arrays, self.dtype)]
 
     def _count(self, part):
-        return len(part) if isinstance(part, Columns) else part[self.dtype.names[0]].packing.count
+        return len(part) if isinstance(part, Columns) else part[self.dtype.names[0]].packing.size
 
-    def _column(self, file, name, column):
-        """Fill a column with that of all parts."""
+    def _fill(self, file, name, column):
+        """Fill a column with the values of all parts."""
         first = 0
         for part in self.parts:
             out = column[first:first + self._count(part)]
@@ -81,98 +104,110 @@ class StoredSection:
         return column
 
 
-def _end_to_end(columns):
-    """Arrays of a column one after the other, for this thread alone and till it asks for others."""
+def _concatenate_into_buffer(columns):
+    """Arrays of a column one after the other, in a buffer of this thread that the next call overwrites."""
     return np.concatenate(columns, out=columns_kept.of(sum(map(len, columns)))("column", columns[0].dtype))
-
-SECTION_LENGTH = 5.0   # m of station; results must not depend on it
-MEMORY_LIMIT = 64 * 2**20  # bytes of records kept before they are spilled
-KEPT = 64 * 2**20      # bytes of spilled sections kept as last read: neighbours ask for them again
-STRIPS = 16            # across a section: points lie strip by strip till they are put in order, so that what is sorted together lies together
-TURNS = 16             # locks that sections share while they are put in order
 
 
 @dataclass(frozen=True)
-class Parted:
-    """Columns of points of a road sorted by section: those of section `first + k` end before row `ends[k]`."""
+class PartitionedPoints:
+    """Points of one road, partitioned by section.
+
+    Attributes
+    ----------
+    road : number
+    records : (N,) Columns, section by section
+    first : number of the first section
+    ends : the points of section `first + k` end before row `ends[k]`
+    """
 
     road: int
     records: Columns
     first: int
-    ends: list
+    ends: list[int]
 
 
 class SectionStore:
     """Points of all roads, appended in any order, read back by station.
 
-    A section is a fixed cell of station of one road, cut from 0. What is read
+    A section is a fixed interval of station of one road, counted from 0. What is read
     back is sorted by station, offset, height and time, so it does not depend on
-    the order of appending, and a window is a run of rows; a section is sorted
+    the order of appending, and a window is a range of rows. A section is sorted
     once, when it is first read.
 
-    `finish`, where set, is a function of road and the Columns of a section, in no
-    order. It is called once, before they are sorted; it may change them, and
-    returns which of them stay, a mask or None for all.
+    Parameters
+    ----------
+    dtype : structured dtype of the points, with at least the columns of SURVEY_POINT where points are appended
+    section_length : metres
+    memory_limit : bytes of points in memory
+    finish : function of a road and the Columns of one section, in no order; it is called once, before they
+        are sorted, may change them, and returns a mask of the points to keep, or None for all
+    cache_limit : bytes of spilled sections that are cached as last read
     """
 
-    def __init__(self, dtype, section_length=SECTION_LENGTH, memory_limit=MEMORY_LIMIT, finish=None, kept=KEPT):
+    def __init__(self, dtype: Any, section_length: float = SECTION_LENGTH, memory_limit: int = MEMORY_LIMIT,
+                 finish: Callable[[int, Columns], np.ndarray | None] | None = None, cache_limit: int = CACHE_LIMIT):
         self.dtype = np.dtype(dtype)
         self.section_length = section_length
         self.memory_limit = memory_limit
         self.finish = finish
-        self._arrays = KeptArrays()
-        self._sections = {}                 # (road, section) -> StoredSection
-        self._kept = OrderedDict()          # a few spilled sections as last read
-        self._kept_bytes, self._kept_limit = 0, kept
+        self._buffers = KeptArrays()
+        self._sections: dict[tuple[int, int], StoredSection] = {}
+        self._cache: OrderedDict[tuple[int, int], Columns] = OrderedDict()   # the spilled sections read last
+        self._cache_bytes, self._cache_limit = 0, cache_limit
         self._lock = threading.Lock()       # sections are read by several threads
-        self._turns = [threading.Lock() for _ in range(TURNS)]
+        self._section_locks = [threading.Lock() for _ in range(SECTION_LOCKS)]
         self._waiting_bytes = 0
-        self._file = None
+        self._file: SpillFile | None = None
         self._count = 0
 
     @property
-    def count(self):
+    def count(self) -> int:
         """Points added."""
         return self._count
 
-    def append(self, road, records):
-        """Add (N,) records of one road (a structured array or Columns); each goes to the section of its station."""
+    def append(self, road: int, records: np.ndarray | Columns) -> None:
+        """Add (N,) records of one road; each goes to the section of its station."""
         if len(records):
-            self.add(self.parted(road, records))
+            self.add(self.partition(road, records))
 
-    def parted(self, road, records, own=None):
-        """Points sorted by section: the work of `append` that any thread may do.
+    def partition(self, road: int, records: np.ndarray | Columns, mask: np.ndarray | None = None) -> PartitionedPoints:
+        """Partition points by section: the part of `append` that any thread may do.
 
-        `own` is a mask of those that are meant, all by default.
+        Parameters
+        ----------
+        road : number
+        records : (N,) structured array or Columns, N > 0
+        mask : (N,) bool, the points to take; all by default
         """
-        strip = np.multiply(records["s"], COORDINATE_SCALE, out=self._arrays.of(len(records))("strip"))
+        strip = np.multiply(records["s"], COORDINATE_SCALE, out=self._buffers.of(len(records))("strip"))
         strip /= self.section_length
         low, high = int(np.floor(strip.min())), int(np.floor(strip.max()))
-        strip *= STRIPS
+        strip *= STRIPS_PER_SECTION
         np.floor(strip, out=strip)
-        strip -= STRIPS * low
-        order, ends = dealt(strip, STRIPS * (high + 1 - low), own)
-        records = records.take(order).whole() if isinstance(records, Columns) else in_columns(records, order)
-        return Parted(int(road), records, low, ends[STRIPS - 1::STRIPS].tolist())
+        strip -= STRIPS_PER_SECTION * low
+        order, ends = dealt(strip, STRIPS_PER_SECTION * (high + 1 - low), mask)
+        columns = records.take(order).load_all() if isinstance(records, Columns) else columns_in_order(records, order)
+        return PartitionedPoints(int(road), columns, low, ends[STRIPS_PER_SECTION - 1::STRIPS_PER_SECTION].tolist())
 
-    def add(self, parted):
-        """Add what `parted` made."""
-        for k, (first, end) in enumerate(zip([0, *parted.ends], parted.ends)):
+    def add(self, points: PartitionedPoints) -> None:
+        """Add points that were partitioned by section."""
+        for k, (first, end) in enumerate(zip([0, *points.ends], points.ends)):
             if end > first:
-                self._place((parted.road, parted.first + k), parted.records[first:end], False)
+                self._add_part((points.road, points.first + k), points.records[first:end], False)
         self._spill_beyond_limit()
 
-    def put(self, road, section, records):
-        """Add the Columns of one section, which lie in order already and are all that it will hold."""
+    def put(self, road: int, section: int, records: Any) -> None:
+        """Set the (N,) Columns of one section, in canonical order; no more points are added to it."""
         if len(records):
-            self._place((int(road), int(section)), records.whole(), True)
+            self._add_part((int(road), int(section)), records.load_all(), True)
             self._spill_beyond_limit()
 
-    def _place(self, key, records, in_order):
+    def _add_part(self, key, records, in_order):
         section = self._sections.setdefault(key, StoredSection(self.dtype, in_order))
         section.in_order = in_order and not section.parts
         section.parts.append(records)
-        self._forget(key)
+        self._drop_from_cache(key)
         self._count += len(records)
         self._waiting_bytes += records.nbytes
 
@@ -185,48 +220,63 @@ class SectionStore:
             section.spill(self._file)
         self._waiting_bytes = 0
 
-    def roads(self):
+    def roads(self) -> list[int]:
         """Numbers of the roads that have points, ascending."""
         return sorted({road for road, _ in self._sections})
 
-    def sections(self, road):
+    def sections(self, road: int) -> list[int]:
         """Numbers of the sections of a road that have points, ascending."""
         return sorted(section for number, section in self._sections if number == road)
 
-    def section(self, road, section):
-        """The Columns of one section in canonical order (empty where there are none); not to be written to."""
+    def section(self, road: int, section: int) -> Columns:
+        """The Columns of one section in canonical order, read-only; empty where there are no points."""
         go_on()
         key = (road, section)
-        with self._turns[hash(key) % TURNS]:
+        with self._section_locks[hash(key) % SECTION_LOCKS]:
             with self._lock:
-                records = self._kept.get(key)
+                records = self._cache.get(key)
                 if records is not None:
-                    self._kept.move_to_end(key)
+                    self._cache.move_to_end(key)
                     return records
-            records, keep = self._read(road, section)
-            if keep:
-                self._keep(key, records)
-            return records.locked()
+            records, cacheable = self._read(road, section)
+            if cacheable:
+                self._add_to_cache(key, records)
+            return records.read_only()
 
     def _read(self, road, section):
-        """The Columns of one section, and whether they are worth keeping as read."""
-        section = self._sections.get((road, section))
-        if section is not None and not section.in_order:
-            before = section.nbytes
-            section.put_in_order(self._file, self.finish and partial(self.finish, road))
+        """The Columns of a section, and whether they are worth caching (those in memory are not)."""
+        stored = self._sections.get((road, section))
+        if stored is not None and not stored.in_order:
+            before = stored.nbytes
+            stored.sort(self._file, self.finish and partial(self.finish, road))
             with self._lock:
-                self._waiting_bytes += section.nbytes - before
-        if section is None or not section.parts:
+                self._waiting_bytes += stored.nbytes - before
+        if stored is None or not stored.parts:
             return Columns.concatenate([], self.dtype), False
-        records = section.parts[0]
-        return (records, False) if isinstance(records, Columns) else (self._in_file(records), True)
+        records = stored.parts[0]
+        return (records, False) if isinstance(records, Columns) else (self._columns_of_file(records), True)
 
-    def column(self, road, section, name, rows):
-        """Some rows of one column of a section that was read before, (M,); nothing else is read, and nothing kept."""
+    def column(self, road: int, section: int, name: str, rows: np.ndarray) -> np.ndarray:
+        """Some rows of one column of a section that was read before; nothing else is read or cached.
+
+        Parameters
+        ----------
+        road, section : numbers
+        name : of the column
+        rows : (M,) indices
+
+        Returns
+        -------
+        (M,) array
+        """
         part = self._sections[road, section].parts[0]
-        return part[name].take(rows, mode="clip") if isinstance(part, Columns) else self._file.get(part[name], rows=rows)
+        return part[name].take(rows, mode="clip") if isinstance(part, Columns) else self._spilled(part[name], rows)
 
-    def first_unit(self, section):
+    def _spilled(self, stored, rows=None):
+        assert self._file is not None  # a StoredColumn exists only where something was spilled
+        return self._file.get(stored, rows=rows)
+
+    def first_unit(self, section: int) -> int:
         """The least station, in units of 0.1 mm, that lies in a section."""
         unit = int(round(section * self.section_length / COORDINATE_SCALE))
         while np.floor((unit - 1) * COORDINATE_SCALE / self.section_length) >= section:
@@ -235,64 +285,64 @@ class SectionStore:
             unit += 1
         return unit
 
-    def _in_file(self, stored):
+    def _columns_of_file(self, stored):
         """Columns that are read one by one when they are asked for."""
-        return Columns({}, self.dtype, stored[self.dtype.names[0]].packing.count, lambda name: self._file.get(stored[name]),
-                       pick=lambda name, rows: self._file.get(stored[name], rows=rows))
+        return Columns({}, self.dtype, stored[self.dtype.names[0]].packing.size, lambda name: self._spilled(stored[name]),
+                       load_rows=lambda name, rows: self._spilled(stored[name], rows))
 
-    def _keep(self, key, records):
+    def _add_to_cache(self, key, records):
         with self._lock:
-            self._kept[key] = records
-            self._kept_bytes += records.nbytes
-            while self._kept_bytes > self._kept_limit and len(self._kept) > 1:
-                self._kept_bytes -= self._kept.popitem(last=False)[1].nbytes
+            self._cache[key] = records
+            self._cache_bytes += records.nbytes
+            while self._cache_bytes > self._cache_limit and len(self._cache) > 1:
+                self._cache_bytes -= self._cache.popitem(last=False)[1].nbytes
 
-    def _forget(self, key):
+    def _drop_from_cache(self, key):
         with self._lock:
-            records = self._kept.pop(key, None)
-            self._kept_bytes -= 0 if records is None else records.nbytes
+            records = self._cache.pop(key, None)
+            self._cache_bytes -= 0 if records is None else records.nbytes
 
-    def window(self, road, start, end):
+    def window(self, road: int, start: float, end: float) -> Points:
         """Points of a road with start <= station < end (metres), in canonical order."""
         first = int(np.floor(start / self.section_length))
         last = int(np.floor(np.nextafter(end, -np.inf) / self.section_length))
         parts = []
         for number in range(first, last + 1):
             records = self.section(road, number)
-            # of a section that lies inside, stations need not be looked at
+            # The stations of a section that lies inside the window need not be searched.
             low, high = self.first_unit(number) * COORDINATE_SCALE, (self.first_unit(number + 1) - 1) * COORDINATE_SCALE
             if len(records) and (low < start or high >= end):
-                stations = _Metres(records["s"])
+                stations: Any = _MetresOfUnits(records["s"])
                 a, b = bisect_left(stations, start), bisect_left(stations, end)
-                records = records if b - a == len(records) else records.run(a, b)
+                records = records if b - a == len(records) else records.row_range(a, b)
             parts.append(records)
         return Points(Columns.concatenate(parts, self.dtype))
 
-    def span(self, road):
-        """Stations between which the points of a road lie, start <= station < end; (0, 0) where there are none."""
+    def span(self, road: int) -> tuple[float, float]:
+        """Stations (metres) between which the points of a road lie, start <= station < end; (0, 0) where there are none."""
         sections = self.sections(road)
         ends = []
         for numbers, row in ((sections, 0), (sections[::-1], -1)):
-            # a section may be left empty when it is finished
+            # `finish` may have removed all points of a section.
             stations = next((s for number in numbers if len(s := self.section(road, number)["s"])), None)
             if stations is None:
                 return 0.0, 0.0
             ends.append(int(stations[row]))
         return ends[0] * COORDINATE_SCALE, (ends[1] + 1) * COORDINATE_SCALE
 
-    def with_column(self, name):
-        """A store of the same points in which one column is put anew, section by section; it shares all others with this one."""
-        return _WithColumn(self, name)
+    def with_column(self, name: str) -> SectionStore:
+        """A store of the same points in which one column is set anew, section by section; it shares all other columns with this one."""
+        return _ColumnOverlay(self, name)
 
-    def let_go(self):
-        """Give the memory back of what was kept as last read."""
+    def clear_cache(self) -> None:
+        """Release the sections that are cached as last read."""
         with self._lock:
-            self._kept.clear()
-            self._kept_bytes = 0
+            self._cache.clear()
+            self._cache_bytes = 0
 
-    def close(self):
-        """Forget everything and give the disk space back."""
-        self.let_go()
+    def close(self) -> None:
+        """Release all points and their disk space."""
+        self.clear_cache()
         self._sections.clear()
         self._waiting_bytes = 0
         if self._file is not None:
@@ -300,21 +350,21 @@ class SectionStore:
             self._file = None
 
 
-class _WithColumn(SectionStore):
-    """The points of a store with one column of their own; nothing is kept here, only in the two stores that it joins."""
+class _ColumnOverlay(SectionStore):
+    """The points of a store with one column replaced; it holds no points itself and joins two stores."""
 
-    def __init__(self, points, name):
+    def __init__(self, points: SectionStore, name: str):
         super().__init__(points.dtype, points.section_length, points.memory_limit)
         self._points, self._name = points, name
         self._column = SectionStore([(name, points.dtype[name])], points.section_length, points.memory_limit)
 
     @property
-    def count(self):
+    def count(self) -> int:
         return self._column.count
 
-    def put(self, road, section, column):
+    def put(self, road: int, section: int, records: np.ndarray) -> None:
         """Set the column of one section, (N,) in the order of its points."""
-        self._column.put(road, section, Columns({self._name: column}, self._column.dtype))
+        self._column.put(road, section, Columns({self._name: records}, self._column.dtype))
 
     def append(self, road, records):
         raise TypeError("The points of this store are those of another; a column can be put, points cannot be added.")
@@ -331,14 +381,15 @@ class _WithColumn(SectionStore):
         def of(name):
             return column if name == self._name else points
 
-        return Columns({}, self.dtype, len(points), lambda name: of(name)[name], pick=lambda name, rows: of(name)._rows(name, rows)), False
+        return Columns({}, self.dtype, len(points), lambda name: of(name)[name],
+                       load_rows=lambda name, rows: of(name).column_rows(name, rows)), False
 
     def column(self, road, section, name, rows):
         return self.section(road, section).take(rows)[name]
 
-    def let_go(self):
-        self._column.let_go()
-        self._points.let_go()
+    def clear_cache(self):
+        self._column.clear_cache()
+        self._points.clear_cache()
 
     def close(self):
         super().close()
@@ -346,8 +397,8 @@ class _WithColumn(SectionStore):
         self._points.close()
 
 
-class _Metres:
-    """Units of a column as metres, one at a time, for a binary search."""
+class _MetresOfUnits:
+    """A column of units of 0.1 mm as metres, converted one at a time in a binary search."""
 
     def __init__(self, column):
         self.column = column

@@ -1,4 +1,10 @@
-"""A temporary file in which columns are put down and picked up again, by several threads at once."""
+"""A temporary file of columns, written and read by several threads at once.
+
+Columns are packed, without loss, into as few bytes per value as their range needs, since the cost of a
+temporary file grows with its bytes.
+"""
+
+from __future__ import annotations
 
 import os
 import tempfile
@@ -11,172 +17,211 @@ import numpy as np
 
 from ...common.memory import columns_kept
 
-# Columns in as few bytes as hold them, to the bit: what is put into a temporary file costs by the byte.
-
-AT_ONCE = 1 << 15      # values worked at a time: what fits the processor's cache
-PARTS = {0: (), 1: (1,), 2: (2,), 3: (2, 1), 4: (4,), 5: (4, 1), 6: (4, 2)}  # bytes of a value, and widths of its parts, lowest first
+PACKING_CHUNK = 1 << 15  # values packed at a time: they fit the processor's cache
+PART_WIDTHS = {0: (), 1: (1,), 2: (2,), 3: (2, 1), 4: (4,), 5: (4, 1), 6: (4, 2)}  # bytes of a value -> bytes of its parts, lowest first
+MAX_FREE_RANGES = 64     # free ranges of the file that are remembered; of more, the smallest is forgotten
 
 
 class Packing(NamedTuple):
-    """How a column of `count` values was packed: its bits less `least`, in parts of so many bytes, all lowest parts first."""
+    """How a column was packed: the bits of its values less `least`, split into parts; all lowest parts come first.
+
+    Attributes
+    ----------
+    dtype : of the column
+    size : values
+    least : the least value, as an integer of the column's bits
+    widths : bytes of each part, lowest first; none where all values are equal
+    """
 
     dtype: np.dtype
-    count: int
+    size: int
     least: int
-    widths: tuple
+    widths: tuple[int, ...]
 
     @property
-    def nbytes(self):
-        return self.count * sum(self.widths)
+    def nbytes(self) -> int:
+        """Packed bytes."""
+        return self.size * sum(self.widths)
 
     @property
-    def alike(self):
-        """A read-only view of the one value that all have; None where they differ."""
+    def constant(self) -> np.ndarray | None:
+        """A read-only (N,) view of the one value that all have; None where they differ."""
         if self.widths:
             return None
-        size = self.dtype.itemsize
-        return np.broadcast_to(np.array(self.least % 2**(8 * size), f"u{size}").view(self.dtype), self.count)
+        itemsize = self.dtype.itemsize
+        return np.broadcast_to(np.array(self.least % 2**(8 * itemsize), f"u{itemsize}").view(self.dtype), self.size)
 
-    def unpack(self, data, column, rows=None):
-        """Fill a column, (N,), from its packed bytes; with some rows of it, (M,), where they are given."""
+    def unpack(self, data: np.ndarray, column: np.ndarray, rows: np.ndarray | None = None) -> None:
+        """Fill a column from its packed bytes.
+
+        Parameters
+        ----------
+        data : (B,) uint8, packed bytes
+        column : (N,) array to fill, or (M,) with `rows`
+        rows : (M,) indices of the values to unpack; all by default
+        """
         bits = np.dtype(f"u{self.dtype.itemsize}")
         least, column = bits.type(self.least % 2**(8 * bits.itemsize)), column.view(bits)
-        low, *high = _parts(data, self)
-        for first in range(0, len(column), AT_ONCE):
-            piece = column[first:first + AT_ONCE]
-            some = slice(first, first + AT_ONCE) if rows is None else rows[first:first + AT_ONCE]
+        low, *high = _part_views(data, self)
+        for first in range(0, len(column), PACKING_CHUNK):
+            chunk = column[first:first + PACKING_CHUNK]
+            some = slice(first, first + PACKING_CHUNK) if rows is None else rows[first:first + PACKING_CHUNK]
             if high:
-                np.left_shift(_some(high[0], some), 8 * self.widths[0], out=piece, dtype=bits)
-                piece |= _some(low, some)
-                piece += least
+                np.left_shift(_values_at(high[0], some), 8 * self.widths[0], out=chunk, dtype=bits)
+                chunk |= _values_at(low, some)
+                chunk += least
             else:
-                np.add(_some(low, some), least, out=piece, dtype=bits)
+                np.add(_values_at(low, some), least, out=chunk, dtype=bits)
 
 
-def packed(column):
-    """Packing and packed bytes, (B,) uint8, of a column of one or more numbers.
+def pack(column: np.ndarray) -> tuple[Packing, np.ndarray]:
+    """Pack a column of one or more numbers.
 
-    The bytes are overwritten by the next column that the same thread packs.
+    Parameters
+    ----------
+    column : (N,) integers or floats, N > 0
+
+    Returns
+    -------
+    Packing, and (B,) uint8 packed bytes, which the next column that the same thread packs overwrites
     """
     column = np.ascontiguousarray(column)
-    size = column.dtype.itemsize
-    values = column.view(f"i{size}") if column.dtype.kind == "f" else column   # so that NaN is NaN
+    itemsize = column.dtype.itemsize
+    values = column.view(f"i{itemsize}") if column.dtype.kind == "f" else column   # NaN has no order, its bits have
     least, most = int(values.min()), int(values.max())
-    widths = PARTS.get(((most - least).bit_length() + 7) // 8, (size,))
-    if sum(widths) >= size:
-        return Packing(column.dtype, len(column), 0, (size,)), column.view(np.uint8)
+    widths = PART_WIDTHS.get(((most - least).bit_length() + 7) // 8, (itemsize,))
+    if sum(widths) >= itemsize:
+        return Packing(column.dtype, len(column), 0, (itemsize,)), column.view(np.uint8)
     packing = Packing(column.dtype, len(column), least, widths)
-    bits = column.view(f"u{size}")
-    least = bits.dtype.type(least % 2**(8 * size))
+    bits = column.view(f"u{itemsize}")
+    offset = bits.dtype.type(least % 2**(8 * itemsize))
     data = columns_kept.of(packing.nbytes)("packed", np.uint8)
-    parts = _parts(data, packing)
-    over = np.empty(min(len(bits), AT_ONCE), bits.dtype)
-    for first in range(0, len(bits) if parts else 0, AT_ONCE):
-        here = bits[first:first + AT_ONCE]
-        rest = np.subtract(here, least, out=over[:len(here)])
-        parts[0][first:first + AT_ONCE] = rest
+    parts = _part_views(data, packing)
+    buffer = np.empty(min(len(bits), PACKING_CHUNK), bits.dtype)
+    for first in range(0, len(bits) if parts else 0, PACKING_CHUNK):
+        chunk = bits[first:first + PACKING_CHUNK]
+        rest = np.subtract(chunk, offset, out=buffer[:len(chunk)])
+        parts[0][first:first + PACKING_CHUNK] = rest
         if len(parts) > 1:
-            parts[1][first:first + AT_ONCE] = np.right_shift(rest, 8 * widths[0], out=rest)
+            parts[1][first:first + PACKING_CHUNK] = np.right_shift(rest, 8 * widths[0], out=rest)
     return packing, data
 
 
-def _parts(data, packing):
+def _part_views(data, packing):
     """Views of the packed bytes, one for each part of the values."""
-    ends = np.cumsum([0, *packing.widths]) * packing.count
+    ends = np.cumsum([0, *packing.widths]) * packing.size
     return [data[first:end].view(f"u{width}") for first, end, width in zip(ends[:-1].tolist(), ends[1:].tolist(), packing.widths)]
 
 
-def _some(part, rows):
+def _values_at(part, rows):
     return part[rows] if isinstance(rows, slice) else part.take(rows, mode="clip")
 
-MOST_GAPS = 64   # places given back that are remembered; of more the largest
 
+class StoredColumn(NamedTuple):
+    """A column in the file.
 
-class Stored(NamedTuple):
-    """Where the packed bytes of a column lie, and how they are packed."""
+    Attributes
+    ----------
+    place : first byte
+    packing : how it is packed
+    """
 
     place: int
     packing: Packing
 
 
 class SpillFile:
-    """Columns at places of a file without a name (on Windows it is deleted when it is closed): a killed run leaves nothing.
+    """Columns in a temporary file without a name, which a killed run does not leave behind (on Windows it is deleted when it is closed).
 
-    A column takes the place of others that were given back, where there is room.
+    Attributes
+    ----------
+    end : bytes of the file
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._file = tempfile.TemporaryFile(prefix="lanewright-", buffering=0)
-        # it goes with the survey that it was made for; left to Python, the log would be warned of an unclosed file
+        # Closed with this object; otherwise Python warns of an unclosed file.
         weakref.finalize(self, self._file.close)
         self._lock = threading.Lock()
-        self._gaps = []       # (place, bytes) given back, by place
+        self._free: list[tuple[int, int]] = []   # (first byte, bytes) of released columns, by place
         self.end = 0
 
-    def put(self, column):
-        """Put a column of one or more numbers down; returns a Stored."""
-        packing, data = packed(column)
-        place = self._room(packing.nbytes)
-        self.write(place, data)
-        return Stored(place, packing)
+    def put(self, column: np.ndarray) -> StoredColumn:
+        """Write an (N,) column, N > 0, into the first free range that is large enough, or at the end."""
+        packing, data = pack(column)
+        place = self._allocate(packing.nbytes)
+        self._write(place, data)
+        return StoredColumn(place, packing)
 
-    def get(self, stored, out=None, rows=None):
-        """The (N,) column of a Stored, or (M,) some rows of it; put into `out` where one is given, else read-only where all are alike."""
+    def get(self, stored: StoredColumn, out: np.ndarray | None = None, rows: np.ndarray | None = None) -> np.ndarray:
+        """Read a column, or some rows of it.
+
+        Parameters
+        ----------
+        stored : of `put`
+        out : (N,) or (M,) array to fill; a new one by default
+        rows : (M,) indices; all by default
+
+        Returns
+        -------
+        (N,) or (M,) array, read-only where all values are equal and no `out` was given
+        """
         place, packing = stored
-        count = packing.count if rows is None else len(rows)
-        if not packing.widths and out is None:
-            return packing.alike[:count]
+        count = packing.size if rows is None else len(rows)
+        constant = packing.constant
+        if constant is not None and out is None:
+            return constant[:count]
         column = np.empty(count, packing.dtype) if out is None else out
-        if not packing.widths:
-            column[:] = packing.alike[:count]
+        if constant is not None:
+            column[:] = constant[:count]
         elif packing.widths == (packing.dtype.itemsize,) and rows is None:
-            self.read(place, column)
-        elif rows is not None and 2 * count > packing.count:   # most rows: all are unpacked faster than these picked from every part
-            np.take(self.get(stored, columns_kept.of(packing.count)("column", packing.dtype)), rows, out=column, mode="clip")
+            self._read(place, column)
+        elif rows is not None and 2 * count > packing.size:   # for most rows, unpacking all is faster
+            np.take(self.get(stored, columns_kept.of(packing.size)("column", packing.dtype)), rows, out=column, mode="clip")
         elif count:
-            first, end = (0, packing.count) if rows is None else (int(rows.min()), int(rows.max()) + 1)
-            run = packing._replace(count=end - first)
-            data, begin = columns_kept.of(run.nbytes)("packed", np.uint8), 0
+            first, end = (0, packing.size) if rows is None else (int(rows.min()), int(rows.max()) + 1)
+            span = packing._replace(size=end - first)
+            data, begin = columns_kept.of(span.nbytes)("packed", np.uint8), 0
             for width in packing.widths:
-                self.read(place + first * width, data[begin:begin + run.count * width])
-                place, begin = place + packing.count * width, begin + run.count * width
-            run.unpack(data, column, rows - first if first else rows)
+                self._read(place + first * width, data[begin:begin + span.size * width])
+                place, begin = place + packing.size * width, begin + span.size * width
+            span.unpack(data, column, rows - first if rows is not None and first else rows)
         return column
 
-    def give_back(self, stored):
-        """The place of a column may be taken by others."""
+    def release(self, stored: StoredColumn) -> None:
+        """Free the bytes of a column for others."""
         if not stored.packing.nbytes:
             return
         with self._lock:
-            insort(self._gaps, (stored.place, stored.packing.nbytes))
-            joined = [self._gaps[0]]
-            for place, size in self._gaps[1:]:
-                before, room = joined[-1]
-                if before + room == place:
-                    joined[-1] = before, room + size
+            insort(self._free, (stored.place, stored.packing.nbytes))
+            merged = [self._free[0]]
+            for place, nbytes in self._free[1:]:
+                before, length = merged[-1]
+                if before + length == place:
+                    merged[-1] = before, length + nbytes
                 else:
-                    joined.append((place, size))
-            if len(joined) > MOST_GAPS:
-                joined.remove(min(joined, key=lambda gap: gap[1]))
-            self._gaps = joined
+                    merged.append((place, nbytes))
+            if len(merged) > MAX_FREE_RANGES:
+                merged.remove(min(merged, key=lambda free: free[1]))
+            self._free = merged
 
-    def _room(self, nbytes):
-        """The first place that is large enough."""
+    def _allocate(self, nbytes):
+        """The first byte of a range that is large enough."""
         if not nbytes:
             return 0
         with self._lock:
-            for k, (place, size) in enumerate(self._gaps):
-                if size >= nbytes:
-                    self._gaps[k:k + 1] = [(place + nbytes, size - nbytes)] * (size > nbytes)
+            for k, (place, length) in enumerate(self._free):
+                if length >= nbytes:
+                    self._free[k:k + 1] = [(place + nbytes, length - nbytes)] * (length > nbytes)
                     return place
             self.end += nbytes
             return self.end - nbytes
 
-    # pread and pwrite leave the file's position alone, so threads may use it together; Windows has neither
-    def write(self, place, array):
-        """Put an array down at a place."""
+    # pread and pwrite leave the file's position alone, so threads may use them together; Windows has neither.
+    def _write(self, place, array):
+        """Write an array at a place."""
         data = memoryview(np.ascontiguousarray(array).view(np.uint8)) if array.nbytes else b""
-        while len(data):  # a full disk raises, a signal only shortens
+        while len(data):  # a signal may shorten a write; a full disk raises
             if hasattr(os, "pwrite"):
                 written = os.pwrite(self._file.fileno(), data, place)
             else:
@@ -185,20 +230,20 @@ class SpillFile:
                     written = self._file.write(data)
             data, place = data[written:], place + written
 
-    def read(self, place, array):
-        """Fill a contiguous array with what lies at a place."""
+    def _read(self, place, array):
+        """Fill a contiguous array from a place."""
         data = memoryview(array.view(np.uint8)) if array.nbytes else b""
         while len(data):
             if hasattr(os, "preadv"):
-                read = os.preadv(self._file.fileno(), [data], place)
+                count = os.preadv(self._file.fileno(), [data], place)
             else:
                 with self._lock:
                     self._file.seek(place)
-                    read = self._file.readinto(data)
-            if not read:
+                    count = self._file.readinto(data)
+            if not count:
                 raise EOFError(f"The temporary file ends at byte {place:,}.")
-            data, place = data[read:], place + read
+            data, place = data[count:], place + count
 
-    def close(self):
-        """Give the disk space back."""
+    def close(self) -> None:
+        """Release the disk space."""
         self._file.close()

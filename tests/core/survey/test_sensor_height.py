@@ -27,7 +27,7 @@ def road_below(frame, reach=4.0, count=40_000):
     off = rng.uniform(-reach, reach, count)
     points = np.zeros(count, SURVEY_POINT)
     points["s"], points["d"], points["z"] = to_units(s), to_units(track_d + off), to_units(track_z - RIDES)
-    return Columns.of(points), off
+    return Columns.from_records(points), off
 
 
 @pytest.mark.parametrize("grade", [0.0, 0.12, -0.12])

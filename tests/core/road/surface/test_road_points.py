@@ -29,7 +29,7 @@ def points_about(road, count=40_000, seed=6):
     d = rng.uniform(-11, 11, count)
     records["s"], records["d"] = to_units(s), to_units(d)
     records["z"] = to_units(height_at(road, s, d) + rng.choice([0.0, 0.0, 1.0], count) + rng.normal(0, 0.04, count))
-    return Points(Columns.of(records))
+    return Points(Columns.from_records(records))
 
 
 def height_at(road, s, d):

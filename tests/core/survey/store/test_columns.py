@@ -14,24 +14,24 @@ def some(count=100):
 
 def test_rows_are_chosen_as_from_a_structured_array():
     records = some()
-    columns = Columns.of(records)
+    columns = Columns.from_records(records)
     for which in (slice(5, 20), slice(None, None, 7), np.arange(100) % 3 == 0, np.array([7, 7, 2]), np.empty(0, int)):
         np.testing.assert_array_equal(columns[which], records[which])
     np.testing.assert_array_equal(columns[10:90][np.arange(80) % 3 == 0], records[10:90][np.arange(80) % 3 == 0])
 
 
 def test_rows_chosen_of_chosen_rows_are_the_right_ones():
-    columns = Columns.of(some())
+    columns = Columns.from_records(some())
     np.testing.assert_array_equal(columns[np.array([9, 5, 3])][np.array([2, 0])]["s"], [3, 9])
 
 
 def test_a_mask_of_another_length_is_refused():
     with pytest.raises(IndexError, match="does not fit"):
-        Columns.of(some())[np.ones(99, bool)]
+        Columns.from_records(some())[np.ones(99, bool)]
 
 
 def test_what_was_chosen_may_be_changed_and_leaves_its_source_alone():
-    columns = Columns.of(some()).locked()
+    columns = Columns.from_records(some()).read_only()
     chosen = columns[np.array([1, 2])]
     chosen["s"] = 0
     assert chosen["s"].tolist() == [0, 0] and columns["s"].tolist() == list(range(100))
@@ -41,7 +41,7 @@ def test_what_was_chosen_may_be_changed_and_leaves_its_source_alone():
                                    slice(20, 80), slice(33, 34), slice(None), slice(90, 10), slice(0, 100, 9), slice(-30, -2)], ids=str)
 def test_rows_of_joined_parts_are_those_of_the_whole(which):
     records = some()
-    parts = [Columns.of(records[a:b]) for a, b in ((0, 33), (33, 34), (34, 70), (70, 100))]
+    parts = [Columns.from_records(records[a:b]) for a, b in ((0, 33), (33, 34), (34, 70), (70, 100))]
     joined = Columns.concatenate(parts, records.dtype)
     np.testing.assert_array_equal(joined[which], records[which])
     np.testing.assert_array_equal(joined[10:95][:80][1::3], records[10:95][:80][1::3])
@@ -52,7 +52,7 @@ def test_rows_of_joined_parts_are_those_of_the_whole(which):
 
 
 def test_a_row_beyond_joined_parts_is_refused():
-    joined = Columns.concatenate([Columns.of(some(5)), Columns.of(some(5))], some().dtype)
+    joined = Columns.concatenate([Columns.from_records(some(5)), Columns.from_records(some(5))], some().dtype)
     with pytest.raises(IndexError):
         joined[np.array([3, 10])]["s"]
 
@@ -61,7 +61,7 @@ def test_only_those_parts_are_read_that_chosen_rows_lie_in():
     def unread(name):
         raise AssertionError(f"{name} was read")
 
-    parts = [Columns({}, some().dtype, 100, unread), Columns.of(some())]
+    parts = [Columns({}, some().dtype, 100, unread), Columns.from_records(some())]
     joined = Columns.concatenate(parts, some().dtype)
     assert joined[np.array([100, 150])]["s"].tolist() == [0, 50]
     assert joined[120:130][np.array([1])]["s"].tolist() == [21]
@@ -78,7 +78,7 @@ def test_few_rows_are_fetched_alone_and_where_they_grow_many_the_column_once():
         fetched.append((name, len(rows)))
         return records[name][rows]
 
-    columns = Columns({}, records.dtype, len(records), whole, pick=few)
+    columns = Columns({}, records.dtype, len(records), whole, load_rows=few)
     np.testing.assert_array_equal(columns[::20]["time"], records["time"][::20])
     assert fetched == [("time", 5)]
     for rows in (np.arange(7), np.arange(20), np.arange(3, 90), np.arange(4)):
@@ -90,7 +90,8 @@ def test_few_rows_are_fetched_alone_and_where_they_grow_many_the_column_once():
 
 def test_parts_are_joined_in_order_and_none_are_none():
     records = some()
-    np.testing.assert_array_equal(Columns.concatenate([Columns.of(records[:30]), Columns.of(records[30:])], records.dtype), records)
+    halves = [Columns.from_records(records[:30]), Columns.from_records(records[30:])]
+    np.testing.assert_array_equal(Columns.concatenate(halves, records.dtype), records)
     assert len(Columns.concatenate([], records.dtype)) == len(Columns.concatenate([], records.dtype)["time"]) == 0
 
 

@@ -30,7 +30,7 @@ def road_of(store):
 
 
 @pytest.mark.parametrize("limit", [0, 60_000, 10**9])
-def test_chosen_points_are_those_of_the_store_with_columns_of_their_own(limit):
+def test_a_subset_has_the_points_of_the_store_and_columns_of_its_own(limit):
     store = survey_store(limit)
     road = road_of(store)
     assert road.sections(0) == [0, 1, 3, 4, 5, 6, 7] and road.roads() == [0] and not len(road.section(0, 2))
@@ -46,13 +46,13 @@ def test_chosen_points_are_those_of_the_store_with_columns_of_their_own(limit):
     assert road.count == total == len(road.window(0, 0.0, 40.0))
 
 
-def test_a_window_of_chosen_points_is_a_run_of_stations():
+def test_a_window_of_a_subset_is_a_range_of_stations():
     road = road_of(survey_store(0))
     window = road.window(0, 3.3, 21.7)
     assert window.s.min() >= 3.3 and window.s.max() < 21.7 and (np.diff(window.records["s"]) >= 0).all()
 
 
-def test_a_column_put_anew_leaves_the_other_columns_of_chosen_points_as_they_are():
+def test_a_column_put_anew_leaves_the_other_columns_of_a_subset_as_they_are():
     road = road_of(survey_store(0))
     bright = road.with_column("corrected")
     for number in road.sections(0):
@@ -70,14 +70,14 @@ def test_points_with_a_column_put_anew_give_memory_back_and_are_the_same_points_
     for number in store.sections(0):
         bright.put(0, number, store.section(0, number)["intensity"] // 2)
     before = np.asarray(bright.section(0, 4))
-    bright.let_go()
+    bright.clear_cache()
     np.testing.assert_array_equal(np.asarray(bright.section(0, 4)), before)
     for name in ("intensity", "x"):
         np.testing.assert_array_equal(bright.column(0, 4, name, np.array([5, 2])), before[name][[5, 2]])
     if limit == 0:
-        assert store._kept  # the section was read from the file again
-        bright.let_go()
-        assert not store._kept
+        assert store._cache  # the section was read from the file again
+        bright.clear_cache()
+        assert not store._cache
     bright.close()
     assert not store.roads()
 
@@ -90,7 +90,7 @@ def test_few_rows_of_a_section_are_those_of_the_whole_whatever_was_read_of_it_be
     for number in road.sections(0):
         bright.put(0, number, road.section(0, number)["intensity"].astype(np.float32) / 2)
     whole = np.asarray(bright.section(0, 4))
-    road.let_go()
+    road.clear_cache()
     rows = np.array(rows, np.intp)
     for _ in range(3):
         few = bright.section(0, 4).take(rows)
@@ -103,7 +103,7 @@ def test_a_window_is_the_same_where_it_cuts_a_section_and_where_it_ends_with_one
     everything = np.asarray(road.window(0, 0.0, 40.0).records)
     for start, end in ((4.9, 5.1), (5.0, 10.0), (14.999, 20.0), (15.0, 20.0001), (16.0, 16.2), (-3.0, 50.0)):
         inside = (everything["s"] * 1e-4 >= start) & (everything["s"] * 1e-4 < end)
-        road.let_go()
+        road.clear_cache()
         found = np.asarray(road.window(0, start, end).records)
         assert len(found) and found.tobytes() == everything[inside].tobytes()
 

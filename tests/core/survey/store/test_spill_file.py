@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from lanewright.core.survey.store.spill_file import AT_ONCE, SpillFile, packed
+from lanewright.core.survey.store.spill_file import PACKING_CHUNK, SpillFile, pack
 
 RNG = np.random.default_rng(3)
-COUNT = 2 * AT_ONCE + 17
+COUNT = 2 * PACKING_CHUNK + 17
 COLUMNS = {
     "stations of a section": RNG.integers(5_000_000, 5_050_000, COUNT).astype(np.int32),
     "offsets of either side": RNG.integers(-300_000, 300_000, COUNT).astype(np.int32),
@@ -41,7 +41,7 @@ def test_a_column_comes_out_of_the_file_as_it_went_in_to_the_bit(name):
     ("stations of a section", 2), ("offsets of either side", 3), ("pass numbers", 1), ("seconds since 1980", 4), ("seconds of the week", 5),
     ("all of 32 bits", 4), ("all of 64 bits", 8), ("nothing but NaN", 0)])
 def test_a_value_takes_the_bytes_it_needs(name, nbytes):
-    packing, data = packed(COLUMNS[name])
+    packing, data = pack(COLUMNS[name])
     assert packing.nbytes == len(data) == nbytes * len(COLUMNS[name])
 
 
@@ -51,7 +51,7 @@ def test_columns_take_the_places_of_those_given_back():
     stored = [file.put(column) for column in columns]
     end = file.end
     for k in (1, 3, 2):  # they lie side by side
-        file.give_back(stored[k])
+        file.release(stored[k])
     long = RNG.integers(0, 2**32, 300, dtype=np.uint32)
     place = file.put(long)
     assert file.end == end
