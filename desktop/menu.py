@@ -12,7 +12,7 @@ from .map_layout import road_map_layout
 from .sample_run import SampleRun
 
 ICON = Path(__file__).resolve().parents[1] / "resources" / "icon.svg"
-GROUP = "Lanewright"
+LAYER_GROUP = "Lanewright"
 
 
 class Menu(QObject):
@@ -61,7 +61,7 @@ class Menu(QObject):
     def open_layout(self):
         """A layout of the newest Lanewright group, opened in QGIS's designer."""
         project = QgsProject.instance()
-        groups = [node for node in project.layerTreeRoot().findGroups() if node.name().startswith(GROUP)]
+        groups = [node for node in project.layerTreeRoot().findGroups() if node.name().startswith(LAYER_GROUP)]
         layers = [node.layer() for node in (groups[0].findLayers() if groups else []) if node.layer() and node.layer().isSpatial()]
         if not layers:
             self.iface.messageBar().pushMessage(

@@ -1,1 +1,1 @@
-"""The algorithms of the toolbox: each file declares a dialog, calls one core function and writes the result."""
+"""The algorithms in QGIS: dialogs made from their declarations, layers read and written, styles."""

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from qgis.core import QgsDataSourceUri, QgsRasterLayer, QgsVectorLayer
 
-from .destinations import destination_path
+from ..algorithms.destinations import destination_path
 from .styling import LOOKS, STYLES, apply_style
 
 NAME = "default"

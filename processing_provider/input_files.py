@@ -11,7 +11,7 @@ from qgis.core import (
     QgsProviderRegistry,
 )
 
-from .destinations import destination_path
+from ..algorithms.destinations import destination_path
 
 READ = ("source", "vector", "raster", "layer", "multilayer", "file", "pointcloud")
 

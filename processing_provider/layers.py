@@ -1,4 +1,4 @@
-"""Between QGIS layers and the core's Features."""
+"""QGIS layers as the algorithms read them, and Features written into them."""
 
 from itertools import islice
 
@@ -11,13 +11,14 @@ from qgis.core import (
     QgsField,
     QgsFields,
     QgsGeometry,
+    QgsProcessingFeatureSource,
     QgsVectorFileWriter,
     QgsWkbTypes,
 )
 from qgis.PyQt.QtCore import QMetaType
 
+from ..algorithms.vector_source import LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource
 from ..core.common.errors import Cancelled, RoadExtractionError
-from ..core.common.features import Features, Field
 from .texts import tr
 
 WKB_TYPES = {
@@ -29,6 +30,8 @@ WKB_TYPES = {
     "MultiPolygonZ": Qgis.WkbType.MultiPolygonZ,
     "None": Qgis.WkbType.NoGeometry,
 }
+KINDS = {Qgis.GeometryType.Point: POINT, Qgis.GeometryType.Line: LINE, Qgis.GeometryType.Polygon: POLYGON,
+         Qgis.GeometryType.Null: TABLE, Qgis.GeometryType.Unknown: UNKNOWN}
 AT_ONCE = 5000  # features handed to a sink together
 COLUMN_TYPES = {int: QMetaType.Type.LongLong, float: QMetaType.Type.Double, str: QMetaType.Type.QString}
 
@@ -86,80 +89,41 @@ def _plain(value):
     return None if value != value else value
 
 
-def read_features(source, schema, geometry_type, label):
-    """A feature source as Features; fields are matched by name, the layer's further fields are left out.
+class QgisSource(VectorSource):
+    """A QgsVectorLayer, or the source that Processing makes of one, as the algorithms read it."""
 
-    Multi-part geometries become one row a part. Raises RoadExtractionError where a
-    field is missing, the geometry is of another kind, or carries no heights.
-    """
-    import shapely
+    def __init__(self, layer, label):
+        self.layer, self.label = layer, label
+        self.names = [field.name() for field in layer.fields()]
+        kind = layer.wkbType()
+        self.kind = KINDS[QgsWkbTypes.geometryType(kind)]
+        self.has_z, self.has_m = QgsWkbTypes.hasZ(kind), QgsWkbTypes.hasM(kind)
+        self.crs = crs_text(layer.sourceCrs() if hasattr(layer, "sourceCrs") else layer.crs())
 
-    _check_kind(source, schema, geometry_type, label)
-    result = Features(geometry_type, list(schema), crs=crs_text(source.sourceCrs()))
-    index = {column.name: source.fields().lookupField(column.name) for column in schema}
-    for feature in _features(source, geometry_type):
-        row = {column.name: _typed(feature.attribute(index[column.name]), column) for column in schema}
-        if geometry_type == "None":
-            result.add(None, **row)
-            continue
-        geometry = feature.geometry()
-        if geometry.isNull() or geometry.isEmpty():
-            continue
-        if geometry_type.endswith("ZM"):
-            for part in _measured_parts(geometry, label):
-                result.add(part, **row)
-            continue
-        for part in shapely.get_parts(shapely.from_wkb(bytes(geometry.asWkb()))):
-            if not part.has_z:
-                raise RoadExtractionError(
-                    tr("{label} has geometries without heights (Z). Use the layer that Lanewright wrote.").format(
-                        label=label
-                    )
-                )
-            result.add(part, **row)
-    return result
+    def rows(self, measures=False, check_validity=True):
+        features = self.layer.getFeatures() if check_validity or not isinstance(self.layer, QgsProcessingFeatureSource) else \
+            self.layer.getFeatures(QgsFeatureRequest(), Qgis.ProcessingFeatureSourceFlag.SkipGeometryValidityChecks)
+        for feature in features:
+            geometry = feature.geometry()
+            wkb = None if geometry.isNull() or geometry.isEmpty() else _wkb(geometry, measures)
+            yield wkb, [_value(value) for value in feature.attributes()]
+
+    def kind_label(self, kind):
+        return QgsWkbTypes.geometryDisplayString(next(one for one, ours in KINDS.items() if ours == kind))
 
 
-def _features(source, geometry_type):
-    """The rows of a source. Scanlines run straight up a wall, which seen from above is no valid line."""
-    if geometry_type.endswith("ZM"):
-        return source.getFeatures(QgsFeatureRequest(), Qgis.ProcessingFeatureSourceFlag.SkipGeometryValidityChecks)
-    return source.getFeatures()
+def _wkb(geometry, measures):
+    """WKB without curves, which the core does not know."""
+    kind = geometry.wkbType()
+    if QgsWkbTypes.isCurvedType(kind):
+        geometry = QgsGeometry(geometry.constGet().segmentize())
+    if not measures and QgsWkbTypes.hasM(kind):
+        geometry.get().dropMValue()
+    return bytes(geometry.asWkb())
 
 
-def _measured_parts(geometry, label):
-    """WKB of every part of a geometry with Z and M: shapely before 2.1 would lose the M."""
-    for part in geometry.constParts():
-        if not (part.is3D() and part.isMeasure()):
-            raise RoadExtractionError(
-                tr("{label} has geometries without heights (Z) or measures (M). Use the layer that Lanewright wrote.").format(label=label)
-            )
-        yield bytes(part.asWkb())
-
-
-def _check_kind(source, schema, geometry_type, label):
-    """Refuse a layer that another stage made, or none."""
-    fields = source.fields()
-    missing = [column.name for column in schema if fields.lookupField(column.name) < 0]
-    if missing:
-        raise RoadExtractionError(
-            tr("{label} lacks the field(s) {fields}. Use the layer that Lanewright wrote.").format(
-                label=label, fields=", ".join(missing)
-            )
-        )
-    found, needed = QgsWkbTypes.geometryType(source.wkbType()), QgsWkbTypes.geometryType(WKB_TYPES[geometry_type])
-    if geometry_type != "None" and found != needed:
-        raise RoadExtractionError(
-            tr("{label} holds geometries of the kind {found}; {needed} is needed. Use the layer that Lanewright wrote.").format(
-                label=label, found=QgsWkbTypes.geometryDisplayString(found), needed=QgsWkbTypes.geometryDisplayString(needed)
-            )
-        )
-
-
-def _typed(value, column: Field):
-    if value is None or (hasattr(value, "isNull") and value.isNull()):
-        return None
-    return column.type(value)
+def _value(value):
+    return None if value is None or (hasattr(value, "isNull") and value.isNull()) else value
 
 
 def crs_text(crs):

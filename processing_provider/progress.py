@@ -1,8 +1,8 @@
 """QGIS's progress bar and log as the listener that the core speaks to."""
 
+from ..algorithms.progress import time_left
 from ..core.common.errors import Cancelled
 from ..core.common.progress import Progress, RemainingTime
-from .texts import tr
 
 
 class FeedbackProgress(Progress):
@@ -28,12 +28,3 @@ class FeedbackProgress(Progress):
 
     def warn(self, text):
         self.feedback.pushWarning(text)
-
-
-def time_left(seconds):
-    """What the user reads, in the unit that gives a small number."""
-    if seconds < 60:
-        return tr("About {number} s left").format(number=round(seconds))
-    if seconds < 3600:
-        return tr("About {number} min left").format(number=round(seconds / 60))
-    return tr("About {number} h left").format(number=round(seconds / 3600))

@@ -5,7 +5,8 @@ from pathlib import Path
 from qgis.core import QgsProcessingProvider
 from qgis.PyQt.QtGui import QIcon
 
-from .catalogue import ALGORITHMS
+from ..algorithms.catalogue import ALGORITHMS
+from .algorithm import LanewrightAlgorithm
 from .models import read_model
 
 RESOURCES = Path(__file__).resolve().parents[1] / "resources"
@@ -25,8 +26,8 @@ class LanewrightProvider(QgsProcessingProvider):
         return QIcon(str(RESOURCES / "icon.svg"))
 
     def loadAlgorithms(self):
-        for algorithm in ALGORITHMS:
-            self.addAlgorithm(algorithm())
+        for declaration in ALGORITHMS:
+            self.addAlgorithm(LanewrightAlgorithm(declaration()))
         for path in sorted((RESOURCES / "models").glob("*.model3")):
             model = read_model(path)
             if model is not None:

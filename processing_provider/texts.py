@@ -5,12 +5,19 @@ from pathlib import Path
 from qgis.core import QgsApplication
 from qgis.PyQt.QtCore import QCoreApplication, QTranslator
 
+from ..algorithms.texts import set_translation, tr
+
+__all__ = ["install_translator", "remove_translator", "tr"]
+
 CONTEXT = "Lanewright"
 TRANSLATIONS = Path(__file__).resolve().parents[1] / "resources" / "i18n"
 
 
-def tr(text):
+def _translate(text):
     return QCoreApplication.translate(CONTEXT, text)
+
+
+set_translation(_translate)
 
 
 def install_translator(locale=""):

@@ -45,9 +45,10 @@ NAMED = {
 
 def pages(algorithms):
     """File name -> text of every generated page."""
-    made = {f"{algorithm.ID}.md": page(algorithm().create()) for algorithm in algorithms}
-    made["index.md"] = contents([algorithm().create() for algorithm in algorithms])
-    return made
+    from lanewright.processing_provider.algorithm import LanewrightAlgorithm
+
+    shown = [LanewrightAlgorithm(algorithm()).create() for algorithm in algorithms]
+    return {**{f"{algorithm.name()}.md": page(algorithm) for algorithm in shown}, "index.md": contents(shown)}
 
 
 def contents(algorithms):
@@ -65,7 +66,7 @@ def contents(algorithms):
 
 def page(algorithm):
     lines = [f"# {algorithm.displayName()}", "", algorithm.shortDescription(), ""]
-    lines += [part + "\n" for part in algorithm.HELP.split("\n\n") if part]
+    lines += [part + "\n" for part in algorithm.declaration.HELP.split("\n\n") if part]
     if (PAGES / "img" / f"{algorithm.name()}.png").exists():
         lines += [f"![{algorithm.displayName()}](img/{algorithm.name()}.png)", ""]
     definitions = algorithm.parameterDefinitions()
@@ -172,7 +173,7 @@ def main():
     application = QgsApplication([], False)
     application.initQgis()
     try:
-        from lanewright.processing_provider.catalogue import ALGORITHMS
+        from lanewright.algorithms.catalogue import ALGORITHMS
 
         folder = Path(sys.argv[1]) if len(sys.argv) > 1 else PAGES
         folder.mkdir(parents=True, exist_ok=True)

@@ -14,20 +14,21 @@ from models import RECIPES
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "resources" / "i18n"
+SCHEMAS = ROOT / "core" / "common" / "schemas.py"
 CONTEXT = "Lanewright"
-ROOMS = ("processing_provider", "desktop")
+FOLDERS = ("algorithms", "processing_provider", "desktop")
 # Texts that stand in a class or a table and are translated where they are shown
-IN_A_CLASS = {"TITLE", "SUMMARY", "HELP", "ROOM", "TAGS", "ROOMS"}
+IN_A_CLASS = {"TITLE", "SUMMARY", "HELP", "GROUP", "TAGS", "GROUPS"}
 
 
 def texts():
     """Every text a user reads, with the file it is in, in the order of the files."""
     found = {}
-    for path in [ROOT / "plugin.py", *sorted(file for room in ROOMS for file in (ROOT / room).rglob("*.py"))]:
+    for path in [ROOT / "plugin.py", *sorted(file for folder in FOLDERS for file in (ROOT / folder).rglob("*.py"))]:
         for text in texts_of(ast.parse(path.read_text(encoding="utf-8"))):
             found.setdefault(text, path.relative_to(ROOT).as_posix())
     for text in aliases():
-        found.setdefault(text, "core/common/schemas.py")
+        found.setdefault(text, SCHEMAS.relative_to(ROOT).as_posix())
     for recipe in RECIPES:
         found.setdefault(recipe.description, "tools/models.py")
     for path in sorted((ROOT / "resources" / "styles").glob("*.qml")):
@@ -46,7 +47,7 @@ def texts_of(tree):
 
 
 def in_a_class(target, value):
-    """The texts of `TITLE = ...` and of `ID, TITLE, ROOM = ...`."""
+    """The texts of `TITLE = ...` and of `ID, TITLE, GROUP = ...`."""
     if isinstance(target, ast.Name) and target.id in IN_A_CLASS:
         for text in constants(value):
             # HELP is shown paragraph by paragraph
@@ -69,7 +70,7 @@ def legend(path):
 
 def aliases():
     """The spelled-out names of the fields of every layer."""
-    tree = ast.parse((ROOT / "core" / "common" / "schemas.py").read_text(encoding="utf-8"))
+    tree = ast.parse(SCHEMAS.read_text(encoding="utf-8"))
     for node in ast.walk(tree):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Field" and len(node.args) > 2:
             yield from constants(node.args[2])

@@ -4,6 +4,2686 @@
     <context>
         <name>Lanewright</name>
         <message>
+            <location filename="../../algorithms/algorithm.py" />
+            <source>Survey</source>
+            <translation>Vermessung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/algorithm.py" />
+            <source>Road</source>
+            <translation>Straße</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/algorithm.py" />
+            <source>Markings</source>
+            <translation>Markierungen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/algorithm.py" />
+            <source>Driving</source>
+            <translation>Fahren</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/algorithm.py" />
+            <source>Road map</source>
+            <translation>Straßenkarte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/algorithm.py" />
+            <source>Assessment</source>
+            <translation>Bewertung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/algorithm.py" />
+            <source>Orthoimages</source>
+            <translation>Orthobilder</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/algorithm.py" />
+            <source>Point clouds</source>
+            <translation>Punktwolken</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/algorithm.py" />
+            <source>LAS, LAZ or COPC files of one survey. Files may overlap and come in any order.</source>
+            <translation>LAS-, LAZ- oder COPC-Dateien einer Vermessung. Dateien dürfen sich überlappen und in beliebiger Reihenfolge kommen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/algorithm.py" />
+            <source>Trajectory</source>
+            <translation>Trajektorie</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/algorithm.py" />
+            <source>Where the vehicle drove: a point or line layer with heights, a table with columns time, x, y, z, or the path of a CSV, TXT or SBET file. Made with Import trajectory it needs no further care.</source>
+            <translation>Wo das Fahrzeug fuhr: ein Punkt- oder Linienlayer mit Höhen, eine Tabelle mit den Spalten time, x, y, z oder der Pfad einer CSV-, TXT- oder SBET-Datei. Mit „Trajektorie einlesen“ erzeugt, braucht sie keine weitere Pflege.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/algorithm.py" />
+            <source>CRS of the point clouds</source>
+            <translation>KBS der Punktwolken</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/algorithm.py" />
+            <source>Only for point clouds that carry no CRS of their own; it is written into everything made from them.</source>
+            <translation>Nur für Punktwolken ohne eigenes KBS; es wird in alles geschrieben, was aus ihnen entsteht.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/algorithm.py" />
+            <source>A page with the numbers of every step and a picture.</source>
+            <translation>Eine Seite mit den Zahlen jedes Schrittes und einem Bild.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/algorithm.py" />
+            <source>Report</source>
+            <translation>Bericht</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/algorithm.py" />
+            <source>Fields: {fields}.</source>
+            <translation>Felder: {fields}.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Assess road boundaries</source>
+            <translation>Straßenränder bewerten</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Sets road boundaries against reference lines, side by side in intervals of 2 m: precision, recall, errors across and in height.</source>
+            <translation>Hält Straßenränder gegen Referenzlinien, je Seite in Abschnitten von 2 m: Genauigkeit, Vollständigkeit, Abweichungen quer und in der Höhe.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Any two line layers will do, of other software too: flat or with heights, in one part or many, drawn either way, with any fields. A layer in another CRS is reprojected. Where a layer tells tops from bottoms in a field part, bottoms count.</source>
+            <translation>Zwei beliebige Linienlayer genügen, auch von anderer Software: mit oder ohne Höhen, ein- oder mehrteilig, in beliebiger Richtung gezeichnet, mit beliebigen Feldern. Ein Layer in einem anderen KBS wird umprojiziert. Wo ein Feld part Ober- und Unterkanten unterscheidet, zählen die Unterkanten.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>accuracy</source>
+            <translation>Genauigkeit</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>precision</source>
+            <translation>Präzision</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>recall</source>
+            <translation>Vollständigkeit</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>validation</source>
+            <translation>Validierung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>curb</source>
+            <translation>Bordstein</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>reference</source>
+            <translation>Referenz</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>ground truth</source>
+            <translation>Bodenwahrheit</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Tolerance of the layer and of the numbers (m)</source>
+            <translation>Toleranz des Layers und der Zahlen (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>The tolerance for which intervals are drawn and numbers returned; the report has all of them.</source>
+            <translation>Die Toleranz, für die Abschnitte gezeichnet und Zahlen zurückgegeben werden; der Bericht enthält alle.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Length of an interval (m)</source>
+            <translation>Länge eines Abschnitts (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Longer lets a short error pass or spoil more of the road; published figures use 2.</source>
+            <translation>Länger lässt einen kurzen Fehler durchgehen oder mehr von der Straße verderben; veröffentlichte Zahlen verwenden 2.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Corridor either side of the trajectory (m)</source>
+            <translation>Korridor beiderseits der Trajektorie (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>What lies farther out belongs to no road and is left out; the report tells how much.</source>
+            <translation>Was weiter außen liegt, gehört zu keiner Straße und bleibt weg; der Bericht sagt, wie viel.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Precision (%)</source>
+            <translation>Präzision (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Recall (%)</source>
+            <translation>Vollständigkeit (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>F (%)</source>
+            <translation>F (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Intersection over union (%)</source>
+            <translation>Schnitt durch Vereinigung (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Correct intervals</source>
+            <translation>Richtige Abschnitte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Missed intervals</source>
+            <translation>Fehlende Abschnitte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>False intervals</source>
+            <translation>Falsche Abschnitte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Intervals that were not judged</source>
+            <translation>Nicht beurteilte Abschnitte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Mean lateral error (m)</source>
+            <translation>Mittlere Querabweichung (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>RMSE across (m)</source>
+            <translation>RMSE quer (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>95th percentile of the lateral error (m)</source>
+            <translation>95. Perzentil der Querabweichung (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Largest lateral error (m)</source>
+            <translation>Größte Querabweichung (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Mean height error (m)</source>
+            <translation>Mittlere Höhenabweichung (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>RMSE in height (m)</source>
+            <translation>RMSE in der Höhe (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>95th percentile of the height error (m)</source>
+            <translation>95. Perzentil der Höhenabweichung (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Largest height error (m)</source>
+            <translation>Größte Höhenabweichung (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Boundaries to assess</source>
+            <translation>Zu bewertende Ränder</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Lines that were extracted, such as road edges.</source>
+            <translation>Gefundene Linien, etwa Straßenränder.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Reference boundaries</source>
+            <translation>Referenzränder</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Lines that are known to be right, one on each side of the road, such as the feet of the curbs.</source>
+            <translation>Linien, von denen man weiß, dass sie stimmen, eine auf jeder Straßenseite, etwa die Bordsteinfüße.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Boundaries by outcome</source>
+            <translation>Ränder nach Ergebnis</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>One line an interval and outcome.</source>
+            <translation>Eine Linie je Abschnitt und Ergebnis.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Tolerances (m)</source>
+            <translation>Toleranzen (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Distances to either side within which a line is right, with commas between them. The report has a row for each.</source>
+            <translation>Abstände zu jeder Seite, innerhalb derer eine Linie richtig ist, durch Kommas getrennt. Der Bericht hat für jeden eine Zeile.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>lines</source>
+            <translation>Linien</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Intervals within {tolerance:g} cm: {correct:.0f} correct, {missed:.0f} missed, {false:.0f} false; {rates}.</source>
+            <translation>Intervalle innerhalb {tolerance:g} cm: {correct:.0f} richtig, {missed:.0f} verfehlt, {false:.0f} falsch; {rates}.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>{rate}, {side} (%)</source>
+            <translation>{rate}, {side} (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Assess driving lines</source>
+            <translation>Fahrlinien bewerten</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Sets driving lines against reference lines within buffers: completeness, correctness, miscoding, errors and gaps.</source>
+            <translation>Hält Fahrlinien in Puffern gegen Referenzlinien: Vollständigkeit, Richtigkeit, Fehlkodierung, Abweichungen und Lücken.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Any two line layers will do, of other software too: flat or with heights, in one part or many, drawn either way, with any fields. A layer in another CRS is reprojected. Miscoding is the share of the result outside the buffer of the reference.</source>
+            <translation>Zwei beliebige Linienlayer genügen, auch von anderer Software: mit oder ohne Höhen, ein- oder mehrteilig, in beliebiger Richtung gezeichnet, mit beliebigen Feldern. Ein Layer in einem anderen KBS wird umprojiziert. Fehlkodierung ist der Anteil des Ergebnisses außerhalb des Puffers der Referenz.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>miscoding</source>
+            <translation>Fehlkodierung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>completeness</source>
+            <translation>Vollständigkeit</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>correctness</source>
+            <translation>Richtigkeit</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>buffer</source>
+            <translation>Puffer</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>The tolerance for which pieces are drawn and numbers returned, of the same kind as the others; the report has all of them.</source>
+            <translation>Die Toleranz, für die Stücke gezeichnet und Zahlen zurückgegeben werden, von derselben Art wie die anderen; der Bericht enthält alle.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Largest angle between lines that match (°)</source>
+            <translation>Größter Winkel zwischen zusammengehörigen Linien (°)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Smaller keeps lines that cross from matching; 90 lets any direction match. The way a line is drawn does not matter.</source>
+            <translation>Kleiner verhindert, dass kreuzende Linien zusammenpassen; 90 lässt jede Richtung zu. Die Zeichenrichtung einer Linie spielt keine Rolle.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Completeness (%)</source>
+            <translation>Vollständigkeit (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Correctness (%)</source>
+            <translation>Richtigkeit (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Quality (%)</source>
+            <translation>Qualität (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Miscoding (%)</source>
+            <translation>Fehlkodierung (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Precision, the same as correctness (%)</source>
+            <translation>Präzision, dasselbe wie Richtigkeit (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Recall, the same as completeness (%)</source>
+            <translation>Vollständigkeit der Referenz (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>F1 (%)</source>
+            <translation>F1 (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Gaps per km</source>
+            <translation>Lücken je km</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Mean length of the gaps (m)</source>
+            <translation>Mittlere Länge der Lücken (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Length of the result (m)</source>
+            <translation>Länge des Ergebnisses (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Length of the reference (m)</source>
+            <translation>Länge der Referenz (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Driving lines to assess</source>
+            <translation>Zu bewertende Fahrlinien</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Lines that were made.</source>
+            <translation>Erzeugte Linien.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Reference lines</source>
+            <translation>Referenzlinien</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Lines that are known to be right, such as those drawn over an orthoimage.</source>
+            <translation>Linien, von denen man weiß, dass sie stimmen, etwa über einem Orthobild gezeichnete.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Driving lines by outcome</source>
+            <translation>Fahrlinien nach Ergebnis</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>The lines cut where the outcome changes: false pieces lie outside the buffer.</source>
+            <translation>Die Linien, geschnitten, wo das Ergebnis wechselt: falsche Stücke liegen außerhalb des Puffers.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Sizes of the buffer, with commas between them. The report has a row for each.</source>
+            <translation>Größen des Puffers, durch Kommas getrennt. Der Bericht hat für jede eine Zeile.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Tolerances are</source>
+            <translation>Toleranzen sind</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Half-width: from the line to the rim of its buffer. Total-width: from rim to rim, so that 0.20 lets a line be 0.10 m off. Published figures seldom say which they mean; the report shows both.</source>
+            <translation>Half-width: von der Linie zum Rand ihres Puffers. Total-width: von Rand zu Rand, sodass 0.20 einer Linie 0,10 m Abweichung lässt. Veröffentlichte Zahlen sagen selten, was sie meinen; der Bericht zeigt beides.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_driving_lines.py" />
+            <source>Within {tolerance:g} cm to either side: {rates}.</source>
+            <translation>Innerhalb von {tolerance:g} cm zu jeder Seite: {rates}.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Assess markings</source>
+            <translation>Markierungen bewerten</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Sets road markings against a reference, cell by cell, by class and by object: precision, recall, F1 and intersection over union.</source>
+            <translation>Hält Straßenmarkierungen gegen eine Referenz, Zelle für Zelle, nach Klasse und nach Objekt: Präzision, Vollständigkeit, F1 und Schnitt durch Vereinigung.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Polygons, lines or a raster mask (anything but 0 and no-data is paint), of other software too, on either side. A layer in another CRS is reprojected.</source>
+            <translation>Polygone, Linien oder eine Rastermaske (alles außer 0 und NoData ist Farbe), auch von anderer Software, auf beiden Seiten. Ein Layer in einem anderen KBS wird umprojiziert.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>iou</source>
+            <translation>iou</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>road marking</source>
+            <translation>Straßenmarkierung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Tolerance of objects and of the layer (cells)</source>
+            <translation>Toleranz der Objekte und des Layers (Zellen)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Objects are judged and numbers ending in TOLERANT returned with this tolerance; the report has all of them.</source>
+            <translation>Objekte werden mit dieser Toleranz beurteilt und Zahlen auf TOLERANT mit ihr zurückgegeben; der Bericht enthält alle.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Cell size (m)</source>
+            <translation>Zellgröße (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Smaller weighs the rims of markings more and takes longer; published figures use 0.04.</source>
+            <translation>Kleiner gewichtet die Ränder der Markierungen stärker und dauert länger; veröffentlichte Zahlen verwenden 0.04.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Width of lines (m)</source>
+            <translation>Breite der Linien (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>How wide paint is where a layer of lines has no field width_m or width.</source>
+            <translation>Wie breit Farbe ist, wo ein Linienlayer kein Feld width_m oder width hat.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Share of an object that makes it found (0-1)</source>
+            <translation>Anteil eines Objekts, der es gefunden macht (0-1)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Higher asks for more of an object before it counts as found, or as right.</source>
+            <translation>Höher verlangt mehr von einem Objekt, bevor es als gefunden oder als richtig zählt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Cells that are right</source>
+            <translation>Richtige Zellen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Cells that were missed</source>
+            <translation>Fehlende Zellen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Cells that are false</source>
+            <translation>Falsche Zellen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Image that shows what was scanned</source>
+            <translation>Bild, das zeigt, was gescannt wurde</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Where this raster, such as the intensity image, is empty nothing is judged, and the report's map lies over it. It hides what was never scanned, but also what the road surface left out: leave it empty to hold that against the result.</source>
+            <translation>Wo dieses Raster, etwa das Intensitätsbild, leer ist, wird nichts beurteilt, und die Karte des Berichts liegt darüber. Es verdeckt, was nie gescannt wurde, aber auch, was die Straßenoberfläche ausgelassen hat: leer lassen, um das dem Ergebnis anzulasten.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Markings by outcome</source>
+            <translation>Markierungen nach Ergebnis</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Objects of the reference, correct or missed, and the false ones of the result.</source>
+            <translation>Objekte der Referenz, richtig oder fehlend, und die falschen des Ergebnisses.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Hits, misses and false alarms</source>
+            <translation>Treffer, Fehlstellen und Fehlalarme</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>1 hit, 2 missed, 3 false, 4 missed beside a hit (within the tolerance), 5 false beside paint.</source>
+            <translation>1 Treffer, 2 fehlend, 3 falsch, 4 fehlend neben einem Treffer (innerhalb der Toleranz), 5 falsch neben Farbe.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Markings to assess</source>
+            <translation>Zu bewertende Markierungen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Polygons, lines with a width, or a mask.</source>
+            <translation>Polygone, Linien mit Breite oder eine Maske.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Reference markings</source>
+            <translation>Referenzmarkierungen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Polygons, lines or a raster of what is painted; the values of a raster are its classes.</source>
+            <translation>Polygone, Linien oder ein Raster dessen, was aufgemalt ist; die Werte eines Rasters sind seine Klassen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Tolerances (cells)</source>
+            <translation>Toleranzen (Zellen)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Cells by which the other layer is widened before it is asked, with commas between them; 0 is strict.</source>
+            <translation>Zellen, um die der andere Layer verbreitert wird, bevor er befragt wird, durch Kommas getrennt; 0 ist streng.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Field with the class</source>
+            <translation>Feld mit der Klasse</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Looked for in both layers; a layer without it has no classes. Fields named mark_class and kind are found too.</source>
+            <translation>Wird in beiden Layern gesucht; ein Layer ohne es hat keine Klassen. Felder namens mark_class und kind werden auch gefunden.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>Cells, strict: {strict}; with a tolerance of {cells}: {tolerant}.</source>
+            <translation>Zellen, streng: {strict}; mit einer Toleranz von {cells}: {tolerant}.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_markings.py" />
+            <source>{what} (%)</source>
+            <translation>{what} (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/inputs.py" />
+            <source>Area</source>
+            <translation>Gebiet</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/inputs.py" />
+            <source>Polygons. What lies outside is left out of both layers; without it a result beyond the ends of the reference is false.</source>
+            <translation>Polygone. Was außerhalb liegt, bleibt in beiden Layern weg; ohne sie ist ein Ergebnis jenseits der Enden der Referenz falsch.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/inputs.py" />
+            <source>Rows of the reference that are not judged</source>
+            <translation>Zeilen der Referenz, die nicht beurteilt werden</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/inputs.py" />
+            <source>An expression, such as "type" = 'driveway': where it holds, a result is neither right nor wrong. Empty leaves out the rows whose field kind says dropped or none.</source>
+            <translation>Ein Ausdruck wie "type" = 'driveway': wo er gilt, ist ein Ergebnis weder richtig noch falsch. Leer lässt die Zeilen weg, deren Feld kind dropped oder none sagt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/inputs.py" />
+            <source>{label} has no polygons. Leave it empty to judge everywhere.</source>
+            <translation>{label} hat keine Polygone. Leer lassen, um überall zu urteilen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/inputs.py" />
+            <source>{label} is {text!r}; give numbers with commas between them, such as 0.05, 0.10, 0.20.</source>
+            <translation>{label} ist {text!r}; bitte Zahlen mit Kommas dazwischen angeben, etwa 0.05, 0.10, 0.20.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/call.py" />
+            <source>Cancelled</source>
+            <translation>Abgebrochen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/call.py" />
+            <source>Not enough memory for this step; close other programs or process fewer files at once.</source>
+            <translation>Der Arbeitsspeicher reicht für diesen Schritt nicht; andere Programme schließen oder weniger Dateien auf einmal verarbeiten.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/call.py" />
+            <source>{label} names {path}, which is not a file. Choose the LAS or LAZ file itself.</source>
+            <translation>{label} nennt {path}, das ist keine Datei. Die LAS- oder LAZ-Datei selbst wählen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/call.py" />
+            <source>{label}: there is no file {path}. Check the name and the folder.</source>
+            <translation>{label}: die Datei {path} gibt es nicht. Name und Ordner prüfen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/call.py" />
+            <source>{label} would be written over {path}, which is read as {input}: inputs are never changed. Give it another name.</source>
+            <translation>„{label}“ würde {path} überschreiben, das als „{input}“ gelesen wird: Eingaben werden nie verändert. Bitte einen anderen Namen wählen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/call.py" />
+            <source>{first} and {second} would both be written to {path}, and one would be lost. Give each a file of its own, or name the layers in one GeoPackage: ogr:dbname='map.gpkg' table="road_edges" (geom).</source>
+            <translation>{first} und {second} würden beide nach {path} geschrieben, und eines ginge verloren. Jedem eine eigene Datei geben oder die Layer in einem GeoPackage benennen: ogr:dbname='map.gpkg' table="road_edges" (geom).</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/call.py" />
+            <source>while writing</source>
+            <translation>beim Schreiben</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/destinations.py" />
+            <source>{label} was to be written to {path}, but it is written as {kinds} only. Name the file so.</source>
+            <translation>{label} sollte nach {path} geschrieben werden, wird aber nur als {kinds} geschrieben. Die Datei so benennen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/destinations.py" />
+            <source>{label} was to be written to {path}, but a DXF has no fields. Write a GeoPackage and bring it to DXF with the QGIS algorithm “Export layers to DXF”.</source>
+            <translation>{label} sollte nach {path} geschrieben werden, aber ein DXF hat keine Felder. Ein GeoPackage schreiben und mit dem QGIS-Algorithmus „Layer nach DXF exportieren“ nach DXF bringen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/destinations.py" />
+            <source>{label} was to be written to {path}, whose ending names no format that QGIS writes. Use .gpkg, .fgb or .shp.</source>
+            <translation>{label} sollte nach {path} geschrieben werden, dessen Endung kein Format nennt, das QGIS schreibt. .gpkg, .fgb oder .shp verwenden.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/destinations.py" />
+            <source>{label} was to be written to {path}, but there is no folder {folder}. Create it or choose another.</source>
+            <translation>{label} sollte nach {path} geschrieben werden, aber den Ordner {folder} gibt es nicht. Ihn anlegen oder einen anderen wählen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/destinations.py" />
+            <source>{label} was to be written to {path}, which is a folder. Name a file in it.</source>
+            <translation>{label} sollte nach {path} geschrieben werden, das ist ein Ordner. Eine Datei darin benennen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/destinations.py" />
+            <source>{label} cannot be written to {path}: {reason}. Choose another place, or close the program that holds it.</source>
+            <translation>{label} kann nicht nach {path} geschrieben werden: {reason}. Einen anderen Ort wählen oder das Programm schließen, das die Datei hält.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/destinations.py" />
+            <source> or </source>
+            <translation> oder </translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>Driving lines</source>
+            <translation>Fahrlinien</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>Draws the line to drive in every lane, in the direction of travel, and tabulates the elements of its curves.</source>
+            <translation>Zeichnet in jedem Fahrstreifen die Linie, auf der man fährt, in Fahrtrichtung, und stellt die Elemente ihrer Bögen zusammen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>lane</source>
+            <translation>Fahrstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>centre line</source>
+            <translation>Mittellinie</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>hd map</source>
+            <translation>HD-Karte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>curve elements</source>
+            <translation>Bogenelemente</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>radius</source>
+            <translation>Radius</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>Lane width, 0 = as seen on the road (m)</source>
+            <translation>Breite der Fahrstreifen, 0 = wie auf der Straße gesehen (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>Where only the outer lines are painted, the number of lanes follows from their distance and this width. Wider makes fewer lanes.</source>
+            <translation>Wo nur die äußeren Linien aufgemalt sind, folgt die Zahl der Fahrstreifen aus deren Abstand und dieser Breite. Breiter ergibt weniger Fahrstreifen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>Distance from a line without partner, 0 = half a lane (m)</source>
+            <translation>Abstand von einer Linie ohne Gegenstück, 0 = halber Fahrstreifen (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>How far beside a painted line the driving line runs where the lane has no second line.</source>
+            <translation>Wie weit neben einer aufgemalten Linie die Fahrlinie verläuft, wo der Fahrstreifen keine zweite Linie hat.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>Side of traffic</source>
+            <translation>Verkehrsseite</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>The side one drives on; it gives the driving lines their direction. Automatic goes by the lane the vehicle itself used.</source>
+            <translation>Die Seite, auf der man fährt; sie gibt den Fahrlinien ihre Richtung. Automatisch richtet sich nach dem Fahrstreifen, den das Fahrzeug selbst benutzte.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>Longest gap of all lines bridged (m)</source>
+            <translation>Längste überbrückte Lücke aller Linien (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>Longer leads lanes through wider crossings; shorter leaves them open.</source>
+            <translation>Länger führt Fahrstreifen über breitere Kreuzungen; kürzer lässt sie offen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>Longest gap beside other lines closed (m)</source>
+            <translation>Längste neben anderen Linien geschlossene Lücke (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>Where another line of the road goes on, a lane is led along it through a gap up to this length.</source>
+            <translation>Wo eine andere Linie der Straße weitergeht, wird ein Fahrstreifen an ihr entlang durch eine Lücke bis zu dieser Länge geführt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>Shortest driving line (m)</source>
+            <translation>Kürzeste Fahrlinie (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>Shorter keeps stubs at the ends of the survey.</source>
+            <translation>Kürzer behält Stummel an den Enden der Vermessung.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>Marking lines</source>
+            <translation>Markierungslinien</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>The layer written by Fit marking lines.</source>
+            <translation>Der von „Markierungslinien einpassen“ geschriebene Layer.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>With it a lane is led through zebra crossings and past stop lines, and gaps are told apart.</source>
+            <translation>Damit wird ein Fahrstreifen über Zebrastreifen und Haltlinien geführt, und Lücken werden unterschieden.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>Road edges</source>
+            <translation>Straßenränder</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>With it lanes without an outer line end at the edge.</source>
+            <translation>Damit enden Fahrstreifen ohne äußere Linie am Rand.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>Road points</source>
+            <translation>Straßenpunkte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>With it heights are the road's own.</source>
+            <translation>Damit sind die Höhen die der Straße selbst.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>Curve elements</source>
+            <translation>Bogenelemente</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map.py" />
+            <source>From a survey to driving lines in one call: edges, surface, intensity image, markings, lines and curve elements.</source>
+            <translation>Von einer Vermessung zu Fahrlinien in einem Aufruf: Ränder, Oberfläche, Intensitätsbild, Markierungen, Linien und Bogenelemente.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map.py" />
+            <source>The same stages as the single algorithms, handed on in memory. Every output is optional.</source>
+            <translation>Dieselben Stufen wie die einzelnen Algorithmen, im Speicher weitergereicht. Jede Ausgabe ist wahlfrei.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map.py" />
+            <source>driving line</source>
+            <translation>Fahrlinie</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map.py" />
+            <source>kerb</source>
+            <translation>Bordkante</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map.py" />
+            <source>Road surface</source>
+            <translation>Straßenoberfläche</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map.py" />
+            <source>Curb points</source>
+            <translation>Bordsteinpunkte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map.py" />
+            <source>Class 11, with the fields the single stages need.</source>
+            <translation>Klasse 11, mit den Feldern, die die einzelnen Stufen brauchen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map.py" />
+            <source>Intensity image</source>
+            <translation>Intensitätsbild</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map.py" />
+            <source>Correct intensity first</source>
+            <translation>Zuerst Intensität korrigieren</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map.py" />
+            <source>Evens out range, incidence and the difference between scanners. Switch it off for clouds whose intensity was corrected already.</source>
+            <translation>Gleicht Entfernung, Einfallswinkel und den Unterschied der Scanner aus. Ausschalten bei Wolken, deren Intensität schon korrigiert wurde.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map.py" />
+            <source>No result was asked for, and all of the work would be lost. Name at least one output, such as DRIVING_LINES, MARKINGS or REPORT.</source>
+            <translation>Es wurde kein Ergebnis verlangt, und die ganze Arbeit wäre verloren. Nennen Sie mindestens eine Ausgabe, etwa DRIVING_LINES, MARKINGS oder REPORT.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/cluster_markings.py" />
+            <source>Cluster markings</source>
+            <translation>Markierungen zusammenfassen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/cluster_markings.py" />
+            <source>Gathers paint into markings, measures them and tells lines from crossings, arrows and the rest.</source>
+            <translation>Fasst Farbe zu Markierungen zusammen, misst sie und unterscheidet Linien von Zebrastreifen, Pfeilen und dem Rest.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/cluster_markings.py" />
+            <source>lane marking</source>
+            <translation>Fahrbahnmarkierung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/cluster_markings.py" />
+            <source>cluster</source>
+            <translation>Gruppe</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/cluster_markings.py" />
+            <source>zebra crossing</source>
+            <translation>Zebrastreifen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/cluster_markings.py" />
+            <source>stop line</source>
+            <translation>Haltlinie</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/cluster_markings.py" />
+            <source>arrow</source>
+            <translation>Pfeil</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/cluster_markings.py" />
+            <source>Distance that joins points (m)</source>
+            <translation>Abstand, der Punkte verbindet (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/cluster_markings.py" />
+            <source>Larger joins worn paint into one marking, but also neighbouring markings; smaller keeps them apart.</source>
+            <translation>Größer verbindet abgefahrene Farbe zu einer Markierung, aber auch benachbarte Markierungen; kleiner hält sie getrennt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/cluster_markings.py" />
+            <source>Fewest points of a marking (points)</source>
+            <translation>Wenigste Punkte einer Markierung (Punkte)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/cluster_markings.py" />
+            <source>Fewer keeps tiny remains of paint, and specks that are none.</source>
+            <translation>Weniger behält kleine Farbreste und Flecken, die keine sind.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/cluster_markings.py" />
+            <source>Marking points</source>
+            <translation>Markierungspunkte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/cluster_markings.py" />
+            <source>The file written by Remove outliers or Extract markings.</source>
+            <translation>Die von „Ausreißer entfernen“ oder „Markierungen extrahieren“ geschriebene Datei.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/cluster_markings.py" />
+            <source>Clustered points</source>
+            <translation>Zusammengefasste Punkte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/cluster_markings.py" />
+            <source>The points with the extra field cluster.</source>
+            <translation>Die Punkte mit dem zusätzlichen Feld cluster.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/correct_intensity.py" />
+            <source>Correct intensity</source>
+            <translation>Intensität korrigieren</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/correct_intensity.py" />
+            <source>Evens out the fall of intensity with range and incidence, scanner by scanner, from the road's own asphalt.</source>
+            <translation>Gleicht den Abfall der Intensität mit Entfernung und Einfallswinkel aus, Scanner für Scanner, am Asphalt der Straße selbst.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/correct_intensity.py" />
+            <source>The raw intensity stays as it was; the corrected one is the extra field intensity_corrected, which later stages prefer.</source>
+            <translation>Die rohe Intensität bleibt, wie sie war; die korrigierte steht im zusätzlichen Feld intensity_corrected, das spätere Stufen vorziehen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/correct_intensity.py" />
+            <source>intensity</source>
+            <translation>Intensität</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/correct_intensity.py" />
+            <source>range correction</source>
+            <translation>Entfernungskorrektur</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/correct_intensity.py" />
+            <source>calibration</source>
+            <translation>Kalibrierung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/correct_intensity.py" />
+            <source>Scale of the intensities</source>
+            <translation>Skala der Intensitäten</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/correct_intensity.py" />
+            <source>Linear ones are multiplied, logarithmic ones added to. Automatic goes by the spread of asphalt; choose one when the report names the wrong one.</source>
+            <translation>Lineare werden multipliziert, zu logarithmischen wird addiert. Automatisch richtet sich nach der Streuung des Asphalts; eine wählen, wenn der Bericht die falsche nennt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/correct_intensity.py" />
+            <source>The file written by Extract road surface.</source>
+            <translation>Die von „Straßenoberfläche extrahieren“ geschriebene Datei.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/correct_intensity.py" />
+            <source>Corrected road points</source>
+            <translation>Korrigierte Straßenpunkte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Extract markings</source>
+            <translation>Markierungen extrahieren</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Tells paint from asphalt by its intensity and takes the points of it.</source>
+            <translation>Unterscheidet Farbe an ihrer Intensität vom Asphalt und nimmt ihre Punkte.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>paint</source>
+            <translation>Farbe</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>threshold</source>
+            <translation>Schwellwert</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>otsu</source>
+            <translation>otsu</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>intensity peak</source>
+            <translation>Intensitätsspitze</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>density</source>
+            <translation>Dichte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Method</source>
+            <translation>Verfahren</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>multi-threshold sets a threshold for every strip along the road on the intensity image: the one to map with. The other two are published methods to compare with. intensity-peaks looks for narrow peaks in profiles across the road and finds lines only; point-segments sets thresholds on the points and keeps the dense ones. Neither tells concrete gutters from paint.</source>
+            <translation>multi-threshold setzt auf dem Intensitätsbild für jeden Streifen längs der Straße einen Schwellwert: das Verfahren zum Kartieren. Die anderen beiden sind veröffentlichte Verfahren zum Vergleich. intensity-peaks sucht schmale Spitzen in Profilen quer zur Straße und findet nur Linien; point-segments setzt Schwellwerte auf den Punkten und behält die dichten. Keines der beiden unterscheidet Betonrinnen von Farbe.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Multi-threshold: least distance of paint from asphalt (σ)</source>
+            <translation>Multi-threshold: geringster Abstand der Farbe vom Asphalt (σ)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>How many spreads of asphalt the paint of a strip must lie above it before the strip counts as painted. Lower finds fainter paint, but also gutters, patches and noise.</source>
+            <translation>Um wie viele Streuungen des Asphalts die Farbe eines Streifens darüber liegen muss, damit er als bemalt gilt. Niedriger findet blassere Farbe, aber auch Rinnen, Flicken und Rauschen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Multi-threshold: shortest run of paint along the road (m)</source>
+            <translation>Multi-threshold: kürzestes Stück Farbe längs der Straße (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Longer removes specks, but also worn remains of dashes.</source>
+            <translation>Länger entfernt Flecken, aber auch abgefahrene Reste von Strichen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Multi-threshold: gap in paint closed along the road (m)</source>
+            <translation>Multi-threshold: längs der Straße geschlossene Lücke in der Farbe (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Longer joins worn paint, but also neighbouring bars and letters.</source>
+            <translation>Länger verbindet abgefahrene Farbe, aber auch benachbarte Balken und Buchstaben.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Intensity peaks: length of a profile (m)</source>
+            <translation>Intensity peaks: Länge eines Profils (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Longer holds more points and less noise, but blurs lines that are not parallel to the road. It should hold a scan line or two.</source>
+            <translation>Länger enthält mehr Punkte und weniger Rauschen, verwischt aber Linien, die nicht parallel zur Straße sind. Es sollte eine oder zwei Scanlinien enthalten.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Intensity peaks: least prominence of a peak (MAD)</source>
+            <translation>Intensity peaks: geringste Höhe einer Spitze (MAD)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>How far a peak must rise above both its feet, in median absolute deviations of its profile. Lower finds fainter and worn lines, but also seams and noise.</source>
+            <translation>Wie weit eine Spitze über ihre beiden Füße ragen muss, in mittleren absoluten Abweichungen ihres Profils. Niedriger findet blassere und abgefahrene Linien, aber auch Nähte und Rauschen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Intensity peaks: narrowest line (m)</source>
+            <translation>Intensity peaks: schmalste Linie (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Narrower peaks are no lines. Lower finds worn lines, but also cracks filled with light sealant.</source>
+            <translation>Schmalere Spitzen sind keine Linien. Niedriger findet abgefahrene Linien, aber auch hell vergossene Risse.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Intensity peaks: widest line (m)</source>
+            <translation>Intensity peaks: breiteste Linie (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Broader peaks are no lines. Higher finds broad lines and zebra bars, but also pale repairs and gutters.</source>
+            <translation>Breitere Spitzen sind keine Linien. Höher findet breite Linien und Zebrabalken, aber auch helle Flicken und Rinnen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Intensity peaks: shift between profiles (m)</source>
+            <translation>Intensity peaks: Versatz zwischen Profilen (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>How far across a peak may lie from the last one of its line. Larger follows slanting lines, but also joins what only happens to lie near.</source>
+            <translation>Wie weit quer eine Spitze von der letzten ihrer Linie liegen darf. Größer folgt schrägen Linien, verbindet aber auch, was nur zufällig nahe liegt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Intensity peaks: gap along a line (m)</source>
+            <translation>Intensity peaks: Lücke in einer Linie (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Longer follows worn lines, but also joins specks. At least the length of a profile.</source>
+            <translation>Länger folgt abgefahrenen Linien, verbindet aber auch Flecken. Mindestens die Länge eines Profils.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Intensity peaks: shortest line (m)</source>
+            <translation>Intensity peaks: kürzeste Linie (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Longer removes specks, but also short and worn dashes.</source>
+            <translation>Länger entfernt Flecken, aber auch kurze und abgefahrene Striche.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Point segments: length of a segment (m)</source>
+            <translation>Point segments: Länge eines Segments (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Longer holds more asphalt and steadies the threshold, but averages over patches and worn stretches.</source>
+            <translation>Länger enthält mehr Asphalt und beruhigt den Schwellwert, mittelt aber über Flicken und abgefahrene Strecken.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Point segments: width of a segment (m)</source>
+            <translation>Point segments: Breite eines Segments (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Narrower is scanned more alike, but may hold little asphalt beside the paint.</source>
+            <translation>Schmaler ist gleichmäßiger gescannt, kann aber neben der Farbe wenig Asphalt enthalten.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Point segments: least distance of paint from asphalt (σ)</source>
+            <translation>Point segments: geringster Abstand der Farbe vom Asphalt (σ)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>How many spreads of asphalt the bright points of a segment must lie above the rest before it counts as painted. Lower finds fainter paint, but takes patches and noise for it.</source>
+            <translation>Um wie viele Streuungen des Asphalts die hellen Punkte eines Segments über den übrigen liegen müssen, damit es als bemalt gilt. Niedriger findet blassere Farbe, hält aber auch Flicken und Rauschen dafür.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Point segments: radius in which bright points are counted (m)</source>
+            <translation>Point segments: Umkreis, in dem helle Punkte gezählt werden (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Larger suits sparse surveys; smaller keeps narrow paint beside asphalt.</source>
+            <translation>Größer passt zu dünnen Wolken; kleiner behält schmale Farbe neben Asphalt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>The file that the intensity image was made from.</source>
+            <translation>Die Datei, aus der das Intensitätsbild entstand.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>The GeoTIFF written by Intensity image.</source>
+            <translation>Das von „Intensitätsbild“ geschriebene GeoTIFF.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>Marking mask</source>
+            <translation>Markierungsmaske</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/extract_markings.py" />
+            <source>1 where a pixel is paint, 0 where it is not.</source>
+            <translation>1, wo ein Pixel Farbe ist, 0, wo nicht.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>Fit marking lines</source>
+            <translation>Markierungslinien einpassen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>Links dashes along the road and fits a curve to every painted line.</source>
+            <translation>Verbindet Striche längs der Straße und passt jeder aufgemalten Linie eine Kurve ein.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>lane line</source>
+            <translation>Fahrstreifenlinie</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>curve fitting</source>
+            <translation>Kurvenanpassung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>circle</source>
+            <translation>Kreis</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>clothoid</source>
+            <translation>Klothoide</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>spline</source>
+            <translation>Spline</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>Curve fitted to marking lines</source>
+            <translation>An Markierungslinien angepasste Kurve</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>Automatic takes the simplest curve that fits (Bayesian information criterion). Choose one to force it on every line.</source>
+            <translation>Automatisch nimmt die einfachste Kurve, die passt (Bayessches Informationskriterium). Eine wählen, um sie jeder Linie aufzuzwingen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>Degree of the polynomial (0-9)</source>
+            <translation>Grad des Polynoms (0-9)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>Used with polynomial only. Higher follows more bends, but swings between its points.</source>
+            <translation>Nur bei polynomial verwendet. Höher folgt mehr Bögen, schwingt aber zwischen seinen Punkten.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>Longest gap between dashes linked (m)</source>
+            <translation>Längste Lücke zwischen verbundenen Strichen (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>Longer links dashes that stand far apart, but also lines that end and begin anew.</source>
+            <translation>Länger verbindet weit auseinander liegende Striche, aber auch Linien, die enden und neu beginnen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>Longest gap linked by rhythm (m)</source>
+            <translation>Längste im Rhythmus verbundene Lücke (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>Up to here a line goes on where its own rhythm of dashes or a line beside it carries over; flagged as bridged.</source>
+            <translation>Bis hierher geht eine Linie weiter, wo ihr eigener Strichrhythmus oder eine Linie daneben hinüberträgt; als überbrückt gekennzeichnet.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>Least paint of a line (m)</source>
+            <translation>Wenigste Farbe einer Linie (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>Less makes lines of short remains, and of marks that are none.</source>
+            <translation>Weniger macht Linien aus kurzen Resten und aus Zeichen, die keine sind.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>The file written by Cluster markings.</source>
+            <translation>Die von „Markierungen zusammenfassen“ geschriebene Datei.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>The layer written by Cluster markings together with the points.</source>
+            <translation>Der von „Markierungen zusammenfassen“ zusammen mit den Punkten geschriebene Layer.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>Markings named by their lines</source>
+            <translation>Markierungen, nach ihren Linien benannt</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>The markings again, each dash and piece of a line with the class of the line that runs along it: alone, a dash of a centre line looks like any other.</source>
+            <translation>Die Markierungen noch einmal, jeder Strich und jedes Stück einer Linie mit der Klasse der Linie, die an ihm entlangläuft: für sich sieht ein Strich einer Mittellinie aus wie jeder andere.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/intensity_image.py" />
+            <source>Interpolates the intensity of road points into a GeoTIFF: near and bright points count more.</source>
+            <translation>Interpoliert die Intensität der Straßenpunkte zu einem GeoTIFF: nahe und helle Punkte zählen mehr.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/intensity_image.py" />
+            <source>image</source>
+            <translation>Bild</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/intensity_image.py" />
+            <source>raster</source>
+            <translation>Raster</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/intensity_image.py" />
+            <source>orthophoto</source>
+            <translation>Orthofoto</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/intensity_image.py" />
+            <source>Smaller shows narrow lines more sharply while the cloud is dense enough; larger fills gaps and makes smaller files.</source>
+            <translation>Kleiner zeigt schmale Linien schärfer, solange die Wolke dicht genug ist; größer füllt Lücken und macht kleinere Dateien.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/intensity_image.py" />
+            <source>Power of the distance (0-9)</source>
+            <translation>Potenz der Entfernung (0-9)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/intensity_image.py" />
+            <source>Higher lets the nearest point decide, lower averages more.</source>
+            <translation>Höher lässt den nächsten Punkt entscheiden, niedriger mittelt mehr.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/intensity_image.py" />
+            <source>Share of the weight that follows brightness (0-1)</source>
+            <translation>Anteil des Gewichts, der der Helligkeit folgt (0-1)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/intensity_image.py" />
+            <source>0 is plain inverse distance; higher lets bright points count more and fattens paint by up to half a cell.</source>
+            <translation>0 ist reine inverse Distanz; höher lässt helle Punkte mehr zählen und macht Farbe um bis zu eine halbe Zelle fetter.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/intensity_image.py" />
+            <source>Reach of a point (cells)</source>
+            <translation>Reichweite eines Punktes (Zellen)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/intensity_image.py" />
+            <source>Larger fills sparse far pixels, but blurs.</source>
+            <translation>Größer füllt dünn besetzte ferne Pixel, verwischt aber.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/intensity_image.py" />
+            <source>The file written by Correct intensity, or by Extract road surface for the raw intensity.</source>
+            <translation>Die von „Intensität korrigieren“ geschriebene Datei, oder die von „Straßenoberfläche extrahieren“ für die rohe Intensität.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/intensity_image.py" />
+            <source>Intensity image, 8 bit</source>
+            <translation>Intensitätsbild, 8 Bit</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/intensity_image.py" />
+            <source>The same for viewing: stretched to 256 grey values, for programs that show no floating-point images.</source>
+            <translation>Dasselbe zum Ansehen: auf 256 Graustufen gestreckt, für Programme, die keine Gleitkommabilder zeigen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/remove_outliers.py" />
+            <source>Remove outliers</source>
+            <translation>Ausreißer entfernen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/remove_outliers.py" />
+            <source>Statistical outlier removal: points that lie farther from their neighbours than is usual go.</source>
+            <translation>Statistische Ausreißerentfernung: Punkte, die weiter von ihren Nachbarn liegen als üblich, gehen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/remove_outliers.py" />
+            <source>outlier</source>
+            <translation>Ausreißer</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/remove_outliers.py" />
+            <source>noise</source>
+            <translation>Rauschen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/remove_outliers.py" />
+            <source>sor</source>
+            <translation>sor</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/remove_outliers.py" />
+            <source>Nearest points looked at (points)</source>
+            <translation>Betrachtete nächste Punkte (Punkte)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/remove_outliers.py" />
+            <source>More judges by a wider neighbourhood and removes small clumps too; fewer removes single points only.</source>
+            <translation>Mehr urteilt nach einer weiteren Nachbarschaft und entfernt auch kleine Klumpen; weniger entfernt nur einzelne Punkte.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/remove_outliers.py" />
+            <source>Allowed distance above the mean (σ)</source>
+            <translation>Erlaubter Abstand über dem Mittel (σ)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/remove_outliers.py" />
+            <source>Smaller removes more, first where points are sparse; larger keeps far paint, and some noise with it.</source>
+            <translation>Kleiner entfernt mehr, zuerst wo Punkte dünn liegen; größer behält ferne Farbe, und etwas Rauschen mit ihr.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/remove_outliers.py" />
+            <source>Statistics over</source>
+            <translation>Statistik über</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/remove_outliers.py" />
+            <source>All compares every point with the whole file, as PCL does, and eats sparse paint far from the scanner; windows compares it with its own stretch of the road.</source>
+            <translation>All vergleicht jeden Punkt mit der ganzen Datei, wie PCL es tut, und frisst dünne Farbe fern vom Scanner; windows vergleicht ihn mit seinem eigenen Stück der Straße.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/remove_outliers.py" />
+            <source>The file written by Extract markings.</source>
+            <translation>Die von „Markierungen extrahieren“ geschriebene Datei.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/remove_outliers.py" />
+            <source>Marking points without outliers</source>
+            <translation>Markierungspunkte ohne Ausreißer</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/control_point_layer.py" />
+            <source>{label}: the layer holds {kind} geometries. Control points are points, or a table.</source>
+            <translation>{label}: der Layer enthält Geometrien der Art {kind}. Passpunkte sind Punkte oder eine Tabelle.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Georeference image</source>
+            <translation>Bild georeferenzieren</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Places a UAV image on the map by ground control points, and tells how well it lies there.</source>
+            <translation>Bringt ein UAV-Bild über Passpunkte auf die Karte und sagt, wie gut es dort liegt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Control points come as a layer or as a file, each with pixel, line, easting and northing; pixel and line count from the outer corner of the first pixel. The result is a GeoTIFF in the CRS of the control points.</source>
+            <translation>Passpunkte kommen als Layer oder als Datei, jeder mit Spalte (pixel), Zeile (line), Rechts- und Hochwert (easting, northing); gezählt wird ab der äußeren Ecke des ersten Pixels. Das Ergebnis ist ein GeoTIFF im KBS der Passpunkte.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Spread the points over the whole image, its corners first: between them the polynomial is held, outside it runs away. Take twice as many as the order needs. Judge the result by check points, or by the error of each point without itself (leave-one-out), not by the residuals, which the polynomial was bent to make small. Control points taken from the point cloud tell how well the image fits the cloud, not how well either fits the ground.</source>
+            <translation>Die Punkte über das ganze Bild verteilen, zuerst in die Ecken: zwischen ihnen ist das Polynom gehalten, außerhalb läuft es davon. Doppelt so viele nehmen, wie die Ordnung braucht. Das Ergebnis nach Prüfpunkten beurteilen oder nach dem Fehler jedes Punktes ohne ihn selbst, nicht nach den Restklaffungen, die das Polynom klein gebogen hat. Aus der Punktwolke entnommene Passpunkte sagen, wie gut das Bild zur Wolke passt, nicht wie gut eines von beiden auf dem Boden liegt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>UAV</source>
+            <translation>UAV</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>drone</source>
+            <translation>Drohne</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>orthoimage</source>
+            <translation>Orthobild</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>GCP</source>
+            <translation>Passpunkt</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>georeferencer</source>
+            <translation>Georeferenzierung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>polynomial</source>
+            <translation>Polynom</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>warp</source>
+            <translation>Entzerrung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Order of the polynomial (0-3)</source>
+            <translation>Ordnung des Polynoms (0-3)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>0 only shifts an image that already has a rough position; 1 also turns, scales and shears it (3 points or more), 2 also bends it (6), 3 bends it twice (10). Higher follows the points more closely and runs away faster outside them: watch the leave-one-out error, which falls only as long as the order is worth it.</source>
+            <translation>0 verschiebt nur ein Bild, das schon eine grobe Lage hat; 1 dreht, skaliert und schert es auch (3 Punkte oder mehr), 2 biegt es auch (6), 3 biegt es zweimal (10). Höher folgt den Punkten genauer und läuft außerhalb schneller davon: auf den Fehler mit je einem weggelassenen Punkt achten, er fällt nur, solange die Ordnung es wert ist.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Pixel size (m)</source>
+            <translation>Pixelgröße (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Of the result; 0 keeps that of the image. Smaller makes a larger file, not a sharper image. A shift (order 0) of an image without position takes this as the image's own pixel size, north up.</source>
+            <translation>Des Ergebnisses; 0 behält die des Bildes. Kleiner macht eine größere Datei, kein schärferes Bild. Eine Verschiebung (Ordnung 0) eines Bildes ohne Lage nimmt dies als Pixelgröße des Bildes selbst, Norden oben.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Outside the control points</source>
+            <translation>Außerhalb der Passpunkte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>What becomes of the image outside the hull of the control points, where the polynomial extrapolates: automatic draws it up to order 2 and leaves it out at order 3.</source>
+            <translation>Was aus dem Bild außerhalb der Hülle der Passpunkte wird, wo das Polynom extrapoliert: automatisch zeichnet es bis Ordnung 2 und lässt es bei Ordnung 3 weg.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Resampling</source>
+            <translation>Neuabtastung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Bilinear is smooth and safe, cubic a little sharper, nearest keeps the values as they are (for classes and temperatures).</source>
+            <translation>Bilinear ist glatt und sicher, cubic etwas schärfer, nearest behält die Werte, wie sie sind (für Klassen und Temperaturen).</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Disabled points are check points</source>
+            <translation>Abgeschaltete Punkte sind Prüfpunkte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Points that are switched off in the georeferencer, or have 0 in a column enable, judge the result instead of being passed over. A layer or CSV may name check points in a column role.</source>
+            <translation>Punkte, die im Georeferenzierer abgeschaltet sind oder in einer Spalte enable 0 haben, beurteilen das Ergebnis, statt übergangen zu werden. Ein Layer oder eine CSV kann Prüfpunkte in einer Spalte role nennen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Control points</source>
+            <translation>Passpunkte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>RMSE of the control points (m)</source>
+            <translation>RMSE der Passpunkte (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>RMSE of the control points, each left out in turn (m)</source>
+            <translation>RMSE der Passpunkte, jeder der Reihe nach weggelassen (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Check points</source>
+            <translation>Prüfpunkte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>RMSE of the check points (m)</source>
+            <translation>RMSE der Prüfpunkte (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Largest residual of a control point (m)</source>
+            <translation>Größte Restklaffung eines Passpunktes (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Image outside the hull of the control points (%)</source>
+            <translation>Bild außerhalb der Hülle der Passpunkte (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Image</source>
+            <translation>Bild</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>TIFF, JPEG, PNG or any other raster, with a position on the map or without.</source>
+            <translation>TIFF, JPEG, PNG oder jedes andere Raster, mit Lage auf der Karte oder ohne.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Control points (layer)</source>
+            <translation>Passpunkte (Layer)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>A point layer with the fields pixel and line, or a table that also has easting and northing. A field role (control or check) sets points aside that only judge the result, a field enable switches points off.</source>
+            <translation>Ein Punktlayer mit den Feldern pixel und line, oder eine Tabelle, die auch easting und northing hat. Ein Feld role (control oder check) nimmt Punkte beiseite, die nur das Ergebnis beurteilen, ein Feld enable schaltet Punkte ab.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Georeferenced image</source>
+            <translation>Georeferenziertes Bild</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>GeoTIFF with overviews; transparent or without data where the image ends.</source>
+            <translation>GeoTIFF mit Übersichten; durchsichtig oder ohne Daten, wo das Bild endet.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Residuals</source>
+            <translation>Restklaffungen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>From where the polynomial puts each point to where it was measured.</source>
+            <translation>Von dort, wohin das Polynom jeden Punkt setzt, dorthin, wo er gemessen wurde.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Control points (file)</source>
+            <translation>Passpunkte (Datei)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>In place of a layer: the .points file of QGIS's georeferencer, or a CSV with the columns pixel, line, easting, northing in any order.</source>
+            <translation>Statt eines Layers: die .points-Datei des Georeferenzierers von QGIS oder eine CSV mit den Spalten pixel, line, easting, northing in beliebiger Reihenfolge.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>CRS of the control points</source>
+            <translation>KBS der Passpunkte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Only for control points that name none of their own. It must be projected, in metres.</source>
+            <translation>Nur für Passpunkte, die selbst keines nennen. Es muss projiziert sein, in Metern.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>The image has no position yet; the control points give it one. A line above, GDAL ERROR 1: Unable to compute a transformation, is QGIS saying the same and harmless.</source>
+            <translation>Das Bild hat noch keine Lage; die Passpunkte geben ihm eine. Eine Zeile darüber, GDAL ERROR 1: Unable to compute a transformation, sagt dasselbe und ist harmlos.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Control points were given twice, as a layer and as a file. Leave one of them empty.</source>
+            <translation>Passpunkte wurden zweimal angegeben, als Layer und als Datei. Eines davon leer lassen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>There are no control points. Choose a layer, or a .points or CSV file.</source>
+            <translation>Es gibt keine Passpunkte. Einen Layer oder eine .points- oder CSV-Datei wählen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Control points: {count}, order {order}, RMSE {rmse:.3f} m, each left out in turn {left:.3f} m.</source>
+            <translation>Passpunkte: {count}, Ordnung {order}, RMSE {rmse:.3f} m, jeder für sich weggelassen {left:.3f} m.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>The control points say that they are in {own}; the CRS given is for points that name none and was not used.</source>
+            <translation>Die Passpunkte nennen {own} als ihr KBS; das angegebene ist für Punkte, die keines nennen, und wurde nicht verwendet.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/georeference_image.py" />
+            <source>Check points: {count}, RMSE {rmse:.3f} m.</source>
+            <translation>Prüfpunkte: {count}, RMSE {rmse:.3f} m.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/parameters.py" />
+            <source>{label} ({name}) is {value}; it must be a number from {least:g} to {most:g}.</source>
+            <translation>{label} ({name}) ist {value}; es muss eine Zahl von {least:g} bis {most:g} sein.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/parameters.py" />
+            <source>{label} ({name}) is {value}; it must be one of {choices}.</source>
+            <translation>{label} ({name}) ist {value}; möglich sind {choices}.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/progress.py" />
+            <source>About {number} h left</source>
+            <translation>Noch etwa {number} h</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/progress.py" />
+            <source>About {number} s left</source>
+            <translation>Noch etwa {number} s</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/progress.py" />
+            <source>About {number} min left</source>
+            <translation>Noch etwa {number} min</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Boundaries from scanlines</source>
+            <translation>Ränder aus Scanlinien</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Bottom and top corners of curbs on normalized scanlines, and the boundary lines through them.</source>
+            <translation>Unter- und Oberkanten von Bordsteinen auf normalisierten Scanlinien, und die Randlinien durch sie.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>From the vehicle outward every scanline is searched for a step. About each step the points of the neighbouring scanlines give three planes: road, curb face and sidewalk. Where they meet the scanline's own plane lie the corners. Lines are cut by status: measured; bridged, a gap between corners; occluded, a gap that something hides.</source>
+            <translation>Vom Fahrzeug nach außen wird jede Scanlinie nach einer Stufe abgesucht. Um jede Stufe geben die Punkte der benachbarten Scanlinien drei Ebenen: Straße, Bordsteinfläche und Gehweg. Wo sie die Ebene der Scanlinie treffen, liegen die Kanten. Linien sind nach status geschnitten: measured (gemessen); bridged, eine Lücke zwischen Kanten; occluded, eine Lücke, die etwas verdeckt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>boundary</source>
+            <translation>Rand</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>scanline</source>
+            <translation>Scanlinie</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>ransac</source>
+            <translation>ransac</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>corner</source>
+            <translation>Kante</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Search width across a step (m)</source>
+            <translation>Suchbreite quer über eine Stufe (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>The height must change within this width. Wider finds rounded and bevelled curbs, but also ramps.</source>
+            <translation>Die Höhe muss sich innerhalb dieser Breite ändern. Breiter findet gerundete und abgeschrägte Bordsteine, aber auch Rampen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Trajectory above the road, 0 = from the data (m)</source>
+            <translation>Trajektorie über der Straße, 0 = aus den Daten (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Give it where little road was scanned under the vehicle; otherwise the data know better.</source>
+            <translation>Angeben, wo unter dem Fahrzeug wenig Straße gescannt wurde; sonst wissen es die Daten besser.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Height above the road that is looked at (m)</source>
+            <translation>Betrachtete Höhe über der Straße (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Higher keeps curbs on steeply banked roads, but also low walls and the sills of cars.</source>
+            <translation>Höher behält Bordsteine an stark geneigten Straßen, aber auch niedrige Mauern und die Schweller von Autos.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Reach of a plane across the road (m)</source>
+            <translation>Reichweite einer Ebene quer zur Straße (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Points this far to either side of a step give its planes. Longer is steadier, shorter keeps to narrow gutters and curb stones.</source>
+            <translation>Punkte so weit zu beiden Seiten einer Stufe geben ihre Ebenen. Länger ist ruhiger, kürzer hält sich an schmale Rinnen und Bordsteine.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Reach of a plane along the road (m)</source>
+            <translation>Reichweite einer Ebene längs der Straße (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Longer is steadier where points are sparse, shorter follows sharp corners.</source>
+            <translation>Länger ist ruhiger, wo Punkte dünn liegen, kürzer folgt scharfen Ecken.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Points of a plane lie within (m)</source>
+            <translation>Punkte einer Ebene liegen innerhalb von (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Larger for noisy scanners; where points scatter more, 1.5 sigma of the plane is taken anyway.</source>
+            <translation>Größer für rauschende Scanner; wo Punkte stärker streuen, werden ohnehin 1,5 Sigma der Ebene genommen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Least angle of a curb face's normal from the vertical (°)</source>
+            <translation>Kleinster Winkel der Normalen einer Bordsteinfläche zur Senkrechten (°)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>90 is upright. Lower accepts bevelled and mountable curbs (40 for a slope of 45°), but also banks.</source>
+            <translation>90 ist aufrecht. Niedriger nimmt abgeschrägte und überfahrbare Bordsteine an (40 für eine Neigung von 45°), aber auch Böschungen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Largest angle of road's and sidewalk's normal from the vertical (°)</source>
+            <translation>Größter Winkel der Normalen von Straße und Gehweg zur Senkrechten (°)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Larger accepts sloping ground behind the curb.</source>
+            <translation>Größer nimmt geneigten Boden hinter dem Bordstein an.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Least height of a step (m)</source>
+            <translation>Geringste Höhe einer Stufe (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Lower finds dropped curbs, but also tar seams and the edges of manholes.</source>
+            <translation>Niedriger findet abgesenkte Bordsteine, aber auch Teernähte und Schachtränder.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Longest gap connected (m)</source>
+            <translation>Längste verbundene Lücke (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Corners farther apart along the road are not joined. Longer passes driveways and parked cars, and says so.</source>
+            <translation>Kanten, die längs der Straße weiter auseinander liegen, werden nicht verbunden. Länger geht über Einfahrten und parkende Autos hinweg und sagt es.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Least height of a step on scanlines (m)</source>
+            <translation>Geringste Höhe einer Stufe auf Scanlinien (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Lower finds dropped curbs, but also tar seams. Profiles have a minimum curb height of their own.</source>
+            <translation>Niedriger findet abgesenkte Bordsteine, aber auch Teernähte. Profile haben eine eigene kleinste Bordsteinhöhe.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Normalized scanlines</source>
+            <translation>Normalisierte Scanlinien</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>The layer written by Normalized scanlines.</source>
+            <translation>Der von „Normalisierte Scanlinien“ geschriebene Layer.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Curb corners</source>
+            <translation>Bordsteinkanten</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Bottoms and tops, one of each per half metre and side.</source>
+            <translation>Unter- und Oberkanten, je eine je halbem Meter und Seite.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Road boundaries</source>
+            <translation>Straßenränder</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
+            <source>Bottom and top lines of either side.</source>
+            <translation>Unter- und Oberkantenlinien jeder Seite.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_boundaries.py" />
+            <source>Detect road boundaries</source>
+            <translation>Straßenränder erkennen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_boundaries.py" />
+            <source>Road edges straight from the point clouds: one door to every way of finding them.</source>
+            <translation>Straßenränder direkt aus den Punktwolken: eine Tür zu allen Wegen, sie zu finden.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_boundaries.py" />
+            <source>road edge</source>
+            <translation>Fahrbahnrand</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_boundaries.py" />
+            <source>Boundary method</source>
+            <translation>Randverfahren</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_boundaries.py" />
+            <source>Profiles looks for the curb in slices across the road; scanlines meets the planes of road, curb face and sidewalk; both lets the two check each other: at every place the one that measures better is drawn, agree_cm says how far apart they are, and it takes as long as the two together.</source>
+            <translation>Profiles sucht den Bordstein in Scheiben quer zur Straße; scanlines schneidet die Ebenen von Straße, Bordsteinfläche und Gehweg; both lässt beide einander prüfen: an jeder Stelle wird gezeichnet, was besser misst, agree_cm sagt, wie weit sie auseinander liegen, und es dauert so lange wie beide zusammen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_curbs.py" />
+            <source>Detect curbs</source>
+            <translation>Bordsteine erkennen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_curbs.py" />
+            <source>Finds the curb nearest to the driven track on each side, on profiles across the road.</source>
+            <translation>Findet auf Profilen quer zur Straße den Bordstein, der auf jeder Seite der gefahrenen Spur am nächsten liegt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_curbs.py" />
+            <source>Where there is no curb none is made up; a curb hidden behind parked cars becomes a point of status occluded. The field kind tells the road's own curbs (main) from those of corners, side streets and islands, which are found in plan.</source>
+            <translation>Wo kein Bordstein ist, wird keiner erfunden; ein hinter parkenden Autos verborgener wird ein Punkt mit status occluded. Das Feld kind unterscheidet die Bordsteine der Straße selbst (main) von denen der Ecken, Seitenstraßen und Inseln, die im Grundriss gefunden werden.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_curbs.py" />
+            <source>Block length along the road, 0 = automatic (m)</source>
+            <translation>Blocklänge längs der Straße, 0 = automatisch (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_curbs.py" />
+            <source>Automatic takes 0.5 m in sharp curves and up to 2 m on straights. Shorter follows a bend more closely but has fewer points to go by.</source>
+            <translation>Automatisch nimmt 0,5 m in scharfen Bögen und bis 2 m auf Geraden. Kürzer folgt einem Bogen genauer, hat aber weniger Punkte, nach denen es gehen kann.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_curbs.py" />
+            <source>Profile width along the road (m)</source>
+            <translation>Profilbreite längs der Straße (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_curbs.py" />
+            <source>Wider finds curbs far from the scanner, where points are sparse, but blurs them in bends.</source>
+            <translation>Breiter findet Bordsteine fern vom Scanner, wo Punkte dünn liegen, verwischt sie aber in Bögen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_curbs.py" />
+            <source>Cell across the road (m)</source>
+            <translation>Zelle quer zur Straße (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_curbs.py" />
+            <source>Finer places the curb more exactly; coarser fills gaps in sparse clouds, but misses low curbs.</source>
+            <translation>Feiner setzt den Bordstein genauer; gröber füllt Lücken in dünnen Wolken, verpasst aber niedrige Bordsteine.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_curbs.py" />
+            <source>Height gap between layers (m)</source>
+            <translation>Höhensprung zwischen Schichten (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_curbs.py" />
+            <source>Points of a cell this far apart in height belong to different things: the road and a car above it. Smaller cuts the curb off grass and cars, but also splits noisy ground.</source>
+            <translation>Punkte einer Zelle, die in der Höhe so weit auseinander liegen, gehören zu verschiedenen Dingen: zur Straße und zu einem Auto darüber. Kleiner trennt den Bordstein von Gras und Autos, zerteilt aber auch rauschenden Boden.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_curbs.py" />
+            <source>Smallest slope of the curb face (°)</source>
+            <translation>Kleinste Neigung der Bordsteinfläche (°)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_curbs.py" />
+            <source>Lower accepts bevelled and worn curbs, but also verges and ramps.</source>
+            <translation>Niedriger nimmt abgeschrägte und abgenutzte Bordsteine an, aber auch Bankette und Rampen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_curbs.py" />
+            <source>Minimum curb height (m)</source>
+            <translation>Kleinste Bordsteinhöhe (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_curbs.py" />
+            <source>Lower finds dropped curbs at driveways, but also tar seams and gutters.</source>
+            <translation>Niedriger findet abgesenkte Bordsteine an Einfahrten, aber auch Teernähte und Rinnen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_curbs.py" />
+            <source>Maximum curb height (m)</source>
+            <translation>Größte Bordsteinhöhe (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_curbs.py" />
+            <source>Higher accepts platforms and low walls as the road's edge.</source>
+            <translation>Höher nimmt Bahnsteige und niedrige Mauern als Straßenrand an.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_curbs.py" />
+            <source>Principal points</source>
+            <translation>Hauptpunkte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_curbs.py" />
+            <source>The highest point of the lowest layer of every cell: what the curbs were looked for on.</source>
+            <translation>Der höchste Punkt der untersten Schicht jeder Zelle: worauf die Bordsteine gesucht wurden.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/extract_road_surface.py" />
+            <source>Extract road surface</source>
+            <translation>Straßenoberfläche extrahieren</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/extract_road_surface.py" />
+            <source>Keeps the points of the road surface: between the road edges, or as far as the ground stays smooth.</source>
+            <translation>Behält die Punkte der Straßenoberfläche: zwischen den Straßenrändern, oder so weit der Boden glatt bleibt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/extract_road_surface.py" />
+            <source>road surface</source>
+            <translation>Fahrbahn</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/extract_road_surface.py" />
+            <source>ground</source>
+            <translation>Boden</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/extract_road_surface.py" />
+            <source>Farthest surface from the trajectory (m)</source>
+            <translation>Fernste Oberfläche von der Trajektorie (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/extract_road_surface.py" />
+            <source>On a side without an edge the surface grows outward while it stays smooth, at most this far. Wider reaches the far lanes of a broad road, but also yards and forecourts.</source>
+            <translation>Auf einer Seite ohne Rand wächst die Oberfläche nach außen, solange sie glatt bleibt, höchstens so weit. Weiter erreicht die fernen Fahrstreifen einer breiten Straße, aber auch Höfe und Vorplätze.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/extract_road_surface.py" />
+            <source>Height about the road's own surface (m)</source>
+            <translation>Höhe um die Fläche der Straße (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/extract_road_surface.py" />
+            <source>Wider keeps noisy points and ruts, but also the feet of cars and curbs; where the scanner's noise allows, less is taken.</source>
+            <translation>Weiter behält rauschende Punkte und Spurrinnen, aber auch die Füße von Autos und Bordsteinen; wo das Rauschen des Scanners es erlaubt, wird weniger genommen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/extract_road_surface.py" />
+            <source>The layer written by Fit road edges. Without it the surface is grown on both sides.</source>
+            <translation>Der von „Straßenränder einpassen“ geschriebene Layer. Ohne ihn wächst die Oberfläche auf beiden Seiten.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/extract_road_surface.py" />
+            <source>Class 11, with the extra fields road, pass, station_m, offset_m, half_width and covered for the stages that follow.</source>
+            <translation>Klasse 11, mit den zusätzlichen Feldern road, pass, station_m, offset_m, half_width und covered für die folgenden Stufen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/fit_road_edges.py" />
+            <source>Fit road edges</source>
+            <translation>Straßenränder einpassen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/fit_road_edges.py" />
+            <source>Draws the road edges through curb points as smoothing splines, bridging short gaps and saying so.</source>
+            <translation>Zeichnet die Straßenränder als glättende Splines durch Bordsteinpunkte, überbrückt kurze Lücken und sagt es.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/fit_road_edges.py" />
+            <source>Longest gap bridged (m)</source>
+            <translation>Längste überbrückte Lücke (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/fit_road_edges.py" />
+            <source>Longer carries the edge past rows of parked cars, flagged as bridged; shorter breaks it there.</source>
+            <translation>Länger führt den Rand an Reihen parkender Autos vorbei, als überbrückt gekennzeichnet; kürzer unterbricht ihn dort.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/fit_road_edges.py" />
+            <source>Assumed road width where no curb is seen, 0 = none (m)</source>
+            <translation>Angenommene Straßenbreite, wo kein Bordstein zu sehen ist, 0 = keine (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/fit_road_edges.py" />
+            <source>0 draws no edge where none was found. A width draws one at half of it either side of the road's reference line, flagged as inferred.</source>
+            <translation>0 zeichnet keinen Rand, wo keiner gefunden wurde. Eine Breite zeichnet einen in halber Breite beiderseits der Bezugslinie der Straße, als gefolgert gekennzeichnet.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/fit_road_edges.py" />
+            <source>The layer written by Detect curbs.</source>
+            <translation>Der von „Bordsteine erkennen“ geschriebene Layer.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/normalized_scanlines.py" />
+            <source>Cuts the measured surface by planes across the road, one scanline for every plane, pass and scanner.</source>
+            <translation>Schneidet die gemessene Oberfläche mit Ebenen quer zur Straße, eine Scanlinie für jede Ebene, jede Befahrung und jeden Scanner.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/normalized_scanlines.py" />
+            <source>The lines of a rotating scanner are told apart by the times and places of the points alone; neighbouring lines make the surface that is cut. Where it is interrupted, behind a car say, a new scanline begins. Points without times, or of a head with many beams, have no such lines: there the points near each plane make the scanline, and the log says so.</source>
+            <translation>Die Linien eines rotierenden Scanners werden allein aus Zeiten und Orten der Punkte erkannt; benachbarte Linien ergeben die Oberfläche, die geschnitten wird. Wo sie unterbrochen ist, etwa hinter einem Auto, beginnt eine neue Scanlinie. Punkte ohne Zeiten oder von einem Kopf mit vielen Strahlen haben keine solchen Linien: dort bilden die Punkte nahe jeder Ebene die Scanlinie, und das Protokoll sagt es.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/normalized_scanlines.py" />
+            <source>profile</source>
+            <translation>Profil</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/normalized_scanlines.py" />
+            <source>cross section</source>
+            <translation>Querschnitt</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/normalized_scanlines.py" />
+            <source>resample</source>
+            <translation>Neuabtastung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/normalized_scanlines.py" />
+            <source>Interval of section planes along the road (m)</source>
+            <translation>Abstand der Schnittebenen längs der Straße (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/normalized_scanlines.py" />
+            <source>Smaller gives more scanlines, and more of them than were measured where scan lines lie far apart; larger is quicker.</source>
+            <translation>Kleiner ergibt mehr Scanlinien, und mehr als gemessen wurden, wo Scanlinien weit auseinander liegen; größer ist schneller.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/normalized_scanlines.py" />
+            <source>Corridor either side of the road's reference line (m)</source>
+            <translation>Korridor beiderseits der Bezugslinie der Straße (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/normalized_scanlines.py" />
+            <source>Wider reaches the far side of a broad avenue, but takes longer.</source>
+            <translation>Weiter erreicht die ferne Seite einer breiten Allee, dauert aber länger.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/normalized_scanlines.py" />
+            <source>Scan lines of each scanner, 0 = from the data (per second)</source>
+            <translation>Scanlinien jedes Scanners, 0 = aus den Daten (je Sekunde)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/normalized_scanlines.py" />
+            <source>The data know it well. Give it where they are said to show no regular scan lines although the scanner has a rotating mirror; the direction of rotation is found anyway.</source>
+            <translation>Die Daten wissen es gut. Angeben, wo sie angeblich keine regelmäßigen Scanlinien zeigen, obwohl der Scanner einen rotierenden Spiegel hat; die Drehrichtung wird ohnehin gefunden.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/normalized_scanlines.py" />
+            <source>Deviation allowed in thinning the scanlines (m)</source>
+            <translation>Erlaubte Abweichung beim Ausdünnen der Scanlinien (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/normalized_scanlines.py" />
+            <source>Larger draws and writes faster and shows less of the surface; 0 keeps every vertex.</source>
+            <translation>Größer zeichnet und schreibt schneller und zeigt weniger von der Oberfläche; 0 behält jeden Stützpunkt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/normalized_scanlines.py" />
+            <source>Spacing of resampled points along a scanline (m)</source>
+            <translation>Abstand der neu abgetasteten Punkte längs einer Scanlinie (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/normalized_scanlines.py" />
+            <source>Smaller gives more points, without more being known of the surface.</source>
+            <translation>Kleiner ergibt mehr Punkte, ohne dass mehr von der Oberfläche bekannt wäre.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/normalized_scanlines.py" />
+            <source>Lines with height (Z) and intensity (M).</source>
+            <translation>Linien mit Höhe (Z) und Intensität (M).</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/normalized_scanlines.py" />
+            <source>Resampled points</source>
+            <translation>Neu abgetastete Punkte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/normalized_scanlines.py" />
+            <source>Points at equal steps along the scanlines, with intensity, station and offset: a cloud of even density.</source>
+            <translation>Punkte in gleichen Schritten längs der Scanlinien, mit Intensität, Station und Abstand: eine Wolke gleichmäßiger Dichte.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>Import trajectory</source>
+            <translation>Trajektorie einlesen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>Reads the driven trajectory from a CSV or TXT file, an Applanix SBET, or a point or line layer.</source>
+            <translation>Liest die gefahrene Trajektorie aus einer CSV- oder TXT-Datei, einem Applanix-SBET oder einem Punkt- oder Linienlayer.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>Columns may come in any order, with or without a header, in degrees or radians. Rows are sorted by time; repeated and unusable rows are dropped and counted.</source>
+            <translation>Spalten dürfen in beliebiger Reihenfolge kommen, mit oder ohne Kopfzeile, in Grad oder Radiant. Zeilen werden nach der Zeit sortiert; wiederholte und unbrauchbare werden weggelassen und gezählt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>trajectory</source>
+            <translation>Trajektorie</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>sbet</source>
+            <translation>sbet</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>applanix</source>
+            <translation>applanix</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>csv</source>
+            <translation>csv</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>gps time</source>
+            <translation>GPS-Zeit</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>Imported trajectory</source>
+            <translation>Eingelesene Trajektorie</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>Positions</source>
+            <translation>Positionen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>Trajectory file or layer</source>
+            <translation>Datei oder Layer der Trajektorie</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>A CSV or TXT file, an SBET (.out), or a layer of points or lines with heights.</source>
+            <translation>Eine CSV- oder TXT-Datei, ein SBET (.out) oder ein Layer aus Punkten oder Linien mit Höhen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>CRS of the trajectory</source>
+            <translation>KBS der Trajektorie</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>Where the file does not say it. An SBET is in WGS 84 unless another is chosen.</source>
+            <translation>Wo die Datei es nicht sagt. Ein SBET ist in WGS 84, wenn kein anderes gewählt wird.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>CRS to bring it to</source>
+            <translation>Ziel-KBS</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>That of the point clouds. Empty takes it from the point clouds below, or leaves the trajectory as it is.</source>
+            <translation>Das der Punktwolken. Leer nimmt es aus den Punktwolken unten oder lässt die Trajektorie, wie sie ist.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>With them the time system is told apart, and the trajectory is written on the clouds' clock.</source>
+            <translation>Mit ihnen wird das Zeitsystem erkannt, und die Trajektorie wird in der Zeit der Wolken geschrieben.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>The trajectory names no CRS and none was given, so its layer has none: set CRS of the trajectory, or CRS to bring it to where the coordinates are in that of the point clouds.</source>
+            <translation>Die Trajektorie nennt kein KBS und es wurde keines angegeben, also hat ihr Layer keines: „KBS der Trajektorie“ setzen, oder „Ziel-KBS“, wenn ihre Koordinaten schon in dem der Punktwolken stehen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>Trajectory: {count} positions.</source>
+            <translation>Trajektorie: {count} Positionen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>Inspect survey</source>
+            <translation>Vermessung prüfen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>Tells what point clouds and trajectory hold, and whether they fit together, before work is done on them.</source>
+            <translation>Sagt, was Punktwolken und Trajektorie enthalten und ob sie zueinander passen, bevor an ihnen gearbeitet wird.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>What the road map would stumble over, such as a geographic CRS or two clocks, is said with a way on.</source>
+            <translation>Worüber die Straßenkarte stolpern würde, etwa ein geographisches KBS oder zwei Uhren, wird gesagt, mit einem Ausweg.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>report</source>
+            <translation>Bericht</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>las</source>
+            <translation>las</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>header</source>
+            <translation>Kopfdaten</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>overlap</source>
+            <translation>Überlappung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>Cell of the density raster (m)</source>
+            <translation>Zelle des Dichterasters (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>Smaller shows single scan lines, larger the broad picture.</source>
+            <translation>Kleiner zeigt einzelne Scanlinien, größer das große Bild.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>Cube that the density in space is counted in (m)</source>
+            <translation>Würfel, in dem die räumliche Dichte gezählt wird (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>1 gives points per cubic metre as they are published; smaller ones follow surfaces more closely.</source>
+            <translation>1 gibt Punkte je Kubikmeter, wie sie veröffentlicht werden; kleinere folgen Oberflächen genauer.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>Points</source>
+            <translation>Punkte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>Points per m², mean of occupied cells</source>
+            <translation>Punkte je m², Mittel der besetzten Zellen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>Points per m³, mean of occupied cubes</source>
+            <translation>Punkte je m³, Mittel der besetzten Würfel</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>First gps_time (s)</source>
+            <translation>Erste gps_time (s)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>Last gps_time (s)</source>
+            <translation>Letzte gps_time (s)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>Scanners</source>
+            <translation>Scanner</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>Points near the trajectory (%)</source>
+            <translation>Punkte nahe der Trajektorie (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>Scan time covered by the trajectory (%)</source>
+            <translation>Von der Trajektorie abgedeckte Scanzeit (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>Point density</source>
+            <translation>Punktdichte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>Points per m² in every cell.</source>
+            <translation>Punkte je m² in jeder Zelle.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>Survey: {count} points in {files} file(s), {density:.0f} points per m² where there are any, {scanners} scanner(s), intensities {darkest} to {brightest}.</source>
+            <translation>Vermessung: {count} Punkte in {files} Datei(en), {density:.0f} Punkte je m², wo welche sind, {scanners} Scanner, Intensitäten {darkest} bis {brightest}.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/inspect_survey.py" />
+            <source>Trajectory: {near:.0f} % of the points lie within {metres:.0f} m of it.</source>
+            <translation>Trajektorie: {near:.0f} % der Punkte liegen innerhalb von {metres:.0f} m.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Sample survey</source>
+            <translation>Beispielvermessung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Makes a mobile laser scanning survey of a street that exists only on paper, together with the truth about it.</source>
+            <translation>Erzeugt die Laserscan-Vermessung einer Straße, die es nur auf dem Papier gibt, zusammen mit der Wahrheit über sie.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Every pulse of two scanners is followed to what it meets first. Figures reached on it are figures on simulated data.</source>
+            <translation>Jeder Puls zweier Scanner wird verfolgt, bis er auf etwas trifft. Darauf erreichte Zahlen sind Zahlen auf simulierten Daten.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>sample</source>
+            <translation>Beispiel</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>simulation</source>
+            <translation>Simulation</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>test data</source>
+            <translation>Testdaten</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Scene</source>
+            <translation>Szene</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Street is a curved two-lane road with curbs and parked cars, rural has verges instead of curbs, urban is broader with more lanes and gutters.</source>
+            <translation>Street ist eine gekrümmte zweistreifige Straße mit Bordsteinen und parkenden Autos, rural hat Bankette statt Bordsteinen, urban ist breiter, mit mehr Fahrstreifen und Rinnen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Length of the road (m)</source>
+            <translation>Länge der Straße (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Longer takes longer to make and to work through, in proportion.</source>
+            <translation>Länger dauert im selben Verhältnis länger, beim Erzeugen wie beim Verarbeiten.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Seed of the random numbers (whole number)</source>
+            <translation>Startwert der Zufallszahlen (ganze Zahl)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Another seed gives another street with other cars, wear and noise; the same seed gives the same points.</source>
+            <translation>Ein anderer Startwert ergibt eine andere Straße mit anderen Autos, anderer Abnutzung und anderem Rauschen; derselbe ergibt dieselben Punkte.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Speed of the vehicle (km/h)</source>
+            <translation>Geschwindigkeit des Fahrzeugs (km/h)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Faster spreads the scan lines wider apart.</source>
+            <translation>Schneller legt die Scanlinien weiter auseinander.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Pulses of each scanner (per second)</source>
+            <translation>Pulse jedes Scanners (je Sekunde)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>More gives a denser cloud and a larger file.</source>
+            <translation>Mehr ergibt eine dichtere Wolke und eine größere Datei.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Scan lines of each scanner (per second)</source>
+            <translation>Scanlinien jedes Scanners (je Sekunde)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>More brings the lines closer together, with fewer points on each.</source>
+            <translation>Mehr bringt die Linien näher zusammen, mit weniger Punkten auf jeder.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Scanners' planes turned from straight across (°)</source>
+            <translation>Verdrehung der Scanebenen gegen die Querrichtung (°)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>0 scans straight across the road; more sees the faces of things from ahead and behind, one scanner either way.</source>
+            <translation>0 scannt gerade quer zur Straße; mehr sieht die Flächen der Dinge von vorn und von hinten, ein Scanner jeweils.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Radius of the bends (m)</source>
+            <translation>Radius der Bögen (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Smaller makes sharper bends.</source>
+            <translation>Kleiner ergibt schärfere Bögen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Height of the curbs (m)</source>
+            <translation>Höhe der Bordsteine (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Lower is harder to find.</source>
+            <translation>Niedriger ist schwerer zu finden.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Width of a concrete gutter along the curbs (m)</source>
+            <translation>Breite einer Betonrinne längs der Bordsteine (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>A gutter is as bright as paint and is not to be taken for it; 0 leaves it out.</source>
+            <translation>Eine Rinne ist so hell wie Farbe und darf nicht dafür gehalten werden; 0 lässt sie weg.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>True road boundaries</source>
+            <translation>Wahre Straßenränder</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>True markings</source>
+            <translation>Wahre Markierungen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>True driving lines</source>
+            <translation>Wahre Fahrlinien</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>True road surface</source>
+            <translation>Wahre Straßenoberfläche</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Point cloud</source>
+            <translation>Punktwolke</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>UAV image</source>
+            <translation>UAV-Bild</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>What a UAV sees of the first 150 m: a TIFF of 4 cm pixels without a place on the map, with the distortion of its camera. Georeference image finds its place.</source>
+            <translation>Was ein UAV von den ersten 150 m sieht: ein TIFF mit 4-cm-Pixeln ohne Lage auf der Karte, mit der Verzeichnung seiner Kamera. „Bild georeferenzieren“ findet seine Lage.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Ground control points of the UAV image</source>
+            <translation>Passpunkte des UAV-Bildes</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>CRS of the survey</source>
+            <translation>KBS der Vermessung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>A projected CRS in metres. The coordinates are the same in each; it only says where on earth they are.</source>
+            <translation>Ein projiziertes KBS in Metern. Die Koordinaten sind in jedem dieselben; es sagt nur, wo auf der Erde sie liegen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>Sample survey: {count} points along {length:.0f} m of road.</source>
+            <translation>Beispielvermessung: {count} Punkte entlang {length:.0f} m Straße.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
+            <source>Points farther out are left unread. Wider reaches the far side of a broad avenue, but takes longer and brings in the neighbouring street.</source>
+            <translation>Punkte weiter außen werden nicht gelesen. Weiter erreicht die ferne Seite einer breiten Allee, dauert aber länger und holt die Nachbarstraße herein.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
+            <source>Field that tells the scanners apart</source>
+            <translation>Feld, das die Scanner unterscheidet</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
+            <source>Automatic takes scanner_channel where it is used and point_source_id where it interleaves in time. Name one when the report counts the wrong number of scanners.</source>
+            <translation>Automatisch nimmt scanner_channel, wo es benutzt ist, und point_source_id, wo es sich in der Zeit verschränkt. Eines nennen, wenn der Bericht eine falsche Zahl von Scannern zählt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
+            <source>Time of the trajectory</source>
+            <translation>Zeit der Trajektorie</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
+            <source>How its clock counts: gps (since 1980), adjusted (the same less a billion), week or day. Automatic compares with the point clouds and says what it chose.</source>
+            <translation>Wie ihre Uhr zählt: gps (seit 1980), adjusted (dasselbe weniger eine Milliarde), week oder day. Automatisch vergleicht mit den Punktwolken und sagt, was gewählt wurde.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
+            <source>Lay passes over one road on each other</source>
+            <translation>Befahrungen derselben Straße aufeinanderlegen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
+            <source>Where two drives over a road measurably lie centimetres apart, as navigation drifts between them, each is moved by its share until curbs and paint agree, and the log says how far. Off keeps every point where it was measured, for surveys adjusted to control points already; what the passes differ by then blurs curbs and doubles lines.</source>
+            <translation>Wo zwei Befahrungen einer Straße messbar Zentimeter auseinanderliegen, weil die Navigation zwischen ihnen driftet, wird jede um ihren Anteil verschoben, bis Bordsteine und Farbe übereinstimmen; das Protokoll sagt, um wie viel. Ausgeschaltet bleibt jeder Punkt, wo er gemessen wurde: für Aufnahmen, die schon an Passpunkten ausgeglichen sind. Worin die Befahrungen sich dann unterscheiden, macht Bordsteine unscharf und Linien doppelt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
+            <source>The points</source>
+            <translation>Die Punkte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
+            <source>The trajectory says no CRS; its coordinates are taken to be those of the target CRS as they are.</source>
+            <translation>Die Trajektorie nennt kein KBS; ihre Koordinaten werden unverändert als die des Ziel-KBS genommen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
+            <source>{path} has no intensity (all values are the same), so paint cannot be told from asphalt. Road edges and surface need none; for markings, export the point clouds with intensity.</source>
+            <translation>{path} hat keine Intensität (alle Werte sind gleich), Farbe lässt sich so nicht vom Asphalt unterscheiden. Straßenränder und Oberfläche brauchen keine; für Markierungen die Punktwolken mit Intensität exportieren.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
+            <source>{label} holds no points: no paint was found on this road.</source>
+            <translation>{label} enthält keine Punkte: auf dieser Straße wurde keine Farbe gefunden.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/trajectory_source.py" />
+            <source>{label} has no rows. Choose the layer that holds the driven positions.</source>
+            <translation>{label} hat keine Zeilen. Den Layer wählen, der die gefahrenen Positionen enthält.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/trajectory_source.py" />
+            <source>{label} is a table with the columns {names}; {missing} cannot be found among them. Name them time, x, y, z, roll, pitch, heading.</source>
+            <translation>{label} ist eine Tabelle mit den Spalten {names}; {missing} ist darunter nicht zu finden. Sie time, x, y, z, roll, pitch, heading nennen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/vector_source.py" />
+            <source>{label} lacks the field(s) {fields}. Use the layer that Lanewright wrote.</source>
+            <translation>{label} fehlen die Felder {fields}. Den Layer verwenden, den Lanewright geschrieben hat.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/vector_source.py" />
+            <source>{label} holds geometries of the kind {found}; {needed} is needed. Use the layer that Lanewright wrote.</source>
+            <translation>{label} enthält Geometrien der Art {found}; gebraucht wird {needed}. Den Layer verwenden, den Lanewright geschrieben hat.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/vector_source.py" />
+            <source>{label} has geometries without heights (Z) or measures (M). Use the layer that Lanewright wrote.</source>
+            <translation>{label} hat Geometrien ohne Höhen (Z) oder Messwerte (M). Den Layer verwenden, den Lanewright geschrieben hat.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/vector_source.py" />
+            <source>{label} has geometries without heights (Z). Use the layer that Lanewright wrote.</source>
+            <translation>{label} hat Geometrien ohne Höhen (Z). Den Layer verwenden, den Lanewright geschrieben hat.</translation>
+        </message>
+        <message>
             <location filename="../../desktop/manual.py" />
             <source>Lanewright manual</source>
             <translation>Lanewright-Handbuch</translation>
@@ -94,704 +2774,19 @@
             <translation>abgebrochen</translation>
         </message>
         <message>
-            <location filename="../../processing_provider/algorithm.py" />
-            <source>Survey</source>
-            <translation>Vermessung</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/algorithm.py" />
-            <source>Road</source>
-            <translation>Straße</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/algorithm.py" />
-            <source>Markings</source>
-            <translation>Markierungen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/algorithm.py" />
-            <source>Driving</source>
-            <translation>Fahren</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/algorithm.py" />
-            <source>Road map</source>
-            <translation>Straßenkarte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/algorithm.py" />
-            <source>Assessment</source>
-            <translation>Bewertung</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/algorithm.py" />
-            <source>Orthoimages</source>
-            <translation>Orthobilder</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/algorithm.py" />
-            <source>LAS, LAZ or COPC files of one survey. Files may overlap and come in any order.</source>
-            <translation>LAS-, LAZ- oder COPC-Dateien einer Vermessung. Dateien dürfen sich überlappen und in beliebiger Reihenfolge kommen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/algorithm.py" />
-            <source>Where the vehicle drove: a point or line layer with heights, a table with columns time, x, y, z, or the path of a CSV, TXT or SBET file. Made with Import trajectory it needs no further care.</source>
-            <translation>Wo das Fahrzeug fuhr: ein Punkt- oder Linienlayer mit Höhen, eine Tabelle mit den Spalten time, x, y, z oder der Pfad einer CSV-, TXT- oder SBET-Datei. Mit „Trajektorie einlesen“ erzeugt, braucht sie keine weitere Pflege.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/algorithm.py" />
-            <source>Only for point clouds that carry no CRS of their own; it is written into everything made from them.</source>
-            <translation>Nur für Punktwolken ohne eigenes KBS; es wird in alles geschrieben, was aus ihnen entsteht.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/algorithm.py" />
-            <source>Report</source>
-            <translation>Bericht</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/algorithm.py" />
-            <source>A page with the numbers of every step and a picture.</source>
-            <translation>Eine Seite mit den Zahlen jedes Schrittes und einem Bild.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/algorithm.py" />
-            <source>Point clouds</source>
-            <translation>Punktwolken</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/algorithm.py" />
-            <source>Trajectory</source>
-            <translation>Trajektorie</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/algorithm.py" />
-            <source>CRS of the point clouds</source>
-            <translation>KBS der Punktwolken</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/algorithm.py" />
-            <source>{label} ({name}) is {value}; it must be a number from {least:g} to {most:g}.</source>
-            <translation>{label} ({name}) ist {value}; es muss eine Zahl von {least:g} bis {most:g} sein.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/algorithm.py" />
-            <source>{label} ({name}) is {value}; it must be one of {choices}.</source>
-            <translation>{label} ({name}) ist {value}; möglich sind {choices}.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/algorithm.py" />
-            <source>Cancelled</source>
-            <translation>Abgebrochen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/algorithm.py" />
-            <source>Not enough memory for this step; close other programs or process fewer files at once.</source>
-            <translation>Der Arbeitsspeicher reicht für diesen Schritt nicht; andere Programme schließen oder weniger Dateien auf einmal verarbeiten.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/algorithm.py" />
-            <source>while writing</source>
-            <translation>beim Schreiben</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/algorithm.py" />
-            <source>Fields: {fields}.</source>
-            <translation>Felder: {fields}.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Assess road boundaries</source>
-            <translation>Straßenränder bewerten</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Sets road boundaries against reference lines, side by side in intervals of 2 m: precision, recall, errors across and in height.</source>
-            <translation>Hält Straßenränder gegen Referenzlinien, je Seite in Abschnitten von 2 m: Genauigkeit, Vollständigkeit, Abweichungen quer und in der Höhe.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Any two line layers will do, of other software too: flat or with heights, in one part or many, drawn either way, with any fields. A layer in another CRS is reprojected. Where a layer tells tops from bottoms in a field part, bottoms count.</source>
-            <translation>Zwei beliebige Linienlayer genügen, auch von anderer Software: mit oder ohne Höhen, ein- oder mehrteilig, in beliebiger Richtung gezeichnet, mit beliebigen Feldern. Ein Layer in einem anderen KBS wird umprojiziert. Wo ein Feld part Ober- und Unterkanten unterscheidet, zählen die Unterkanten.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>accuracy</source>
-            <translation>Genauigkeit</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>precision</source>
-            <translation>Präzision</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>recall</source>
-            <translation>Vollständigkeit</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>validation</source>
-            <translation>Validierung</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>curb</source>
-            <translation>Bordstein</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>reference</source>
-            <translation>Referenz</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>ground truth</source>
-            <translation>Bodenwahrheit</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Tolerance of the layer and of the numbers (m)</source>
-            <translation>Toleranz des Layers und der Zahlen (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>The tolerance for which intervals are drawn and numbers returned; the report has all of them.</source>
-            <translation>Die Toleranz, für die Abschnitte gezeichnet und Zahlen zurückgegeben werden; der Bericht enthält alle.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Length of an interval (m)</source>
-            <translation>Länge eines Abschnitts (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Longer lets a short error pass or spoil more of the road; published figures use 2.</source>
-            <translation>Länger lässt einen kurzen Fehler durchgehen oder mehr von der Straße verderben; veröffentlichte Zahlen verwenden 2.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Corridor either side of the trajectory (m)</source>
-            <translation>Korridor beiderseits der Trajektorie (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>What lies farther out belongs to no road and is left out; the report tells how much.</source>
-            <translation>Was weiter außen liegt, gehört zu keiner Straße und bleibt weg; der Bericht sagt, wie viel.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Precision (%)</source>
-            <translation>Präzision (%)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Recall (%)</source>
-            <translation>Vollständigkeit (%)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>F (%)</source>
-            <translation>F (%)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Intersection over union (%)</source>
-            <translation>Schnitt durch Vereinigung (%)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Correct intervals</source>
-            <translation>Richtige Abschnitte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Missed intervals</source>
-            <translation>Fehlende Abschnitte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>False intervals</source>
-            <translation>Falsche Abschnitte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Intervals that were not judged</source>
-            <translation>Nicht beurteilte Abschnitte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Mean lateral error (m)</source>
-            <translation>Mittlere Querabweichung (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>RMSE across (m)</source>
-            <translation>RMSE quer (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>95th percentile of the lateral error (m)</source>
-            <translation>95. Perzentil der Querabweichung (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Largest lateral error (m)</source>
-            <translation>Größte Querabweichung (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Mean height error (m)</source>
-            <translation>Mittlere Höhenabweichung (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>RMSE in height (m)</source>
-            <translation>RMSE in der Höhe (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>95th percentile of the height error (m)</source>
-            <translation>95. Perzentil der Höhenabweichung (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Largest height error (m)</source>
-            <translation>Größte Höhenabweichung (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Boundaries to assess</source>
-            <translation>Zu bewertende Ränder</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Lines that were extracted, such as road edges.</source>
-            <translation>Gefundene Linien, etwa Straßenränder.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Reference boundaries</source>
-            <translation>Referenzränder</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Lines that are known to be right, one on each side of the road, such as the feet of the curbs.</source>
-            <translation>Linien, von denen man weiß, dass sie stimmen, eine auf jeder Straßenseite, etwa die Bordsteinfüße.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Boundaries by outcome</source>
-            <translation>Ränder nach Ergebnis</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>One line an interval and outcome.</source>
-            <translation>Eine Linie je Abschnitt und Ergebnis.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Tolerances (m)</source>
-            <translation>Toleranzen (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Distances to either side within which a line is right, with commas between them. The report has a row for each.</source>
-            <translation>Abstände zu jeder Seite, innerhalb derer eine Linie richtig ist, durch Kommas getrennt. Der Bericht hat für jeden eine Zeile.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>lines</source>
-            <translation>Linien</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>Intervals within {tolerance:g} cm: {correct:.0f} correct, {missed:.0f} missed, {false:.0f} false; {rates}.</source>
-            <translation>Intervalle innerhalb {tolerance:g} cm: {correct:.0f} richtig, {missed:.0f} verfehlt, {false:.0f} falsch; {rates}.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_boundaries.py" />
-            <source>{rate}, {side} (%)</source>
-            <translation>{rate}, {side} (%)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Assess driving lines</source>
-            <translation>Fahrlinien bewerten</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Sets driving lines against reference lines within buffers: completeness, correctness, miscoding, errors and gaps.</source>
-            <translation>Hält Fahrlinien in Puffern gegen Referenzlinien: Vollständigkeit, Richtigkeit, Fehlkodierung, Abweichungen und Lücken.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Any two line layers will do, of other software too: flat or with heights, in one part or many, drawn either way, with any fields. A layer in another CRS is reprojected. Miscoding is the share of the result outside the buffer of the reference.</source>
-            <translation>Zwei beliebige Linienlayer genügen, auch von anderer Software: mit oder ohne Höhen, ein- oder mehrteilig, in beliebiger Richtung gezeichnet, mit beliebigen Feldern. Ein Layer in einem anderen KBS wird umprojiziert. Fehlkodierung ist der Anteil des Ergebnisses außerhalb des Puffers der Referenz.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>miscoding</source>
-            <translation>Fehlkodierung</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>completeness</source>
-            <translation>Vollständigkeit</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>correctness</source>
-            <translation>Richtigkeit</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>buffer</source>
-            <translation>Puffer</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>The tolerance for which pieces are drawn and numbers returned, of the same kind as the others; the report has all of them.</source>
-            <translation>Die Toleranz, für die Stücke gezeichnet und Zahlen zurückgegeben werden, von derselben Art wie die anderen; der Bericht enthält alle.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Largest angle between lines that match (°)</source>
-            <translation>Größter Winkel zwischen zusammengehörigen Linien (°)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Smaller keeps lines that cross from matching; 90 lets any direction match. The way a line is drawn does not matter.</source>
-            <translation>Kleiner verhindert, dass kreuzende Linien zusammenpassen; 90 lässt jede Richtung zu. Die Zeichenrichtung einer Linie spielt keine Rolle.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Completeness (%)</source>
-            <translation>Vollständigkeit (%)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Correctness (%)</source>
-            <translation>Richtigkeit (%)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Quality (%)</source>
-            <translation>Qualität (%)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Miscoding (%)</source>
-            <translation>Fehlkodierung (%)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Precision, the same as correctness (%)</source>
-            <translation>Präzision, dasselbe wie Richtigkeit (%)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Recall, the same as completeness (%)</source>
-            <translation>Vollständigkeit der Referenz (%)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>F1 (%)</source>
-            <translation>F1 (%)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Gaps per km</source>
-            <translation>Lücken je km</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Mean length of the gaps (m)</source>
-            <translation>Mittlere Länge der Lücken (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Length of the result (m)</source>
-            <translation>Länge des Ergebnisses (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Length of the reference (m)</source>
-            <translation>Länge der Referenz (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Driving lines to assess</source>
-            <translation>Zu bewertende Fahrlinien</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Lines that were made.</source>
-            <translation>Erzeugte Linien.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Reference lines</source>
-            <translation>Referenzlinien</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Lines that are known to be right, such as those drawn over an orthoimage.</source>
-            <translation>Linien, von denen man weiß, dass sie stimmen, etwa über einem Orthobild gezeichnete.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Half-width: from the line to the rim of its buffer. Total-width: from rim to rim, so that 0.20 lets a line be 0.10 m off. Published figures seldom say which they mean; the report shows both.</source>
-            <translation>Half-width: von der Linie zum Rand ihres Puffers. Total-width: von Rand zu Rand, sodass 0.20 einer Linie 0,10 m Abweichung lässt. Veröffentlichte Zahlen sagen selten, was sie meinen; der Bericht zeigt beides.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Driving lines by outcome</source>
-            <translation>Fahrlinien nach Ergebnis</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>The lines cut where the outcome changes: false pieces lie outside the buffer.</source>
-            <translation>Die Linien, geschnitten, wo das Ergebnis wechselt: falsche Stücke liegen außerhalb des Puffers.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Sizes of the buffer, with commas between them. The report has a row for each.</source>
-            <translation>Größen des Puffers, durch Kommas getrennt. Der Bericht hat für jede eine Zeile.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Tolerances are</source>
-            <translation>Toleranzen sind</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_driving_lines.py" />
-            <source>Within {tolerance:g} cm to either side: {rates}.</source>
-            <translation>Innerhalb von {tolerance:g} cm zu jeder Seite: {rates}.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Assess markings</source>
-            <translation>Markierungen bewerten</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Sets road markings against a reference, cell by cell, by class and by object: precision, recall, F1 and intersection over union.</source>
-            <translation>Hält Straßenmarkierungen gegen eine Referenz, Zelle für Zelle, nach Klasse und nach Objekt: Präzision, Vollständigkeit, F1 und Schnitt durch Vereinigung.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Polygons, lines or a raster mask (anything but 0 and no-data is paint), of other software too, on either side. A layer in another CRS is reprojected.</source>
-            <translation>Polygone, Linien oder eine Rastermaske (alles außer 0 und NoData ist Farbe), auch von anderer Software, auf beiden Seiten. Ein Layer in einem anderen KBS wird umprojiziert.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>iou</source>
-            <translation>iou</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>road marking</source>
-            <translation>Straßenmarkierung</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Tolerance of objects and of the layer (cells)</source>
-            <translation>Toleranz der Objekte und des Layers (Zellen)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Objects are judged and numbers ending in TOLERANT returned with this tolerance; the report has all of them.</source>
-            <translation>Objekte werden mit dieser Toleranz beurteilt und Zahlen auf TOLERANT mit ihr zurückgegeben; der Bericht enthält alle.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Cell size (m)</source>
-            <translation>Zellgröße (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Smaller weighs the rims of markings more and takes longer; published figures use 0.04.</source>
-            <translation>Kleiner gewichtet die Ränder der Markierungen stärker und dauert länger; veröffentlichte Zahlen verwenden 0.04.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Width of lines (m)</source>
-            <translation>Breite der Linien (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>How wide paint is where a layer of lines has no field width_m or width.</source>
-            <translation>Wie breit Farbe ist, wo ein Linienlayer kein Feld width_m oder width hat.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Share of an object that makes it found (0-1)</source>
-            <translation>Anteil eines Objekts, der es gefunden macht (0-1)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Higher asks for more of an object before it counts as found, or as right.</source>
-            <translation>Höher verlangt mehr von einem Objekt, bevor es als gefunden oder als richtig zählt.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Cells that are right</source>
-            <translation>Richtige Zellen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Cells that were missed</source>
-            <translation>Fehlende Zellen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Cells that are false</source>
-            <translation>Falsche Zellen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Polygons, lines with a width, or a mask.</source>
-            <translation>Polygone, Linien mit Breite oder eine Maske.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Polygons, lines or a raster of what is painted; the values of a raster are its classes.</source>
-            <translation>Polygone, Linien oder ein Raster dessen, was aufgemalt ist; die Werte eines Rasters sind seine Klassen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Looked for in both layers; a layer without it has no classes. Fields named mark_class and kind are found too.</source>
-            <translation>Wird in beiden Layern gesucht; ein Layer ohne es hat keine Klassen. Felder namens mark_class und kind werden auch gefunden.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Image that shows what was scanned</source>
-            <translation>Bild, das zeigt, was gescannt wurde</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Where this raster, such as the intensity image, is empty nothing is judged, and the report's map lies over it. It hides what was never scanned, but also what the road surface left out: leave it empty to hold that against the result.</source>
-            <translation>Wo dieses Raster, etwa das Intensitätsbild, leer ist, wird nichts beurteilt, und die Karte des Berichts liegt darüber. Es verdeckt, was nie gescannt wurde, aber auch, was die Straßenoberfläche ausgelassen hat: leer lassen, um das dem Ergebnis anzulasten.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Markings by outcome</source>
-            <translation>Markierungen nach Ergebnis</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Objects of the reference, correct or missed, and the false ones of the result.</source>
-            <translation>Objekte der Referenz, richtig oder fehlend, und die falschen des Ergebnisses.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Hits, misses and false alarms</source>
-            <translation>Treffer, Fehlstellen und Fehlalarme</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>1 hit, 2 missed, 3 false, 4 missed beside a hit (within the tolerance), 5 false beside paint.</source>
-            <translation>1 Treffer, 2 fehlend, 3 falsch, 4 fehlend neben einem Treffer (innerhalb der Toleranz), 5 falsch neben Farbe.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Markings to assess</source>
-            <translation>Zu bewertende Markierungen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Reference markings</source>
-            <translation>Referenzmarkierungen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Tolerances (cells)</source>
-            <translation>Toleranzen (Zellen)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Cells by which the other layer is widened before it is asked, with commas between them; 0 is strict.</source>
-            <translation>Zellen, um die der andere Layer verbreitert wird, bevor er befragt wird, durch Kommas getrennt; 0 ist streng.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Field with the class</source>
-            <translation>Feld mit der Klasse</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>Cells, strict: {strict}; with a tolerance of {cells}: {tolerant}.</source>
-            <translation>Zellen, streng: {strict}; mit einer Toleranz von {cells}: {tolerant}.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/assess_markings.py" />
-            <source>{what} (%)</source>
-            <translation>{what} (%)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/inputs.py" />
-            <source>An expression, such as "type" = 'driveway': where it holds, a result is neither right nor wrong. Empty leaves out the rows whose field kind says dropped or none.</source>
-            <translation>Ein Ausdruck wie "type" = 'driveway': wo er gilt, ist ein Ergebnis weder richtig noch falsch. Leer lässt die Zeilen weg, deren Feld kind dropped oder none sagt.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/inputs.py" />
-            <source>Area</source>
-            <translation>Gebiet</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/inputs.py" />
-            <source>Polygons. What lies outside is left out of both layers; without it a result beyond the ends of the reference is false.</source>
-            <translation>Polygone. Was außerhalb liegt, bleibt in beiden Layern weg; ohne sie ist ein Ergebnis jenseits der Enden der Referenz falsch.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/inputs.py" />
-            <source>Rows of the reference that are not judged</source>
-            <translation>Zeilen der Referenz, die nicht beurteilt werden</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/inputs.py" />
-            <source>{label} cannot be used: {problem}</source>
-            <translation>{label} kann nicht verwendet werden: {problem}</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/inputs.py" />
-            <source>{label}: {value} cannot be opened as a layer. Check the name and the folder.</source>
-            <translation>{label}: {value} lässt sich nicht als Layer öffnen. Name und Ordner prüfen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/inputs.py" />
-            <source>{label} has no polygons. Leave it empty to judge everywhere.</source>
-            <translation>{label} hat keine Polygone. Leer lassen, um überall zu urteilen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/assess/inputs.py" />
-            <source>{label} is {text!r}; give numbers with commas between them, such as 0.05, 0.10, 0.20.</source>
-            <translation>{label} ist {text!r}; bitte Zahlen mit Kommas dazwischen angeben, etwa 0.05, 0.10, 0.20.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/call.py" />
-            <source>{label} names {path}, which is not a file. Choose the LAS or LAZ file itself.</source>
-            <translation>{label} nennt {path}, das ist keine Datei. Die LAS- oder LAZ-Datei selbst wählen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/call.py" />
-            <source>{label}: there is no file {path}. Check the name and the folder.</source>
-            <translation>{label}: die Datei {path} gibt es nicht. Name und Ordner prüfen.</translation>
-        </message>
-        <message>
             <location filename="../../processing_provider/call.py" />
             <source>{label}: the CRS {given} is not known. Give it as EPSG:number.</source>
             <translation>{label}: das KBS {given} ist nicht bekannt. Als EPSG:Nummer angeben.</translation>
         </message>
         <message>
             <location filename="../../processing_provider/call.py" />
-            <source>{label} would be written over {path}, which is read as {input}: inputs are never changed. Give it another name.</source>
-            <translation>„{label}“ würde {path} überschreiben, das als „{input}“ gelesen wird: Eingaben werden nie verändert. Bitte einen anderen Namen wählen.</translation>
+            <source>{label}: {value} cannot be opened as a layer. Check the name and the folder.</source>
+            <translation>{label}: {value} lässt sich nicht als Layer öffnen. Name und Ordner prüfen.</translation>
         </message>
         <message>
             <location filename="../../processing_provider/call.py" />
-            <source>{first} and {second} would both be written to {path}, and one would be lost. Give each a file of its own, or name the layers in one GeoPackage: ogr:dbname='map.gpkg' table="road_edges" (geom).</source>
-            <translation>{first} und {second} würden beide nach {path} geschrieben, und eines ginge verloren. Jedem eine eigene Datei geben oder die Layer in einem GeoPackage benennen: ogr:dbname='map.gpkg' table="road_edges" (geom).</translation>
+            <source>{label} cannot be used: {problem}</source>
+            <translation>{label} kann nicht verwendet werden: {problem}</translation>
         </message>
         <message>
             <location filename="../../processing_provider/dependencies.py" />
@@ -819,254 +2814,9 @@
             <translation>shapely {version} ist installiert, gebraucht wird Version 2 oder neuer. Zum Installieren: {command} Danach QGIS neu starten.</translation>
         </message>
         <message>
-            <location filename="../../processing_provider/destinations.py" />
-            <source>{label} was to be written to {path}, but it is written as {kinds} only. Name the file so.</source>
-            <translation>{label} sollte nach {path} geschrieben werden, wird aber nur als {kinds} geschrieben. Die Datei so benennen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/destinations.py" />
-            <source>{label} was to be written to {path}, but a DXF has no fields. Write a GeoPackage and bring it to DXF with the QGIS algorithm “Export layers to DXF”.</source>
-            <translation>{label} sollte nach {path} geschrieben werden, aber ein DXF hat keine Felder. Ein GeoPackage schreiben und mit dem QGIS-Algorithmus „Layer nach DXF exportieren“ nach DXF bringen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/destinations.py" />
-            <source>{label} was to be written to {path}, whose ending names no format that QGIS writes. Use .gpkg, .fgb or .shp.</source>
-            <translation>{label} sollte nach {path} geschrieben werden, dessen Endung kein Format nennt, das QGIS schreibt. .gpkg, .fgb oder .shp verwenden.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/destinations.py" />
-            <source>{label} was to be written to {path}, but there is no folder {folder}. Create it or choose another.</source>
-            <translation>{label} sollte nach {path} geschrieben werden, aber den Ordner {folder} gibt es nicht. Ihn anlegen oder einen anderen wählen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/destinations.py" />
-            <source>{label} was to be written to {path}, which is a folder. Name a file in it.</source>
-            <translation>{label} sollte nach {path} geschrieben werden, das ist ein Ordner. Eine Datei darin benennen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/destinations.py" />
-            <source>{label} cannot be written to {path}: {reason}. Choose another place, or close the program that holds it.</source>
-            <translation>{label} kann nicht nach {path} geschrieben werden: {reason}. Einen anderen Ort wählen oder das Programm schließen, das die Datei hält.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/destinations.py" />
-            <source> or </source>
-            <translation> oder </translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>Driving lines</source>
-            <translation>Fahrlinien</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>Draws the line to drive in every lane, in the direction of travel, and tabulates the elements of its curves.</source>
-            <translation>Zeichnet in jedem Fahrstreifen die Linie, auf der man fährt, in Fahrtrichtung, und stellt die Elemente ihrer Bögen zusammen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>lane</source>
-            <translation>Fahrstreifen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>centre line</source>
-            <translation>Mittellinie</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>hd map</source>
-            <translation>HD-Karte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>curve elements</source>
-            <translation>Bogenelemente</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>radius</source>
-            <translation>Radius</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>Lane width, 0 = as seen on the road (m)</source>
-            <translation>Breite der Fahrstreifen, 0 = wie auf der Straße gesehen (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>Where only the outer lines are painted, the number of lanes follows from their distance and this width. Wider makes fewer lanes.</source>
-            <translation>Wo nur die äußeren Linien aufgemalt sind, folgt die Zahl der Fahrstreifen aus deren Abstand und dieser Breite. Breiter ergibt weniger Fahrstreifen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>Distance from a line without partner, 0 = half a lane (m)</source>
-            <translation>Abstand von einer Linie ohne Gegenstück, 0 = halber Fahrstreifen (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>How far beside a painted line the driving line runs where the lane has no second line.</source>
-            <translation>Wie weit neben einer aufgemalten Linie die Fahrlinie verläuft, wo der Fahrstreifen keine zweite Linie hat.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>Side of traffic</source>
-            <translation>Verkehrsseite</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>The side one drives on; it gives the driving lines their direction. Automatic goes by the lane the vehicle itself used.</source>
-            <translation>Die Seite, auf der man fährt; sie gibt den Fahrlinien ihre Richtung. Automatisch richtet sich nach dem Fahrstreifen, den das Fahrzeug selbst benutzte.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>Longest gap of all lines bridged (m)</source>
-            <translation>Längste überbrückte Lücke aller Linien (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>Longer leads lanes through wider crossings; shorter leaves them open.</source>
-            <translation>Länger führt Fahrstreifen über breitere Kreuzungen; kürzer lässt sie offen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>Longest gap beside other lines closed (m)</source>
-            <translation>Längste neben anderen Linien geschlossene Lücke (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>Where another line of the road goes on, a lane is led along it through a gap up to this length.</source>
-            <translation>Wo eine andere Linie der Straße weitergeht, wird ein Fahrstreifen an ihr entlang durch eine Lücke bis zu dieser Länge geführt.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>Shortest driving line (m)</source>
-            <translation>Kürzeste Fahrlinie (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>Shorter keeps stubs at the ends of the survey.</source>
-            <translation>Kürzer behält Stummel an den Enden der Vermessung.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>Marking lines</source>
-            <translation>Markierungslinien</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>The layer written by Fit marking lines.</source>
-            <translation>Der von „Markierungslinien einpassen“ geschriebene Layer.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>With it a lane is led through zebra crossings and past stop lines, and gaps are told apart.</source>
-            <translation>Damit wird ein Fahrstreifen über Zebrastreifen und Haltlinien geführt, und Lücken werden unterschieden.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>Road edges</source>
-            <translation>Straßenränder</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>With it lanes without an outer line end at the edge.</source>
-            <translation>Damit enden Fahrstreifen ohne äußere Linie am Rand.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>Road points</source>
-            <translation>Straßenpunkte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>With it heights are the road's own.</source>
-            <translation>Damit sind die Höhen die der Straße selbst.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/driving_lines.py" />
-            <source>Curve elements</source>
-            <translation>Bogenelemente</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/road_map.py" />
-            <source>From a survey to driving lines in one call: edges, surface, intensity image, markings, lines and curve elements.</source>
-            <translation>Von einer Vermessung zu Fahrlinien in einem Aufruf: Ränder, Oberfläche, Intensitätsbild, Markierungen, Linien und Bogenelemente.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/road_map.py" />
-            <source>The same stages as the single algorithms, handed on in memory. Every output is optional.</source>
-            <translation>Dieselben Stufen wie die einzelnen Algorithmen, im Speicher weitergereicht. Jede Ausgabe ist wahlfrei.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/road_map.py" />
-            <source>driving line</source>
-            <translation>Fahrlinie</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/road_map.py" />
-            <source>kerb</source>
-            <translation>Bordkante</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/road_map.py" />
-            <source>Road surface</source>
-            <translation>Straßenoberfläche</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/road_map.py" />
-            <source>Evens out range, incidence and the difference between scanners. Switch it off for clouds whose intensity was corrected already.</source>
-            <translation>Gleicht Entfernung, Einfallswinkel und den Unterschied der Scanner aus. Ausschalten bei Wolken, deren Intensität schon korrigiert wurde.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/road_map.py" />
-            <source>Curb points</source>
-            <translation>Bordsteinpunkte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/road_map.py" />
-            <source>Class 11, with the fields the single stages need.</source>
-            <translation>Klasse 11, mit den Feldern, die die einzelnen Stufen brauchen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/road_map.py" />
-            <source>Intensity image</source>
-            <translation>Intensitätsbild</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/road_map.py" />
-            <source>Correct intensity first</source>
-            <translation>Zuerst Intensität korrigieren</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/driving/road_map.py" />
-            <source>No result was asked for, and all of the work would be lost. Name at least one output, such as DRIVING_LINES, MARKINGS or REPORT.</source>
-            <translation>Es wurde kein Ergebnis verlangt, und die ganze Arbeit wäre verloren. Nennen Sie mindestens eine Ausgabe, etwa DRIVING_LINES, MARKINGS oder REPORT.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/layers.py" />
-            <source>{label} lacks the field(s) {fields}. Use the layer that Lanewright wrote.</source>
-            <translation>{label} fehlen die Felder {fields}. Den Layer verwenden, den Lanewright geschrieben hat.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/layers.py" />
-            <source>{label} holds geometries of the kind {found}; {needed} is needed. Use the layer that Lanewright wrote.</source>
-            <translation>{label} enthält Geometrien der Art {found}; gebraucht wird {needed}. Den Layer verwenden, den Lanewright geschrieben hat.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/layers.py" />
-            <source>{label} has geometries without heights (Z) or measures (M). Use the layer that Lanewright wrote.</source>
-            <translation>{label} hat Geometrien ohne Höhen (Z) oder Messwerte (M). Den Layer verwenden, den Lanewright geschrieben hat.</translation>
-        </message>
-        <message>
             <location filename="../../processing_provider/layers.py" />
             <source>The result could not be written: {reason}. Is the disk full or the file open elsewhere?</source>
             <translation>Das Ergebnis konnte nicht geschrieben werden: {reason}. Ist der Datenträger voll oder die Datei anderswo geöffnet?</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/layers.py" />
-            <source>{label} has geometries without heights (Z). Use the layer that Lanewright wrote.</source>
-            <translation>{label} hat Geometrien ohne Höhen (Z). Den Layer verwenden, den Lanewright geschrieben hat.</translation>
         </message>
         <message>
             <location filename="../../processing_provider/layers.py" />
@@ -1074,2197 +2824,447 @@
             <translation>das Ziel nahm die Objekte nicht an</translation>
         </message>
         <message>
-            <location filename="../../processing_provider/markings/cluster_markings.py" />
-            <source>Cluster markings</source>
-            <translation>Markierungen zusammenfassen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/cluster_markings.py" />
-            <source>Gathers paint into markings, measures them and tells lines from crossings, arrows and the rest.</source>
-            <translation>Fasst Farbe zu Markierungen zusammen, misst sie und unterscheidet Linien von Zebrastreifen, Pfeilen und dem Rest.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/cluster_markings.py" />
-            <source>lane marking</source>
-            <translation>Fahrbahnmarkierung</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/cluster_markings.py" />
-            <source>cluster</source>
-            <translation>Gruppe</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/cluster_markings.py" />
-            <source>zebra crossing</source>
-            <translation>Zebrastreifen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/cluster_markings.py" />
-            <source>stop line</source>
-            <translation>Haltlinie</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/cluster_markings.py" />
-            <source>arrow</source>
-            <translation>Pfeil</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/cluster_markings.py" />
-            <source>Distance that joins points (m)</source>
-            <translation>Abstand, der Punkte verbindet (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/cluster_markings.py" />
-            <source>Larger joins worn paint into one marking, but also neighbouring markings; smaller keeps them apart.</source>
-            <translation>Größer verbindet abgefahrene Farbe zu einer Markierung, aber auch benachbarte Markierungen; kleiner hält sie getrennt.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/cluster_markings.py" />
-            <source>Fewest points of a marking (points)</source>
-            <translation>Wenigste Punkte einer Markierung (Punkte)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/cluster_markings.py" />
-            <source>Fewer keeps tiny remains of paint, and specks that are none.</source>
-            <translation>Weniger behält kleine Farbreste und Flecken, die keine sind.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/cluster_markings.py" />
-            <source>Marking points</source>
-            <translation>Markierungspunkte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/cluster_markings.py" />
-            <source>The file written by Remove outliers or Extract markings.</source>
-            <translation>Die von „Ausreißer entfernen“ oder „Markierungen extrahieren“ geschriebene Datei.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/cluster_markings.py" />
-            <source>Clustered points</source>
-            <translation>Zusammengefasste Punkte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/cluster_markings.py" />
-            <source>The points with the extra field cluster.</source>
-            <translation>Die Punkte mit dem zusätzlichen Feld cluster.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/correct_intensity.py" />
-            <source>Correct intensity</source>
-            <translation>Intensität korrigieren</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/correct_intensity.py" />
-            <source>Evens out the fall of intensity with range and incidence, scanner by scanner, from the road's own asphalt.</source>
-            <translation>Gleicht den Abfall der Intensität mit Entfernung und Einfallswinkel aus, Scanner für Scanner, am Asphalt der Straße selbst.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/correct_intensity.py" />
-            <source>The raw intensity stays as it was; the corrected one is the extra field intensity_corrected, which later stages prefer.</source>
-            <translation>Die rohe Intensität bleibt, wie sie war; die korrigierte steht im zusätzlichen Feld intensity_corrected, das spätere Stufen vorziehen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/correct_intensity.py" />
-            <source>intensity</source>
-            <translation>Intensität</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/correct_intensity.py" />
-            <source>range correction</source>
-            <translation>Entfernungskorrektur</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/correct_intensity.py" />
-            <source>calibration</source>
-            <translation>Kalibrierung</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/correct_intensity.py" />
-            <source>Scale of the intensities</source>
-            <translation>Skala der Intensitäten</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/correct_intensity.py" />
-            <source>Linear ones are multiplied, logarithmic ones added to. Automatic goes by the spread of asphalt; choose one when the report names the wrong one.</source>
-            <translation>Lineare werden multipliziert, zu logarithmischen wird addiert. Automatisch richtet sich nach der Streuung des Asphalts; eine wählen, wenn der Bericht die falsche nennt.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/correct_intensity.py" />
-            <source>The file written by Extract road surface.</source>
-            <translation>Die von „Straßenoberfläche extrahieren“ geschriebene Datei.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/correct_intensity.py" />
-            <source>Corrected road points</source>
-            <translation>Korrigierte Straßenpunkte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Extract markings</source>
-            <translation>Markierungen extrahieren</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Tells paint from asphalt by its intensity and takes the points of it.</source>
-            <translation>Unterscheidet Farbe an ihrer Intensität vom Asphalt und nimmt ihre Punkte.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>paint</source>
-            <translation>Farbe</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>threshold</source>
-            <translation>Schwellwert</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>otsu</source>
-            <translation>otsu</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>intensity peak</source>
-            <translation>Intensitätsspitze</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>density</source>
-            <translation>Dichte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Method</source>
-            <translation>Verfahren</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>multi-threshold sets a threshold for every strip along the road on the intensity image: the one to map with. The other two are published methods to compare with. intensity-peaks looks for narrow peaks in profiles across the road and finds lines only; point-segments sets thresholds on the points and keeps the dense ones. Neither tells concrete gutters from paint.</source>
-            <translation>multi-threshold setzt auf dem Intensitätsbild für jeden Streifen längs der Straße einen Schwellwert: das Verfahren zum Kartieren. Die anderen beiden sind veröffentlichte Verfahren zum Vergleich. intensity-peaks sucht schmale Spitzen in Profilen quer zur Straße und findet nur Linien; point-segments setzt Schwellwerte auf den Punkten und behält die dichten. Keines der beiden unterscheidet Betonrinnen von Farbe.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Multi-threshold: least distance of paint from asphalt (σ)</source>
-            <translation>Multi-threshold: geringster Abstand der Farbe vom Asphalt (σ)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>How many spreads of asphalt the paint of a strip must lie above it before the strip counts as painted. Lower finds fainter paint, but also gutters, patches and noise.</source>
-            <translation>Um wie viele Streuungen des Asphalts die Farbe eines Streifens darüber liegen muss, damit er als bemalt gilt. Niedriger findet blassere Farbe, aber auch Rinnen, Flicken und Rauschen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Multi-threshold: shortest run of paint along the road (m)</source>
-            <translation>Multi-threshold: kürzestes Stück Farbe längs der Straße (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Longer removes specks, but also worn remains of dashes.</source>
-            <translation>Länger entfernt Flecken, aber auch abgefahrene Reste von Strichen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Multi-threshold: gap in paint closed along the road (m)</source>
-            <translation>Multi-threshold: längs der Straße geschlossene Lücke in der Farbe (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Longer joins worn paint, but also neighbouring bars and letters.</source>
-            <translation>Länger verbindet abgefahrene Farbe, aber auch benachbarte Balken und Buchstaben.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Intensity peaks: length of a profile (m)</source>
-            <translation>Intensity peaks: Länge eines Profils (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Longer holds more points and less noise, but blurs lines that are not parallel to the road. It should hold a scan line or two.</source>
-            <translation>Länger enthält mehr Punkte und weniger Rauschen, verwischt aber Linien, die nicht parallel zur Straße sind. Es sollte eine oder zwei Scanlinien enthalten.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Intensity peaks: least prominence of a peak (MAD)</source>
-            <translation>Intensity peaks: geringste Höhe einer Spitze (MAD)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>How far a peak must rise above both its feet, in median absolute deviations of its profile. Lower finds fainter and worn lines, but also seams and noise.</source>
-            <translation>Wie weit eine Spitze über ihre beiden Füße ragen muss, in mittleren absoluten Abweichungen ihres Profils. Niedriger findet blassere und abgefahrene Linien, aber auch Nähte und Rauschen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Intensity peaks: narrowest line (m)</source>
-            <translation>Intensity peaks: schmalste Linie (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Narrower peaks are no lines. Lower finds worn lines, but also cracks filled with light sealant.</source>
-            <translation>Schmalere Spitzen sind keine Linien. Niedriger findet abgefahrene Linien, aber auch hell vergossene Risse.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Intensity peaks: widest line (m)</source>
-            <translation>Intensity peaks: breiteste Linie (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Broader peaks are no lines. Higher finds broad lines and zebra bars, but also pale repairs and gutters.</source>
-            <translation>Breitere Spitzen sind keine Linien. Höher findet breite Linien und Zebrabalken, aber auch helle Flicken und Rinnen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Intensity peaks: shift between profiles (m)</source>
-            <translation>Intensity peaks: Versatz zwischen Profilen (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>How far across a peak may lie from the last one of its line. Larger follows slanting lines, but also joins what only happens to lie near.</source>
-            <translation>Wie weit quer eine Spitze von der letzten ihrer Linie liegen darf. Größer folgt schrägen Linien, verbindet aber auch, was nur zufällig nahe liegt.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Intensity peaks: gap along a line (m)</source>
-            <translation>Intensity peaks: Lücke in einer Linie (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Longer follows worn lines, but also joins specks. At least the length of a profile.</source>
-            <translation>Länger folgt abgefahrenen Linien, verbindet aber auch Flecken. Mindestens die Länge eines Profils.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Intensity peaks: shortest line (m)</source>
-            <translation>Intensity peaks: kürzeste Linie (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Longer removes specks, but also short and worn dashes.</source>
-            <translation>Länger entfernt Flecken, aber auch kurze und abgefahrene Striche.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Point segments: length of a segment (m)</source>
-            <translation>Point segments: Länge eines Segments (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Longer holds more asphalt and steadies the threshold, but averages over patches and worn stretches.</source>
-            <translation>Länger enthält mehr Asphalt und beruhigt den Schwellwert, mittelt aber über Flicken und abgefahrene Strecken.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Point segments: width of a segment (m)</source>
-            <translation>Point segments: Breite eines Segments (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Narrower is scanned more alike, but may hold little asphalt beside the paint.</source>
-            <translation>Schmaler ist gleichmäßiger gescannt, kann aber neben der Farbe wenig Asphalt enthalten.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Point segments: least distance of paint from asphalt (σ)</source>
-            <translation>Point segments: geringster Abstand der Farbe vom Asphalt (σ)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>How many spreads of asphalt the bright points of a segment must lie above the rest before it counts as painted. Lower finds fainter paint, but takes patches and noise for it.</source>
-            <translation>Um wie viele Streuungen des Asphalts die hellen Punkte eines Segments über den übrigen liegen müssen, damit es als bemalt gilt. Niedriger findet blassere Farbe, hält aber auch Flicken und Rauschen dafür.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Point segments: radius in which bright points are counted (m)</source>
-            <translation>Point segments: Umkreis, in dem helle Punkte gezählt werden (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Larger suits sparse surveys; smaller keeps narrow paint beside asphalt.</source>
-            <translation>Größer passt zu dünnen Wolken; kleiner behält schmale Farbe neben Asphalt.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>The file that the intensity image was made from.</source>
-            <translation>Die Datei, aus der das Intensitätsbild entstand.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>The GeoTIFF written by Intensity image.</source>
-            <translation>Das von „Intensitätsbild“ geschriebene GeoTIFF.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>Marking mask</source>
-            <translation>Markierungsmaske</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/extract_markings.py" />
-            <source>1 where a pixel is paint, 0 where it is not.</source>
-            <translation>1, wo ein Pixel Farbe ist, 0, wo nicht.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
-            <source>Fit marking lines</source>
-            <translation>Markierungslinien einpassen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
-            <source>Links dashes along the road and fits a curve to every painted line.</source>
-            <translation>Verbindet Striche längs der Straße und passt jeder aufgemalten Linie eine Kurve ein.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
-            <source>lane line</source>
-            <translation>Fahrstreifenlinie</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
-            <source>curve fitting</source>
-            <translation>Kurvenanpassung</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
-            <source>circle</source>
-            <translation>Kreis</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
-            <source>clothoid</source>
-            <translation>Klothoide</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
-            <source>spline</source>
-            <translation>Spline</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
-            <source>Curve fitted to marking lines</source>
-            <translation>An Markierungslinien angepasste Kurve</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
-            <source>Automatic takes the simplest curve that fits (Bayesian information criterion). Choose one to force it on every line.</source>
-            <translation>Automatisch nimmt die einfachste Kurve, die passt (Bayessches Informationskriterium). Eine wählen, um sie jeder Linie aufzuzwingen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
-            <source>Degree of the polynomial (0-9)</source>
-            <translation>Grad des Polynoms (0-9)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
-            <source>Used with polynomial only. Higher follows more bends, but swings between its points.</source>
-            <translation>Nur bei polynomial verwendet. Höher folgt mehr Bögen, schwingt aber zwischen seinen Punkten.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
-            <source>Longest gap between dashes linked (m)</source>
-            <translation>Längste Lücke zwischen verbundenen Strichen (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
-            <source>Longer links dashes that stand far apart, but also lines that end and begin anew.</source>
-            <translation>Länger verbindet weit auseinander liegende Striche, aber auch Linien, die enden und neu beginnen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
-            <source>Longest gap linked by rhythm (m)</source>
-            <translation>Längste im Rhythmus verbundene Lücke (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
-            <source>Up to here a line goes on where its own rhythm of dashes or a line beside it carries over; flagged as bridged.</source>
-            <translation>Bis hierher geht eine Linie weiter, wo ihr eigener Strichrhythmus oder eine Linie daneben hinüberträgt; als überbrückt gekennzeichnet.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
-            <source>Least paint of a line (m)</source>
-            <translation>Wenigste Farbe einer Linie (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
-            <source>Less makes lines of short remains, and of marks that are none.</source>
-            <translation>Weniger macht Linien aus kurzen Resten und aus Zeichen, die keine sind.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
-            <source>The file written by Cluster markings.</source>
-            <translation>Die von „Markierungen zusammenfassen“ geschriebene Datei.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
-            <source>The layer written by Cluster markings together with the points.</source>
-            <translation>Der von „Markierungen zusammenfassen“ zusammen mit den Punkten geschriebene Layer.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
-            <source>Markings named by their lines</source>
-            <translation>Markierungen, nach ihren Linien benannt</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/fit_marking_lines.py" />
-            <source>The markings again, each dash and piece of a line with the class of the line that runs along it: alone, a dash of a centre line looks like any other.</source>
-            <translation>Die Markierungen noch einmal, jeder Strich und jedes Stück einer Linie mit der Klasse der Linie, die an ihm entlangläuft: für sich sieht ein Strich einer Mittellinie aus wie jeder andere.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/intensity_image.py" />
-            <source>Interpolates the intensity of road points into a GeoTIFF: near and bright points count more.</source>
-            <translation>Interpoliert die Intensität der Straßenpunkte zu einem GeoTIFF: nahe und helle Punkte zählen mehr.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/intensity_image.py" />
-            <source>image</source>
-            <translation>Bild</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/intensity_image.py" />
-            <source>raster</source>
-            <translation>Raster</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/intensity_image.py" />
-            <source>orthophoto</source>
-            <translation>Orthofoto</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/intensity_image.py" />
-            <source>Smaller shows narrow lines more sharply while the cloud is dense enough; larger fills gaps and makes smaller files.</source>
-            <translation>Kleiner zeigt schmale Linien schärfer, solange die Wolke dicht genug ist; größer füllt Lücken und macht kleinere Dateien.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/intensity_image.py" />
-            <source>Power of the distance (0-9)</source>
-            <translation>Potenz der Entfernung (0-9)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/intensity_image.py" />
-            <source>Higher lets the nearest point decide, lower averages more.</source>
-            <translation>Höher lässt den nächsten Punkt entscheiden, niedriger mittelt mehr.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/intensity_image.py" />
-            <source>Share of the weight that follows brightness (0-1)</source>
-            <translation>Anteil des Gewichts, der der Helligkeit folgt (0-1)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/intensity_image.py" />
-            <source>0 is plain inverse distance; higher lets bright points count more and fattens paint by up to half a cell.</source>
-            <translation>0 ist reine inverse Distanz; höher lässt helle Punkte mehr zählen und macht Farbe um bis zu eine halbe Zelle fetter.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/intensity_image.py" />
-            <source>Reach of a point (cells)</source>
-            <translation>Reichweite eines Punktes (Zellen)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/intensity_image.py" />
-            <source>Larger fills sparse far pixels, but blurs.</source>
-            <translation>Größer füllt dünn besetzte ferne Pixel, verwischt aber.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/intensity_image.py" />
-            <source>The file written by Correct intensity, or by Extract road surface for the raw intensity.</source>
-            <translation>Die von „Intensität korrigieren“ geschriebene Datei, oder die von „Straßenoberfläche extrahieren“ für die rohe Intensität.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/intensity_image.py" />
-            <source>Intensity image, 8 bit</source>
-            <translation>Intensitätsbild, 8 Bit</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/intensity_image.py" />
-            <source>The same for viewing: stretched to 256 grey values, for programs that show no floating-point images.</source>
-            <translation>Dasselbe zum Ansehen: auf 256 Graustufen gestreckt, für Programme, die keine Gleitkommabilder zeigen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/remove_outliers.py" />
-            <source>Remove outliers</source>
-            <translation>Ausreißer entfernen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/remove_outliers.py" />
-            <source>Statistical outlier removal: points that lie farther from their neighbours than is usual go.</source>
-            <translation>Statistische Ausreißerentfernung: Punkte, die weiter von ihren Nachbarn liegen als üblich, gehen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/remove_outliers.py" />
-            <source>outlier</source>
-            <translation>Ausreißer</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/remove_outliers.py" />
-            <source>noise</source>
-            <translation>Rauschen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/remove_outliers.py" />
-            <source>sor</source>
-            <translation>sor</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/remove_outliers.py" />
-            <source>Nearest points looked at (points)</source>
-            <translation>Betrachtete nächste Punkte (Punkte)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/remove_outliers.py" />
-            <source>More judges by a wider neighbourhood and removes small clumps too; fewer removes single points only.</source>
-            <translation>Mehr urteilt nach einer weiteren Nachbarschaft und entfernt auch kleine Klumpen; weniger entfernt nur einzelne Punkte.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/remove_outliers.py" />
-            <source>Allowed distance above the mean (σ)</source>
-            <translation>Erlaubter Abstand über dem Mittel (σ)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/remove_outliers.py" />
-            <source>Smaller removes more, first where points are sparse; larger keeps far paint, and some noise with it.</source>
-            <translation>Kleiner entfernt mehr, zuerst wo Punkte dünn liegen; größer behält ferne Farbe, und etwas Rauschen mit ihr.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/remove_outliers.py" />
-            <source>Statistics over</source>
-            <translation>Statistik über</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/remove_outliers.py" />
-            <source>All compares every point with the whole file, as PCL does, and eats sparse paint far from the scanner; windows compares it with its own stretch of the road.</source>
-            <translation>All vergleicht jeden Punkt mit der ganzen Datei, wie PCL es tut, und frisst dünne Farbe fern vom Scanner; windows vergleicht ihn mit seinem eigenen Stück der Straße.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/remove_outliers.py" />
-            <source>The file written by Extract markings.</source>
-            <translation>Die von „Markierungen extrahieren“ geschriebene Datei.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/markings/remove_outliers.py" />
-            <source>Marking points without outliers</source>
-            <translation>Markierungspunkte ohne Ausreißer</translation>
-        </message>
-        <message>
             <location filename="../../processing_provider/models.py" />
             <source>Models</source>
             <translation>Modelle</translation>
         </message>
         <message>
-            <location filename="../../processing_provider/overlay/control_point_layer.py" />
-            <source>{label}: the layer holds {kind} geometries. Control points are points, or a table.</source>
-            <translation>{label}: der Layer enthält Geometrien der Art {kind}. Passpunkte sind Punkte oder eine Tabelle.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Georeference image</source>
-            <translation>Bild georeferenzieren</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Places a UAV image on the map by ground control points, and tells how well it lies there.</source>
-            <translation>Bringt ein UAV-Bild über Passpunkte auf die Karte und sagt, wie gut es dort liegt.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Control points come as a layer or as a file, each with pixel, line, easting and northing; pixel and line count from the outer corner of the first pixel. The result is a GeoTIFF in the CRS of the control points.</source>
-            <translation>Passpunkte kommen als Layer oder als Datei, jeder mit Spalte (pixel), Zeile (line), Rechts- und Hochwert (easting, northing); gezählt wird ab der äußeren Ecke des ersten Pixels. Das Ergebnis ist ein GeoTIFF im KBS der Passpunkte.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Spread the points over the whole image, its corners first: between them the polynomial is held, outside it runs away. Take twice as many as the order needs. Judge the result by check points, or by the error of each point without itself (leave-one-out), not by the residuals, which the polynomial was bent to make small. Control points taken from the point cloud tell how well the image fits the cloud, not how well either fits the ground.</source>
-            <translation>Die Punkte über das ganze Bild verteilen, zuerst in die Ecken: zwischen ihnen ist das Polynom gehalten, außerhalb läuft es davon. Doppelt so viele nehmen, wie die Ordnung braucht. Das Ergebnis nach Prüfpunkten beurteilen oder nach dem Fehler jedes Punktes ohne ihn selbst, nicht nach den Restklaffungen, die das Polynom klein gebogen hat. Aus der Punktwolke entnommene Passpunkte sagen, wie gut das Bild zur Wolke passt, nicht wie gut eines von beiden auf dem Boden liegt.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>UAV</source>
-            <translation>UAV</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>drone</source>
-            <translation>Drohne</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>orthoimage</source>
-            <translation>Orthobild</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>GCP</source>
-            <translation>Passpunkt</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>georeferencer</source>
-            <translation>Georeferenzierung</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>polynomial</source>
-            <translation>Polynom</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>warp</source>
-            <translation>Entzerrung</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Order of the polynomial (0-3)</source>
-            <translation>Ordnung des Polynoms (0-3)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>0 only shifts an image that already has a rough position; 1 also turns, scales and shears it (3 points or more), 2 also bends it (6), 3 bends it twice (10). Higher follows the points more closely and runs away faster outside them: watch the leave-one-out error, which falls only as long as the order is worth it.</source>
-            <translation>0 verschiebt nur ein Bild, das schon eine grobe Lage hat; 1 dreht, skaliert und schert es auch (3 Punkte oder mehr), 2 biegt es auch (6), 3 biegt es zweimal (10). Höher folgt den Punkten genauer und läuft außerhalb schneller davon: auf den Fehler mit je einem weggelassenen Punkt achten, er fällt nur, solange die Ordnung es wert ist.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Pixel size (m)</source>
-            <translation>Pixelgröße (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Of the result; 0 keeps that of the image. Smaller makes a larger file, not a sharper image. A shift (order 0) of an image without position takes this as the image's own pixel size, north up.</source>
-            <translation>Des Ergebnisses; 0 behält die des Bildes. Kleiner macht eine größere Datei, kein schärferes Bild. Eine Verschiebung (Ordnung 0) eines Bildes ohne Lage nimmt dies als Pixelgröße des Bildes selbst, Norden oben.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Outside the control points</source>
-            <translation>Außerhalb der Passpunkte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>What becomes of the image outside the hull of the control points, where the polynomial extrapolates: automatic draws it up to order 2 and leaves it out at order 3.</source>
-            <translation>Was aus dem Bild außerhalb der Hülle der Passpunkte wird, wo das Polynom extrapoliert: automatisch zeichnet es bis Ordnung 2 und lässt es bei Ordnung 3 weg.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Resampling</source>
-            <translation>Neuabtastung</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Bilinear is smooth and safe, cubic a little sharper, nearest keeps the values as they are (for classes and temperatures).</source>
-            <translation>Bilinear ist glatt und sicher, cubic etwas schärfer, nearest behält die Werte, wie sie sind (für Klassen und Temperaturen).</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Disabled points are check points</source>
-            <translation>Abgeschaltete Punkte sind Prüfpunkte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Points that are switched off in the georeferencer, or have 0 in a column enable, judge the result instead of being passed over. A layer or CSV may name check points in a column role.</source>
-            <translation>Punkte, die im Georeferenzierer abgeschaltet sind oder in einer Spalte enable 0 haben, beurteilen das Ergebnis, statt übergangen zu werden. Ein Layer oder eine CSV kann Prüfpunkte in einer Spalte role nennen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Control points</source>
-            <translation>Passpunkte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>RMSE of the control points (m)</source>
-            <translation>RMSE der Passpunkte (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>RMSE of the control points, each left out in turn (m)</source>
-            <translation>RMSE der Passpunkte, jeder der Reihe nach weggelassen (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Check points</source>
-            <translation>Prüfpunkte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>RMSE of the check points (m)</source>
-            <translation>RMSE der Prüfpunkte (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Largest residual of a control point (m)</source>
-            <translation>Größte Restklaffung eines Passpunktes (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Image outside the hull of the control points (%)</source>
-            <translation>Bild außerhalb der Hülle der Passpunkte (%)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Image</source>
-            <translation>Bild</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>TIFF, JPEG, PNG or any other raster, with a position on the map or without.</source>
-            <translation>TIFF, JPEG, PNG oder jedes andere Raster, mit Lage auf der Karte oder ohne.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Control points (layer)</source>
-            <translation>Passpunkte (Layer)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>A point layer with the fields pixel and line, or a table that also has easting and northing. A field role (control or check) sets points aside that only judge the result, a field enable switches points off.</source>
-            <translation>Ein Punktlayer mit den Feldern pixel und line, oder eine Tabelle, die auch easting und northing hat. Ein Feld role (control oder check) nimmt Punkte beiseite, die nur das Ergebnis beurteilen, ein Feld enable schaltet Punkte ab.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>In place of a layer: the .points file of QGIS's georeferencer, or a CSV with the columns pixel, line, easting, northing in any order.</source>
-            <translation>Statt eines Layers: die .points-Datei des Georeferenzierers von QGIS oder eine CSV mit den Spalten pixel, line, easting, northing in beliebiger Reihenfolge.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Only for control points that name none of their own. It must be projected, in metres.</source>
-            <translation>Nur für Passpunkte, die selbst keines nennen. Es muss projiziert sein, in Metern.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Georeferenced image</source>
-            <translation>Georeferenziertes Bild</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>GeoTIFF with overviews; transparent or without data where the image ends.</source>
-            <translation>GeoTIFF mit Übersichten; durchsichtig oder ohne Daten, wo das Bild endet.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Residuals</source>
-            <translation>Restklaffungen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>From where the polynomial puts each point to where it was measured.</source>
-            <translation>Von dort, wohin das Polynom jeden Punkt setzt, dorthin, wo er gemessen wurde.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Control points (file)</source>
-            <translation>Passpunkte (Datei)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>CRS of the control points</source>
-            <translation>KBS der Passpunkte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>The image has no position yet; the control points give it one. A line above, GDAL ERROR 1: Unable to compute a transformation, is QGIS saying the same and harmless.</source>
-            <translation>Das Bild hat noch keine Lage; die Passpunkte geben ihm eine. Eine Zeile darüber, GDAL ERROR 1: Unable to compute a transformation, sagt dasselbe und ist harmlos.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Control points were given twice, as a layer and as a file. Leave one of them empty.</source>
-            <translation>Passpunkte wurden zweimal angegeben, als Layer und als Datei. Eines davon leer lassen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>There are no control points. Choose a layer, or a .points or CSV file.</source>
-            <translation>Es gibt keine Passpunkte. Einen Layer oder eine .points- oder CSV-Datei wählen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Control points: {count}, order {order}, RMSE {rmse:.3f} m, each left out in turn {left:.3f} m.</source>
-            <translation>Passpunkte: {count}, Ordnung {order}, RMSE {rmse:.3f} m, jeder für sich weggelassen {left:.3f} m.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>The control points say that they are in {own}; the CRS given is for points that name none and was not used.</source>
-            <translation>Die Passpunkte nennen {own} als ihr KBS; das angegebene ist für Punkte, die keines nennen, und wurde nicht verwendet.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/overlay/georeference_image.py" />
-            <source>Check points: {count}, RMSE {rmse:.3f} m.</source>
-            <translation>Prüfpunkte: {count}, RMSE {rmse:.3f} m.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/progress.py" />
-            <source>About {number} h left</source>
-            <translation>Noch etwa {number} h</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/progress.py" />
-            <source>About {number} s left</source>
-            <translation>Noch etwa {number} s</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/progress.py" />
-            <source>About {number} min left</source>
-            <translation>Noch etwa {number} min</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Boundaries from scanlines</source>
-            <translation>Ränder aus Scanlinien</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Bottom and top corners of curbs on normalized scanlines, and the boundary lines through them.</source>
-            <translation>Unter- und Oberkanten von Bordsteinen auf normalisierten Scanlinien, und die Randlinien durch sie.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>From the vehicle outward every scanline is searched for a step. About each step the points of the neighbouring scanlines give three planes: road, curb face and sidewalk. Where they meet the scanline's own plane lie the corners. Lines are cut by status: measured; bridged, a gap between corners; occluded, a gap that something hides.</source>
-            <translation>Vom Fahrzeug nach außen wird jede Scanlinie nach einer Stufe abgesucht. Um jede Stufe geben die Punkte der benachbarten Scanlinien drei Ebenen: Straße, Bordsteinfläche und Gehweg. Wo sie die Ebene der Scanlinie treffen, liegen die Kanten. Linien sind nach status geschnitten: measured (gemessen); bridged, eine Lücke zwischen Kanten; occluded, eine Lücke, die etwas verdeckt.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>boundary</source>
-            <translation>Rand</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>scanline</source>
-            <translation>Scanlinie</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>ransac</source>
-            <translation>ransac</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>corner</source>
-            <translation>Kante</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Search width across a step (m)</source>
-            <translation>Suchbreite quer über eine Stufe (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>The height must change within this width. Wider finds rounded and bevelled curbs, but also ramps.</source>
-            <translation>Die Höhe muss sich innerhalb dieser Breite ändern. Breiter findet gerundete und abgeschrägte Bordsteine, aber auch Rampen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Trajectory above the road, 0 = from the data (m)</source>
-            <translation>Trajektorie über der Straße, 0 = aus den Daten (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Give it where little road was scanned under the vehicle; otherwise the data know better.</source>
-            <translation>Angeben, wo unter dem Fahrzeug wenig Straße gescannt wurde; sonst wissen es die Daten besser.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Height above the road that is looked at (m)</source>
-            <translation>Betrachtete Höhe über der Straße (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Higher keeps curbs on steeply banked roads, but also low walls and the sills of cars.</source>
-            <translation>Höher behält Bordsteine an stark geneigten Straßen, aber auch niedrige Mauern und die Schweller von Autos.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Reach of a plane across the road (m)</source>
-            <translation>Reichweite einer Ebene quer zur Straße (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Points this far to either side of a step give its planes. Longer is steadier, shorter keeps to narrow gutters and curb stones.</source>
-            <translation>Punkte so weit zu beiden Seiten einer Stufe geben ihre Ebenen. Länger ist ruhiger, kürzer hält sich an schmale Rinnen und Bordsteine.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Reach of a plane along the road (m)</source>
-            <translation>Reichweite einer Ebene längs der Straße (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Longer is steadier where points are sparse, shorter follows sharp corners.</source>
-            <translation>Länger ist ruhiger, wo Punkte dünn liegen, kürzer folgt scharfen Ecken.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Points of a plane lie within (m)</source>
-            <translation>Punkte einer Ebene liegen innerhalb von (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Larger for noisy scanners; where points scatter more, 1.5 sigma of the plane is taken anyway.</source>
-            <translation>Größer für rauschende Scanner; wo Punkte stärker streuen, werden ohnehin 1,5 Sigma der Ebene genommen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Least angle of a curb face's normal from the vertical (°)</source>
-            <translation>Kleinster Winkel der Normalen einer Bordsteinfläche zur Senkrechten (°)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>90 is upright. Lower accepts bevelled and mountable curbs (40 for a slope of 45°), but also banks.</source>
-            <translation>90 ist aufrecht. Niedriger nimmt abgeschrägte und überfahrbare Bordsteine an (40 für eine Neigung von 45°), aber auch Böschungen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Largest angle of road's and sidewalk's normal from the vertical (°)</source>
-            <translation>Größter Winkel der Normalen von Straße und Gehweg zur Senkrechten (°)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Larger accepts sloping ground behind the curb.</source>
-            <translation>Größer nimmt geneigten Boden hinter dem Bordstein an.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Least height of a step (m)</source>
-            <translation>Geringste Höhe einer Stufe (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Lower finds dropped curbs, but also tar seams and the edges of manholes.</source>
-            <translation>Niedriger findet abgesenkte Bordsteine, aber auch Teernähte und Schachtränder.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Longest gap connected (m)</source>
-            <translation>Längste verbundene Lücke (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Corners farther apart along the road are not joined. Longer passes driveways and parked cars, and says so.</source>
-            <translation>Kanten, die längs der Straße weiter auseinander liegen, werden nicht verbunden. Länger geht über Einfahrten und parkende Autos hinweg und sagt es.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Least height of a step on scanlines (m)</source>
-            <translation>Geringste Höhe einer Stufe auf Scanlinien (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Lower finds dropped curbs, but also tar seams. Profiles have a minimum curb height of their own.</source>
-            <translation>Niedriger findet abgesenkte Bordsteine, aber auch Teernähte. Profile haben eine eigene kleinste Bordsteinhöhe.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Normalized scanlines</source>
-            <translation>Normalisierte Scanlinien</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>The layer written by Normalized scanlines.</source>
-            <translation>Der von „Normalisierte Scanlinien“ geschriebene Layer.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Curb corners</source>
-            <translation>Bordsteinkanten</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Bottoms and tops, one of each per half metre and side.</source>
-            <translation>Unter- und Oberkanten, je eine je halbem Meter und Seite.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Road boundaries</source>
-            <translation>Straßenränder</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/boundaries_from_scanlines.py" />
-            <source>Bottom and top lines of either side.</source>
-            <translation>Unter- und Oberkantenlinien jeder Seite.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_boundaries.py" />
-            <source>Detect road boundaries</source>
-            <translation>Straßenränder erkennen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_boundaries.py" />
-            <source>Road edges straight from the point clouds: one door to every way of finding them.</source>
-            <translation>Straßenränder direkt aus den Punktwolken: eine Tür zu allen Wegen, sie zu finden.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_boundaries.py" />
-            <source>road edge</source>
-            <translation>Fahrbahnrand</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_boundaries.py" />
-            <source>Boundary method</source>
-            <translation>Randverfahren</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_boundaries.py" />
-            <source>Profiles looks for the curb in slices across the road; scanlines meets the planes of road, curb face and sidewalk; both lets the two check each other: at every place the one that measures better is drawn, agree_cm says how far apart they are, and it takes as long as the two together.</source>
-            <translation>Profiles sucht den Bordstein in Scheiben quer zur Straße; scanlines schneidet die Ebenen von Straße, Bordsteinfläche und Gehweg; both lässt beide einander prüfen: an jeder Stelle wird gezeichnet, was besser misst, agree_cm sagt, wie weit sie auseinander liegen, und es dauert so lange wie beide zusammen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_curbs.py" />
-            <source>Detect curbs</source>
-            <translation>Bordsteine erkennen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_curbs.py" />
-            <source>Finds the curb nearest to the driven track on each side, on profiles across the road.</source>
-            <translation>Findet auf Profilen quer zur Straße den Bordstein, der auf jeder Seite der gefahrenen Spur am nächsten liegt.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_curbs.py" />
-            <source>Where there is no curb none is made up; a curb hidden behind parked cars becomes a point of status occluded. The field kind tells the road's own curbs (main) from those of corners, side streets and islands, which are found in plan.</source>
-            <translation>Wo kein Bordstein ist, wird keiner erfunden; ein hinter parkenden Autos verborgener wird ein Punkt mit status occluded. Das Feld kind unterscheidet die Bordsteine der Straße selbst (main) von denen der Ecken, Seitenstraßen und Inseln, die im Grundriss gefunden werden.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_curbs.py" />
-            <source>Block length along the road, 0 = automatic (m)</source>
-            <translation>Blocklänge längs der Straße, 0 = automatisch (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_curbs.py" />
-            <source>Automatic takes 0.5 m in sharp curves and up to 2 m on straights. Shorter follows a bend more closely but has fewer points to go by.</source>
-            <translation>Automatisch nimmt 0,5 m in scharfen Bögen und bis 2 m auf Geraden. Kürzer folgt einem Bogen genauer, hat aber weniger Punkte, nach denen es gehen kann.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_curbs.py" />
-            <source>Profile width along the road (m)</source>
-            <translation>Profilbreite längs der Straße (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_curbs.py" />
-            <source>Wider finds curbs far from the scanner, where points are sparse, but blurs them in bends.</source>
-            <translation>Breiter findet Bordsteine fern vom Scanner, wo Punkte dünn liegen, verwischt sie aber in Bögen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_curbs.py" />
-            <source>Cell across the road (m)</source>
-            <translation>Zelle quer zur Straße (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_curbs.py" />
-            <source>Finer places the curb more exactly; coarser fills gaps in sparse clouds, but misses low curbs.</source>
-            <translation>Feiner setzt den Bordstein genauer; gröber füllt Lücken in dünnen Wolken, verpasst aber niedrige Bordsteine.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_curbs.py" />
-            <source>Height gap between layers (m)</source>
-            <translation>Höhensprung zwischen Schichten (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_curbs.py" />
-            <source>Points of a cell this far apart in height belong to different things: the road and a car above it. Smaller cuts the curb off grass and cars, but also splits noisy ground.</source>
-            <translation>Punkte einer Zelle, die in der Höhe so weit auseinander liegen, gehören zu verschiedenen Dingen: zur Straße und zu einem Auto darüber. Kleiner trennt den Bordstein von Gras und Autos, zerteilt aber auch rauschenden Boden.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_curbs.py" />
-            <source>Smallest slope of the curb face (°)</source>
-            <translation>Kleinste Neigung der Bordsteinfläche (°)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_curbs.py" />
-            <source>Lower accepts bevelled and worn curbs, but also verges and ramps.</source>
-            <translation>Niedriger nimmt abgeschrägte und abgenutzte Bordsteine an, aber auch Bankette und Rampen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_curbs.py" />
-            <source>Minimum curb height (m)</source>
-            <translation>Kleinste Bordsteinhöhe (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_curbs.py" />
-            <source>Lower finds dropped curbs at driveways, but also tar seams and gutters.</source>
-            <translation>Niedriger findet abgesenkte Bordsteine an Einfahrten, aber auch Teernähte und Rinnen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_curbs.py" />
-            <source>Maximum curb height (m)</source>
-            <translation>Größte Bordsteinhöhe (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_curbs.py" />
-            <source>Higher accepts platforms and low walls as the road's edge.</source>
-            <translation>Höher nimmt Bahnsteige und niedrige Mauern als Straßenrand an.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_curbs.py" />
-            <source>Principal points</source>
-            <translation>Hauptpunkte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/detect_curbs.py" />
-            <source>The highest point of the lowest layer of every cell: what the curbs were looked for on.</source>
-            <translation>Der höchste Punkt der untersten Schicht jeder Zelle: worauf die Bordsteine gesucht wurden.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/extract_road_surface.py" />
-            <source>Extract road surface</source>
-            <translation>Straßenoberfläche extrahieren</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/extract_road_surface.py" />
-            <source>Keeps the points of the road surface: between the road edges, or as far as the ground stays smooth.</source>
-            <translation>Behält die Punkte der Straßenoberfläche: zwischen den Straßenrändern, oder so weit der Boden glatt bleibt.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/extract_road_surface.py" />
-            <source>road surface</source>
-            <translation>Fahrbahn</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/extract_road_surface.py" />
-            <source>ground</source>
-            <translation>Boden</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/extract_road_surface.py" />
-            <source>Farthest surface from the trajectory (m)</source>
-            <translation>Fernste Oberfläche von der Trajektorie (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/extract_road_surface.py" />
-            <source>On a side without an edge the surface grows outward while it stays smooth, at most this far. Wider reaches the far lanes of a broad road, but also yards and forecourts.</source>
-            <translation>Auf einer Seite ohne Rand wächst die Oberfläche nach außen, solange sie glatt bleibt, höchstens so weit. Weiter erreicht die fernen Fahrstreifen einer breiten Straße, aber auch Höfe und Vorplätze.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/extract_road_surface.py" />
-            <source>Height about the road's own surface (m)</source>
-            <translation>Höhe um die Fläche der Straße (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/extract_road_surface.py" />
-            <source>Wider keeps noisy points and ruts, but also the feet of cars and curbs; where the scanner's noise allows, less is taken.</source>
-            <translation>Weiter behält rauschende Punkte und Spurrinnen, aber auch die Füße von Autos und Bordsteinen; wo das Rauschen des Scanners es erlaubt, wird weniger genommen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/extract_road_surface.py" />
-            <source>The layer written by Fit road edges. Without it the surface is grown on both sides.</source>
-            <translation>Der von „Straßenränder einpassen“ geschriebene Layer. Ohne ihn wächst die Oberfläche auf beiden Seiten.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/extract_road_surface.py" />
-            <source>Class 11, with the extra fields road, pass, station_m, offset_m, half_width and covered for the stages that follow.</source>
-            <translation>Klasse 11, mit den zusätzlichen Feldern road, pass, station_m, offset_m, half_width und covered für die folgenden Stufen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/fit_road_edges.py" />
-            <source>Fit road edges</source>
-            <translation>Straßenränder einpassen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/fit_road_edges.py" />
-            <source>Draws the road edges through curb points as smoothing splines, bridging short gaps and saying so.</source>
-            <translation>Zeichnet die Straßenränder als glättende Splines durch Bordsteinpunkte, überbrückt kurze Lücken und sagt es.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/fit_road_edges.py" />
-            <source>Longest gap bridged (m)</source>
-            <translation>Längste überbrückte Lücke (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/fit_road_edges.py" />
-            <source>Longer carries the edge past rows of parked cars, flagged as bridged; shorter breaks it there.</source>
-            <translation>Länger führt den Rand an Reihen parkender Autos vorbei, als überbrückt gekennzeichnet; kürzer unterbricht ihn dort.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/fit_road_edges.py" />
-            <source>Assumed road width where no curb is seen, 0 = none (m)</source>
-            <translation>Angenommene Straßenbreite, wo kein Bordstein zu sehen ist, 0 = keine (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/fit_road_edges.py" />
-            <source>0 draws no edge where none was found. A width draws one at half of it either side of the road's reference line, flagged as inferred.</source>
-            <translation>0 zeichnet keinen Rand, wo keiner gefunden wurde. Eine Breite zeichnet einen in halber Breite beiderseits der Bezugslinie der Straße, als gefolgert gekennzeichnet.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/fit_road_edges.py" />
-            <source>The layer written by Detect curbs.</source>
-            <translation>Der von „Bordsteine erkennen“ geschriebene Layer.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/normalized_scanlines.py" />
-            <source>Cuts the measured surface by planes across the road, one scanline for every plane, pass and scanner.</source>
-            <translation>Schneidet die gemessene Oberfläche mit Ebenen quer zur Straße, eine Scanlinie für jede Ebene, jede Befahrung und jeden Scanner.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/normalized_scanlines.py" />
-            <source>The lines of a rotating scanner are told apart by the times and places of the points alone; neighbouring lines make the surface that is cut. Where it is interrupted, behind a car say, a new scanline begins. Points without times, or of a head with many beams, have no such lines: there the points near each plane make the scanline, and the log says so.</source>
-            <translation>Die Linien eines rotierenden Scanners werden allein aus Zeiten und Orten der Punkte erkannt; benachbarte Linien ergeben die Oberfläche, die geschnitten wird. Wo sie unterbrochen ist, etwa hinter einem Auto, beginnt eine neue Scanlinie. Punkte ohne Zeiten oder von einem Kopf mit vielen Strahlen haben keine solchen Linien: dort bilden die Punkte nahe jeder Ebene die Scanlinie, und das Protokoll sagt es.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/normalized_scanlines.py" />
-            <source>profile</source>
-            <translation>Profil</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/normalized_scanlines.py" />
-            <source>cross section</source>
-            <translation>Querschnitt</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/normalized_scanlines.py" />
-            <source>resample</source>
-            <translation>Neuabtastung</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/normalized_scanlines.py" />
-            <source>Interval of section planes along the road (m)</source>
-            <translation>Abstand der Schnittebenen längs der Straße (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/normalized_scanlines.py" />
-            <source>Smaller gives more scanlines, and more of them than were measured where scan lines lie far apart; larger is quicker.</source>
-            <translation>Kleiner ergibt mehr Scanlinien, und mehr als gemessen wurden, wo Scanlinien weit auseinander liegen; größer ist schneller.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/normalized_scanlines.py" />
-            <source>Corridor either side of the road's reference line (m)</source>
-            <translation>Korridor beiderseits der Bezugslinie der Straße (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/normalized_scanlines.py" />
-            <source>Wider reaches the far side of a broad avenue, but takes longer.</source>
-            <translation>Weiter erreicht die ferne Seite einer breiten Allee, dauert aber länger.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/normalized_scanlines.py" />
-            <source>Scan lines of each scanner, 0 = from the data (per second)</source>
-            <translation>Scanlinien jedes Scanners, 0 = aus den Daten (je Sekunde)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/normalized_scanlines.py" />
-            <source>The data know it well. Give it where they are said to show no regular scan lines although the scanner has a rotating mirror; the direction of rotation is found anyway.</source>
-            <translation>Die Daten wissen es gut. Angeben, wo sie angeblich keine regelmäßigen Scanlinien zeigen, obwohl der Scanner einen rotierenden Spiegel hat; die Drehrichtung wird ohnehin gefunden.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/normalized_scanlines.py" />
-            <source>Deviation allowed in thinning the scanlines (m)</source>
-            <translation>Erlaubte Abweichung beim Ausdünnen der Scanlinien (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/normalized_scanlines.py" />
-            <source>Larger draws and writes faster and shows less of the surface; 0 keeps every vertex.</source>
-            <translation>Größer zeichnet und schreibt schneller und zeigt weniger von der Oberfläche; 0 behält jeden Stützpunkt.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/normalized_scanlines.py" />
-            <source>Spacing of resampled points along a scanline (m)</source>
-            <translation>Abstand der neu abgetasteten Punkte längs einer Scanlinie (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/normalized_scanlines.py" />
-            <source>Smaller gives more points, without more being known of the surface.</source>
-            <translation>Kleiner ergibt mehr Punkte, ohne dass mehr von der Oberfläche bekannt wäre.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/normalized_scanlines.py" />
-            <source>Lines with height (Z) and intensity (M).</source>
-            <translation>Linien mit Höhe (Z) und Intensität (M).</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/normalized_scanlines.py" />
-            <source>Resampled points</source>
-            <translation>Neu abgetastete Punkte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/road/normalized_scanlines.py" />
-            <source>Points at equal steps along the scanlines, with intensity, station and offset: a cloud of even density.</source>
-            <translation>Punkte in gleichen Schritten längs der Scanlinien, mit Intensität, Station und Abstand: eine Wolke gleichmäßiger Dichte.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/import_trajectory.py" />
-            <source>Import trajectory</source>
-            <translation>Trajektorie einlesen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/import_trajectory.py" />
-            <source>Reads the driven trajectory from a CSV or TXT file, an Applanix SBET, or a point or line layer.</source>
-            <translation>Liest die gefahrene Trajektorie aus einer CSV- oder TXT-Datei, einem Applanix-SBET oder einem Punkt- oder Linienlayer.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/import_trajectory.py" />
-            <source>Columns may come in any order, with or without a header, in degrees or radians. Rows are sorted by time; repeated and unusable rows are dropped and counted.</source>
-            <translation>Spalten dürfen in beliebiger Reihenfolge kommen, mit oder ohne Kopfzeile, in Grad oder Radiant. Zeilen werden nach der Zeit sortiert; wiederholte und unbrauchbare werden weggelassen und gezählt.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/import_trajectory.py" />
-            <source>trajectory</source>
-            <translation>Trajektorie</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/import_trajectory.py" />
-            <source>sbet</source>
-            <translation>sbet</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/import_trajectory.py" />
-            <source>applanix</source>
-            <translation>applanix</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/import_trajectory.py" />
-            <source>csv</source>
-            <translation>csv</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/import_trajectory.py" />
-            <source>gps time</source>
-            <translation>GPS-Zeit</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/import_trajectory.py" />
-            <source>A CSV or TXT file, an SBET (.out), or a layer of points or lines with heights.</source>
-            <translation>Eine CSV- oder TXT-Datei, ein SBET (.out) oder ein Layer aus Punkten oder Linien mit Höhen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/import_trajectory.py" />
-            <source>Where the file does not say it. An SBET is in WGS 84 unless another is chosen.</source>
-            <translation>Wo die Datei es nicht sagt. Ein SBET ist in WGS 84, wenn kein anderes gewählt wird.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/import_trajectory.py" />
-            <source>That of the point clouds. Empty takes it from the point clouds below, or leaves the trajectory as it is.</source>
-            <translation>Das der Punktwolken. Leer nimmt es aus den Punktwolken unten oder lässt die Trajektorie, wie sie ist.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/import_trajectory.py" />
-            <source>With them the time system is told apart, and the trajectory is written on the clouds' clock.</source>
-            <translation>Mit ihnen wird das Zeitsystem erkannt, und die Trajektorie wird in der Zeit der Wolken geschrieben.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/import_trajectory.py" />
-            <source>Imported trajectory</source>
-            <translation>Eingelesene Trajektorie</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/import_trajectory.py" />
-            <source>Positions</source>
-            <translation>Positionen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/import_trajectory.py" />
-            <source>Trajectory file or layer</source>
-            <translation>Datei oder Layer der Trajektorie</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/import_trajectory.py" />
-            <source>CRS of the trajectory</source>
-            <translation>KBS der Trajektorie</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/import_trajectory.py" />
-            <source>CRS to bring it to</source>
-            <translation>Ziel-KBS</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/import_trajectory.py" />
-            <source>The trajectory names no CRS and none was given, so its layer has none: set CRS of the trajectory, or CRS to bring it to where the coordinates are in that of the point clouds.</source>
-            <translation>Die Trajektorie nennt kein KBS und es wurde keines angegeben, also hat ihr Layer keines: „KBS der Trajektorie“ setzen, oder „Ziel-KBS“, wenn ihre Koordinaten schon in dem der Punktwolken stehen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/import_trajectory.py" />
-            <source>Trajectory: {count} positions.</source>
-            <translation>Trajektorie: {count} Positionen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>Inspect survey</source>
-            <translation>Vermessung prüfen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>Tells what point clouds and trajectory hold, and whether they fit together, before work is done on them.</source>
-            <translation>Sagt, was Punktwolken und Trajektorie enthalten und ob sie zueinander passen, bevor an ihnen gearbeitet wird.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>What the road map would stumble over, such as a geographic CRS or two clocks, is said with a way on.</source>
-            <translation>Worüber die Straßenkarte stolpern würde, etwa ein geographisches KBS oder zwei Uhren, wird gesagt, mit einem Ausweg.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>report</source>
-            <translation>Bericht</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>las</source>
-            <translation>las</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>header</source>
-            <translation>Kopfdaten</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>overlap</source>
-            <translation>Überlappung</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>Cell of the density raster (m)</source>
-            <translation>Zelle des Dichterasters (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>Smaller shows single scan lines, larger the broad picture.</source>
-            <translation>Kleiner zeigt einzelne Scanlinien, größer das große Bild.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>Cube that the density in space is counted in (m)</source>
-            <translation>Würfel, in dem die räumliche Dichte gezählt wird (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>1 gives points per cubic metre as they are published; smaller ones follow surfaces more closely.</source>
-            <translation>1 gibt Punkte je Kubikmeter, wie sie veröffentlicht werden; kleinere folgen Oberflächen genauer.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>Points</source>
-            <translation>Punkte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>Points per m², mean of occupied cells</source>
-            <translation>Punkte je m², Mittel der besetzten Zellen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>Points per m³, mean of occupied cubes</source>
-            <translation>Punkte je m³, Mittel der besetzten Würfel</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>First gps_time (s)</source>
-            <translation>Erste gps_time (s)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>Last gps_time (s)</source>
-            <translation>Letzte gps_time (s)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>Scanners</source>
-            <translation>Scanner</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>Points near the trajectory (%)</source>
-            <translation>Punkte nahe der Trajektorie (%)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>Scan time covered by the trajectory (%)</source>
-            <translation>Von der Trajektorie abgedeckte Scanzeit (%)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>Point density</source>
-            <translation>Punktdichte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>Points per m² in every cell.</source>
-            <translation>Punkte je m² in jeder Zelle.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>Survey: {count} points in {files} file(s), {density:.0f} points per m² where there are any, {scanners} scanner(s), intensities {darkest} to {brightest}.</source>
-            <translation>Vermessung: {count} Punkte in {files} Datei(en), {density:.0f} Punkte je m², wo welche sind, {scanners} Scanner, Intensitäten {darkest} bis {brightest}.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/inspect_survey.py" />
-            <source>Trajectory: {near:.0f} % of the points lie within {metres:.0f} m of it.</source>
-            <translation>Trajektorie: {near:.0f} % der Punkte liegen innerhalb von {metres:.0f} m.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Sample survey</source>
-            <translation>Beispielvermessung</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Makes a mobile laser scanning survey of a street that exists only on paper, together with the truth about it.</source>
-            <translation>Erzeugt die Laserscan-Vermessung einer Straße, die es nur auf dem Papier gibt, zusammen mit der Wahrheit über sie.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Every pulse of two scanners is followed to what it meets first. Figures reached on it are figures on simulated data.</source>
-            <translation>Jeder Puls zweier Scanner wird verfolgt, bis er auf etwas trifft. Darauf erreichte Zahlen sind Zahlen auf simulierten Daten.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>sample</source>
-            <translation>Beispiel</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>simulation</source>
-            <translation>Simulation</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>test data</source>
-            <translation>Testdaten</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Scene</source>
-            <translation>Szene</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Street is a curved two-lane road with curbs and parked cars, rural has verges instead of curbs, urban is broader with more lanes and gutters.</source>
-            <translation>Street ist eine gekrümmte zweistreifige Straße mit Bordsteinen und parkenden Autos, rural hat Bankette statt Bordsteinen, urban ist breiter, mit mehr Fahrstreifen und Rinnen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Length of the road (m)</source>
-            <translation>Länge der Straße (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Longer takes longer to make and to work through, in proportion.</source>
-            <translation>Länger dauert im selben Verhältnis länger, beim Erzeugen wie beim Verarbeiten.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Seed of the random numbers (whole number)</source>
-            <translation>Startwert der Zufallszahlen (ganze Zahl)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Another seed gives another street with other cars, wear and noise; the same seed gives the same points.</source>
-            <translation>Ein anderer Startwert ergibt eine andere Straße mit anderen Autos, anderer Abnutzung und anderem Rauschen; derselbe ergibt dieselben Punkte.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Speed of the vehicle (km/h)</source>
-            <translation>Geschwindigkeit des Fahrzeugs (km/h)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Faster spreads the scan lines wider apart.</source>
-            <translation>Schneller legt die Scanlinien weiter auseinander.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Pulses of each scanner (per second)</source>
-            <translation>Pulse jedes Scanners (je Sekunde)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>More gives a denser cloud and a larger file.</source>
-            <translation>Mehr ergibt eine dichtere Wolke und eine größere Datei.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Scan lines of each scanner (per second)</source>
-            <translation>Scanlinien jedes Scanners (je Sekunde)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>More brings the lines closer together, with fewer points on each.</source>
-            <translation>Mehr bringt die Linien näher zusammen, mit weniger Punkten auf jeder.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Scanners' planes turned from straight across (°)</source>
-            <translation>Verdrehung der Scanebenen gegen die Querrichtung (°)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>0 scans straight across the road; more sees the faces of things from ahead and behind, one scanner either way.</source>
-            <translation>0 scannt gerade quer zur Straße; mehr sieht die Flächen der Dinge von vorn und von hinten, ein Scanner jeweils.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Radius of the bends (m)</source>
-            <translation>Radius der Bögen (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Smaller makes sharper bends.</source>
-            <translation>Kleiner ergibt schärfere Bögen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Height of the curbs (m)</source>
-            <translation>Höhe der Bordsteine (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Lower is harder to find.</source>
-            <translation>Niedriger ist schwerer zu finden.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Width of a concrete gutter along the curbs (m)</source>
-            <translation>Breite einer Betonrinne längs der Bordsteine (m)</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>A gutter is as bright as paint and is not to be taken for it; 0 leaves it out.</source>
-            <translation>Eine Rinne ist so hell wie Farbe und darf nicht dafür gehalten werden; 0 lässt sie weg.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>True road boundaries</source>
-            <translation>Wahre Straßenränder</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>True markings</source>
-            <translation>Wahre Markierungen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>True driving lines</source>
-            <translation>Wahre Fahrlinien</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>True road surface</source>
-            <translation>Wahre Straßenoberfläche</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>A projected CRS in metres. The coordinates are the same in each; it only says where on earth they are.</source>
-            <translation>Ein projiziertes KBS in Metern. Die Koordinaten sind in jedem dieselben; es sagt nur, wo auf der Erde sie liegen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Point cloud</source>
-            <translation>Punktwolke</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>UAV image</source>
-            <translation>UAV-Bild</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>What a UAV sees of the first 150 m: a TIFF of 4 cm pixels without a place on the map, with the distortion of its camera. Georeference image finds its place.</source>
-            <translation>Was ein UAV von den ersten 150 m sieht: ein TIFF mit 4-cm-Pixeln ohne Lage auf der Karte, mit der Verzeichnung seiner Kamera. „Bild georeferenzieren“ findet seine Lage.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Ground control points of the UAV image</source>
-            <translation>Passpunkte des UAV-Bildes</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>CRS of the survey</source>
-            <translation>KBS der Vermessung</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey/sample_survey.py" />
-            <source>Sample survey: {count} points along {length:.0f} m of road.</source>
-            <translation>Beispielvermessung: {count} Punkte entlang {length:.0f} m Straße.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey_input.py" />
-            <source>Points farther out are left unread. Wider reaches the far side of a broad avenue, but takes longer and brings in the neighbouring street.</source>
-            <translation>Punkte weiter außen werden nicht gelesen. Weiter erreicht die ferne Seite einer breiten Allee, dauert aber länger und holt die Nachbarstraße herein.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey_input.py" />
-            <source>Field that tells the scanners apart</source>
-            <translation>Feld, das die Scanner unterscheidet</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey_input.py" />
-            <source>Automatic takes scanner_channel where it is used and point_source_id where it interleaves in time. Name one when the report counts the wrong number of scanners.</source>
-            <translation>Automatisch nimmt scanner_channel, wo es benutzt ist, und point_source_id, wo es sich in der Zeit verschränkt. Eines nennen, wenn der Bericht eine falsche Zahl von Scannern zählt.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey_input.py" />
-            <source>Time of the trajectory</source>
-            <translation>Zeit der Trajektorie</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey_input.py" />
-            <source>How its clock counts: gps (since 1980), adjusted (the same less a billion), week or day. Automatic compares with the point clouds and says what it chose.</source>
-            <translation>Wie ihre Uhr zählt: gps (seit 1980), adjusted (dasselbe weniger eine Milliarde), week oder day. Automatisch vergleicht mit den Punktwolken und sagt, was gewählt wurde.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey_input.py" />
-            <source>Lay passes over one road on each other</source>
-            <translation>Befahrungen derselben Straße aufeinanderlegen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey_input.py" />
-            <source>Where two drives over a road measurably lie centimetres apart, as navigation drifts between them, each is moved by its share until curbs and paint agree, and the log says how far. Off keeps every point where it was measured, for surveys adjusted to control points already; what the passes differ by then blurs curbs and doubles lines.</source>
-            <translation>Wo zwei Befahrungen einer Straße messbar Zentimeter auseinanderliegen, weil die Navigation zwischen ihnen driftet, wird jede um ihren Anteil verschoben, bis Bordsteine und Farbe übereinstimmen; das Protokoll sagt, um wie viel. Ausgeschaltet bleibt jeder Punkt, wo er gemessen wurde: für Aufnahmen, die schon an Passpunkten ausgeglichen sind. Worin die Befahrungen sich dann unterscheiden, macht Bordsteine unscharf und Linien doppelt.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey_input.py" />
-            <source>The points</source>
-            <translation>Die Punkte</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey_input.py" />
-            <source>The trajectory says no CRS; its coordinates are taken to be those of the target CRS as they are.</source>
-            <translation>Die Trajektorie nennt kein KBS; ihre Koordinaten werden unverändert als die des Ziel-KBS genommen.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey_input.py" />
-            <source>{path} has no intensity (all values are the same), so paint cannot be told from asphalt. Road edges and surface need none; for markings, export the point clouds with intensity.</source>
-            <translation>{path} hat keine Intensität (alle Werte sind gleich), Farbe lässt sich so nicht vom Asphalt unterscheiden. Straßenränder und Oberfläche brauchen keine; für Markierungen die Punktwolken mit Intensität exportieren.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/survey_input.py" />
-            <source>{label} holds no points: no paint was found on this road.</source>
-            <translation>{label} enthält keine Punkte: auf dieser Straße wurde keine Farbe gefunden.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/trajectory_source.py" />
-            <source>{label} has no rows. Choose the layer that holds the driven positions.</source>
-            <translation>{label} hat keine Zeilen. Den Layer wählen, der die gefahrenen Positionen enthält.</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/trajectory_source.py" />
-            <source>{label} is a table with the columns {names}; {missing} cannot be found among them. Name them time, x, y, z, roll, pitch, heading.</source>
-            <translation>{label} ist eine Tabelle mit den Spalten {names}; {missing} ist darunter nicht zu finden. Sie time, x, y, z, roll, pitch, heading nennen.</translation>
-        </message>
-        <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Pass</source>
             <translation>Befahrung</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Pass that drove nearest</source>
             <translation>Befahrung, die am nächsten fuhr</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Side (left/right)</source>
             <translation>Seite (left/right)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Status</source>
             <translation>Status</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Station (m)</source>
             <translation>Station (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Offset, left positive (m)</source>
             <translation>Abstand, links positiv (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Height (m)</source>
             <translation>Höhe (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Part (bottom/top)</source>
             <translation>Teil (bottom/top)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Agreement of the two methods (cm)</source>
             <translation>Übereinstimmung der beiden Verfahren (cm)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Length (m)</source>
             <translation>Länge (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Width (m)</source>
             <translation>Breite (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Radius (m)</source>
             <translation>Radius (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Kind (main/corner/side_street/island)</source>
             <translation>Art (main/corner/side_street/island)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>RMSE of the fit (m)</source>
             <translation>RMSE der Einpassung (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>End station (m)</source>
             <translation>Endstation (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Outcome (correct/missed/false/excluded)</source>
             <translation>Ergebnis (correct/missed/false/excluded)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Why</source>
             <translation>Warum</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Chain along the curb</source>
             <translation>Kette längs des Bordsteins</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Distance along the chain (m)</source>
             <translation>Entfernung längs der Kette (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Residual (m)</source>
             <translation>Restabweichung (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Supporting points</source>
             <translation>Stützende Punkte</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Scanner</source>
             <translation>Scanner</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Interval of the planes (m)</source>
             <translation>Abstand der Ebenen (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Area (m²)</source>
             <translation>Fläche (m²)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Cluster</source>
             <translation>Gruppe</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Class</source>
             <translation>Klasse</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Use (keep/other)</source>
             <translation>Verwendung (keep/other)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Elongation</source>
             <translation>Längung</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Scanning distance (m)</source>
             <translation>Scanentfernung (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Line</source>
             <translation>Linie</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Kind (edge/lane/centre)</source>
             <translation>Art (edge/lane/centre)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Pattern</source>
             <translation>Muster</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Curve</source>
             <translation>Kurve</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Fitted function (JSON)</source>
             <translation>Eingepasste Funktion (JSON)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Lane</source>
             <translation>Fahrstreifen</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Kind</source>
             <translation>Art</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Lines to its left|right</source>
             <translation>Linien links|rechts davon</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Direction (1 along, -1 against the road)</source>
             <translation>Richtung (1 mit, -1 gegen die Straße)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Source (pair/offset)</source>
             <translation>Herkunft (pair/offset)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Turn (left/right)</source>
             <translation>Drehsinn (left/right)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>R (m)</source>
             <translation>R (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>R (ft)</source>
             <translation>R (ft)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Δ (°)</source>
             <translation>Δ (°)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>D (° per 100 ft)</source>
             <translation>D (° je 100 ft)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>D (° per 100 m)</source>
             <translation>D (° je 100 m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>L (m)</source>
             <translation>L (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>L (ft)</source>
             <translation>L (ft)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>T (m)</source>
             <translation>T (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>T (ft)</source>
             <translation>T (ft)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>M (m)</source>
             <translation>M (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>M (ft)</source>
             <translation>M (ft)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>LC (m)</source>
             <translation>LC (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>LC (ft)</source>
             <translation>LC (ft)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>E (m)</source>
             <translation>E (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>E (ft)</source>
             <translation>E (ft)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>PC x</source>
             <translation>PC x</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>PC y</source>
             <translation>PC y</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>PT x</source>
             <translation>PT x</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>PT y</source>
             <translation>PT y</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>PI x</source>
             <translation>PI x</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>PI y</source>
             <translation>PI y</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>RMSE of the arc (m)</source>
             <translation>RMSE des Bogens (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Highest design speed allowed (km/h)</source>
             <translation>Höchste erlaubte Entwurfsgeschwindigkeit (km/h)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Design code check</source>
             <translation>Prüfung nach Entwurfsregel</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Point</source>
             <translation>Punkt</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Role (control/check/disabled)</source>
             <translation>Rolle (control/check/disabled)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Pixel</source>
             <translation>Pixel</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Line, downwards</source>
             <translation>Zeile, nach unten</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Residual east (m)</source>
             <translation>Restklaffung Ost (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Residual north (m)</source>
             <translation>Restklaffung Nord (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Residual without this point (m)</source>
             <translation>Restklaffung ohne diesen Punkt (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Leverage (0 to 1)</source>
             <translation>Hebelwirkung (0 bis 1)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Role (control/check)</source>
             <translation>Rolle (control/check)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>What was pointed at</source>
             <translation>Worauf gezeigt wurde</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Time (s)</source>
             <translation>Zeit (s)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Roll (°)</source>
             <translation>Rollwinkel (°)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Pitch (°)</source>
             <translation>Nickwinkel (°)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Heading (°, clockwise from grid north)</source>
             <translation>Kurs (°, im Uhrzeigersinn von Gitternord)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Road, or line of the reference</source>
             <translation>Straße, oder Linie der Referenz</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Covered by the result (m)</source>
             <translation>Vom Ergebnis abgedeckt (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Row of the line in its layer</source>
             <translation>Zeile der Linie in ihrem Layer</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>From, along the line (m)</source>
             <translation>Von, längs der Linie (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>To, along the line (m)</source>
             <translation>Bis, längs der Linie (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Mean distance (m)</source>
             <translation>Mittlerer Abstand (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Largest distance (m)</source>
             <translation>Größter Abstand (m)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Of (reference/result)</source>
             <translation>Aus (reference/result)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Share of it in the other layer (%)</source>
             <translation>Anteil davon im anderen Layer (%)</translation>
         </message>
         <message>
-            <location filename="../../core/schemas.py" />
+            <location filename="../../core/common/schemas.py" />
             <source>Judged area (m²)</source>
             <translation>Beurteilte Fläche (m²)</translation>
         </message>

@@ -5,7 +5,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from lanewright.processing_provider.catalogue import ALGORITHMS
+from lanewright.algorithms.catalogue import ALGORITHMS
+from lanewright.processing_provider.algorithm import LanewrightAlgorithm
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = ROOT / "docs" / "manual"
@@ -32,7 +33,7 @@ def test_no_page_is_left_of_an_algorithm_that_is_gone(made):
 
 @pytest.mark.parametrize("algorithm", ALGORITHMS, ids=lambda algorithm: algorithm.ID)
 def test_the_help_button_opens_the_page_of_the_algorithm(provider, algorithm):
-    scheme, _, name = algorithm().create().helpUrl().partition(":")
+    scheme, _, name = LanewrightAlgorithm(algorithm()).create().helpUrl().partition(":")
     assert scheme == "lanewright" and (PAGES / f"{name}.md").is_file()
 
 
@@ -44,7 +45,8 @@ def test_links_and_pictures_lead_somewhere():
 
 def test_the_troubleshooting_quotes_what_is_really_said():
     """Every message of the page is a sentence of the code, with gaps for the numbers."""
-    code = "".join(path.read_text(encoding="utf-8") for folder in ("core", "processing_provider") for path in (ROOT / folder).rglob("*.py"))
+    folders = ("core", "algorithms", "processing_provider")
+    code = "".join(path.read_text(encoding="utf-8") for folder in folders for path in (ROOT / folder).rglob("*.py"))
     # Sentences in the code are cut into strings, and hold braces where the page has …
     said = re.sub(r'"\s*\n?\s*f?"', "", code)
     for message in re.findall(r"^### (.+)$", (PAGES / "troubleshooting.md").read_text(encoding="utf-8"), re.M):
@@ -56,7 +58,7 @@ def test_every_file_a_command_reads_is_written_by_the_command_of_another_page(ma
     """In one folder, from the sample survey on; a trajectory as text is what people bring."""
     read, written = set(), {"trajectory.csv"}
     for algorithm in ALGORITHMS:
-        made_with = algorithm().create()
+        made_with = LanewrightAlgorithm(algorithm()).create()
         definitions = {d.name(): d for d in made_with.parameterDefinitions()}
         for name, file in re.findall(r"--([A-Z_]+)=(\S+)", made[f"{algorithm.ID}.md"]):
             (written if definitions[name].isDestination() else read).add(file)
@@ -69,7 +71,7 @@ def test_commands_name_the_control_points_and_every_input_that_must_be_given(mad
     assert "--GCPS=" in made["georeferenceimage.md"].split("## On the command line")[1]
     for algorithm in ALGORITHMS:
         command = made[f"{algorithm.ID}.md"].split("## On the command line")[1]
-        made_with = algorithm().create()
+        made_with = LanewrightAlgorithm(algorithm()).create()
         for d in made_with.parameterDefinitions():
             if d.isDestination() or not optional(d) and d.defaultValue() is None:
                 assert f"--{d.name()}=" in command, f"{algorithm.ID}: {d.name()}"

@@ -102,8 +102,9 @@ def test_the_code_is_written_for_qt_5_and_qt_6_alike():
     assert not found
 
 
-def test_the_core_never_imports_qgis():
-    found = [path for path in (ROOT / "core").rglob("*.py") if re.search(r"^\s*(import|from) qgis", path.read_text(encoding="utf-8"), re.M)]
+def test_the_core_and_the_declarations_never_import_qgis():
+    files = [path for folder in ("core", "algorithms") for path in (ROOT / folder).rglob("*.py")]
+    found = [path for path in files if re.search(r"^\s*(import|from) qgis", path.read_text(encoding="utf-8"), re.M)]
     assert not found
 
 
@@ -127,8 +128,8 @@ def test_libraries_are_looked_for_after_those_of_qgis(monkeypatch, tmp_path):
 
 def shipped():
     """The code users get."""
-    rooms = [ROOT / room for room in ("core", "processing_provider", "desktop")]
-    return [ROOT / "__init__.py", ROOT / "plugin.py", *(file for room in rooms for file in room.rglob("*.py"))]
+    folders = [ROOT / folder for folder in ("core", "algorithms", "processing_provider", "desktop")]
+    return [ROOT / "__init__.py", ROOT / "plugin.py", *(file for folder in folders for file in folder.rglob("*.py"))]
 
 
 def test_nothing_is_fetched_or_sent():

@@ -4,8 +4,10 @@ import os
 from pathlib import Path
 
 import pytest
+from lanewright.algorithms.destinations import ReplacedFiles, UnfinishedFiles, check_suffix, check_writable, destination_path
+from lanewright.algorithms.driving.road_map import RoadMap
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.processing_provider.destinations import ReplacedFiles, UnfinishedFiles, check_suffix, check_writable, destination_path
+from lanewright.processing_provider.call import QgisCall
 
 
 def test_yesterdays_result_stands_until_todays_is_complete(tmp_path):
@@ -89,16 +91,15 @@ def test_a_folder_without_permission_is_refused(tmp_path):
     ("INTENSITY_IMAGE", "image.png", r"\.tif or \.tiff"), ("REPORT", "report.pdf", r"\.html or \.htm"),
 ])
 def test_a_name_that_promises_another_kind_of_file_is_refused(provider, name, path, writes):
-    definition = provider.algorithm("roadmap").parameterDefinition(name)
     with pytest.raises(RoadExtractionError, match=writes):
-        check_suffix(Path(path), definition)
+        check_suffix(Path(path), RoadMap().parameter(name), QgisCall.VECTOR_SUFFIXES)
 
 
 @pytest.mark.parametrize("name, path", [
     ("ROAD_POINTS", "Road.LAZ"), ("ROAD_POINTS", "road.las"), ("INTENSITY_IMAGE", "image.tiff"), ("REPORT", "r.html"), ("MARKINGS", "m.fgb"),
 ])
 def test_a_name_that_fits_is_taken(provider, name, path):
-    check_suffix(Path(path), provider.algorithm("roadmap").parameterDefinition(name))
+    check_suffix(Path(path), RoadMap().parameter(name), QgisCall.VECTOR_SUFFIXES)
 
 
 @pytest.mark.parametrize("files", [["map.gpkg"], ["edges.shp", "edges.dbf", "edges.shx"], ["edges.fgb"]])
@@ -108,7 +109,7 @@ def test_a_layer_that_cannot_be_written_leaves_yesterdays(tmp_path, files):
     replaced = ReplacedFiles()
     replaced.set_aside(str(tmp_path / files[0]))
     replaced.set_aside(str(tmp_path / "new.gpkg"))
-    assert all(name.endswith(".yesterday") for name in os.listdir(tmp_path)), "room is made"
+    assert all(name.endswith(".previous") for name in os.listdir(tmp_path)), "room is made"
     for name in (files[0], "new.gpkg", "new.gpkg-journal"):
         (tmp_path / name).write_text("half")
     replaced.put_back()

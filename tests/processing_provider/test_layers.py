@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 import shapely
+from lanewright.algorithms.vector_source import read_features
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import CURVE_ELEMENTS, ROAD_EDGES
-from lanewright.processing_provider.layers import WKB_TYPES, crs_text, keeps_aliases, qgis_fields, read_features, write_features
+from lanewright.processing_provider.layers import WKB_TYPES, QgisSource, crs_text, keeps_aliases, qgis_fields, write_features
 from qgis.core import QgsCoordinateReferenceSystem, QgsFeatureSink, QgsProcessingContext, QgsProcessingFeedback, QgsProcessingUtils, QgsVectorLayer
 
 UTM = QgsCoordinateReferenceSystem("EPSG:32650")
@@ -36,14 +37,14 @@ def edges():
 
 def test_geometries_keep_every_digit_and_their_heights(tmp_path, qgis_app):
     written = edges()
-    found = read_features(through_a_geopackage(written, tmp_path), ROAD_EDGES, "LineStringZ", "Road edges")
+    found = read_features(QgisSource(through_a_geopackage(written, tmp_path), "Road edges"), ROAD_EDGES, "LineStringZ")
     for before, after in zip(written.geometries, found.geometries):
         np.testing.assert_array_equal(shapely.get_coordinates(before, include_z=True), shapely.get_coordinates(after, include_z=True))
     assert found.crs == crs_text(UTM)
 
 
 def test_values_come_back_in_their_type_and_missing_ones_as_missing(tmp_path, qgis_app):
-    found = read_features(through_a_geopackage(edges(), tmp_path), ROAD_EDGES, "LineStringZ", "Road edges")
+    found = read_features(QgisSource(through_a_geopackage(edges(), tmp_path), "Road edges"), ROAD_EDGES, "LineStringZ")
     assert found.rows[0]["road"] == 0 and found.rows[0]["side"] == "left" and found.rows[0]["station_m"] == 0.1
     assert found.rows[1]["road"] == 3 and found.rows[1]["rmse_m"] == 0.5
     assert found.rows[1]["status"] is None and found.rows[1]["height_m"] is None
@@ -52,7 +53,7 @@ def test_values_come_back_in_their_type_and_missing_ones_as_missing(tmp_path, qg
 def test_a_layer_without_rows_is_still_a_layer(tmp_path, qgis_app):
     layer = through_a_geopackage(Features("LineStringZ", ROAD_EDGES, crs=crs_text(UTM)), tmp_path)
     assert layer.featureCount() == 0 and layer.fields().lookupField("station_m") >= 0
-    assert len(read_features(layer, ROAD_EDGES, "LineStringZ", "Road edges")) == 0
+    assert len(read_features(QgisSource(layer, "Road edges"), ROAD_EDGES, "LineStringZ")) == 0
 
 
 def test_cancel_is_heard_while_a_large_layer_is_written(qgis_app):
@@ -75,7 +76,7 @@ def test_cancel_is_heard_while_a_large_layer_is_written(qgis_app):
 def test_a_table_has_rows_and_no_geometry(tmp_path, qgis_app):
     table = Features("None", CURVE_ELEMENTS)
     table.add(None, road=0, lane=1, radius_m=140.8, turn="left")
-    found = read_features(through_a_geopackage(table, tmp_path), CURVE_ELEMENTS, "None", "Curve elements")
+    found = read_features(QgisSource(through_a_geopackage(table, tmp_path), "Curve elements"), CURVE_ELEMENTS, "None")
     assert found.rows[0]["radius_m"] == 140.8 and found.geometries == [None]
 
 
@@ -94,7 +95,7 @@ def test_lines_in_many_parts_become_lines(qgis_app):
     feature.setAttribute("road", 2)
     feature.setGeometry(QgsGeometry.fromWkt("MultiLineStringZ((0 0 1, 1 0 1),(2 0 1, 3 0 1))"))
     layer.dataProvider().addFeatures([feature], QgsFeatureSink.Flag.FastInsert)
-    found = read_features(layer, ROAD_EDGES, "LineStringZ", "Road edges")
+    found = read_features(QgisSource(layer, "Road edges"), ROAD_EDGES, "LineStringZ")
     assert [g.geom_type for g in found.geometries] == ["LineString", "LineString"] and found.column("road") == [2, 2]
 
 
@@ -106,24 +107,24 @@ def test_a_line_layer_without_heights_is_refused_by_name(qgis_app):
     feature.setGeometry(QgsGeometry.fromWkt("LineString(0 0, 1 0)"))
     layer.dataProvider().addFeatures([feature])
     with pytest.raises(RoadExtractionError, match="Road edges has geometries without heights"):
-        read_features(layer, ROAD_EDGES, "LineStringZ", "Road edges")
+        read_features(QgisSource(layer, "Road edges"), ROAD_EDGES, "LineStringZ")
 
 
 def test_a_layer_of_something_else_is_refused_by_its_fields(qgis_app):
     layer = QgsVectorLayer("LineStringZ?crs=EPSG:32650&field=name:string", "rivers", "memory")
     with pytest.raises(RoadExtractionError, match="Road edges lacks the field.*road"):
-        read_features(layer, ROAD_EDGES, "LineStringZ", "Road edges")
+        read_features(QgisSource(layer, "Road edges"), ROAD_EDGES, "LineStringZ")
 
 
 def test_a_layer_that_lost_a_field_is_refused_by_its_name(qgis_app):
     layer = edge_layer("LineStringZ", [column for column in ROAD_EDGES if column.name not in ("side", "status")])
     with pytest.raises(RoadExtractionError, match=r"Road edges lacks the field\(s\) side, status\."):
-        read_features(layer, ROAD_EDGES, "LineStringZ", "Road edges")
+        read_features(QgisSource(layer, "Road edges"), ROAD_EDGES, "LineStringZ")
 
 
 def test_points_are_no_road_edges(qgis_app):
     with pytest.raises(RoadExtractionError, match="kind Point; Line is needed"):
-        read_features(edge_layer("PointZ"), ROAD_EDGES, "LineStringZ", "Road edges")
+        read_features(QgisSource(edge_layer("PointZ"), "Road edges"), ROAD_EDGES, "LineStringZ")
 
 
 def test_a_geopackage_s_undefined_crs_is_no_crs(tmp_path, qgis_app):

@@ -1,9 +1,10 @@
 """A dialog offers what the core accepts, to the last number, and nothing beyond."""
 
 import pytest
+from lanewright.algorithms.catalogue import ALGORITHMS
+from lanewright.algorithms.parameters import SettingSpec, settings_class
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.processing_provider.catalogue import ALGORITHMS
-from lanewright.processing_provider.knobs import Knob, settings_class
+from lanewright.processing_provider.algorithm import LanewrightAlgorithm
 
 # Settings that are compared with each other: what another one must be beside an extreme one
 BESIDE = {
@@ -23,25 +24,20 @@ BESIDE = {
 
 @pytest.fixture(scope="module")
 def numbers(provider):
-    """(algorithm, Knob, parameter) of every number in every dialog that is a setting of the core."""
-    found, build = [], Knob.parameter
-    with pytest.MonkeyPatch.context() as patch:
-        for algorithm in ALGORITHMS:
-            def recorded(knob, algorithm=algorithm):
-                parameter = build(knob)
-                if parameter.type() == "number":
-                    found.append((algorithm.ID, knob, parameter.clone()))
-                return parameter
-
-            patch.setattr(Knob, "parameter", recorded)
-            algorithm().create()
+    """(algorithm, SettingSpec, parameter) of every number in every dialog that is a setting of the core."""
+    found = []
+    for declaration in ALGORITHMS:
+        algorithm = LanewrightAlgorithm(declaration()).create()
+        for spec in algorithm.declaration.parameters:
+            if isinstance(spec, SettingSpec) and spec.kind() in ("whole", "number"):
+                found.append((algorithm.name(), spec, algorithm.parameterDefinition(spec.name).clone()))
     return found
 
 
-def settings_with(knob, value):
-    owner = settings_class(knob.settings)
-    beside = BESIDE.get((owner.__name__, knob.field), {})
-    return owner(**{knob.field: value}, **{name: other for name, other in beside.items() if name in owner.__dataclass_fields__})
+def settings_with(spec, value):
+    owner = settings_class(spec.settings)
+    beside = BESIDE.get((owner.__name__, spec.field), {})
+    return owner(**{spec.field: value}, **{name: other for name, other in beside.items() if name in owner.__dataclass_fields__})
 
 
 def beyond(parameter, value, way):
@@ -54,26 +50,26 @@ def test_dialogs_have_numbers(numbers):
 
 def test_the_core_accepts_the_extremes_that_a_dialog_offers(numbers):
     refused = []
-    for algorithm, knob, parameter in numbers:
-        for value, times in ((parameter.minimum(), 1.0), (parameter.maximum(), knob.times)):
+    for algorithm, spec, parameter in numbers:
+        for value, times in ((parameter.minimum(), 1.0), (parameter.maximum(), spec.times)):
             assert parameter.checkValueIsAcceptable(value)
             try:
-                settings_with(knob, type(knob.default())(value / times))
+                settings_with(spec, type(spec.default)(value / times))
             except RoadExtractionError as error:
-                refused.append((algorithm, knob.name, value, str(error)))
+                refused.append((algorithm, spec.name, value, str(error)))
     assert not refused
 
 
 def test_what_lies_beyond_is_refused_by_the_dialog_and_the_core(numbers):
     accepted = []
-    for algorithm, knob, parameter in numbers:
-        for end, way, times in ((parameter.minimum(), -1, 1.0), (parameter.maximum(), 1, knob.times)):
+    for algorithm, spec, parameter in numbers:
+        for end, way, times in ((parameter.minimum(), -1, 1.0), (parameter.maximum(), 1, spec.times)):
             value = beyond(parameter, end, way)
             if parameter.checkValueIsAcceptable(value):
-                accepted.append((algorithm, knob.name, value, "dialog"))
+                accepted.append((algorithm, spec.name, value, "dialog"))
             try:
-                settings_with(knob, type(knob.default())(value / times))
-                accepted.append((algorithm, knob.name, value, "core"))
+                settings_with(spec, type(spec.default)(value / times))
+                accepted.append((algorithm, spec.name, value, "core"))
             except RoadExtractionError as error:
                 assert "it must be" in str(error), str(error)
     assert not accepted

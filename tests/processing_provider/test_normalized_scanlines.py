@@ -3,11 +3,12 @@
 import laspy
 import numpy as np
 import pytest
+from lanewright.algorithms.trajectory_source import read_trajectory_source
+from lanewright.algorithms.vector_source import read_features
 from lanewright.core.common.schemas import SCANLINES
 from lanewright.core.road.scanlines.layer import scanlines_from_features
 from lanewright.core.survey.frame.road_frame import build_frame
-from lanewright.processing_provider.layers import read_features
-from lanewright.processing_provider.trajectory_source import read_trajectory_source
+from lanewright.processing_provider.layers import QgisSource
 from osgeo import ogr
 from qgis.core import QgsProcessingContext, QgsProcessingFeatureSource, QgsVectorLayer
 
@@ -46,9 +47,9 @@ def test_the_layer_has_heights_measures_and_its_fields(made):
 def test_the_layer_is_read_back_as_scanlines(made):
     layer = QgsVectorLayer(made[0]["SCANLINES"], "lines", "ogr")
     context = QgsProcessingContext()
-    features = read_features(QgsProcessingFeatureSource(layer, context), SCANLINES, "LineStringZM", "Scanlines")
+    features = read_features(QgisSource(QgsProcessingFeatureSource(layer, context), "Scanlines"), SCANLINES, "LineStringZM")
     drive = QgsVectorLayer(made[1]["TRAJECTORY"], "drive", "ogr")
-    lines, interval = scanlines_from_features(features, build_frame(read_trajectory_source(drive, "Trajectory")))
+    lines, interval = scanlines_from_features(features, build_frame(read_trajectory_source(QgisSource(drive, "Trajectory"))))
     assert interval == 0.5
     assert len(lines[0]) == len(features)
     longest = np.diff(lines[0].first).argmax()

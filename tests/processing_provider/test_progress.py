@@ -59,7 +59,7 @@ def test_a_run_that_ends_early_leaves_nothing_in_memory(provider, monkeypatch, e
         raise type(end)(*end.args)
 
     algorithm = QgsApplication.processingRegistry().createAlgorithmById("lanewright:samplesurvey")
-    monkeypatch.setattr(type(algorithm), "work", work)
+    monkeypatch.setattr(type(algorithm.declaration), "work", work)
     dialog = QgsProcessingFeedback(False)
     _, fine = algorithm.run({}, QgsProcessingContext(), dialog)
     gc.collect()

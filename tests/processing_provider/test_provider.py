@@ -3,9 +3,10 @@
 import re
 
 import pytest
-from lanewright.processing_provider.catalogue import ALGORITHMS
-from lanewright.processing_provider.driving.road_map import FOLDED, SHOWN, STAGES
-from lanewright.processing_provider.knobs import settings_class
+from lanewright.algorithms.catalogue import ALGORITHMS
+from lanewright.algorithms.driving.road_map import ADVANCED, BASIC, STAGES
+from lanewright.algorithms.parameters import settings_class
+from lanewright.processing_provider.algorithm import LanewrightAlgorithm
 from qgis.core import Qgis, QgsProcessingParameterDefinition
 
 # Commands, models and scripts call these; a name that changes breaks them.
@@ -41,7 +42,7 @@ UNIT = re.compile(r"\((m|m²|s|°|%|points|σ|MAD|km/h|per second|per line|cells
 
 @pytest.fixture(params=ALGORITHMS, ids=lambda algorithm: algorithm.ID)
 def algorithm(request, provider):
-    return request.param().create()
+    return LanewrightAlgorithm(request.param()).create()
 
 
 @pytest.mark.parametrize("name", INTERFACE)
@@ -110,7 +111,7 @@ def test_clouds_are_files_since_qgis_without_pdal_cannot_load_them(algorithm):
         assert clouds.layerType() == Qgis.ProcessingSourceType.File
 
 
-def test_rarely_turned_knobs_are_out_of_the_way(provider):
+def test_rarely_changed_settings_are_out_of_the_way(provider):
     shown = [
         parameter
         for parameter in provider.algorithm("roadmap").parameterDefinitions()
@@ -120,15 +121,15 @@ def test_rarely_turned_knobs_are_out_of_the_way(provider):
     assert len(shown) <= 9
 
 
-def test_a_knob_of_the_road_map_turns_one_thing_only():
-    names = [knob.name for knobs in STAGES.values() for knob in knobs]
+def test_a_setting_of_the_road_map_changes_one_thing_only():
+    names = [spec.name for specs in STAGES.values() for spec in specs]
     assert len(names) == len(set(names))
-    assert set(SHOWN) | set(FOLDED) <= set(names)
-    assert not set(SHOWN) & set(FOLDED)
+    assert set(BASIC) | set(ADVANCED) <= set(names)
+    assert not set(BASIC) & set(ADVANCED)
 
 
 def test_settings_of_a_package_that_is_not_there_leave_the_algorithm_listed():
-    assert settings_class("survey.no_such_room:Settings") is None
+    assert settings_class("survey.no_such_module:Settings") is None
 
 
 def test_an_algorithm_runs_from_a_script_and_from_the_dialog(provider, tmp_path):

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from lanewright.algorithms.trajectory_source import read_trajectory_source, trajectory_features, trajectory_path
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.processing_provider.trajectory_source import read_trajectory_source, trajectory_features, trajectory_path
+from lanewright.processing_provider.layers import QgisSource
 from qgis.core import QgsFeature, QgsGeometry, QgsVectorLayer
 
 TIME = 1000.0 + 0.1 * np.arange(60)
@@ -50,36 +51,36 @@ def a_table_of_texts():
     points_with_heights, points_with_a_column_of_heights, a_line_with_time_as_its_measure, a_table_of_texts,
 ])
 def test_one_drive_reads_the_same_from_every_kind_of_layer(qgis_app, drive):
-    trajectory = read_trajectory_source(drive(), "Trajectory")
+    trajectory = read_trajectory_source(QgisSource(drive(), "Trajectory"))
     assert trajectory.has_time
     np.testing.assert_allclose(np.c_[trajectory.time, trajectory.x, trajectory.y, trajectory.z], np.c_[TIME, X, Y, Z], atol=1e-6)
 
 
 def test_a_line_without_measure_has_no_time_but_an_order(qgis_app):
     line = ", ".join(f"{x} {y} {z}" for x, y, z in zip(X, Y, Z))
-    trajectory = read_trajectory_source(layer_of("LineStringZ?crs=EPSG:32650", [(f"LineStringZ({line})", [])]), "Trajectory")
+    trajectory = read_trajectory_source(QgisSource(layer_of("LineStringZ?crs=EPSG:32650", [(f"LineStringZ({line})", [])]), "Trajectory"))
     assert not trajectory.has_time and (np.diff(trajectory.time) > 0).all()
 
 
 def test_points_without_heights_are_refused(qgis_app):
     layer = layer_of("Point?crs=EPSG:32650&field=time:double", [(f"Point({x} {y})", [t]) for t, x, y in zip(TIME, X, Y)])
     with pytest.raises(RoadExtractionError, match="no heights"):
-        read_trajectory_source(layer, "Trajectory")
+        read_trajectory_source(QgisSource(layer, "Trajectory"))
 
 
 def test_a_table_of_something_else_is_refused_by_its_columns(qgis_app):
     layer = layer_of("NoGeometry?field=name:string&field=owner:string", [(None, ["A", "B"])])
     with pytest.raises(RoadExtractionError, match="name, owner"):
-        read_trajectory_source(layer, "Trajectory")
+        read_trajectory_source(QgisSource(layer, "Trajectory"))
 
 
 def test_a_layer_without_rows_is_refused(qgis_app):
     with pytest.raises(RoadExtractionError, match="has no rows"):
-        read_trajectory_source(layer_of("PointZ?crs=EPSG:32650&field=time:double", []), "Trajectory")
+        read_trajectory_source(QgisSource(layer_of("PointZ?crs=EPSG:32650&field=time:double", []), "Trajectory"))
 
 
 def test_a_written_trajectory_carries_road_pass_and_station(qgis_app):
-    features = trajectory_features(read_trajectory_source(points_with_heights(), "Trajectory"))
+    features = trajectory_features(read_trajectory_source(QgisSource(points_with_heights(), "Trajectory")))
     stations = np.array(features.column("station_m"))
     assert set(features.column("road")) == {0} and set(features.column("pass")) == {0}
     np.testing.assert_allclose(np.diff(stations), np.hypot(1.2, 0.3), atol=1e-3)

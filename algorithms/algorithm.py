@@ -1,0 +1,144 @@
+"""What all algorithms share: how they are declared and named.
+
+An algorithm says its name, adds its parameters with the helpers below and
+implements `work(call, progress)`; `call` (see call.py) hands it the values.
+"""
+
+from dataclasses import replace
+
+from .parameters import (
+    CloudOutput,
+    CloudSpec,
+    CrsSpec,
+    LayerOutput,
+    LayerSpec,
+    NumberOutput,
+    PointCloudsSpec,
+    RasterOutput,
+    RasterSpec,
+    ReportOutput,
+    TrajectorySpec,
+)
+from .texts import tr
+
+# In the order of the work
+GROUPS = ("Survey", "Road", "Markings", "Driving", "Road map", "Assessment", "Orthoimages")
+TAGS_OF_ALL = ("mls", "mobile mapping", "lidar", "point cloud", "las", "laz", "road")
+
+
+class Algorithm:
+    """Base of every algorithm; subclasses set the texts below and write `declare` and `work`.
+
+    Attributes
+    ----------
+    parameters : list of ParameterSpec, inputs and outputs in the order of the dialog
+    numbers : list of NumberOutput
+    """
+
+    ID = TITLE = GROUP = SUMMARY = ""
+    TAGS = ()
+    HELP = ""
+    LOOKS = {}  # output -> the result whose map style it has, where that is not its own name
+    NEEDS_GDAL = False  # it cannot run without GDAL's Python module, whatever is asked of it
+
+    def __init__(self):
+        self.parameters, self.numbers = [], []
+        self.declare()
+
+    def declare(self):
+        """Add the parameters and outputs."""
+        raise NotImplementedError
+
+    def work(self, call, progress):
+        """Do the work; returns further results (numbers) by output name."""
+        raise NotImplementedError
+
+    # -- what others ask --------------------------------------------------------------------
+
+    def title(self):
+        return tr(self.TITLE)
+
+    def group(self):
+        """The group in the user's language; QGIS sorts groups by name, and the number keeps them in the order of the work."""
+        return f"{GROUPS.index(self.GROUP) + 1} {tr(self.GROUP)}"
+
+    def summary(self):
+        return tr(self.SUMMARY)
+
+    def help_paragraphs(self):
+        """The explanation below the summary."""
+        return [tr(part) for part in self.HELP.split("\n\n") if part]
+
+    def tags(self):
+        """Search words in the user's language and in English, which the field speaks everywhere."""
+        return list(dict.fromkeys((*(tr(tag) for tag in self.TAGS), *self.TAGS, *TAGS_OF_ALL)))
+
+    def parameter(self, name):
+        """The ParameterSpec of that name, None where there is none."""
+        return next((spec for spec in self.parameters if spec.name == name), None)
+
+    def inputs(self):
+        return [spec for spec in self.parameters if not spec.is_output]
+
+    def outputs(self):
+        return [spec for spec in self.parameters if spec.is_output]
+
+    # -- how subclasses declare -----------------------------------------------------------------
+
+    def add(self, spec):
+        self.parameters.append(spec)
+
+    def add_survey(self, trajectory_optional=False):
+        """Point clouds, trajectory and the CRS for clouds that carry none."""
+        self.add(PointCloudsSpec("POINT_CLOUDS", tr("Point clouds"),
+                                 tr("LAS, LAZ or COPC files of one survey. Files may overlap and come in any order.")))
+        self.add_trajectory(trajectory_optional)
+        self.add_crs()
+
+    def add_trajectory(self, optional=False):
+        self.add(TrajectorySpec("TRAJECTORY", tr("Trajectory"), tr(
+            "Where the vehicle drove: a point or line layer with heights, a table with columns time, x, y, z, or "
+            "the path of a CSV, TXT or SBET file. Made with Import trajectory it needs no further care."
+        ), optional))
+
+    def add_crs(self):
+        self.add(CrsSpec(
+            "CRS", tr("CRS of the point clouds"),
+            tr("Only for point clouds that carry no CRS of their own; it is written into everything made from them."),
+            optional=True, advanced=True,
+        ))
+
+    def add_cloud(self, name, label, text, optional=False):
+        self.add(CloudSpec(name, label, text, optional))
+
+    def add_layer(self, name, label, text, geometry="any", optional=False):
+        self.add(LayerSpec(name, label, text, optional, geometry=geometry))
+
+    def add_layer_raster(self, name, label, text, optional=False):
+        self.add(RasterSpec(name, label, text, optional))
+
+    def add_settings(self, specs, only=None, advanced=None):
+        """Fields of a core Settings class, all or `only` those of the names given."""
+        for spec in specs:
+            if only is None or spec.name in only:
+                self.add(spec if advanced is None else replace(spec, advanced=advanced))
+
+    def add_sink(self, name, label, text="", geometry="any", optional=False, by_default=True, fields=()):
+        """A vector output; the help lists its fields."""
+        listed = "; ".join(f"{field.name} ({tr(field.alias)})" for field in fields)
+        text = " ".join(part for part in (text, tr("Fields: {fields}.").format(fields=listed) if fields else "") if part)
+        self.add(LayerOutput(name, label, text, optional, by_default=by_default, geometry=geometry, schema=tuple(fields)))
+
+    def add_laz(self, name, label, text="", optional=False, by_default=True):
+        self.add(CloudOutput(name, label, text, optional, by_default=by_default))
+
+    def add_raster(self, name, label, text="", optional=False, by_default=True):
+        self.add(RasterOutput(name, label, text, optional, by_default=by_default))
+
+    def add_number(self, name, label):
+        """A number among the results."""
+        self.numbers.append(NumberOutput(name, label))
+
+    def add_report(self, name="REPORT", label=None, optional=True, by_default=True):
+        self.add(ReportOutput(name, label or tr("Report"), tr("A page with the numbers of every step and a picture."), optional,
+                              by_default=by_default))

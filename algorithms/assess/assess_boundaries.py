@@ -1,0 +1,133 @@
+"""Road boundaries against a reference."""
+
+from ...core.common.schemas import ASSESSED_BOUNDARIES
+from ..algorithm import Algorithm
+from ..parameters import SettingSpec, settings_class
+from ..texts import tr
+from .inputs import (
+    add_area,
+    add_excluded,
+    add_tolerances,
+    area_of,
+    found_numbers,
+    frame_of_drive,
+    layer_and_excluded,
+    layer_of,
+    shares_of,
+    tolerances,
+)
+
+BOUNDARY = "assess.boundaries:BoundarySettings"
+
+BOUNDARY_SETTINGS = (
+    SettingSpec(
+        "TOLERANCE", BOUNDARY, "tolerance", tr("Tolerance of the layer and of the numbers (m)"),
+        tr("The tolerance for which intervals are drawn and numbers returned; the report has all of them."),
+    ),
+    SettingSpec(
+        "INTERVAL", BOUNDARY, "interval", tr("Length of an interval (m)"),
+        tr("Longer lets a short error pass or spoil more of the road; published figures use 2."), advanced=True,
+    ),
+    SettingSpec(
+        "CORRIDOR", BOUNDARY, "corridor", tr("Corridor either side of the trajectory (m)"),
+        tr("What lies farther out belongs to no road and is left out; the report tells how much."), advanced=True,
+    ),
+)
+
+NUMBERS = (
+    ("PRECISION", tr("Precision (%)")), ("RECALL", tr("Recall (%)")), ("F1", tr("F (%)")), ("IOU", tr("Intersection over union (%)")),
+    ("CORRECT", tr("Correct intervals")), ("MISSED", tr("Missed intervals")), ("FALSE", tr("False intervals")),
+    ("EXCLUDED_INTERVALS", tr("Intervals that were not judged")),
+    ("MEAN", tr("Mean lateral error (m)")), ("RMSE", tr("RMSE across (m)")), ("P95", tr("95th percentile of the lateral error (m)")),
+    ("MAXIMUM", tr("Largest lateral error (m)")), ("HEIGHT_MEAN", tr("Mean height error (m)")), ("HEIGHT_RMSE", tr("RMSE in height (m)")),
+    ("HEIGHT_P95", tr("95th percentile of the height error (m)")), ("HEIGHT_MAXIMUM", tr("Largest height error (m)")),
+    *((f"{rate}_{side.upper()}", tr("{rate}, {side} (%)").format(rate=rate.capitalize(), side=side))
+      for side in ("left", "right") for rate in ("PRECISION", "RECALL", "F1")),
+)
+
+
+class AssessBoundaries(Algorithm):
+    ID, TITLE, GROUP = "assessboundaries", "Assess road boundaries", "Assessment"
+    SUMMARY = "Sets road boundaries against reference lines, side by side in intervals of 2 m: precision, recall, errors across and in height."
+    HELP = ("Any two line layers will do, of other software too: flat or with heights, in one part or many, drawn either way, with any fields. "
+            "A layer in another CRS is reprojected. Where a layer tells tops from bottoms in a field part, bottoms count.")
+    TAGS = ("accuracy", "precision", "recall", "validation", "curb", "reference", "ground truth")
+    LOOKS = {"OUTPUT": "ASSESSED_LINES"}
+
+    def declare(self):
+        self.add_layer("INPUT", tr("Boundaries to assess"), tr("Lines that were extracted, such as road edges."), "LineStringZ")
+        self.add_layer("REFERENCE", tr("Reference boundaries"), tr(
+            "Lines that are known to be right, one on each side of the road, such as the feet of the curbs."), "LineStringZ")
+        self.add_trajectory(optional=True)
+        settings = settings_class(BOUNDARY)
+        if settings is not None:
+            add_tolerances(self, settings(), tr("Tolerances (m)"), tr(
+                "Distances to either side within which a line is right, with commas between them. The report has a row for each."))
+        self.add_settings(BOUNDARY_SETTINGS)
+        add_excluded(self)
+        add_area(self)
+        self.add_sink("OUTPUT", tr("Boundaries by outcome"), tr("One line an interval and outcome."), fields=ASSESSED_BOUNDARIES,
+                      geometry="MultiLineStringZ")
+        self.add_report()
+        for name, label in NUMBERS:
+            self.add_number(name, label)
+
+    def work(self, call, progress):
+        from ...core.assess.boundaries import assess_boundaries
+        from ...core.assess.inputs import along_the_road_only, bottoms_only, check_kind, check_overlap, check_reference, common_crs, in_crs
+        from ...core.assess.layers import boundary_layer
+        from ...core.report.assessment import boundary_report
+
+        settings = call.settings(BOUNDARY_SETTINGS, tolerances=tolerances(call))
+        warnings = []
+
+        def warn(text):
+            warnings.append(text)
+            progress.warn(text)
+
+        result, (reference, excluded, kinds) = layer_of(call, "INPUT"), layer_and_excluded(call, "REFERENCE")
+        for layer in (result, reference):
+            check_kind(layer, ("LineString", "Polygon"), tr("lines"))
+        crs = common_crs((reference, result))
+        result, reference = in_crs(result, crs, warn), in_crs(reference, crs, warn)
+        check_overlap(result, reference)
+        progress.at(0.2)
+        frame, area = frame_of_drive(call, crs), area_of(call, crs, warn)
+        for choose in (bottoms_only, along_the_road_only):
+            result, _ = choose(result, warn)
+            reference, kept = choose(reference, warn)
+            excluded, kinds = ([values[k] for k in kept] for values in (excluded, kinds))
+        judged = reference.only([not x for x in excluded])
+        check_reference(judged, result, frame, area, settings.corridor, warn)
+        progress.at(0.4)
+        accuracy = assess_boundaries(
+            result.geometries, judged.geometries, settings, frame, reference.only(excluded).geometries,
+            [kind for kind, out in zip(kinds, excluded) if out], area, judged.column("side"), progress.part(0.4, 0.8))
+        progress.at(0.8)
+        layer = boundary_layer(accuracy, crs, progress.part(0.8, 0.95))
+        call.layer("OUTPUT", layer)
+        if call.wants("REPORT"):
+            call.text("REPORT", boundary_report(accuracy, layer, (call.layer_name("INPUT"), call.layer_name("REFERENCE")), warnings))
+        numbers = found_numbers(_numbers(accuracy))
+        progress.say(tr("Intervals within {tolerance:g} cm: {correct:.0f} correct, {missed:.0f} missed, {false:.0f} false; {rates}.").format(
+            correct=numbers["CORRECT"], missed=numbers["MISSED"], false=numbers["FALSE"], tolerance=100 * settings.tolerance,
+            rates=shares_of(numbers, ("PRECISION", "RECALL", "F1"))))
+        return numbers
+
+
+def _numbers(accuracy):
+    tolerance = accuracy.settings.tolerance
+    total = accuracy.total[tolerance]
+    numbers = {
+        "PRECISION": 100 * total.rates.precision, "RECALL": 100 * total.rates.recall, "F1": 100 * total.rates.f1, "IOU": 100 * total.rates.iou,
+        "CORRECT": total.rates.right, "MISSED": total.rates.missed, "FALSE": total.rates.false,
+        "EXCLUDED_INTERVALS": (accuracy.intervals.excluded != "").sum(),
+        "MEAN": total.lateral.mean, "RMSE": total.lateral.rmse, "P95": total.lateral.p95, "MAXIMUM": total.lateral.maximum,
+        "HEIGHT_MEAN": total.height.mean, "HEIGHT_RMSE": total.height.rmse, "HEIGHT_P95": total.height.p95, "HEIGHT_MAXIMUM": total.height.maximum,
+    }
+    for side in ("left", "right"):
+        if side in accuracy.by_side:
+            rates = accuracy.by_side[side][tolerance].rates
+            shares = {"PRECISION": rates.precision, "RECALL": rates.recall, "F1": rates.f1}
+            numbers |= {f"{name}_{side.upper()}": 100 * share for name, share in shares.items()}
+    return numbers

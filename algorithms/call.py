@@ -1,0 +1,276 @@
+"""One run of an algorithm: the values the user gave, and the results on their way out.
+
+`Call` is what the algorithms see. Each program that runs them (QGIS Processing, the library) derives its own,
+which knows how values are given there and how layers are read and written.
+"""
+
+import tempfile
+from pathlib import Path
+
+from ..core.common.errors import Cancelled, RoadExtractionError
+from ..core.common.parallel import heard
+from .destinations import UnfinishedFiles, check_suffix, check_writable, destination_path
+from .parameters import settings_class
+from .texts import tr
+from .trajectory_source import read_trajectory_source, trajectory_path
+from .vector_source import read_features
+
+
+class Call:
+    """Reads parameters into what the core takes, and writes what the core gave.
+
+    Attributes
+    ----------
+    algorithm : Algorithm
+    parameters : dict, parameter name to what was given
+    """
+
+    VECTOR_SUFFIXES = ()  # endings of the vector formats that can be written
+
+    def __init__(self, algorithm, parameters):
+        self.algorithm, self.parameters = algorithm, parameters
+        self._files = UnfinishedFiles()
+        self._scratch = tempfile.TemporaryDirectory(prefix="lanewright-")
+        self._results = {}
+        self._layers = []
+
+    def label(self, name):
+        return self.algorithm.parameter(name).label
+
+    # -- what each program does its own way ---------------------------------------------------
+
+    def files(self, name):
+        """The paths given for a parameter of several files."""
+        raise NotImplementedError
+
+    def file(self, name):
+        """The path given for a file parameter, "" for none; it need not be there."""
+        raise NotImplementedError
+
+    def number(self, name):
+        raise NotImplementedError
+
+    def whole(self, name):
+        """A whole number."""
+        raise NotImplementedError
+
+    def flag(self, name):
+        """Yes or no."""
+        raise NotImplementedError
+
+    def choice(self, name):
+        """One of the words of a choice."""
+        raise NotImplementedError
+
+    def string(self, name):
+        """A text as it was given."""
+        raise NotImplementedError
+
+    def crs(self, name="CRS"):
+        """WKT, or "" where none was chosen; raises RoadExtractionError where it is not known."""
+        raise NotImplementedError
+
+    def raster(self, name):
+        """The file of a raster input."""
+        raise NotImplementedError
+
+    def source(self, name):
+        """A vector input as VectorSource; None where the optional parameter is empty."""
+        raise NotImplementedError
+
+    def painted(self, name):
+        """(VectorSource, "", "") or, of a raster, (None, path, WKT of its CRS)."""
+        raise NotImplementedError
+
+    def rows_where(self, name, source):
+        """Whether the expression of a parameter holds, for every row of a VectorSource; None where the expression is empty."""
+        raise NotImplementedError
+
+    def layer_name(self, name):
+        """What the user calls a layer that was given."""
+        raise NotImplementedError
+
+    def destination(self, name):
+        """Where a result is to be written, as text; "" where it is not wanted."""
+        raise NotImplementedError
+
+    def output_path(self, name):
+        """The file that a wanted file or raster result goes to."""
+        raise NotImplementedError
+
+    def read_as(self, value, path):
+        """The label of the input whose file or table a destination would replace, or ""."""
+        raise NotImplementedError
+
+    def finish(self, numbers):
+        """Write the layers, give files their names, and return all results by name."""
+        raise NotImplementedError
+
+    # -- in ---------------------------------------------------------------------------------
+
+    def given(self, name):
+        """Whether the user gave anything for a parameter."""
+        return self.parameters.get(name) not in (None, "", [])
+
+    def point_clouds(self):
+        """Paths of the clouds, each proven to be there."""
+        return [existing_file(path, self.label("POINT_CLOUDS")) for path in self.files("POINT_CLOUDS")]
+
+    def surveyed(self):
+        """The point clouds whose name the results go by; none where a stage starts from another's result."""
+        return [] if self.algorithm.parameter("POINT_CLOUDS") is None else self.files("POINT_CLOUDS")
+
+    def cloud(self, name):
+        """The path of one point cloud; "" where the optional parameter is empty."""
+        path = self.file(name)
+        return existing_file(path, self.label(name)) if path else ""
+
+    def trajectory(self, name="TRAJECTORY", crs="", heights_needed=True):
+        """The trajectory as the core takes it, from a layer, a table or a file; `crs` overrules what it says."""
+        path = trajectory_path(self.parameters.get(name))
+        if path is not None:
+            from ..core.survey.trajectory.reader import read_trajectory
+
+            return read_trajectory(existing_file(str(path), self.label(name)), crs)
+        source = self.source(name)
+        return None if source is None else read_trajectory_source(source, crs, heights_needed)
+
+    def raster_in(self, name, crs):
+        """The file of an optional raster input, reprojected by a small VRT where it lies in another CRS; None where it was not given."""
+        if not self.parameters.get(name):
+            return None
+        from osgeo import gdal
+
+        from ..core.io.crs import parse_crs, same_place
+        from ..core.io.gdal_errors import gdal_exceptions
+
+        path = self.raster(name)
+        with gdal_exceptions():
+            own = gdal.Open(path).GetProjection()
+        if not own or not crs or same_place(parse_crs(own), parse_crs(crs)):
+            return path
+        target = self.scratch_file(f"{name.lower()}.vrt")
+        with gdal_exceptions():
+            gdal.Warp(target, path, format="VRT", dstSRS=crs)
+        return target
+
+    def features(self, name, schema, geometry_type):
+        """A vector input as Features; None where the optional parameter is empty."""
+        source = self.source(name)
+        return None if source is None else read_features(source, schema, geometry_type)
+
+    def setting(self, spec):
+        """What the user chose for a SettingSpec, in the type of the core's default."""
+        read = {"choice": self.choice, "flag": self.flag, "text": self.string, "whole": self.whole, "number": self.number}
+        return read[spec.kind()](spec.name)
+
+    def settings(self, specs, **more):
+        """The core Settings object that these specs describe; one that the algorithm does not offer keeps its default."""
+        offered = [spec for spec in specs if self.algorithm.parameter(spec.name) is not None]
+        return settings_class(specs[0].settings)(**{spec.field: self.setting(spec) for spec in offered}, **more)
+
+    def wants(self, name):
+        """Whether an optional output was asked for."""
+        return bool(self.destination(name))
+
+    # -- out --------------------------------------------------------------------------------
+
+    def check_destinations(self):
+        """Prove every output writable before the work, so that a read-only disk is reported now."""
+        taken = {}
+        for spec in self.algorithm.outputs():
+            value = self.destination(spec.name)
+            path = destination_path(value)
+            if path is None:
+                continue
+            check_suffix(path, spec, self.VECTOR_SUFFIXES)
+            read = self.read_as(value, path)
+            if read:
+                raise RoadExtractionError(
+                    tr("{label} would be written over {path}, which is read as {input}: inputs are never changed. Give it another name.").format(
+                        label=spec.label, path=path, input=read)
+                )
+            # layers of one GeoPackage differ in the rest of the value
+            place = str(path.absolute()) if value == str(path) else value
+            if place in taken:
+                raise RoadExtractionError(
+                    tr("{first} and {second} would both be written to {path}, and one would be lost. Give each a file of its own, "
+                       "or name the layers in one GeoPackage: ogr:dbname='map.gpkg' table=\"road_edges\" (geom).").format(
+                        first=taken[place], second=spec.label, path=path)
+                )
+            taken[place] = spec.label
+            check_writable(path, spec.label)
+
+    def new_file(self, name):
+        """A temporary path for a file or raster output; "" where it is not wanted."""
+        if not self.wants(name):
+            return ""
+        self._results[name] = path = self.output_path(name)
+        return self._files.begin(path)
+
+    def scratch_file(self, name):
+        """A path in a folder that vanishes with the run."""
+        return str(Path(self._scratch.name) / name)
+
+    def drop_file(self, name):
+        """Take back a file that `new_file` began: there is nothing to put into it."""
+        path = self._results.pop(name, "")
+        if path:
+            self._files.forget(path)
+
+    def text(self, name, text):
+        """Write a text result (a report) where it is wanted."""
+        if self.wants(name):
+            Path(self.new_file(name)).write_text(text, encoding="utf-8")
+
+    def layer(self, name, features):
+        """Remember a vector result; it is written in `finish`, when nothing can fail any more."""
+        if self.wants(name):
+            self._layers.append((name, features))
+
+    def in_users_names(self, text):
+        """A message with the names of unfinished files replaced by those the user gave."""
+        return self._files.in_users_names(text)
+
+    def discard_unfinished(self):
+        self._files.discard()
+        self._scratch.cleanup()
+
+
+def run(call, progress):
+    """Run the algorithm of a call.
+
+    Returns
+    -------
+    (results by name, "") or ({}, one sentence on why there are none)
+    """
+    try:
+        call.check_destinations()
+        with heard(progress):
+            results = call.algorithm.work(call, progress)
+        return call.finish(results or {}), ""
+    except RoadExtractionError as error:
+        return {}, call.in_users_names(str(error))
+    except Cancelled:
+        return {}, tr("Cancelled")
+    except OSError as error:
+        if error.strerror is None:
+            raise
+        return {}, f"{error.strerror}: {error.filename or tr('while writing')}"
+    except MemoryError:
+        return {}, tr("Not enough memory for this step; close other programs or process fewer files at once.")
+    finally:
+        call.discard_unfinished()
+
+
+def existing_file(path, label):
+    """The path, or one sentence on why it cannot be used."""
+    if "://" in path or "|" in path:
+        raise RoadExtractionError(
+            tr("{label} names {path}, which is not a file. Choose the LAS or LAZ file itself.").format(label=label, path=path)
+        )
+    if not Path(path).is_file():
+        raise RoadExtractionError(
+            tr("{label}: there is no file {path}. Check the name and the folder.").format(label=label, path=path)
+        )
+    return path

@@ -1,0 +1,78 @@
+"""Driving lines and their curve elements."""
+
+from ...core.common.schemas import CURVE_ELEMENTS, DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES
+from ..algorithm import Algorithm
+from ..parameters import SettingSpec
+from ..survey_input import frame_of, road_points_of
+from ..texts import tr
+
+DRIVING = "driving.settings:DrivingSettings"
+
+DRIVING_SETTINGS = (
+    SettingSpec(
+        "LANE_WIDTH", DRIVING, "lane_width", tr("Lane width, 0 = as seen on the road (m)"),
+        tr("Where only the outer lines are painted, the number of lanes follows from their distance and this width. "
+           "Wider makes fewer lanes."),
+    ),
+    SettingSpec(
+        "LINE_DISTANCE", DRIVING, "line_distance", tr("Distance from a line without partner, 0 = half a lane (m)"),
+        tr("How far beside a painted line the driving line runs where the lane has no second line."),
+        advanced=True,
+    ),
+    SettingSpec(
+        "TRAFFIC_SIDE", DRIVING, "traffic_side", tr("Side of traffic"),
+        tr("The side one drives on; it gives the driving lines their direction. Automatic goes by the lane the "
+           "vehicle itself used."),
+        choices=("automatic", "right", "left"),
+    ),
+    SettingSpec(
+        "MAX_BRIDGE", DRIVING, "max_bridge", tr("Longest gap of all lines bridged (m)"),
+        tr("Longer leads lanes through wider crossings; shorter leaves them open."), advanced=True,
+    ),
+    SettingSpec(
+        "MAX_INFERRED", DRIVING, "max_inferred", tr("Longest gap beside other lines closed (m)"),
+        tr("Where another line of the road goes on, a lane is led along it through a gap up to this length."),
+        advanced=True,
+    ),
+    SettingSpec(
+        "SHORTEST", DRIVING, "shortest", tr("Shortest driving line (m)"),
+        tr("Shorter keeps stubs at the ends of the survey."), advanced=True,
+    ),
+)
+
+
+class DrivingLines(Algorithm):
+    ID, TITLE, GROUP = "drivinglines", "Driving lines", "Driving"
+    SUMMARY = "Draws the line to drive in every lane, in the direction of travel, and tabulates the elements of its curves."
+    TAGS = ("lane", "centre line", "hd map", "curve elements", "radius")
+
+    def declare(self):
+        self.add_layer("MARKING_LINES", tr("Marking lines"), tr("The layer written by Fit marking lines."), "LineStringZ")
+        self.add_trajectory()
+        self.add_layer(
+            "MARKINGS", tr("Markings"), tr("With it a lane is led through zebra crossings and past stop lines, and gaps are told apart."),
+            "PolygonZ", optional=True,
+        )
+        self.add_layer(
+            "ROAD_EDGES", tr("Road edges"), tr("With it lanes without an outer line end at the edge."), "LineStringZ", optional=True
+        )
+        self.add_cloud("ROAD_POINTS", tr("Road points"), tr("With it heights are the road's own."), optional=True)
+        self.add_settings(DRIVING_SETTINGS)
+        self.add_sink("DRIVING_LINES", tr("Driving lines"), fields=DRIVING_LINES, geometry="LineStringZ")
+        self.add_sink("CURVE_ELEMENTS", tr("Curve elements"), fields=CURVE_ELEMENTS, geometry="None", optional=True)
+
+    def work(self, call, progress):
+        from ...core.driving.driving_lines import driving_lines
+
+        marking_lines = call.features("MARKING_LINES", MARKING_LINES, "LineStringZ")
+        markings = call.features("MARKINGS", MARKINGS, "PolygonZ")
+        edges = call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ")
+        road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.3)) if call.cloud("ROAD_POINTS") else None
+        layers = {"MARKING_LINES": marking_lines, "MARKINGS": markings, "ROAD_EDGES": edges}
+        frame = frame_of(call, marking_lines.crs, progress, road_points, layers)
+        lines, elements = driving_lines(
+            marking_lines, frame, call.settings(DRIVING_SETTINGS), progress.part(0.3, 1.0),
+            markings=markings, edges=edges, road_points=road_points,
+        )
+        call.layer("DRIVING_LINES", lines)
+        call.layer("CURVE_ELEMENTS", elements)

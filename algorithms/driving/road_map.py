@@ -1,0 +1,113 @@
+"""The whole chain in one call."""
+
+from ...core.common.errors import RoadExtractionError
+from ...core.common.features import Features
+from ...core.common.schemas import CURB_POINTS, CURVE_ELEMENTS, DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES, ROAD_SURFACE
+from ..algorithm import Algorithm
+from ..markings.cluster_markings import CLUSTER_SETTINGS
+from ..markings.correct_intensity import INTENSITY_SETTINGS
+from ..markings.extract_markings import MARKING_SETTINGS
+from ..markings.fit_marking_lines import LINE_SETTINGS
+from ..markings.intensity_image import IMAGE_SETTINGS
+from ..markings.remove_outliers import OUTLIER_SETTINGS
+from ..parameters import FlagSpec
+from ..road.boundaries_from_scanlines import SCANLINE_METHOD_SETTINGS
+from ..road.detect_boundaries import METHOD_SETTING, PLANE_SETTINGS
+from ..road.detect_curbs import CURB_SETTINGS
+from ..road.extract_road_surface import SURFACE_SETTINGS
+from ..road.fit_road_edges import EDGE_SETTINGS
+from ..survey_input import SURVEY_SETTINGS, survey_inputs
+from ..texts import tr
+from .driving_lines import DRIVING_SETTINGS
+
+# Field of RoadMapSettings -> its settings
+STAGES = {
+    "curbs": CURB_SETTINGS,
+    "planes": PLANE_SETTINGS,
+    "scanlines": SCANLINE_METHOD_SETTINGS,
+    "edges": EDGE_SETTINGS,
+    "surface": SURFACE_SETTINGS,
+    "intensity": INTENSITY_SETTINGS,
+    "image": IMAGE_SETTINGS,
+    "markings": MARKING_SETTINGS,
+    "outliers": OUTLIER_SETTINGS,
+    "clusters": CLUSTER_SETTINGS,
+    "lines": LINE_SETTINGS,
+    "driving": DRIVING_SETTINGS,
+}
+
+# The dialog shows what one turns from survey to survey, folds away what one turns now and then,
+# and leaves the rest to the single stages
+BASIC = ("MIN_HEIGHT", "MAX_HEIGHT", "MAX_GAP", "CELL_SIZE", "LANE_WIDTH", "TRAFFIC_SIDE")
+ADVANCED = ("SLOPE", "INTERVAL", "SCANLINE_MIN_HEIGHT", "BLOCK_LENGTH", "FALLBACK_WIDTH", "MAX_WIDTH", "METHOD", "CURVE", "DEGREE", "LINE_DISTANCE")
+
+LAYERS = (
+    ("ROAD_EDGES", "edges", "LineStringZ", ROAD_EDGES, tr("Road edges")),
+    ("ROAD_SURFACE", "surface", "PolygonZ", ROAD_SURFACE, tr("Road surface")),
+    ("MARKINGS", "markings", "PolygonZ", MARKINGS, tr("Markings")),
+    ("MARKING_LINES", "marking_lines", "LineStringZ", MARKING_LINES, tr("Marking lines")),
+    ("DRIVING_LINES", "driving_lines", "LineStringZ", DRIVING_LINES, tr("Driving lines")),
+    ("CURVE_ELEMENTS", "curve_elements", "None", CURVE_ELEMENTS, tr("Curve elements")),
+)
+
+
+class RoadMap(Algorithm):
+    ID, TITLE, GROUP = "roadmap", "Road map", "Road map"
+    SUMMARY = "From a survey to driving lines in one call: edges, surface, intensity image, markings, lines and curve elements."
+    HELP = "The same stages as the single algorithms, handed on in memory. Every output is optional."
+    TAGS = ("hd map", "lane", "driving line", "road marking", "curb", "kerb")
+    NEEDS_GDAL = True  # the stages hand the intensity image on as a GeoTIFF
+
+    def declare(self):
+        self.add_survey()
+        self.add_settings((METHOD_SETTING,))
+        self.add(FlagSpec(
+            "CORRECT_INTENSITY", tr("Correct intensity first"),
+            tr("Evens out range, incidence and the difference between scanners. Switch it off for clouds whose "
+               "intensity was corrected already."),
+            value=True,
+        ))
+        for specs in STAGES.values():
+            self.add_settings(specs, only=BASIC)
+        for specs in STAGES.values():
+            self.add_settings(specs, only=ADVANCED, advanced=True)
+        self.add_settings(SURVEY_SETTINGS)
+        for name, _, geometry, fields, label in LAYERS:
+            self.add_sink(name, label, fields=fields, geometry=geometry, optional=True)
+        self.add_sink("CURB_POINTS", tr("Curb points"), fields=CURB_POINTS, geometry="PointZ", optional=True, by_default=False)
+        self.add_laz(
+            "ROAD_POINTS", tr("Road points"), tr("Class 11, with the fields the single stages need."), optional=True, by_default=False
+        )
+        self.add_raster("INTENSITY_IMAGE", tr("Intensity image"), optional=True)
+        self.add_report()
+
+    def work(self, call, progress):
+        from ...core.pipeline.road_map import RoadMapSettings, make_road_map
+        from ...core.survey.road_points_las import write_road_points
+
+        settings = RoadMapSettings(
+            correct=call.flag("CORRECT_INTENSITY"),
+            boundary_method=call.setting(METHOD_SETTING),
+            survey=call.settings(SURVEY_SETTINGS, crs=call.crs()),
+            **{field: call.settings(specs) for field, specs in STAGES.items()},
+        )
+        paths, trajectory = survey_inputs(call, progress)
+        if not any(call.wants(one.name) for one in self.outputs()):
+            raise RoadExtractionError(tr(
+                "No result was asked for, and all of the work would be lost. Name at least one output, such as DRIVING_LINES, MARKINGS or REPORT."))
+        image_path = call.new_file("INTENSITY_IMAGE") or call.scratch_file("intensity.tif")
+        road_map = make_road_map(paths, trajectory, image_path, settings, progress.part(0.0, 0.95))
+        if call.wants("ROAD_POINTS"):
+            write_road_points(road_map.road_points, call.new_file("ROAD_POINTS"), progress.part(0.95, 1.0))
+        road_map.road_points.close()
+        if road_map.image is None:
+            call.drop_file("INTENSITY_IMAGE")
+        for name, attribute, geometry, fields, _ in LAYERS:
+            layer = getattr(road_map, attribute)
+            call.layer(name, layer if layer is not None else Features(geometry, fields, crs=road_map.crs))
+        call.layer("CURB_POINTS", road_map.curb_points)
+        if call.wants("REPORT"):
+            from ...core.report.road_map import road_map_report
+
+            call.text("REPORT", road_map_report(road_map, image_path))
+        return {}

@@ -1,0 +1,44 @@
+"""Paint gathered into markings."""
+
+from ...core.common.schemas import MARKINGS
+from ..algorithm import Algorithm
+from ..parameters import SettingSpec
+from ..survey_input import frame_of, paint_of
+from ..texts import tr
+
+CLUSTERS = "markings.objects.cluster:ClusterSettings"
+
+CLUSTER_SETTINGS = (
+    SettingSpec(
+        "DISTANCE", CLUSTERS, "distance", tr("Distance that joins points (m)"),
+        tr("Larger joins worn paint into one marking, but also neighbouring markings; smaller keeps them apart."),
+    ),
+    SettingSpec(
+        "MIN_POINTS", CLUSTERS, "min_points", tr("Fewest points of a marking (points)"),
+        tr("Fewer keeps tiny remains of paint, and specks that are none."), advanced=True,
+    ),
+)
+
+
+class ClusterMarkings(Algorithm):
+    ID, TITLE, GROUP = "clustermarkings", "Cluster markings", "Markings"
+    SUMMARY = "Gathers paint into markings, measures them and tells lines from crossings, arrows and the rest."
+    TAGS = ("road marking", "lane marking", "cluster", "zebra crossing", "stop line", "arrow")
+
+    def declare(self):
+        self.add_cloud("MARKING_POINTS", tr("Marking points"), tr("The file written by Remove outliers or Extract markings."))
+        self.add_trajectory()
+        self.add_settings(CLUSTER_SETTINGS)
+        self.add_sink("MARKINGS", tr("Markings"), fields=MARKINGS, geometry="PolygonZ")
+        self.add_laz("CLUSTERED_POINTS", tr("Clustered points"), tr("The points with the extra field cluster."))
+
+    def work(self, call, progress):
+        from ...core.markings.objects.cluster import cluster_markings
+        from ...core.markings.objects.marking_objects import markings_to_features
+        from ...core.survey.road_points_las import write_road_points
+
+        points = paint_of(call, "MARKING_POINTS", progress.part(0.0, 0.2))
+        frame = frame_of(call, points.crs, progress, points)
+        markings, clustered = cluster_markings(points, frame, call.settings(CLUSTER_SETTINGS), progress.part(0.2, 0.9))
+        write_road_points(clustered, call.new_file("CLUSTERED_POINTS"), progress.part(0.9, 1.0))
+        call.layer("MARKINGS", markings_to_features(markings, frame))

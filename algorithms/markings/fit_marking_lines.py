@@ -1,0 +1,66 @@
+"""Markings as curves."""
+
+from ...core.common.schemas import MARKING_LINES, MARKINGS
+from ..algorithm import Algorithm
+from ..parameters import SettingSpec
+from ..survey_input import frame_of, paint_of
+from ..texts import tr
+
+LINES = "markings.lines.fit:LineSettings"
+
+LINE_SETTINGS = (
+    SettingSpec(
+        "CURVE", LINES, "curve", tr("Curve fitted to marking lines"),
+        tr("Automatic takes the simplest curve that fits (Bayesian information criterion). Choose one to force it "
+           "on every line."),
+        choices=("automatic", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline"),
+    ),
+    SettingSpec(
+        "DEGREE", LINES, "degree", tr("Degree of the polynomial (0-9)"),
+        tr("Used with polynomial only. Higher follows more bends, but swings between its points."),
+    ),
+    SettingSpec(
+        "LINK_GAP", LINES, "max_gap", tr("Longest gap between dashes linked (m)"),
+        tr("Longer links dashes that stand far apart, but also lines that end and begin anew."),
+        advanced=True,
+    ),
+    SettingSpec(
+        "LINK_BRIDGE", LINES, "max_bridge", tr("Longest gap linked by rhythm (m)"),
+        tr("Up to here a line goes on where its own rhythm of dashes or a line beside it carries over; flagged as bridged."),
+        advanced=True,
+    ),
+    SettingSpec(
+        "MIN_PAINT", LINES, "min_paint", tr("Least paint of a line (m)"),
+        tr("Less makes lines of short remains, and of marks that are none."), advanced=True,
+    ),
+)
+
+
+class FitMarkingLines(Algorithm):
+    ID, TITLE, GROUP = "fitmarkinglines", "Fit marking lines", "Markings"
+    SUMMARY = "Links dashes along the road and fits a curve to every painted line."
+    LOOKS = {"NAMED_MARKINGS": "MARKINGS"}
+    TAGS = ("lane line", "curve fitting", "circle", "clothoid", "spline")
+
+    def declare(self):
+        self.add_cloud("CLUSTERED_POINTS", tr("Clustered points"), tr("The file written by Cluster markings."))
+        self.add_layer("MARKINGS", tr("Markings"), tr("The layer written by Cluster markings together with the points."), "PolygonZ")
+        self.add_trajectory()
+        self.add_settings(LINE_SETTINGS)
+        self.add_sink("MARKING_LINES", tr("Marking lines"), fields=MARKING_LINES, geometry="LineStringZ")
+        self.add_sink("NAMED_MARKINGS", tr("Markings named by their lines"), fields=MARKINGS, geometry="PolygonZ", optional=True, by_default=False,
+                      text=tr("The markings again, each dash and piece of a line with the class of the line that runs along it: alone, a dash of a "
+                              "centre line looks like any other."))
+
+    def work(self, call, progress):
+        from ...core.markings.lines.fit import fit_marking_lines, named_by_lines
+        from ...core.markings.objects.marking_objects import markings_from_features, with_kinds_of
+
+        layer = call.features("MARKINGS", MARKINGS, "PolygonZ")
+        points = paint_of(call, "CLUSTERED_POINTS", progress.part(0.0, 0.2))
+        frame = frame_of(call, points.crs, progress, points, {"MARKINGS": layer})
+        markings = markings_from_features(layer, frame)
+        lines = fit_marking_lines(points, markings, frame, call.settings(LINE_SETTINGS), progress.part(0.2, 1.0))
+        call.layer("MARKING_LINES", lines)
+        if call.wants("NAMED_MARKINGS"):
+            call.layer("NAMED_MARKINGS", with_kinds_of(layer, named_by_lines(markings, lines, frame)))

@@ -1,0 +1,150 @@
+"""A UAV image placed on the map by ground control points."""
+
+from ...core.common.errors import RoadExtractionError
+from ...core.common.schemas import RESIDUALS
+from ..algorithm import Algorithm
+from ..parameters import CrsSpec, FileSpec, SettingSpec
+from ..texts import tr
+from .control_point_layer import read_control_point_layer
+
+GEOREFERENCE = "overlay.georeference:GeoreferenceSettings"
+POINTS_FILTER = "Control points (*.points *.csv *.txt *.POINTS *.CSV *.TXT);;All files (*.*)"
+
+GEOREFERENCE_SETTINGS = (
+    SettingSpec(
+        "ORDER", GEOREFERENCE, "order", tr("Order of the polynomial (0-3)"),
+        tr("0 only shifts an image that already has a rough position; 1 also turns, scales and shears it (3 points or more), 2 also "
+           "bends it (6), 3 bends it twice (10). Higher follows the points more closely and runs away faster outside them: "
+           "watch the leave-one-out error, which falls only as long as the order is worth it."),
+    ),
+    SettingSpec(
+        "PIXEL_SIZE", GEOREFERENCE, "pixel_size", tr("Pixel size (m)"),
+        tr("Of the result; 0 keeps that of the image. Smaller makes a larger file, not a sharper image. A shift (order 0) of an image "
+           "without position takes this as the image's own pixel size, north up."),
+    ),
+    SettingSpec(
+        "EXTRAPOLATION", GEOREFERENCE, "extrapolation", tr("Outside the control points"),
+        tr("What becomes of the image outside the hull of the control points, where the polynomial extrapolates: automatic draws it "
+           "up to order 2 and leaves it out at order 3."),
+        choices=("automatic", "draw", "leave-out"), advanced=True,
+    ),
+    SettingSpec(
+        "RESAMPLING", GEOREFERENCE, "resampling", tr("Resampling"),
+        tr("Bilinear is smooth and safe, cubic a little sharper, nearest keeps the values as they are (for classes and temperatures)."),
+        choices=("bilinear", "nearest", "cubic"), advanced=True,
+    ),
+    SettingSpec(
+        "CHECK_DISABLED", GEOREFERENCE, "check_disabled", tr("Disabled points are check points"),
+        tr("Points that are switched off in the georeferencer, or have 0 in a column enable, judge the result instead of being passed "
+           "over. A layer or CSV may name check points in a column role."),
+        advanced=True,
+    ),
+)
+
+NUMBERS = (
+    ("POINTS", tr("Control points")),
+    ("RMSE", tr("RMSE of the control points (m)")),
+    ("LEFT_OUT_RMSE", tr("RMSE of the control points, each left out in turn (m)")),
+    ("CHECK_POINTS", tr("Check points")),
+    ("CHECK_RMSE", tr("RMSE of the check points (m)")),
+    ("LARGEST", tr("Largest residual of a control point (m)")),
+    ("OUTSIDE", tr("Image outside the hull of the control points (%)")),
+)
+
+
+class GeoreferenceImage(Algorithm):
+    ID, TITLE, GROUP = "georeferenceimage", "Georeference image", "Orthoimages"
+    SUMMARY = "Places a UAV image on the map by ground control points, and tells how well it lies there."
+    HELP = ("Control points come as a layer or as a file, each with pixel, line, easting and northing; pixel and line count from the "
+            "outer corner of the first pixel. The result is a GeoTIFF in the CRS of the control points.\n\n"
+            "Spread the points over the whole image, its corners first: between them the polynomial is held, outside it runs away. Take twice "
+            "as many as the order needs. Judge the result by check points, or by the error of each point without itself (leave-one-out), not by "
+            "the residuals, which the polynomial was bent to make small. Control points taken from the point cloud tell how "
+            "well the image fits the cloud, not how well either fits the ground.")
+    TAGS = ("UAV", "drone", "orthoimage", "GCP", "georeferencer", "polynomial", "warp")
+    LOOKS = {"OUTPUT": "ORTHOIMAGE"}
+
+    def declare(self):
+        self.add_layer_raster("IMAGE", tr("Image"), tr("TIFF, JPEG, PNG or any other raster, with a position on the map or without."))
+        self.add_layer(
+            "GCPS", tr("Control points (layer)"),
+            tr("A point layer with the fields pixel and line, or a table that also has easting and northing. A field role (control or check) "
+               "sets points aside that only judge the result, a field enable switches points off."),
+            optional=True,
+        )
+        self.add(FileSpec(
+            "GCP_FILE", tr("Control points (file)"),
+            tr("In place of a layer: the .points file of QGIS's georeferencer, or a CSV with the columns pixel, line, easting, northing in any "
+               "order."),
+            optional=True, file_filter=POINTS_FILTER,
+        ))
+        self.add(CrsSpec("CRS", tr("CRS of the control points"),
+                         tr("Only for control points that name none of their own. It must be projected, in metres."), optional=True))
+        self.add_settings(GEOREFERENCE_SETTINGS)
+        self.add_raster("OUTPUT", tr("Georeferenced image"), tr("GeoTIFF with overviews; transparent or without data where the image ends."))
+        self.add_sink("RESIDUALS", tr("Residuals"), tr("From where the polynomial puts each point to where it was measured."), "LineStringZ",
+                      optional=True, fields=RESIDUALS)
+        self.add_report()
+        for name, label in NUMBERS:
+            self.add_number(name, label)
+
+    def work(self, call, progress):
+        from ...core.overlay.georeference import georeference, residual_vectors
+        from ...core.overlay.source_image import open_image
+        from ...core.overlay.warp import draw_image
+        from ...core.report.georeferencing import georeferencing_report
+
+        image = open_image(call.raster("IMAGE"))
+        if image.geotransform is None:
+            # QGIS looks at a raster as a map layer before it starts an algorithm, and passes on what GDAL thinks of it
+            progress.say(tr("The image has no position yet; the control points give it one. A line above, GDAL ERROR 1: Unable to compute "
+                            "a transformation, is QGIS saying the same and harmless."))
+        found = georeference(image, _control_points(call, image, progress), call.settings(GEOREFERENCE_SETTINGS))
+        for note in found.notes:
+            progress.warn(note)
+        values = _numbers(found)
+        progress.say(tr("Control points: {count}, order {order}, RMSE {rmse:.3f} m, each left out in turn {left:.3f} m.").format(
+            count=values["POINTS"], order=found.settings.order, rmse=values["RMSE"], left=found.left_out_rmse))
+        if values["CHECK_POINTS"]:
+            progress.say(tr("Check points: {count}, RMSE {rmse:.3f} m.").format(count=values["CHECK_POINTS"], rmse=values["CHECK_RMSE"]))
+        drawn = call.new_file("OUTPUT")
+        departure = draw_image(found, drawn, progress.part(0.02, 0.97))
+        call.layer("RESIDUALS", residual_vectors(found))
+        if call.wants("REPORT"):
+            call.text("REPORT", call.in_users_names(georeferencing_report(found, drawn, departure)))
+        return values
+
+
+def _control_points(call, image, progress):
+    """From the layer or the file, whichever was given."""
+    from ...core.io.crs import horizontal, parse_crs, same_place
+    from ...core.overlay.control_points import read_control_points
+
+    given = call.crs()
+    path = call.file("GCP_FILE")
+    source = call.source("GCPS")
+    if bool(path) == (source is not None):
+        raise RoadExtractionError(
+            tr("Control points were given twice, as a layer and as a file. Leave one of them empty.") if path else
+            tr("There are no control points. Choose a layer, or a .points or CSV file."))
+    if path:
+        points = read_control_points(path, image, given)
+    else:
+        points = read_control_point_layer(source, image, given)
+    if given and not same_place(parse_crs(given), parse_crs(points.crs)):
+        progress.warn(tr("The control points say that they are in {own}; the CRS given is for points that name none and was not used.").format(
+            own=horizontal(parse_crs(points.crs)).name))
+    return points
+
+
+def _numbers(found):
+    from ...core.overlay.control_points import CHECK, CONTROL
+
+    lengths = [float((dx * dx + dy * dy) ** 0.5) for dx, dy in found.errors[found.points.having(CONTROL)]]
+    values = {
+        "POINTS": len(lengths), "RMSE": found.rmse(), "LEFT_OUT_RMSE": found.left_out_rmse,
+        "CHECK_POINTS": len(found.points.having(CHECK)), "CHECK_RMSE": found.rmse(CHECK), "LARGEST": max(lengths),
+        "OUTSIDE": 100.0 * found.outside,
+    }
+    # JSON knows no NaN: what cannot be told is left out
+    return {name: value for name, value in values.items() if value == value}

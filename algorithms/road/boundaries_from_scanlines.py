@@ -1,0 +1,104 @@
+"""Corners and boundary lines from normalized scanlines."""
+
+from ...core.common.schemas import CURB_POINTS, ROAD_EDGES, SCANLINES
+from ..algorithm import Algorithm
+from ..parameters import SettingSpec
+from ..survey_input import frame_of
+from ..texts import tr
+
+SCANLINE_BOUNDARIES = "road.scanlines.detect:ScanlineBoundarySettings"
+
+
+def setting_spec(name, field, label, text, advanced=False):
+    return SettingSpec(name, SCANLINE_BOUNDARIES, field, label, text, advanced=advanced)
+
+
+SHARED_SETTINGS = (
+    setting_spec(
+        "SEARCH_WIDTH", "search_width", tr("Search width across a step (m)"),
+        tr("The height must change within this width. Wider finds rounded and bevelled curbs, but also ramps."), True,
+    ),
+    setting_spec(
+        "SENSOR_HEIGHT", "sensor_height", tr("Trajectory above the road, 0 = from the data (m)"),
+        tr("Give it where little road was scanned under the vehicle; otherwise the data know better."), True,
+    ),
+    setting_spec(
+        "CLIPPING_HEIGHT", "clipping_height", tr("Height above the road that is looked at (m)"),
+        tr("Higher keeps curbs on steeply banked roads, but also low walls and the sills of cars."), True,
+    ),
+    setting_spec(
+        "DISTANCE_ACROSS", "distance_across", tr("Reach of a plane across the road (m)"),
+        tr("Points this far to either side of a step give its planes. Longer is steadier, shorter keeps to narrow gutters "
+           "and curb stones."), True,
+    ),
+    setting_spec(
+        "DISTANCE_ALONG", "distance_along", tr("Reach of a plane along the road (m)"),
+        tr("Longer is steadier where points are sparse, shorter follows sharp corners."), True,
+    ),
+    setting_spec(
+        "RANSAC_DISTANCE", "ransac_distance", tr("Points of a plane lie within (m)"),
+        tr("Larger for noisy scanners; where points scatter more, 1.5 sigma of the plane is taken anyway."), True,
+    ),
+    setting_spec(
+        "VERTICAL_ANGLE", "vertical_angle", tr("Least angle of a curb face's normal from the vertical (°)"),
+        tr("90 is upright. Lower accepts bevelled and mountable curbs (40 for a slope of 45°), but also banks."), True,
+    ),
+    setting_spec(
+        "HORIZONTAL_ANGLE", "horizontal_angle", tr("Largest angle of road's and sidewalk's normal from the vertical (°)"),
+        tr("Larger accepts sloping ground behind the curb."), True,
+    ),
+)
+
+BOUNDARY_SETTINGS = (
+    setting_spec(
+        "MIN_HEIGHT", "min_height", tr("Least height of a step (m)"),
+        tr("Lower finds dropped curbs, but also tar seams and the edges of manholes."),
+    ),
+    *SHARED_SETTINGS,
+    setting_spec(
+        "MAX_GAP", "max_gap", tr("Longest gap connected (m)"),
+        tr("Corners farther apart along the road are not joined. Longer passes driveways and parked cars, and says so."),
+    ),
+)
+
+# In the dialogs that offer both methods, MIN_HEIGHT is that of profiles
+SCANLINE_METHOD_SETTINGS = (
+    setting_spec(
+        "SCANLINE_MIN_HEIGHT", "min_height", tr("Least height of a step on scanlines (m)"),
+        tr("Lower finds dropped curbs, but also tar seams. Profiles have a minimum curb height of their own."), True,
+    ),
+    *SHARED_SETTINGS,
+)
+
+
+class BoundariesFromScanlines(Algorithm):
+    ID, TITLE, GROUP = "boundariesfromscanlines", "Boundaries from scanlines", "Road"
+    SUMMARY = "Bottom and top corners of curbs on normalized scanlines, and the boundary lines through them."
+    HELP = ("From the vehicle outward every scanline is searched for a step. About each step the points of the neighbouring scanlines "
+            "give three planes: road, curb face and sidewalk. Where they meet the scanline's own plane lie the corners. Lines are cut "
+            "by status: measured; bridged, a gap between corners; occluded, a gap that something hides.")
+    TAGS = ("curb", "kerb", "boundary", "scanline", "ransac", "corner")
+    LOOKS = {"CORNERS": "CURB_POINTS"}
+
+    def declare(self):
+        self.add_layer("SCANLINES", tr("Normalized scanlines"), tr("The layer written by Normalized scanlines."), "LineStringZM")
+        self.add_trajectory()
+        self.add_settings(BOUNDARY_SETTINGS)
+        self.add_sink("CORNERS", tr("Curb corners"), tr("Bottoms and tops, one of each per half metre and side."), fields=CURB_POINTS,
+                      geometry="PointZ", optional=True)
+        self.add_sink("BOUNDARIES", tr("Road boundaries"), tr("Bottom and top lines of either side."), fields=ROAD_EDGES,
+                      geometry="LineStringZ", optional=True)
+
+    def work(self, call, progress):
+        from ...core.road.scanlines.detect import CORNER_BLOCK, boundary_lines, curbs_from_scanlines
+        from ...core.road.scanlines.layer import scanlines_from_features
+        from ...core.road.scanlines.source import LayerScanlines
+
+        settings = call.settings(BOUNDARY_SETTINGS)
+        layer = call.features("SCANLINES", SCANLINES, "LineStringZM")
+        frame = frame_of(call, layer.crs, progress)
+        lines, interval = scanlines_from_features(layer, frame)
+        source = LayerScanlines(lines, frame, interval, layer.crs, settings.sensor_height)
+        corners = curbs_from_scanlines(source, settings, CORNER_BLOCK, progress.part(0.3, 0.95))
+        call.layer("CORNERS", corners)
+        call.layer("BOUNDARIES", boundary_lines(corners, frame, settings.max_gap, progress.part(0.95, 1.0)))

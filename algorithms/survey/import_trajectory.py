@@ -1,0 +1,50 @@
+"""A trajectory from any of the files and layers it comes in."""
+
+from ...core.common.schemas import TRAJECTORY
+from ..algorithm import Algorithm
+from ..parameters import CrsSpec, PointCloudsSpec, TrajectorySpec
+from ..survey_input import SURVEY_SETTINGS, imported_trajectory
+from ..texts import tr
+from ..trajectory_source import trajectory_features
+
+TIME_SETTING = tuple(spec for spec in SURVEY_SETTINGS if spec.name == "TIME")
+
+
+class ImportTrajectory(Algorithm):
+    ID, TITLE, GROUP = "importtrajectory", "Import trajectory", "Survey"
+    SUMMARY = "Reads the driven trajectory from a CSV or TXT file, an Applanix SBET, or a point or line layer."
+    HELP = (
+        "Columns may come in any order, with or without a header, in degrees or radians. Rows are sorted by time; "
+        "repeated and unusable rows are dropped and counted."
+    )
+    TAGS = ("trajectory", "sbet", "applanix", "csv", "gps time")
+
+    def declare(self):
+        self.add(TrajectorySpec("INPUT", tr("Trajectory file or layer"),
+                                tr("A CSV or TXT file, an SBET (.out), or a layer of points or lines with heights.")))
+        self.add(CrsSpec("INPUT_CRS", tr("CRS of the trajectory"),
+                         tr("Where the file does not say it. An SBET is in WGS 84 unless another is chosen."), optional=True))
+        self.add(CrsSpec(
+            "TARGET_CRS", tr("CRS to bring it to"),
+            tr("That of the point clouds. Empty takes it from the point clouds below, or leaves the trajectory as it is."), optional=True,
+        ))
+        self.add(PointCloudsSpec(
+            "POINT_CLOUDS", tr("Point clouds"),
+            tr("With them the time system is told apart, and the trajectory is written on the clouds' clock."), optional=True,
+        ))
+        self.add_settings(TIME_SETTING)
+        self.add_sink("OUTPUT", tr("Imported trajectory"), fields=TRAJECTORY, geometry="PointZ")
+        self.add_number("ROWS", tr("Positions"))
+
+    def work(self, call, progress):
+        from ...core.survey.trajectory.trajectory import clean_trajectory
+
+        trajectory = clean_trajectory(imported_trajectory(call, progress))
+        for note in trajectory.notes:
+            progress.say(note)
+        if not trajectory.crs:
+            progress.warn(tr("The trajectory names no CRS and none was given, so its layer has none: set CRS of the trajectory, or "
+                             "CRS to bring it to where the coordinates are in that of the point clouds."))
+        progress.say(tr("Trajectory: {count} positions.").format(count=f"{len(trajectory):,}"))
+        call.layer("OUTPUT", trajectory_features(trajectory))
+        return {"ROWS": len(trajectory)}

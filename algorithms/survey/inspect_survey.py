@@ -1,0 +1,76 @@
+"""What the files of a survey hold."""
+
+from ..algorithm import Algorithm
+from ..parameters import SettingSpec
+from ..texts import tr
+
+INSPECTION = "survey.inspection:InspectionSettings"
+
+INSPECTION_SETTINGS = (
+    SettingSpec(
+        "CELL_SIZE", INSPECTION, "cell_size", tr("Cell of the density raster (m)"),
+        tr("Smaller shows single scan lines, larger the broad picture."), advanced=True,
+    ),
+    SettingSpec(
+        "CUBE_SIZE", INSPECTION, "cube_size", tr("Cube that the density in space is counted in (m)"),
+        tr("1 gives points per cubic metre as they are published; smaller ones follow surfaces more closely."),
+        advanced=True,
+    ),
+)
+
+NUMBERS = (
+    ("POINTS", tr("Points")),
+    ("POINTS_PER_M2", tr("Points per m², mean of occupied cells")),
+    ("POINTS_PER_M3", tr("Points per m³, mean of occupied cubes")),
+    ("FIRST_TIME", tr("First gps_time (s)")),
+    ("LAST_TIME", tr("Last gps_time (s)")),
+    ("SCANNERS", tr("Scanners")),
+    ("NEAR_TRAJECTORY", tr("Points near the trajectory (%)")),
+    ("TIME_COVERED", tr("Scan time covered by the trajectory (%)")),
+)
+
+
+class InspectSurvey(Algorithm):
+    ID, TITLE, GROUP = "inspectsurvey", "Inspect survey", "Survey"
+    SUMMARY = "Tells what point clouds and trajectory hold, and whether they fit together, before work is done on them."
+    HELP = "What the road map would stumble over, such as a geographic CRS or two clocks, is said with a way on."
+    TAGS = ("density", "report", "las", "header", "overlap")
+
+    def declare(self):
+        self.add_survey(trajectory_optional=True)
+        self.add_settings(INSPECTION_SETTINGS)
+        self.add_report(optional=False)
+        self.add_raster("DENSITY", tr("Point density"), tr("Points per m² in every cell."), optional=True, by_default=False)
+        for name, label in NUMBERS:
+            self.add_number(name, label)
+
+    def work(self, call, progress):
+        from ...core.report.inspection import inspection_report
+        from ...core.survey.inspection import NEAR, inspect_survey
+        from ...core.survey.point_density import write_density
+
+        found = inspect_survey(
+            call.point_clouds(), call.trajectory(), call.settings(INSPECTION_SETTINGS), call.crs(), progress.part(0.0, 0.95)
+        )
+        for note in found.notes:
+            progress.warn(note)
+        progress.say(tr("Survey: {count} points in {files} file(s), {density:.0f} points per m² where there are any, {scanners} scanner(s), "
+                        "intensities {darkest} to {brightest}.").format(
+            count=f"{found.count:,}", files=len(found.files), density=found.per_area["mean"], scanners=len(found.scanners),
+            darkest=found.intensity.nonzero()[0].min(), brightest=found.intensity.nonzero()[0].max()))
+        if found.near_share is not None:
+            progress.say(tr("Trajectory: {near:.0f} % of the points lie within {metres:.0f} m of it.").format(
+                near=100 * found.near_share, metres=NEAR))
+        call.text("REPORT", inspection_report(found))
+        if call.wants("DENSITY"):
+            write_density(found, call.new_file("DENSITY"))
+        first, last = found.time_span or (None, None)
+        values = (
+            found.count, found.per_area["mean"], found.per_volume["mean"], first, last, len(found.scanners),
+            _percent(found.near_share), _percent(found.in_time_share),
+        )
+        return {name: float(value) for (name, _), value in zip(NUMBERS, values) if value is not None}
+
+
+def _percent(share):
+    return None if share is None else 100.0 * share

@@ -1,0 +1,109 @@
+"""A made survey with known truth."""
+
+from ...core.common.schemas import CONTROL_POINTS, TRAJECTORY
+from ..algorithm import Algorithm
+from ..parameters import CrsSpec, SettingSpec
+from ..texts import tr
+from ..trajectory_source import trajectory_features
+
+SAMPLE = "sample.survey:SampleSettings"
+
+SAMPLE_SETTINGS = (
+    SettingSpec(
+        "SCENE", SAMPLE, "scene", tr("Scene"),
+        tr("Street is a curved two-lane road with curbs and parked cars, rural has verges instead of curbs, urban is "
+           "broader with more lanes and gutters."),
+        choices=("street", "rural", "urban"),
+    ),
+    SettingSpec(
+        "LENGTH", SAMPLE, "length", tr("Length of the road (m)"),
+        tr("Longer takes longer to make and to work through, in proportion."),
+    ),
+    SettingSpec(
+        "SEED", SAMPLE, "seed", tr("Seed of the random numbers (whole number)"),
+        tr("Another seed gives another street with other cars, wear and noise; the same seed gives the same points."),
+    ),
+    SettingSpec(
+        "SPEED", SAMPLE, "speed_kmh", tr("Speed of the vehicle (km/h)"),
+        tr("Faster spreads the scan lines wider apart."), advanced=True,
+    ),
+    SettingSpec(
+        "PULSE_RATE", SAMPLE, "pulse_rate", tr("Pulses of each scanner (per second)"),
+        tr("More gives a denser cloud and a larger file."), advanced=True,
+    ),
+    SettingSpec(
+        "ROTATION_RATE", SAMPLE, "rotation_rate", tr("Scan lines of each scanner (per second)"),
+        tr("More brings the lines closer together, with fewer points on each."), advanced=True,
+    ),
+    SettingSpec(
+        "MOUNT_YAW", SAMPLE, "mount_yaw", tr("Scanners' planes turned from straight across (°)"),
+        tr("0 scans straight across the road; more sees the faces of things from ahead and behind, one scanner either way."),
+        advanced=True,
+    ),
+    SettingSpec(
+        "RADIUS", SAMPLE, "radius", tr("Radius of the bends (m)"), tr("Smaller makes sharper bends."),
+        advanced=True,
+    ),
+    SettingSpec(
+        "CURB_HEIGHT", SAMPLE, "curb_height", tr("Height of the curbs (m)"), tr("Lower is harder to find."),
+        advanced=True,
+    ),
+    SettingSpec(
+        "GUTTER", SAMPLE, "gutter", tr("Width of a concrete gutter along the curbs (m)"),
+        tr("A gutter is as bright as paint and is not to be taken for it; 0 leaves it out."),
+        advanced=True,
+    ),
+)
+
+TRUTHS = (
+    ("TRUTH_BOUNDARIES", "truth_boundaries", "LineStringZ", tr("True road boundaries")),
+    ("TRUTH_MARKINGS", "truth_markings", "PolygonZ", tr("True markings")),
+    ("TRUTH_DRIVING_LINES", "truth_driving_lines", "LineStringZ", tr("True driving lines")),
+    ("TRUTH_SURFACE", "truth_surface", "PolygonZ", tr("True road surface")),
+)
+
+
+class SampleSurvey(Algorithm):
+    ID, TITLE, GROUP = "samplesurvey", "Sample survey", "Survey"
+    SUMMARY = "Makes a mobile laser scanning survey of a street that exists only on paper, together with the truth about it."
+    HELP = "Every pulse of two scanners is followed to what it meets first. Figures reached on it are figures on simulated data."
+    TAGS = ("sample", "simulation", "test data")
+
+    def declare(self):
+        self.add_settings(SAMPLE_SETTINGS)
+        self.add(CrsSpec(
+            "CRS", tr("CRS of the survey"),
+            tr("A projected CRS in metres. The coordinates are the same in each; it only says where on earth they are."),
+            optional=True, advanced=True, value="EPSG:32650",
+        ))
+        self.add_laz("POINT_CLOUD", tr("Point cloud"))
+        self.add_sink("TRAJECTORY", tr("Trajectory"), fields=TRAJECTORY, geometry="PointZ")
+        for name, _, geometry, label in TRUTHS:
+            self.add_sink(name, label, geometry=geometry, optional=True)
+        self.add_raster(
+            "UAV_IMAGE", tr("UAV image"),
+            tr("What a UAV sees of the first 150 m: a TIFF of 4 cm pixels without a place on the map, with the distortion of its camera. "
+               "Georeference image finds its place."), optional=True, by_default=False)
+        self.add_sink("UAV_GCPS", tr("Ground control points of the UAV image"), geometry="PointZ", optional=True, by_default=False,
+                      fields=CONTROL_POINTS)
+        self.add_number("POINTS", tr("Points"))
+
+    def work(self, call, progress):
+        from ...core.sample.survey import make_sample_survey
+
+        settings = call.settings(SAMPLE_SETTINGS, **({"crs": call.crs()} if call.crs() else {}))
+        survey = make_sample_survey(settings, progress.part(0.0, 0.1))
+        count = survey.write_cloud(call.new_file("POINT_CLOUD"), progress.part(0.1, 0.9 if call.wants("UAV_IMAGE") else 1.0))
+        progress.say(tr("Sample survey: {count} points along {length:.0f} m of road.").format(count=count, length=settings.length))
+        if call.wants("UAV_IMAGE"):
+            from ...core.sample.orthophoto import write_uav_image
+
+            write_uav_image(survey, call.new_file("UAV_IMAGE"), progress.part(0.9, 1.0))
+        if call.wants("UAV_GCPS"):
+            from ...core.sample.orthophoto import uav_control_points
+
+            call.layer("UAV_GCPS", uav_control_points(survey))
+        call.layer("TRAJECTORY", trajectory_features(survey.trajectory))
+        for name, attribute, _, _ in TRUTHS:
+            call.layer(name, getattr(survey, attribute))
+        return {"POINTS": count}

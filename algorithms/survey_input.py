@@ -1,0 +1,152 @@
+"""Opening what the stages work on: the survey, the road frame, the road points."""
+
+from dataclasses import replace
+
+from ..core.common.errors import RoadExtractionError
+from .parameters import SettingSpec
+from .texts import tr
+
+SURVEY = "survey.open_survey:SurveySettings"
+
+SURVEY_SETTINGS = (
+    SettingSpec(
+        "CORRIDOR", SURVEY, "corridor", tr("Corridor either side of the trajectory (m)"),
+        tr("Points farther out are left unread. Wider reaches the far side of a broad avenue, but takes longer and "
+           "brings in the neighbouring street."),
+        advanced=True,
+    ),
+    SettingSpec(
+        "SCANNER_FIELD", SURVEY, "scanner_field", tr("Field that tells the scanners apart"),
+        tr("Automatic takes scanner_channel where it is used and point_source_id where it interleaves in time. Name "
+           "one when the report counts the wrong number of scanners."),
+        choices=("automatic", "scanner_channel", "point_source_id"), advanced=True,
+    ),
+    SettingSpec(
+        "TIME", SURVEY, "time", tr("Time of the trajectory"),
+        tr("How its clock counts: gps (since 1980), adjusted (the same less a billion), week or day. Automatic "
+           "compares with the point clouds and says what it chose."),
+        choices=("automatic", "gps", "adjusted", "week", "day"), advanced=True,
+    ),
+    SettingSpec(
+        "FIT_PASSES", SURVEY, "fit_passes", tr("Lay passes over one road on each other"),
+        tr("Where two drives over a road measurably lie centimetres apart, as navigation drifts between them, each is moved by its "
+           "share until curbs and paint agree, and the log says how far. Off keeps every point where it was measured, for surveys "
+           "adjusted to control points already; what the passes differ by then blurs curbs and doubles lines."),
+        advanced=True,
+    ),
+)
+
+
+def survey_inputs(call, progress):
+    """Paths of POINT_CLOUDS, and TRAJECTORY brought to the clouds' CRS."""
+    from ..core.io.crs import reproject_trajectory
+    from ..core.survey.las.reader import read_headers
+
+    paths = call.point_clouds()
+    clouds = next((header.crs for header in read_headers(paths) if header.crs), "") or call.crs()
+    return paths, reproject_trajectory(call.trajectory(), clouds)
+
+
+def open_survey_of(call, progress):
+    """The survey of POINT_CLOUDS and TRAJECTORY."""
+    from ..core.survey.open_survey import open_survey
+
+    paths, trajectory = survey_inputs(call, progress)
+    return open_survey(paths, trajectory, call.settings(SURVEY_SETTINGS, crs=call.crs()), progress)
+
+
+def frame_of(call, crs, progress, road_points=None, layers=None):
+    """The road frame of TRAJECTORY for data in `crs`; with road points given, on their clock.
+
+    `layers` (parameter name to Features) and the road points must have been made with this trajectory.
+    """
+    from ..core.io.crs import reproject_trajectory
+    from ..core.survey.consistency import check_features_on_roads, check_road_points_on_roads
+    from ..core.survey.frame.road_frame import build_frame
+
+    trajectory = reproject_trajectory(call.trajectory(), crs)
+    has_time = trajectory.has_time
+    if road_points is not None and has_time:
+        trajectory, has_time = _on_clock_of(road_points, trajectory, progress)
+    frame = build_frame(trajectory)
+    frame.crs, frame.has_time = crs or trajectory.crs, has_time
+    for name, features in (layers or {}).items():
+        if features is not None:
+            check_features_on_roads(features, frame, call.label(name))
+    if road_points is not None:
+        check_road_points_on_roads(road_points, frame, tr("The points"))
+    return frame
+
+
+def _on_clock_of(road_points, trajectory, progress):
+    """The trajectory in the points' time system, and whether the points have time at all."""
+    from ..core.survey.trajectory.time_systems import align_time
+
+    first, last = float("inf"), float("-inf")
+    for road, number in road_points.all_sections():
+        time = road_points.section(road, number).time
+        if len(time):
+            first, last = min(first, float(time.min())), max(last, float(time.max()))
+        if first < last and trajectory.time.min() <= first and last <= trajectory.time.max():
+            return trajectory, True
+    if not first < last:
+        return trajectory, not len(road_points)
+    offset, note = align_time(trajectory.time, (first, last))
+    if note:
+        progress.say(note)
+    return trajectory.shifted(offset), True
+
+
+def road_points_of(call, name, progress):
+    """A LAZ file made by Extract road surface or Correct intensity, as RoadPoints."""
+    from ..core.survey.road_points_las import read_road_points
+
+    return read_road_points(call.cloud(name), progress)
+
+
+def bright_road_points_of(call, name, progress):
+    """The same for stages that look at intensity; refused where there is none."""
+    road_points = road_points_of(call, name, progress)
+    sections = (road_points.section(*key).intensity for key in road_points.all_sections())
+    values = [(section.min(), section.max()) for section in sections if len(section)]
+    if values and min(low for low, _ in values) == max(high for _, high in values):
+        raise RoadExtractionError(
+            tr("{path} has no intensity (all values are the same), so paint cannot be told from asphalt. Road edges and surface "
+               "need none; for markings, export the point clouds with intensity.").format(path=call.cloud(name))
+        )
+    return road_points
+
+
+def paint_of(call, name, progress):
+    """A LAZ file of marking points; a road without paint gives one without points, and that is a result too."""
+    from ..core.survey.las.reader import open_cloud
+    from ..core.survey.store.road_points import RoadPoints
+
+    with open_cloud(call.cloud(name)) as reader:
+        if reader.header.point_count:
+            return road_points_of(call, name, progress)
+        crs, columns = reader.header.parse_crs(), set(reader.header.point_format.dimension_names)
+        points = RoadPoints.empty_like(origin=reader.header.offsets, crs="" if crs is None else crs.to_wkt())
+        points.has_corrected, points.has_cluster = "intensity_corrected" in columns, "cluster" in columns
+        progress.warn(tr("{label} holds no points: no paint was found on this road.").format(label=call.label(name)))
+        return points
+
+
+def imported_trajectory(call, progress):
+    """INPUT in TARGET_CRS (or the clouds' CRS) and, with POINT_CLOUDS given, on the clouds' clock."""
+    from ..core.io.crs import reproject_trajectory
+    from ..core.survey.las.reader import read_headers
+    from ..core.survey.open_survey import match_clocks
+
+    trajectory = call.trajectory("INPUT", call.crs("INPUT_CRS"))
+    headers = read_headers(call.point_clouds()) if call.given("POINT_CLOUDS") else []
+    target = call.crs("TARGET_CRS") or next((header.crs for header in headers if header.crs), "")
+    if target and not trajectory.crs:
+        progress.warn(tr("The trajectory says no CRS; its coordinates are taken to be those of the target CRS as they are."))
+        trajectory = replace(trajectory, crs=target)
+    trajectory = reproject_trajectory(trajectory, target)
+    if headers:
+        trajectory, note, *_ = match_clocks(headers, trajectory, call.settings(SURVEY_SETTINGS), progress)
+        if note:
+            progress.say(note)
+    return trajectory

@@ -1,0 +1,163 @@
+"""Vector layers as the algorithms read them, whatever program opens them."""
+
+import numpy as np
+
+from ..core.common.errors import RoadExtractionError
+from ..core.common.features import Features
+from .texts import tr
+
+POINT, LINE, POLYGON, TABLE, UNKNOWN = "point", "line", "polygon", "table", "unknown"
+KIND_OF = {"PointZ": POINT, "LineStringZ": LINE, "LineStringZM": LINE, "PolygonZ": POLYGON, "MultiLineStringZ": LINE,
+           "MultiPolygonZ": POLYGON, "None": TABLE}
+KIND_LABELS = {POINT: "Point", LINE: "Line", POLYGON: "Polygon", TABLE: "No geometry", UNKNOWN: "Unknown geometry"}
+
+
+class VectorSource:
+    """A layer that is open for reading; every program that runs the algorithms has its own.
+
+    Attributes
+    ----------
+    label : what messages call it
+    names : list of str, its fields
+    kind : POINT, LINE, POLYGON, TABLE or UNKNOWN
+    has_z, has_m : whether its geometries carry heights and measures
+    crs : WKT, "" where unknown
+    """
+
+    label, names, kind, has_z, has_m, crs = "", [], UNKNOWN, False, False, ""
+
+    def rows(self, measures=False, check_validity=True):
+        """(WKB or None where there is no geometry, list of values with None for NULL) of every row.
+
+        Parameters
+        ----------
+        measures : keep M in the WKB
+        check_validity : refuse or skip invalid geometries where the program does so
+        """
+        raise NotImplementedError
+
+    def kind_label(self, kind):
+        """A kind of geometry as the program calls it."""
+        return KIND_LABELS[kind]
+
+
+def read_features(source, schema, geometry_type):
+    """A layer as Features; fields are matched by name, the layer's further fields are left out.
+
+    Multi-part geometries become one row a part. Raises RoadExtractionError where a
+    field is missing, the geometry is of another kind, or carries no heights.
+    """
+    import shapely
+
+    index = _columns(source, schema)
+    _check_kind(source, geometry_type)
+    measured = geometry_type.endswith("ZM")
+    result = Features(geometry_type, list(schema), crs=source.crs)
+    # scanlines run straight up a wall, which seen from above is no valid line
+    for wkb, values in source.rows(measures=measured, check_validity=not measured):
+        row = {column.name: None if values[place] is None else column.type(values[place]) for column, place in zip(schema, index)}
+        if geometry_type == "None":
+            result.add(None, **row)
+            continue
+        if wkb is None:
+            continue
+        if measured:
+            for part in _measured_parts(wkb, source.label):
+                result.add(part, **row)
+            continue
+        for part in shapely.get_parts(shapely.from_wkb(wkb)):
+            if not part.has_z:
+                raise RoadExtractionError(
+                    tr("{label} has geometries without heights (Z). Use the layer that Lanewright wrote.").format(
+                        label=source.label
+                    )
+                )
+            result.add(part, **row)
+    return result
+
+
+def _columns(source, schema):
+    """Places of the schema's fields among those of the layer; the case of names does not matter."""
+    place = {name.lower(): k for k, name in reversed(list(enumerate(source.names)))}
+    place.update({name: k for k, name in enumerate(source.names)})
+    found = [place.get(column.name, place.get(column.name.lower())) for column in schema]
+    missing = [column.name for column, k in zip(schema, found) if k is None]
+    if missing:
+        raise RoadExtractionError(
+            tr("{label} lacks the field(s) {fields}. Use the layer that Lanewright wrote.").format(
+                label=source.label, fields=", ".join(missing)
+            )
+        )
+    return found
+
+
+def _check_kind(source, geometry_type):
+    """Refuse a layer that another stage made."""
+    needed = KIND_OF[geometry_type]
+    if geometry_type != "None" and source.kind != needed:
+        raise RoadExtractionError(
+            tr("{label} holds geometries of the kind {found}; {needed} is needed. Use the layer that Lanewright wrote.").format(
+                label=source.label, found=source.kind_label(source.kind), needed=source.kind_label(needed)
+            )
+        )
+
+
+def _measured_parts(wkb, label):
+    """WKB of every part of a line geometry with Z and M: shapely before 2.1 would lose the M."""
+    base, has_z, has_m = _type_of(wkb, 0)
+    if not (has_z and has_m):
+        raise RoadExtractionError(
+            tr("{label} has geometries without heights (Z) or measures (M). Use the layer that Lanewright wrote.").format(label=label)
+        )
+    if base != 5:
+        yield wkb
+        return
+    at = 9
+    for _ in range(_uint(wkb, 5)):
+        size = 9 + 32 * _uint(wkb, at + 5)
+        yield wkb[at:at + size]
+        at += size
+
+
+def vertices_of(wkb):
+    """(V, 4) x, y, z and m of all vertices of points or lines, in one part or many; NaN where there is no z or m."""
+    found = []
+    _read_vertices(wkb, 0, found)
+    return np.concatenate(found) if found else np.empty((0, 4))
+
+
+def _read_vertices(wkb, at, found):
+    """Append the vertices of the geometry that begins at a byte; the byte where it ends."""
+    base, has_z, has_m = _type_of(wkb, at)
+    at += 5
+    if base in (4, 5):
+        count, at = _uint(wkb, at), at + 4
+        for _ in range(count):
+            at = _read_vertices(wkb, at, found)
+        return at
+    count = 1
+    if base == 2:
+        count, at = _uint(wkb, at), at + 4
+    elif base != 1:
+        raise ValueError(f"neither points nor lines: WKB type {base}")
+    width = 2 + has_z + has_m
+    values = np.frombuffer(wkb, "<f8", count * width, at).reshape(count, width)
+    rows = np.full((count, 4), np.nan)
+    rows[:, :2] = values[:, :2]
+    if has_z:
+        rows[:, 2] = values[:, 2]
+    if has_m:
+        rows[:, 3] = values[:, -1]
+    found.append(rows)
+    return at + 8 * count * width
+
+
+def _type_of(wkb, at):
+    """(kind without dimensions, has Z, has M) of little endian WKB, ISO or extended."""
+    number = _uint(wkb, at + 1)
+    flags, number = number >> 28, number & 0x0FFFFFFF
+    return number % 1000, bool(flags & 8) or number // 1000 in (1, 3), bool(flags & 4) or number // 1000 in (2, 3)
+
+
+def _uint(wkb, at):
+    return int.from_bytes(wkb[at:at + 4], "little")

@@ -1,0 +1,147 @@
+"""The parameters of an algorithm's declaration as QGIS's own."""
+
+from functools import singledispatch
+
+from qgis.core import (
+    Qgis,
+    QgsProcessing,
+    QgsProcessingParameterBoolean,
+    QgsProcessingParameterCrs,
+    QgsProcessingParameterEnum,
+    QgsProcessingParameterExpression,
+    QgsProcessingParameterFeatureSink,
+    QgsProcessingParameterFeatureSource,
+    QgsProcessingParameterFile,
+    QgsProcessingParameterFileDestination,
+    QgsProcessingParameterMapLayer,
+    QgsProcessingParameterMultipleLayers,
+    QgsProcessingParameterNumber,
+    QgsProcessingParameterRasterDestination,
+    QgsProcessingParameterRasterLayer,
+    QgsProcessingParameterString,
+)
+
+from ..algorithms import parameters as specs
+from ..algorithms.vector_source import KIND_OF, LINE, POINT, POLYGON
+
+# fileFilter is enforced and case-sensitive, and `extension=` accepts one suffix only
+CLOUD_FILTER = "Point clouds (*.las *.laz *.LAS *.LAZ);;All files (*.*)"
+LAZ_FILTER = "LAZ (*.laz);;LAS (*.las)"
+HTML_FILTER = "HTML (*.html)"
+DECIMALS = 3  # millimetres; QGIS would show six
+
+SourceType = QgsProcessing.SourceType
+SOURCE_TYPES = {POINT: SourceType.TypeVectorPoint, LINE: SourceType.TypeVectorLine, POLYGON: SourceType.TypeVectorPolygon}
+PAINTED = [SourceType.TypeVectorPolygon, SourceType.TypeVectorLine, SourceType.TypeRaster]
+
+
+def qgis_parameter(spec):
+    """The QGIS parameter of a spec, with its help and in its part of the dialog."""
+    parameter = _parameter(spec)
+    parameter.setHelp(spec.help)
+    if spec.advanced:
+        parameter.setFlags(parameter.flags() | Qgis.ProcessingParameterFlag.Advanced)
+    return parameter
+
+
+def _source_type(geometry):
+    """What QGIS offers for a geometry of Features, or "any"."""
+    return SOURCE_TYPES.get(KIND_OF.get(geometry), SourceType.TypeVector)
+
+
+@singledispatch
+def _parameter(spec):
+    raise TypeError(f"QGIS has no parameter for {type(spec).__name__}")
+
+
+@_parameter.register
+def _(spec: specs.SettingSpec):
+    kind, default = spec.kind(), spec.default
+    if kind == "choice":
+        return QgsProcessingParameterEnum(spec.name, spec.label, list(spec.choices), defaultValue=default, usesStaticStrings=True)
+    if kind == "flag":
+        return QgsProcessingParameterBoolean(spec.name, spec.label, default)
+    if kind == "text":
+        return QgsProcessingParameterString(spec.name, spec.label, default, optional=True)
+    number = QgsProcessingParameterNumber.Type.Integer if kind == "whole" else QgsProcessingParameterNumber.Type.Double
+    limits = spec.limits()
+    parameter = QgsProcessingParameterNumber(
+        spec.name, spec.label, number, default, **({} if limits is None else dict(minValue=limits[0], maxValue=limits[1])))
+    if kind == "number":
+        parameter.setMetadata({"widget_wrapper": {"decimals": DECIMALS}})
+    return parameter
+
+
+@_parameter.register
+def _(spec: specs.FlagSpec):
+    return QgsProcessingParameterBoolean(spec.name, spec.label, spec.value)
+
+
+@_parameter.register
+def _(spec: specs.ChoiceSpec):
+    return QgsProcessingParameterEnum(spec.name, spec.label, list(spec.choices), defaultValue=spec.value, usesStaticStrings=True)
+
+
+@_parameter.register
+def _(spec: specs.TextSpec):
+    return QgsProcessingParameterString(spec.name, spec.label, spec.value, optional=spec.optional)
+
+
+@_parameter.register
+def _(spec: specs.ExpressionSpec):
+    return QgsProcessingParameterExpression(spec.name, spec.label, spec.value, spec.layer, optional=spec.optional)
+
+
+@_parameter.register
+def _(spec: specs.CrsSpec):
+    return QgsProcessingParameterCrs(spec.name, spec.label, spec.value, optional=spec.optional)
+
+
+@_parameter.register
+def _(spec: specs.PointCloudsSpec):
+    return QgsProcessingParameterMultipleLayers(spec.name, spec.label, SourceType.TypeFile, optional=spec.optional)
+
+
+@_parameter.register
+def _(spec: specs.CloudSpec):
+    return QgsProcessingParameterFile(spec.name, spec.label, fileFilter=CLOUD_FILTER, optional=spec.optional)
+
+
+@_parameter.register
+def _(spec: specs.FileSpec):
+    return QgsProcessingParameterFile(spec.name, spec.label, fileFilter=spec.file_filter, optional=spec.optional)
+
+
+@_parameter.register
+def _(spec: specs.LayerSpec):
+    return QgsProcessingParameterFeatureSource(spec.name, spec.label, [_source_type(spec.geometry)], optional=spec.optional)
+
+
+@_parameter.register
+def _(spec: specs.RasterSpec):
+    return QgsProcessingParameterRasterLayer(spec.name, spec.label, optional=spec.optional)
+
+
+@_parameter.register
+def _(spec: specs.PaintedSpec):
+    return QgsProcessingParameterMapLayer(spec.name, spec.label, None, spec.optional, PAINTED)
+
+
+@_parameter.register
+def _(spec: specs.LayerOutput):
+    return QgsProcessingParameterFeatureSink(spec.name, spec.label, _source_type(spec.geometry), None, spec.optional, spec.by_default)
+
+
+@_parameter.register
+def _(spec: specs.CloudOutput):
+    return QgsProcessingParameterFileDestination(spec.name, spec.label, LAZ_FILTER, None, spec.optional, spec.by_default)
+
+
+@_parameter.register
+def _(spec: specs.ReportOutput):
+    return QgsProcessingParameterFileDestination(spec.name, spec.label, HTML_FILTER, None, spec.optional, spec.by_default)
+
+
+@_parameter.register
+def _(spec: specs.RasterOutput):
+    return QgsProcessingParameterRasterDestination(spec.name, spec.label, None, spec.optional, spec.by_default)
