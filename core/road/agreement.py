@@ -7,24 +7,24 @@ import shapely
 
 from ..common.features import Features
 from ..common.schemas import AGREE, END, LENGTH, ROAD, SIDE, STATION, of_main_curb
-from .common.sides import SIDES
+from .common.sides import SIDE_SIGNS
 
-NODE = 0.5           # m along the road between places that are compared
-SAME_CURB = 0.25     # m across within which two lines are of one curb
-DOUBT = 0.05         # m across beyond which a stretch is reported
-USUAL_MOST = 0.95    # quantile of the distances that stands for a piece
-SHORTEST = 1.0       # m of a stretch that is reported
-SHORTEST_ALONE = 2.0  # m that one line must go on alone to be drawn in place of the other
-CHAIN_OFFSET = 100_000  # parts the chains of the two methods
+COMPARISON_STEP = 0.5           # m along the road between places that are compared
+MAX_SAME_CURB_DISTANCE = 0.25     # m across within which two lines are of one curb
+MIN_REPORTED_DIFFERENCE = 0.05         # m across beyond which a stretch is reported
+AGREEMENT_QUANTILE = 0.95    # quantile of the distances that stands for a piece
+MIN_REPORTED_LENGTH = 1.0       # m of a stretch that is reported
+MIN_SINGLE_METHOD_LENGTH = 2.0  # m that one line must go on alone to be drawn in place of the other
+SECOND_METHOD_CHAIN_OFFSET = 100_000  # parts the chains of the two methods
 
 BOUNDARY_DIFFERENCES = [ROAD, SIDE, STATION, END, AGREE, LENGTH]
 
 
 @dataclass
-class EdgeTrace:
-    """The edges of one side of a road at places NODE apart.
+class EdgeSamples:
+    """The edges of one side of a road at places COMPARISON_STEP apart.
 
-    s : (N,) m; d, z : (N,) m, offset and local height, NaN where no edge runs; measured : (N,) bool;
+    s : (N,) m; d, z : (N,) m, offset and local height, NaN where there is no edge; measured : (N,) bool;
     scatter : (N,) m of the curb points about the piece
     """
 
@@ -35,12 +35,12 @@ class EdgeTrace:
     scatter: np.ndarray
 
 
-def trace_edges(edges, frame, road, side):
+def sample_edges(edges, frame, road, side):
     """EdgeTrace of one side of a road (number)."""
     line = frame.road(road)
-    first, last = int(np.floor(line.start / NODE)), int(np.ceil(line.end / NODE))
-    s = np.arange(first, last + 1) * NODE
-    trace = EdgeTrace(s, *(np.full(len(s), np.nan) for _ in range(2)), np.zeros(len(s), bool), np.full(len(s), np.inf))
+    first, last = int(np.floor(line.start / COMPARISON_STEP)), int(np.ceil(line.end / COMPARISON_STEP))
+    s = np.arange(first, last + 1) * COMPARISON_STEP
+    trace = EdgeSamples(s, *(np.full(len(s), np.nan) for _ in range(2)), np.zeros(len(s), bool), np.full(len(s), np.inf))
     for geometry, row in edges:
         if row["road"] != road or row["side"] != side or row["status"] == "inferred" or row.get("part", "bottom") != "bottom" \
                 or not of_main_curb(row):
@@ -54,18 +54,18 @@ def trace_edges(edges, frame, road, side):
             continue
         order = np.argsort(at, kind="stable")
         at, d, z = at[order], d[order], z[order]
-        inside = np.flatnonzero((s >= at[0] - NODE / 2) & (s <= at[-1] + NODE / 2))
+        inside = np.flatnonzero((s >= at[0] - COMPARISON_STEP / 2) & (s <= at[-1] + COMPARISON_STEP / 2))
         trace.d[inside], trace.z[inside] = np.interp(s[inside], at, d), np.interp(s[inside], at, z)
         trace.measured[inside] = row["status"] == "measured"
         trace.scatter[inside] = row["rmse_m"]
     return trace
 
 
-def chosen_points(points, others, edges, other_edges, frame):
+def select_curb_points(points, others, edges, other_edges, frame):
     """Of two sets of points of the road's own curbs, at every place those whose edge measures better there.
 
     Where one method alone measured, its points are taken. Where both measured one curb
-    (SAME_CURB), along each such stretch those that scatter less about their line; where
+    (MAX_SAME_CURB_DISTANCE), along each such stretch those that scatter less about their line; where
     they found different ones, those of the first, which asks more of a curb.
 
     Parameters
@@ -80,35 +80,35 @@ def chosen_points(points, others, edges, other_edges, frame):
     """
     found = Features(points.geometry_type, list(points.schema), crs=points.crs)
     for road in frame.roads:
-        for side in SIDES:
-            first, second = (trace_edges(e, frame, road.number, side) for e in (edges, other_edges))
+        for side in SIDE_SIGNS:
+            first, second = (sample_edges(e, frame, road.number, side) for e in (edges, other_edges))
             take_second = _second_is_better(first, second)
             for number, features in enumerate((points, others)):
                 mine = take_second if number else ~take_second
                 for geometry, row in features:
                     if row["road"] == road.number and row["side"] == side and mine[_node(first.s, row["station_m"])]:
                         chain = row.get("chain")
-                        found.add(geometry, **dict(row, chain=None if chain is None else chain + number * CHAIN_OFFSET))
+                        found.add(geometry, **dict(row, chain=None if chain is None else chain + number * SECOND_METHOD_CHAIN_OFFSET))
     return found
 
 
 def _node(s, station):
-    return int(np.clip(np.rint((station - s[0]) / NODE), 0, len(s) - 1))
+    return int(np.clip(np.rint((station - s[0]) / COMPARISON_STEP), 0, len(s) - 1))
 
 
 def _second_is_better(first, second):
-    """(N,) bool: is the second edge the one to draw? False where neither runs."""
+    """(N,) bool: is the second edge the one to draw? False where there is neither."""
     both = first.measured & second.measured
     with np.errstate(invalid="ignore"):
-        one_curb = both & (np.abs(first.d - second.d) <= SAME_CURB)
+        one_curb = both & (np.abs(first.d - second.d) <= MAX_SAME_CURB_DISTANCE)
     better = second.measured & ~first.measured
     # where neither measured, the one that bridges
     better |= ~first.measured & ~second.measured & np.isfinite(second.d) & np.isnan(first.d)
-    for a, b in runs(one_curb):
+    for a, b in mask_runs(one_curb):
         better[a:b] = second.scatter[a:b].mean() < first.scatter[a:b].mean()
     # a line that begins a little before the other is no reason to change over
-    for a, b in runs(first.measured ^ second.measured):
-        if (b - a) * NODE < SHORTEST_ALONE:
+    for a, b in mask_runs(first.measured ^ second.measured):
+        if (b - a) * COMPARISON_STEP < MIN_SINGLE_METHOD_LENGTH:
             if a > 0 and one_curb[a - 1]:
                 better[a:b] = better[a - 1]
             elif b < len(better) and one_curb[b]:
@@ -116,38 +116,38 @@ def _second_is_better(first, second):
     return better
 
 
-def runs(mask):
+def mask_runs(mask):
     """(first, last + 1) of every run of True."""
     change = np.flatnonzero(np.diff(np.r_[False, mask, False].astype(np.int8)))
     return list(zip(change[::2].tolist(), change[1::2].tolist()))
 
 
-def note_agreement(edges, first_edges, second_edges, frame):
+def measure_agreement(edges, first_edges, second_edges, frame):
     """Write into `agree_cm` of every edge how far apart two sets of edges run beside it, and tell where it is much.
 
     The number is the distance that 95 % of the piece keeps to, NULL where one of the two has
-    no line. It is measured along the road's offset, every NODE metres.
+    no line. It is measured along the road's offset, every COMPARISON_STEP metres.
 
     Returns
     -------
     Features BOUNDARY_DIFFERENCES: LineStringZ along the drawn edges, one for every stretch where
-    the two lie more than DOUBT apart, `agree_cm` their largest distance there
+    the two lie more than MIN_REPORTED_DIFFERENCE apart, `agree_cm` their largest distance there
     """
     differences = Features("LineStringZ", list(BOUNDARY_DIFFERENCES), crs=edges.crs)
     for road in frame.roads:
-        for side in SIDES:
-            first, second, drawn = (trace_edges(e, frame, road.number, side) for e in (first_edges, second_edges, edges))
+        for side in SIDE_SIGNS:
+            first, second, drawn = (sample_edges(e, frame, road.number, side) for e in (first_edges, second_edges, edges))
             apart = np.abs(first.d - second.d)
             for row in edges.rows:
                 if row["road"] == road.number and row["side"] == side:
                     beside = apart[(first.s >= row["station_m"]) & (first.s <= row["end_m"])]
                     beside = beside[np.isfinite(beside)]
                     if len(beside):
-                        row["agree_cm"] = round(100 * float(np.quantile(beside, USUAL_MOST)), 1)
+                        row["agree_cm"] = round(100 * float(np.quantile(beside, AGREEMENT_QUANTILE)), 1)
             with np.errstate(invalid="ignore"):
-                doubtful = (apart > DOUBT) & np.isfinite(drawn.d)
-            for a, b in runs(doubtful):
-                if (b - a) * NODE < SHORTEST:
+                doubtful = (apart > MIN_REPORTED_DIFFERENCE) & np.isfinite(drawn.d)
+            for a, b in mask_runs(doubtful):
+                if (b - a) * COMPARISON_STEP < MIN_REPORTED_LENGTH:
                     continue
                 x, y, z = frame.to_map(road.number, first.s[a:b], drawn.d[a:b], drawn.z[a:b])
                 line = shapely.linestrings(np.round(np.c_[x, y, z], 4))

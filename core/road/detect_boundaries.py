@@ -8,10 +8,10 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.features import Features
 from ..common.progress import Progress
-from .agreement import chosen_points, note_agreement
-from .common.decimation import Crowds
-from .common.nearest_pass import name_passes
-from .curb_returns.detect import add_turned_curbs
+from .agreement import measure_agreement, select_curb_points
+from .common.decimation import PointDecimation
+from .common.nearest_pass import assign_nearest_pass
+from .curb_returns.detect import add_curb_returns
 from .edges.fit import EdgeSettings, fit_road_edges
 from .profiles.detect import CurbSettings, detect_curbs
 from .scanlines.candidates import GAP_FILL_REACH
@@ -19,11 +19,11 @@ from .scanlines.detect import ScanlineBoundarySettings, curbs_from_scanlines
 from .scanlines.section_planes import ScanlineSettings
 from .scanlines.source import SurveyScanlines
 
-METHODS = ("profiles", "scanlines", "both")
-PROFILES = 0.3    # of the work with both methods; of the rest,
-LATTICE = 0.1     # the lattice ends here,
-TURNED = 0.85     # and what turns away begins here
-CLEAR = 0.20      # m about what corners are measured from in which scanlines still go on
+BOUNDARY_METHODS = ("profiles", "scanlines", "both")
+PROFILES_PROGRESS = 0.3    # of the work with both methods; of the rest,
+LATTICE_PROGRESS = 0.1     # the lattice ends here,
+RETURNS_PROGRESS = 0.85     # and what turns away begins here
+LEVEL_STRIP_MARGIN = 0.20      # m about what corners are measured from in which scanlines still go on
 
 
 @dataclass(frozen=True)
@@ -41,12 +41,13 @@ class BoundarySettings:
     planes: ScanlineSettings = ScanlineSettings()
 
     def __post_init__(self):
-        if self.method not in METHODS:
-            raise RoadExtractionError(f"The boundary method {self.method!r} is not known; choose {', '.join(METHODS[:-1])} or {METHODS[-1]}.")
+        if self.method not in BOUNDARY_METHODS:
+            raise RoadExtractionError(f"The boundary method {self.method!r} is not known; "
+                                      f"choose {', '.join(BOUNDARY_METHODS[:-1])} or {BOUNDARY_METHODS[-1]}.")
 
 
 @dataclass
-class Boundaries:
+class RoadBoundaries:
     """Curb points and the edges through them; with both methods also where these lie apart (else None)."""
 
     curb_points: Features
@@ -61,39 +62,40 @@ def find_curb_points(survey, settings=BoundarySettings(), progress=Progress()):
     Returns
     -------
     {method: Features CURB_POINTS}; with both, "profiles" and "scanlines" hold the road's own
-    curbs and "both" those of the two that measure better (`chosen_points`). Corners, side streets and
+    curbs and "both" those of the two that measure better (`select_curb_points`). Corners, side streets and
     islands are found in plan, once, from the curbs that are drawn.
     """
-    with closing(Crowds(survey, settings.curbs.profile_width, settings.curbs.point_spacing, settings.scanlines.min_height)) as crowds:
-        return _curb_points_from(crowds, settings, progress)
+    with closing(PointDecimation(survey, settings.curbs.profile_width, settings.curbs.point_spacing, settings.scanlines.min_height)) as decimation:
+        return _find_curb_points(decimation, settings, progress)
 
 
-def _curb_points_from(crowds, settings, progress):
-    """`find_curb_points`, points taken from Crowds."""
-    survey, both, found = crowds.survey, settings.method == "both", {}
+def _find_curb_points(decimation, settings, progress):
+    """`find_curb_points`, points taken from PointDecimation."""
+    survey, both, found = decimation.survey, settings.method == "both", {}
     if settings.method != "scanlines":
-        part = progress.part(0.0, PROFILES) if both else progress
-        found["profiles"] = detect_curbs(survey, settings.curbs, part, turned=not both, crowds=crowds)
+        part = progress.part(0.0, PROFILES_PROGRESS) if both else progress
+        found["profiles"] = detect_curbs(survey, settings.curbs, part, turned=not both, decimation=decimation)
     if settings.method != "profiles":
-        part = progress.part(PROFILES if both else 0.0, 1.0)
-        source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, progress=part.part(0.0, LATTICE),
-                                 level=_level_for(crowds, settings.scanlines))
-        found["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length, part.part(LATTICE, TURNED))
+        part = progress.part(PROFILES_PROGRESS if both else 0.0, 1.0)
+        source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, progress=part.part(0.0, LATTICE_PROGRESS),
+                                 level=_level_for(decimation, settings.scanlines))
+        found["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length,
+                                                  part.part(LATTICE_PROGRESS, RETURNS_PROGRESS))
         drawn = found["scanlines"]
         if both:
             drawn = found["both"] = _better_points(found, survey.frame)
-        add_turned_curbs(drawn, crowds, settings.curbs, part.part(TURNED, 1.0))
-        name_passes(drawn, survey.frame)
+        add_curb_returns(drawn, decimation, settings.curbs, part.part(RETURNS_PROGRESS, 1.0))
+        assign_nearest_pass(drawn, survey.frame)
     return found
 
 
-def _level_for(crowds, settings):
+def _level_for(decimation, settings):
     """The function by which SurveyScanlines leaves out where no corner can be."""
-    across, along = (distance + CLEAR for distance in (settings.distance_across, settings.distance_along + GAP_FILL_REACH))
+    across, along = (distance + LEVEL_STRIP_MARGIN for distance in (settings.distance_across, settings.distance_along + GAP_FILL_REACH))
 
     def level(road, number, start, end):
-        profiles = int(np.floor(start / crowds.width)), int(np.ceil(end / crowds.width))
-        return crowds.level_strip(road, number, profiles, across, along)
+        profiles = int(np.floor(start / decimation.width)), int(np.ceil(end / decimation.width))
+        return decimation.level_strip(road, number, profiles, across, along)
 
     return level
 
@@ -102,13 +104,13 @@ def _better_points(found, frame):
     """Of scanlines and profiles, at every place the curb points that measure better."""
     # scanlines first: three planes ask more of a curb than a profile does
     methods = ("scanlines", "profiles")
-    return chosen_points(*(found[method] for method in methods), *(fit_road_edges(found[method], frame) for method in methods), frame)
+    return select_curb_points(*(found[method] for method in methods), *(fit_road_edges(found[method], frame) for method in methods), frame)
 
 
 def draw_boundaries(found, frame, settings=EdgeSettings(), progress=Progress()):
     """Edges through the curb points of one method, or of two that check each other.
 
-    Of two, the one that measures better is drawn at every place (`chosen_points`), and
+    Of two, the one that measures better is drawn at every place (`select_curb_points`), and
     `agree_cm` of every piece says how far apart they are.
 
     Parameters
@@ -119,17 +121,17 @@ def draw_boundaries(found, frame, settings=EdgeSettings(), progress=Progress()):
 
     Returns
     -------
-    Boundaries
+    RoadBoundaries
     """
     if "both" not in found:
         points, = found.values()
-        return Boundaries(points, fit_road_edges(points, frame, settings, progress))
+        return RoadBoundaries(points, fit_road_edges(points, frame, settings, progress))
     alone = {method: fit_road_edges(found[method], frame, settings) for method in ("scanlines", "profiles")}
     edges = fit_road_edges(found["both"], frame, settings, progress)
-    differences = note_agreement(edges, alone["scanlines"], alone["profiles"], frame)
+    differences = measure_agreement(edges, alone["scanlines"], alone["profiles"], frame)
     lengths = {method: sum(row["length_m"] for row in lines.rows if row["status"] == "measured") for method, lines in alone.items()}
     doubtful = sum(row["length_m"] for row in differences.rows)
     if any(lengths.values()):
         progress.say(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "
                      f"they lie more than 5 cm apart along {doubtful:.0f} m.")
-    return Boundaries(found["both"], edges, differences, lengths)
+    return RoadBoundaries(found["both"], edges, differences, lengths)

@@ -16,7 +16,7 @@ from accuracy.figures import figures_of  # noqa: E402
 from accuracy.page import page  # noqa: E402
 from accuracy.surveys import _make_sample, read_case, surveys_in  # noqa: E402
 from lanewright.core.common.features import Features, Field  # noqa: E402
-from lanewright.core.road.common.corners import Steps  # noqa: E402
+from lanewright.core.road.common.corners import CurbSteps  # noqa: E402
 from lanewright.core.sample.survey import SampleSettings  # noqa: E402
 from make_sample import write_layers  # noqa: E402
 
@@ -115,10 +115,10 @@ def test_a_step_is_back_in_its_place_after_an_error():
 
 
 def test_the_thesis_takes_the_step_nearest_the_vehicle_that_is_high_and_steep_enough():
-    names = ("s", "u", "h", "skew", "height", "run", "noise", "usual", "support", "behind")
+    names = ("s", "u", "h", "skew", "height", "run", "noise", "scanner_noise", "support", "behind")
     values = {name: np.zeros(5) for name in names}
     values.update(s=np.array([0.0, 0.0, 0.25, 0.25, 0.5]), u=np.array([4.0, 2.0, 3.0, 5.0, 3.0]),
                   height=np.array([0.1, 0.1, 0.02, 0.1, 0.1]), run=np.array([0.02, 0.02, 0.01, 0.02, 0.5]))
-    chain, = nearest_steps(Steps(profile=np.array([0, 0, 1, 1, 2]), **values), None, 0.25, 0.05, np.radians(60))
+    chain, = nearest_steps(CurbSteps(profile=np.array([0, 0, 1, 1, 2]), **values), None, 0.25, 0.05, np.radians(60))
     np.testing.assert_array_equal(chain.steps, [1, 3])
     assert (chain.start, chain.end) == (0.0, 0.25)

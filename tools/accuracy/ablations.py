@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from lanewright.core.driving.driving_lines import driving_lines
 from lanewright.core.pipeline.road_map import RoadMapSettings
-from lanewright.core.road.common.tracking import Chain
+from lanewright.core.road.common.tracking import StepChain
 from lanewright.core.road.surface.extract import extract_road_surface
 
 from .chain import set_in
@@ -34,7 +34,7 @@ def nearest_steps(steps, _label, _width, least, slope):
     good = np.flatnonzero((steps.height >= least) & (np.arctan2(steps.height, np.maximum(steps.run, 1e-6)) >= slope))
     order = good[np.lexsort((steps.u[good], steps.profile[good]))]
     first = order[np.r_[True, np.diff(steps.profile[order]) != 0]] if len(order) else order
-    return [Chain(first, float(steps.s[first].min()), float(steps.s[first].max()))] if len(first) else []
+    return [StepChain(first, float(steps.s[first].min()), float(steps.s[first].max()))] if len(first) else []
 
 
 def _whole(chains, *_):
@@ -55,8 +55,8 @@ def _driving_alone(work, settings):
 
 ABLATIONS = (
     Ablation("Curbs: the step nearest the vehicle on each profile, instead of chains along the road", "curbs", swaps=(
-        ("road.profiles.detect", "curb_chains", nearest_steps), ("road.profiles.detect", "choose_along", _whole),
-        ("road.profiles.detect", "long_enough", lambda chosen, *_: chosen))),
+        ("road.profiles.detect", "curb_chains", nearest_steps), ("road.profiles.detect", "select_along_road", _whole),
+        ("road.profiles.detect", "drop_short_curbs", lambda chosen, *_: chosen))),
     Ablation("Edges: curb points far off the others are kept", "edges", swaps=(
         ("road.edges.fit", "without_outliers", lambda points: points),)),
     Ablation("Surface: its limits are grown from the ground alone, without road edges", "surface", stages=dict(surface=_surface_alone)),

@@ -9,37 +9,37 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .pseudo_scanlines import HIGH_SIGMA, expand
+from .pseudo_scanlines import TOP_QUANTILE_SIGMAS, expand_ranges
 
-ROAD_SIDE = 0.40    # m of road before the face that give the road's line
-CLEARANCE = 0.05    # m next to the face left out of it: a blurred face begins there
-BEHIND = 0.40       # m behind the face where the ground must stay up
-NOISE_CLIMB = 6.0    # per m: heights that scatter tilt the short line behind a face
-LOW_SHARE = 0.15     # share of the points behind that may lie below half the height; a verge has more
-FACE_WINDOW = 0.15  # m either side of the rising cell within which the face lies
-STEEPEST_ROAD = 0.15  # rise over run of the road side; ditches are steeper
-WIDEST_FACE = 0.10   # m across
-NOISE_RUN = 4.0      # sigmas by which noise widens a face
-ALMOST = 0.8         # share of the least height below which no turning makes a step of a rise
-SIGMAS = 4.0        # a step must stand this far above the noise of its road side
-DROWNED = 0.5        # share of that below which no turning makes a step of a rise
-LEAST_VIEW = 5       # points of a view that is measured by itself, and of the other: else it shows what all points show
-FACE_LOW, FACE_HIGH = 0.15, 0.70  # part of the height that counts as face: grass hangs over the top
-LEAST_SHARE = 0.5    # noise brings points from above and below into a thinner part
-TURNED = 0.1         # m outward per m along beyond which a face is measured again, turned straight
-MOST_SKEW = 1.0      # m outward per m along
+ROAD_SIDE_LENGTH = 0.40    # m of road before the face that give the road's line
+FACE_MARGIN = 0.05    # m next to the face left out of it: a blurred face begins there
+BEHIND_LENGTH = 0.40       # m behind the face where the ground must stay up
+SLOPE_PER_NOISE = 6.0    # per m: heights that scatter tilt the short line behind a face
+MAX_LOW_SHARE = 0.15     # share of the points behind that may lie below half the height; a verge has more
+FACE_SEARCH_HALF_WIDTH = 0.15  # m either side of the rising cell within which the face lies
+MAX_ROAD_SLOPE = 0.15  # rise over run of the road side; ditches are steeper
+MAX_FACE_WIDTH = 0.10   # m across
+FACE_NOISE_SIGMAS = 4.0      # sigmas by which noise widens a face
+CANDIDATE_HEIGHT_SHARE = 0.8         # share of the least height below which no turning makes a step of a rise
+MIN_STEP_SIGMAS = 4.0        # a step must stand this far above the noise of its road side
+CANDIDATE_SIGMA_SHARE = 0.5        # share of that below which no turning makes a step of a rise
+MIN_VIEW_POINTS = 5       # points of a view that is measured by itself, and of the other: else it shows what all points show
+FACE_LOWER_SHARE, FACE_UPPER_SHARE = 0.15, 0.70  # part of the height that counts as face: grass hangs over the top
+MIN_FACE_SHARE = 0.5    # noise brings points from above and below into a thinner part
+REMEASURE_SKEW = 0.1         # m outward per m along beyond which a face is measured again, turned straight
+MAX_FACE_SKEW = 1.0      # m outward per m along
 SKEW_PRIOR = 3e-3    # m²: keeps a face seen in one scan line along the road
 FACE_PRIOR = 2e-4   # m²: keeps a face seen in few points upright
 
 
 @dataclass
-class Steps:
+class CurbSteps:
     """Bottom corners found on profiles, one entry each.
 
     profile : (M,) number of the profile; s, u, h : (M,) station, outward offset and height
     above the expected road of the bottom corner; skew : (M,) m outward per m along of the
     face; height : (M,) m of the step; run : (M,) m
-    across of the face, less what noise adds; noise : (M,) m, heights about the road side's line; usual : (M,) m, the
+    across of the face, less what noise adds; noise : (M,) m, heights about the road side's line; scanner_noise : (M,) m, the
     scanner's own noise there; support : (M,) points of road side and face; behind : (M,) points
     of the raised ground
     """
@@ -52,7 +52,7 @@ class Steps:
     height: np.ndarray
     run: np.ndarray
     noise: np.ndarray
-    usual: np.ndarray
+    scanner_noise: np.ndarray
     support: np.ndarray
     behind: np.ndarray
 
@@ -78,13 +78,13 @@ def measure_corners(lines, rows, cells, least, highest):
 
     Returns
     -------
-    Steps, at most M, in the order of the cells
+    CurbSteps, at most M, in the order of the cells
     """
     cell_count = lines.shape[1]
-    reach = int(round(max(ROAD_SIDE + CLEARANCE, BEHIND) / lines.spacing)) + 2
+    reach = int(round(max(ROAD_SIDE_LENGTH + FACE_MARGIN, BEHIND_LENGTH) / lines.spacing)) + 2
     start = lines.starts[rows * cell_count + np.maximum(cells - reach, 0)]
     end = lines.starts[rows * cell_count + np.minimum(cells + reach + 1, cell_count)]
-    owner, index = expand(start, end)
+    owner, index = expand_ranges(start, end)
     ground = lines.ground.take(index)
     if not ground.all():
         ground = np.flatnonzero(ground)
@@ -94,7 +94,7 @@ def measure_corners(lines, rows, cells, least, highest):
     # no step in all points together may be one in those seen from before, or from behind alone
     ahead = lines.along.take(index) > 0
     ahead_of, count = np.bincount(owner, ahead, len(rows)), np.bincount(owner, minlength=len(rows))
-    mixed = np.minimum(ahead_of, count - ahead_of) >= LEAST_VIEW
+    mixed = np.minimum(ahead_of, count - ahead_of) >= MIN_VIEW_POINTS
     left = np.flatnonzero(seen["likely"] & ~seen["good"] & mixed)
     if len(left):
         number = np.full(len(rows), -1)
@@ -108,17 +108,17 @@ def measure_corners(lines, rows, cells, least, highest):
             for name, values in view.items():
                 seen[name][left[better]] = values[better]
     good = seen["good"]
-    return Steps(profile=lines.first + rows[good], usual=lines.noise[rows[good]],
+    return CurbSteps(profile=lines.first + rows[good], scanner_noise=lines.noise[rows[good]],
                  **{name: values[good] for name, values in seen.items() if name not in ("good", "likely")})
 
 
 def _seen(lines, rows, cells, owner, index, least, highest):
-    """What NearSteps.corners gives of rising cells, in stations and offsets; the points `index` belong to the cells `owner`."""
+    """What StepPatches.corners gives of rising cells, in stations and offsets; the points `index` belong to the cells `owner`."""
     edge, middle = lines.offset(cells), (lines.first + rows + 0.5) * lines.width
-    near = NearSteps(owner, lines.u.take(index) - edge.take(owner), lines.s.take(index) - middle.take(owner), lines.h.take(index),
+    near = StepPatches(owner, lines.u.take(index) - edge.take(owner), lines.s.take(index) - middle.take(owner), lines.h.take(index),
                      lines.noise[rows], least, highest)
     found = near.corners()
-    skewed = np.flatnonzero(np.abs(found["skew"]) > TURNED)
+    skewed = np.flatnonzero(np.abs(found["skew"]) > REMEASURE_SKEW)
     if len(skewed):
         again = near.turned(skewed, found["skew"][skewed]).corners()
         again["skew"] = again["skew"] + found["skew"][skewed]
@@ -129,12 +129,12 @@ def _seen(lines, rows, cells, owner, index, least, highest):
     return found
 
 
-class NearSteps:
+class StepPatches:
     """Ground points about candidate steps: offset and station from each one's own place, outward and along."""
 
-    def __init__(self, owner, u, s, h, usual, least, highest):
+    def __init__(self, owner, u, s, h, scanner_noise, least, highest):
         self.owner, self.u, self.s, self.h = owner, u, s, h
-        self.usual, self.least, self.highest, self.count = usual, least, highest, len(usual)
+        self.scanner_noise, self.least, self.highest, self.count = scanner_noise, least, highest, len(scanner_noise)
 
     def turned(self, which, skew):
         """The candidates `which` alone, with the direction of each face taken out of the offsets."""
@@ -142,7 +142,7 @@ class NearSteps:
         number[which] = np.arange(len(which))
         own = np.flatnonzero(number[self.owner] >= 0)
         owner = number[self.owner[own]]
-        near = NearSteps(owner, self.u[own] - skew[owner] * self.s[own], self.s[own], self.h[own], self.usual[which],
+        near = StepPatches(owner, self.u[own] - skew[owner] * self.s[own], self.s[own], self.h[own], self.scanner_noise[which],
                      self.least, self.highest)
         near.turn = skew
         return near
@@ -153,9 +153,9 @@ class NearSteps:
         return np.bincount(self.owner[mask], None if values is None else values[mask], minlength=self.count)
 
     def corners(self):
-        """Everything a Steps holds, as a dict of (count,) arrays, `good`: is it a step, and `likely`: may it be one, seen otherwise?"""
+        """Everything a CurbSteps holds, as a dict of (count,) arrays, `good`: is it a step, and `likely`: may it be one, seen otherwise?"""
         owner, u, s, h, count = self.owner, self.u, self.s, self.h, self.count
-        road = np.flatnonzero((u < -CLEARANCE) & (u > -ROAD_SIDE - CLEARANCE))
+        road = np.flatnonzero((u < -FACE_MARGIN) & (u > -ROAD_SIDE_LENGTH - FACE_MARGIN))
         side = owner.take(road), u.take(road), h.take(road)
         level, slope, noise, n_road = _line_per_owner(*side, count)
         off = np.abs(side[2] - level.take(side[0]) - slope.take(side[0]) * side[1])
@@ -165,13 +165,13 @@ class NearSteps:
         height, n_behind, stays = self._raised(rise)
         found = dict(level=level, slope=slope, noise=noise, n_road=n_road, height=height, n_behind=n_behind, stays=stays)
         # most candidates are no step from whatever direction they are seen: their faces need no measuring
-        likely = (n_road >= 4) & (height >= np.maximum(ALMOST * self.least, DROWNED * SIGMAS * noise)) \
-            & (np.abs(slope) <= STEEPEST_ROAD / ALMOST)
+        likely = (n_road >= 4) & (height >= np.maximum(CANDIDATE_HEIGHT_SHARE * self.least, CANDIDATE_SIGMA_SHARE * MIN_STEP_SIGMAS * noise)) \
+            & (np.abs(slope) <= MAX_ROAD_SLOPE / CANDIDATE_HEIGHT_SHARE)
         which = np.flatnonzero(likely)
         number = np.full(count, -1)
         number[which] = np.arange(len(which))
-        own = np.flatnonzero((np.abs(u) < FACE_WINDOW) & (number.take(owner) >= 0))
-        near = NearSteps(number.take(owner.take(own)), *(v.take(own) for v in (u, s, h)), self.usual[which], self.least, self.highest)
+        own = np.flatnonzero((np.abs(u) < FACE_SEARCH_HALF_WIDTH) & (number.take(owner) >= 0))
+        near = StepPatches(number.take(owner.take(own)), *(v.take(own) for v in (u, s, h)), self.scanner_noise[which], self.least, self.highest)
         near.turn = self.turn if np.isscalar(self.turn) else self.turn[which]
         seen = dict(likely=likely)
         for name, values in near._measured(rise.take(own), **{name: values[which] for name, values in found.items()}).items():
@@ -182,11 +182,11 @@ class NearSteps:
     def _measured(self, rise, level, slope, noise, n_road, height, n_behind, stays):
         """What `corners` gives, of candidates whose road side and height are known and points whose rise is."""
         owner, u, s, count, total = self.owner, self.u, self.s, self.count, self.total
-        scatter = np.maximum(noise, self.usual)
+        scatter = np.maximum(noise, self.scanner_noise)
         # the part of the height that is surely neither road nor raised ground
-        lower = np.minimum(np.maximum(FACE_LOW * height, 2 * scatter), 0.45 * height)
-        upper = np.maximum(np.minimum(FACE_HIGH * height, height - 2 * scatter), 0.55 * height)
-        face = (np.abs(u) < FACE_WINDOW) & (rise > lower[owner]) & (rise < upper[owner])
+        lower = np.minimum(np.maximum(FACE_LOWER_SHARE * height, 2 * scatter), 0.45 * height)
+        upper = np.maximum(np.minimum(FACE_UPPER_SHARE * height, height - 2 * scatter), 0.55 * height)
+        face = (np.abs(u) < FACE_SEARCH_HALF_WIDTH) & (rise > lower[owner]) & (rise < upper[owner])
         skew, straight = _skew(owner, u, s, face, scatter, count)
         mid, spread = _median_and_spread(owner, straight, face, count)
         face &= np.abs(straight - mid[owner]) < 0.05 + 2 * scatter[owner]
@@ -197,19 +197,19 @@ class NearSteps:
         lean = total(face, (straight - mid[owner]) * (rise - up[owner])) / (var_up + n_face * FACE_PRIOR + 1e-9)
         corner = mid - np.clip(lean, -0.2, 0.8) * up
         # half the points of an even face lie within half its run; noise widens that
-        share = np.maximum((upper - lower) / np.maximum(height, 1e-3), LEAST_SHARE)
+        share = np.maximum((upper - lower) / np.maximum(height, 1e-3), MIN_FACE_SHARE)
         run = 2 * np.sqrt(np.maximum(spread**2 - (1.35 * scatter) ** 2, 0.0)) / share
-        run = np.where(n_face < 3, 0.0, np.maximum(run - NOISE_RUN * scatter, 0.0))
+        run = np.where(n_face < 3, 0.0, np.maximum(run - FACE_NOISE_SIGMAS * scatter, 0.0))
         good = (np.isfinite(level) & (n_road >= 4) & (height >= self.least) & (height <= self.highest)
-                & (height >= SIGMAS * noise) & (np.abs(slope) <= STEEPEST_ROAD) & stays
-                & (n_face >= 1) & (run <= WIDEST_FACE))
+                & (height >= MIN_STEP_SIGMAS * noise) & (np.abs(slope) <= MAX_ROAD_SLOPE) & stays
+                & (n_face >= 1) & (run <= MAX_FACE_WIDTH))
         return dict(s=at, u=corner + self.turn * at, h=level + slope * corner, skew=skew, height=height, run=run,
                     noise=noise, support=n_road + n_face, behind=n_behind, good=good)
 
     def _raised(self, rise):
         """Height of the ground behind the face, how many points lie there, and whether it stays up and level."""
         count = self.count
-        beyond = np.flatnonzero((self.u > 0.03) & (self.u < BEHIND))
+        beyond = np.flatnonzero((self.u > 0.03) & (self.u < BEHIND_LENGTH))
         owner, u, rise_there = self.owner.take(beyond), self.u.take(beyond), rise.take(beyond)
         raised = np.flatnonzero((rise_there > 0.4 * self.least) & (rise_there < self.highest + 0.1))
         up, out, to = owner.take(raised), u.take(raised), rise_there.take(raised)
@@ -218,18 +218,18 @@ class NearSteps:
         up, out, to = up.take(alike), out.take(alike), to.take(alike)
         # a ramp goes on rising where the ground behind a curb is as level as a road
         _, climb, _, n_behind = _line_per_owner(up, out, to, count)
-        level = (n_behind < 4) | (np.abs(climb) <= STEEPEST_ROAD + NOISE_CLIMB * self.usual)
+        level = (n_behind < 4) | (np.abs(climb) <= MAX_ROAD_SLOPE + SLOPE_PER_NOISE * self.scanner_noise)
         peak = np.zeros(count)
-        near = np.flatnonzero((self.u > -0.03) & (self.u < FACE_WINDOW) & (n_behind < 2).take(self.owner))
+        near = np.flatnonzero((self.u > -0.03) & (self.u < FACE_SEARCH_HALF_WIDTH) & (n_behind < 2).take(self.owner))
         with np.errstate(invalid="ignore"):  # a rise that could not be told stays one; newer numpy says so aloud
             np.maximum.at(peak, self.owner.take(near), rise.take(near))
         height = np.where(n_behind >= 2, _mean(np.bincount(up, to, count), n_behind),
-                          np.maximum(peak - HIGH_SIGMA * self.usual, 0.0))
+                          np.maximum(peak - TOP_QUANTILE_SIGMAS * self.scanner_noise, 0.0))
         far = np.flatnonzero(u > 0.10)
         low = np.flatnonzero(rise_there < 0.5 * height.take(owner))
         low = low[u.take(low) > 0.10]
         low, far = (np.bincount(owner.take(v), minlength=count) for v in (low, far))
-        return height, n_behind, level & (low <= np.maximum(LOW_SHARE * far, 1))
+        return height, n_behind, level & (low <= np.maximum(MAX_LOW_SHARE * far, 1))
 
 
 def _skew(owner, u, s, mask, scatter, count):
@@ -243,7 +243,7 @@ def _skew(owner, u, s, mask, scatter, count):
     ds, du = s - at[owner], u - out[owner]
     along = np.bincount(owner[mask], ds[mask] ** 2, count)
     skew = np.bincount(owner[mask], (ds * du)[mask], count) / (along + SKEW_PRIOR + (5 * scatter) ** 2)
-    skew = np.clip(skew, -MOST_SKEW, MOST_SKEW)
+    skew = np.clip(skew, -MAX_FACE_SKEW, MAX_FACE_SKEW)
     return skew, u - skew[owner] * ds
 
 

@@ -9,20 +9,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...common.order_statistics import thinned
 from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.spill_file import SpillFile
 
 # The strip about a track in which the ground is level beyond doubt: no curb is there, and nothing that hides one.
 
-REACH = 8.0        # m from the reference line within which the strip lies
-LEVEL_TOLD = 4           # points of a cell that tell whether it is level
-WITHIN = 0.20      # m across within which a step rises, one that runs askew, too: its height shows in the means of cells so far apart
-SHARE = 0.4        # of the least step that such means may differ
-ROUGH = 0.016      # m, standard deviation of heights in a cell, beyond which it is not level
-STEADY = 5         # of 15 cells that a step changes: a bird, a drop of rain or a ghost lies in one
-BLIND = 1.5        # m beside the track that may not have been seen: scanners do not look beneath their vehicle
-NOWHERE = 1 << 28  # 0.1 mm: farther than any offset
-NARROWEST = 1.0    # m: leaving a narrower strip out is not worth it
+MAX_STRIP_OFFSET = 8.0        # m from the reference line within which the strip lies
+MIN_LEVEL_POINTS = 4           # points of a cell that tell whether it is level
+MAX_STEP_WIDTH = 0.20      # m across within which a step rises, one that runs askew, too: its height shows in the means of cells so far apart
+LEVEL_STEP_SHARE = 0.4        # of the least step that such means may differ
+MAX_STRIP_STD = 0.016      # m, standard deviation of heights in a cell, beyond which it is not level
+MIN_UNEVEN_NEIGHBOURS = 5         # of 15 cells that a step changes: a bird, a drop of rain or a ghost lies in one
+BLIND_HALF_WIDTH = 1.5        # m beside the track that may not have been seen: scanners do not look beneath their vehicle
+NO_OFFSET = 1 << 28  # 0.1 mm: farther than any offset
+MIN_STRIP_WIDTH = 1.0    # m: leaving a narrower strip out is not worth it
 
 
 @dataclass
@@ -42,7 +43,7 @@ class LevelStrip:
 
     @classmethod
     def none(cls, first, count, width):
-        return cls(first, width, np.full(count, NOWHERE, np.int32), np.full(count, -(NOWHERE), np.int32), np.zeros(count))
+        return cls(first, width, np.full(count, NO_OFFSET, np.int32), np.full(count, -(NO_OFFSET), np.int32), np.zeros(count))
 
     def within(self, across, along):
         """The part that lies `across` metres inside and whose ends `along` metres up and down the road do, too."""
@@ -53,10 +54,10 @@ class LevelStrip:
 
         margin = int(round(across / COORDINATE_SCALE))
         low, high = widest(self.low) + margin, -widest(-self.high) - margin
-        narrow = high - low < NARROWEST / COORDINATE_SCALE
+        narrow = high - low < MIN_STRIP_WIDTH / COORDINATE_SCALE
         own = slice(around, len(self.height) - around)
-        return LevelStrip(self.first + around, self.width, np.where(narrow, NOWHERE, low).astype(np.int32),
-                          np.where(narrow, -(NOWHERE), high).astype(np.int32), self.height[own])
+        return LevelStrip(self.first + around, self.width, np.where(narrow, NO_OFFSET, low).astype(np.int32),
+                          np.where(narrow, -(NO_OFFSET), high).astype(np.int32), self.height[own])
 
     def holds(self, s, d):
         """(N,) bool: is a point in the strip? Stations s (ascending) and offsets d in 0.1 mm."""
@@ -72,7 +73,7 @@ class LevelStrip:
         return self.low[k] * COORDINATE_SCALE, self.high[k] * COORDINATE_SCALE, self.height[k]
 
 
-def strip_about(track, held, total, squares, size, least):
+def find_level_strip(track, held, total, squares, size, least):
     """How far the ground about a track is level, profile by profile.
 
     Parameters
@@ -87,23 +88,23 @@ def strip_about(track, held, total, squares, size, least):
     -------
     (low, high, height) of a LevelStrip
     """
-    half = min(int(REACH / COORDINATE_SCALE) // size, held.shape[2])
+    half = min(int(MAX_STRIP_OFFSET / COORDINATE_SCALE) // size, held.shape[2])
     held, total, squares = (np.concatenate([v[:, 1, :half][:, ::-1], v[:, 0, :half]], axis=1) for v in (held, total, squares))
     seen = held > 0
     mean = np.where(seen, total / np.maximum(held, 1), np.nan)
-    bad = seen & ((held < LEVEL_TOLD) | (squares > held * (ROUGH / COORDINATE_SCALE) ** 2))
-    apart = max(int(round(WITHIN * 0.5 / COORDINATE_SCALE / size)), 1)
+    bad = seen & ((held < MIN_LEVEL_POINTS) | (squares > held * (MAX_STRIP_STD / COORDINATE_SCALE) ** 2))
+    apart = max(int(round(MAX_STEP_WIDTH * 0.5 / COORDINATE_SCALE / size)), 1)
     with np.errstate(invalid="ignore"):
-        bad[:, apart:-apart] |= np.abs(mean[:, 2 * apart:] - mean[:, :-2 * apart]) > SHARE * least
-    bad &= _together(bad) >= STEADY
+        bad[:, apart:-apart] |= np.abs(mean[:, 2 * apart:] - mean[:, :-2 * apart]) > LEVEL_STEP_SHARE * least
+    bad &= _together(bad) >= MIN_UNEVEN_NEIGHBOURS
     own = np.clip(track // size + half, 0, 2 * half - 1).astype(np.int64)
     left, right = (_cells_from(own, sign, bad, seen, size) for sign in (1, -1))
     column = np.arange(2 * half)
     inside = (column > (own - right)[:, None]) & (column < (own + left)[:, None])
     count = (held * inside).sum(axis=1)
     known = (left > 0) & (right > 0) & (count > 0)
-    low = np.where(known, (own - right + 1 - half) * size, NOWHERE)
-    high = np.where(known, (own + left - half) * size, -(NOWHERE))
+    low = np.where(known, (own - right + 1 - half) * size, NO_OFFSET)
+    high = np.where(known, (own + left - half) * size, -(NO_OFFSET))
     return low, high, (total * inside).sum(axis=1) / np.maximum(count, 1) * COORDINATE_SCALE
 
 
@@ -123,27 +124,27 @@ def _cells_from(own, sign, bad, seen, size):
     column = np.clip(column, 0, last)
     there = np.take_along_axis(seen, column, axis=1)
     ends = ~on | np.take_along_axis(bad, column, axis=1)
-    ends |= ~there & (np.logical_or.accumulate(there, axis=1) | (away * size * COORDINATE_SCALE > BLIND))
+    ends |= ~there & (np.logical_or.accumulate(there, axis=1) | (away * size * COORDINATE_SCALE > BLIND_HALF_WIDTH))
     return np.argmax(ends, axis=1)
 
-FEW = 12          # points of a cell that tell level ground
-FEW_IN_PLAN = 6   # the same in plan: there are four such cells and more in one of the raster
-MOSTS = FEW, FEW_IN_PLAN
-LONGEST = 0.30    # m of road of a profile: in the means of longer ones a low curb that runs askew looks like a slope
-LEAST = 0.03      # m, the least step that is sought anywhere
-LEVEL = 0.008     # m, standard deviation of heights in a cell that is level, on a road that climbs as on one that does not
-UNEVEN = 60       # points of any other cell: more hardly tell its layers better
-TOLD, MOSTLY = 4, 0.7  # points of a cell that tell whether it is level, and share of points in cells that are not
-TOGETHER = 5.0    # m of road that are read at once
-PIECE = 256_000   # points that are looked through at once
-RARELY = 0.5      # share of points in crowded cells below which the others are not looked at
-EXACT = 1e-6      # 0.1 mm: bounds between profiles are whole numbers of it but for rounding
-TURNS = 16        # locks that stretches share while they are thinned, the last of them the file's
-LOTS = tuple(np.uint32(odd) for odd in (2654435761, 2246822519, 3266489917))  # large odd factors strew neighbours far apart
-FARTHEST = (1 << 18) - 1  # 0.1 mm from the reference line; what lies beyond is as if it lay there
+POINTS_PER_LEVEL_CELL = 12          # points of a cell that tell level ground
+POINTS_PER_LEVEL_CELL_IN_PLAN = 6   # the same in plan: there are four such cells and more in one of the raster
+LEVEL_CELL_LIMITS = POINTS_PER_LEVEL_CELL, POINTS_PER_LEVEL_CELL_IN_PLAN
+MAX_STRIP_PROFILE_WIDTH = 0.30    # m of road of a profile: in the means of longer ones a low curb that runs askew looks like a slope
+MIN_STEP_HEIGHT = 0.03      # m, the least step that is sought anywhere
+LEVEL_CELL_STD = 0.008     # m, standard deviation of heights in a cell that is level, on a road that climbs as on one that does not
+POINTS_PER_UNEVEN_CELL = 60       # points of any other cell: more hardly tell its layers better
+MOSTLY_UNEVEN_SHARE = 0.7  # share of points in cells that are not level
+STRETCH_LENGTH = 5.0    # m of road that are read at once
+DECIMATION_BLOCK_POINTS = 256_000   # points that are looked through at once
+MIN_DENSE_SHARE = 0.5      # share of points in crowded cells below which the others are not looked at
+PROFILE_BOUND_TOLERANCE = 1e-6      # 0.1 mm: bounds between profiles are whole numbers of it but for rounding
+DECIMATION_LOCKS = 16        # locks that stretches share while they are thinned, the last of them the file's
+HASH_FACTORS = tuple(np.uint32(odd) for odd in (2654435761, 2246822519, 3266489917))  # large odd factors strew neighbours far apart
+MAX_CELL_OFFSET = (1 << 18) - 1  # 0.1 mm from the reference line; what lies beyond is as if it lay there
 
 
-class Crowds:
+class PointDecimation:
     """Which points of a survey are looked at where they crowd: decided once, for curbs along the road and curbs in plan.
 
     width, spacing : m; a cell is a profile long and about `spacing` wide
@@ -152,12 +153,12 @@ class Crowds:
     What is taken of a stretch is noted point by point, a bit each, in a temporary file: `close` it.
     """
 
-    def __init__(self, survey, width, spacing, least=LEAST):
+    def __init__(self, survey, width, spacing, least=MIN_STEP_HEIGHT):
         self.survey, self.width, self.spacing, self.least = survey, width, spacing, least
-        self._together = max(int(round(TOGETHER / width)), 1)
+        self._together = max(int(round(STRETCH_LENGTH / width)), 1)
         self._taken, self._uneven = {}, {}   # (road, first profile) -> {most: Stored bits}; (road, profile) -> bool
         self._strips = {}   # (road, first profile) -> {pass number: LevelStrip}
-        self._turns = [threading.Lock() for _ in range(TURNS)]
+        self._turns = [threading.Lock() for _ in range(DECIMATION_LOCKS)]
         self._file = None
 
     def close(self):
@@ -168,13 +169,13 @@ class Crowds:
             self._file.close()
             self._file = None
 
-    def few_of_every_cell(self, road, profiles, most=FEW):
+    def decimated_points(self, road, profiles, most=POINTS_PER_LEVEL_CELL):
         """The points of profiles in runs along the road, thinned to about `most` where a cell of level ground holds more.
 
         Parameters
         ----------
         profiles : (first, last + 1) numbers of profiles
-        most : points of one pass in such a cell, FEW or FEW_IN_PLAN; None takes all of every cell
+        most : points of one pass in such a cell, POINTS_PER_LEVEL_CELL or POINTS_PER_LEVEL_CELL_IN_PLAN; None takes all of every cell
 
         Yields
         ------
@@ -227,7 +228,7 @@ class Crowds:
     def _look_at(self, road, first):
         """Decide what is taken of the stretch which begins with profile `first`, unless that was done."""
         key = road, first
-        with self._turns[hash(key) % (TURNS - 1)]:
+        with self._turns[hash(key) % (DECIMATION_LOCKS - 1)]:
             if key not in self._taken:
                 self._strips[key] = {}
                 self._taken[key] = self._decided(road, first, self._strips[key])
@@ -235,14 +236,14 @@ class Crowds:
     def _decided(self, road, first, strips):
         """Number of points, and which of them are taken for every `most`: bits in the file, None for all; `strips` are filled in."""
         points = self._window(road, first, first + self._together)
-        taken, done = {most: np.ones(len(points), bool) for most in MOSTS}, 0
+        taken, done = {most: np.ones(len(points), bool) for most in LEVEL_CELL_LIMITS}, 0
         for piece in in_pieces(points, first * self.width, self.width):
             for number, own, columns in _by_pass(piece.records):
                 cells = _Cells(*columns, self.width, self.spacing)
                 for most, chosen in cells.thinned().items():
                     here = taken[most][done:done + len(piece)]
                     here[slice(None) if own is None else own] = chosen
-                if cells.looked_through and self.width <= LONGEST:
+                if cells.looked_through and self.width <= MAX_STRIP_PROFILE_WIDTH:
                     strip = strips.setdefault(number, LevelStrip.none(first, self._together, self.width))
                     self._note_strip(strip, cells, self.survey.frame.passes[number])
             done += len(piece)
@@ -251,7 +252,7 @@ class Crowds:
     def _note_strip(self, strip, cells, p):
         """Fill in the profiles of a strip that some cells are of."""
         middles = (cells.first + np.arange(cells.profiles) + 0.5) * self.width
-        found = strip_about(np.floor(p.at_station(middles)[0] / COORDINATE_SCALE), *cells.grids(), cells.size, self.least / COORDINATE_SCALE)
+        found = find_level_strip(np.floor(p.at_station(middles)[0] / COORDINATE_SCALE), *cells.grids(), cells.size, self.least / COORDINATE_SCALE)
         own = slice(cells.first - strip.first, cells.first - strip.first + cells.profiles)
         strip.low[own], strip.high[own], strip.height[own] = found
 
@@ -263,8 +264,8 @@ class Crowds:
 
 
 def in_pieces(points, start, width):
-    """Points in runs along the road of whole profiles counted from station `start`, PIECE or so each."""
-    cuts = np.arange(0, len(points), PIECE)
+    """Points in runs along the road of whole profiles counted from station `start`, DECIMATION_BLOCK_POINTS or so each."""
+    cuts = np.arange(0, len(points), DECIMATION_BLOCK_POINTS)
     if len(cuts) > 1:
         edges = np.unique(np.floor((points.records["s"][cuts[1:]] * COORDINATE_SCALE - start) / width)) * width + start
         cuts = np.unique(np.r_[0, np.searchsorted(points.records["s"], np.ceil(edges / COORDINATE_SCALE - 0.01).astype(np.int32))])
@@ -280,6 +281,14 @@ def _by_pass(records):
     return [(number, own, [column.take(own) for column in columns]) for number, own in owns]
 
 
+def limit_points_per_cell(place):
+    """Indices of (N,) cell indices, in every cell no more than about POINTS_PER_UNEVEN_CELL, evenly spread over their order."""
+    if len(place) <= POINTS_PER_UNEVEN_CELL:
+        return slice(None)
+    place = place - place.min()
+    return slice(None) if np.bincount(place).max() <= POINTS_PER_UNEVEN_CELL else thinned(place, POINTS_PER_UNEVEN_CELL)
+
+
 class _Cells:
     """Points by cell: a profile long, about `spacing` wide, of one side of the road.
 
@@ -291,14 +300,15 @@ class _Cells:
     def __init__(self, s, d, z, width, spacing):
         self.s, self.d, self.z = s, d, z
         bits = int(np.rint(np.log2(spacing / COORDINATE_SCALE)))
-        self.size, self.half, self.looked_through = 1 << bits, (FARTHEST >> bits) + 1, False
+        self.size, self.half, self.looked_through = 1 << bits, (MAX_CELL_OFFSET >> bits) + 1, False
         # stations ascend, so profiles are runs of points; bounds lie off the whole units
         self.first, last = (int(np.floor((int(end) + 0.5) * COORDINATE_SCALE / width)) for end in (s[0], s[-1]))
         self.profiles = last - self.first + 1
-        cuts = np.searchsorted(s, np.ceil(np.arange(self.first + 1, last + 1) * (width / COORDINATE_SCALE) - 0.5 - EXACT).astype(np.int32)).tolist()
+        bounds = np.arange(self.first + 1, last + 1) * (width / COORDINATE_SCALE) - 0.5 - PROFILE_BOUND_TOLERANCE
+        cuts = np.searchsorted(s, np.ceil(bounds).astype(np.int32)).tolist()
         # the two sides of a road are parted alike
         cell = np.abs(d)
-        np.minimum(cell, FARTHEST, out=cell)
+        np.minimum(cell, MAX_CELL_OFFSET, out=cell)
         cell >>= bits
         side = d >> 31
         side &= self.half
@@ -310,16 +320,17 @@ class _Cells:
 
     def thinned(self):
         """{most: (N,) bool} which points are taken of every cell."""
-        crowded = self.held > min(MOSTS)
+        crowded = self.held > min(LEVEL_CELL_LIMITS)
         in_crowds = self.held[crowded].sum()
         if not in_crowds:
-            return dict.fromkeys(MOSTS, True)
-        if in_crowds < RARELY * len(self.s):
+            return dict.fromkeys(LEVEL_CELL_LIMITS, True)
+        if in_crowds < MIN_DENSE_SHARE * len(self.s):
             level = self.level(np.flatnonzero(crowded.take(self.cell)))
         else:
             level = self.level()
         lot, lots = _by_lot(self.s, np.abs(self.d)), 65536.0 / np.maximum(self.held, 1)
-        return {most: lot <= np.minimum(np.where(level, most, UNEVEN) * lots, 65535.0).astype(np.uint16).take(self.cell) for most in MOSTS}
+        return {most: lot <= np.minimum(np.where(level, most, POINTS_PER_UNEVEN_CELL) * lots, 65535.0).astype(np.uint16).take(self.cell)
+                for most in LEVEL_CELL_LIMITS}
 
     def level(self, own=None):
         """(C,) bool: is the ground of each cell level? Told for those of which all points are among `own`, indices, None for all."""
@@ -330,7 +341,7 @@ class _Cells:
         squares = np.bincount(cell, z, len(self.held))
         self.squares = squares - total * total / np.maximum(self.held, 1)
         self.looked_through = own is None
-        return self.squares <= self.held * (LEVEL / COORDINATE_SCALE) ** 2
+        return self.squares <= self.held * (LEVEL_CELL_STD / COORDINATE_SCALE) ** 2
 
     def grids(self):
         """Of every cell its points, the sum of their heights, and that of the squares off their mean: (profiles, 2 sides, cells outward)."""
@@ -341,15 +352,15 @@ def _mostly_uneven(records, width, spacing):
     if not len(records):
         return False
     cells = _Cells(*(records[name] for name in ("s", "d", "z")), width, spacing)
-    told = np.where(cells.held >= TOLD, cells.held, 0)
-    return told[~cells.level()].sum() > MOSTLY * told.sum()
+    told = np.where(cells.held >= MIN_LEVEL_POINTS, cells.held, 0)
+    return told[~cells.level()].sum() > MOSTLY_UNEVEN_SHARE * told.sum()
 
 
 def _by_lot(s, out):
     """(N,) uint16 that depend on nothing but the place of a point, and on it without a pattern."""
-    lot = s.view(np.uint32) * LOTS[0]
-    lot += out.view(np.uint32) * LOTS[1]
+    lot = s.view(np.uint32) * HASH_FACTORS[0]
+    lot += out.view(np.uint32) * HASH_FACTORS[1]
     lot ^= lot >> np.uint32(15)
-    lot *= LOTS[2]
+    lot *= HASH_FACTORS[2]
     lot >>= np.uint32(16)
     return lot.astype(np.uint16)

@@ -3,7 +3,7 @@
 import numpy as np
 
 
-def name_passes(features, frame):
+def assign_nearest_pass(features, frame):
     """Write into `pass` of every row that has none the number of the pass that drove nearest.
 
     Parameters

@@ -18,11 +18,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...common.order_statistics import order_by, thinned
+from ...common.order_statistics import order_by
 
 # Layers of the points of cells: where heights jump, what lies above is no ground.
 
-GHOST_SHARE = 0.15  # a lowest layer with less than this share of its cell is multipath, not ground
+MIN_GROUND_LAYER_SHARE = 0.15  # a lowest layer with less than this share of its cell is multipath, not ground
 
 
 def lowest_layers(place, h, layer_jump):
@@ -42,16 +42,16 @@ def lowest_layers(place, h, layer_jump):
         return ground, layer_start, layer_count
     layer_cell = np.cumsum(first_of_cell) - 1
     cell_count = np.bincount(layer_cell, layer_count)
-    real = layer_count >= GHOST_SHARE * cell_count[layer_cell]
+    real = layer_count >= MIN_GROUND_LAYER_SHARE * cell_count[layer_cell]
     chosen = np.flatnonzero(real)
     chosen = chosen[np.r_[True, np.diff(layer_cell[chosen]) > 0]]
     other = np.ones(len(layer_start), bool)
     other[chosen] = False
-    ground[expand(layer_start[other], layer_start[other] + layer_count[other])[1]] = False
+    ground[expand_ranges(layer_start[other], layer_start[other] + layer_count[other])[1]] = False
     return ground, layer_start[chosen], layer_count[chosen]
 
 
-def expand(start, end):
+def expand_ranges(start, end):
     """Every index of ragged ranges, and which range it belongs to: (N,) owners and (N,) indices."""
     length = np.maximum(end - start, 0)
     owner = np.repeat(np.arange(len(start)), length)
@@ -59,15 +59,14 @@ def expand(start, end):
     index += np.repeat(start - (np.cumsum(length) - length), length)
     return owner, index
 
-MOST = 60           # points of a cell that are looked at: more hardly tell its layers better
-HIGH = 0.9          # quantile of the lowest layer that stands for its highest point
-HIGH_SIGMA = 1.2816  # the same quantile of a normal distribution, in sigmas
-LEAST_NOISE = 0.002  # m
-USUAL_NOISE = 0.005  # m, where too few cells hold enough points to tell
-SAME_GROUND = 0.15  # m from a cell's ground within which points tell the scanner's noise
-SPREAD_POINTS, SPREAD_CELLS = 5, 10  # points in a cell, and such cells in a profile, that tell it
-SPREAD_ROWS = 6     # profiles either side that tell it together
-DEPTH, REACH = 2.0, 2.0  # m below and above the expected road within which ground is sought
+TOP_QUANTILE = 0.9          # quantile of the lowest layer that stands for its highest point
+TOP_QUANTILE_SIGMAS = 1.2816  # the same quantile of a normal distribution, in sigmas
+MIN_SCANNER_NOISE = 0.002  # m
+DEFAULT_SCANNER_NOISE = 0.005  # m, where too few cells hold enough points to tell
+MAX_GROUND_DEVIATION = 0.15  # m from a cell's ground within which points tell the scanner's noise
+MIN_SPREAD_POINTS, MIN_SPREAD_CELLS = 5, 10  # points in a cell, and such cells in a profile, that tell it
+SPREAD_PROFILES = 6     # profiles either side that tell it together
+GROUND_DEPTH, GROUND_HEIGHT = 2.0, 2.0  # m below and above the expected road within which ground is sought
 
 
 @dataclass
@@ -117,7 +116,7 @@ class PseudoScanLines:
                        noise=self.noise[a:b], spread=self.spread[a:b])
 
 
-def seen_between(lines, nearest, farthest, layer_jump):
+def seen_from(lines, nearest, farthest, layer_jump):
     """The PseudoScanLines of the points that were measured from `nearest` to before `farthest` metres ahead."""
     own = np.flatnonzero((lines.along >= nearest) & (lines.along < farthest))
     rows, cells = lines.shape
@@ -142,13 +141,13 @@ def pseudo_scan_lines(u, s, h, along, profiles, width, spacing, layer_jump, orig
     PseudoScanLines
     """
     cells = max(int(np.ceil((reach - origin) / spacing)), 1)
-    kept, place = places(u, s, h, np.arange(len(u)), profiles, cells, width, spacing, origin)
-    run = run_of_profiles((u, s, h, along), kept, place, profiles, cells, layer_jump)
-    return joined_runs([run], profiles, width, spacing, origin)
+    kept, place = cells_of_points(u, s, h, np.arange(len(u)), profiles, cells, width, spacing, origin)
+    run = ground_of_profiles((u, s, h, along), kept, place, profiles, cells, layer_jump)
+    return join_profile_runs([run], profiles, width, spacing, origin)
 
 
 @dataclass
-class RunOfProfiles:
+class ProfileRun:
     """Some profiles, by themselves: fields as of PseudoScanLines, but for those below.
 
     count : (P, C) points of every cell
@@ -168,7 +167,7 @@ class RunOfProfiles:
     smooth: np.ndarray
 
 
-def run_of_profiles(points, kept, place, profiles, cells, layer_jump):
+def ground_of_profiles(points, kept, place, profiles, cells, layer_jump):
     """The ground of profiles, cell by cell.
 
     Parameters
@@ -179,7 +178,7 @@ def run_of_profiles(points, kept, place, profiles, cells, layer_jump):
     """
     rows = profiles[1] - profiles[0]
     height = points[2].take(kept)
-    height += DEPTH
+    height += GROUND_DEPTH
     height *= 1e4
     order = order_by(np.rint(height, out=height).astype(np.int32), place)
     place, kept = place.take(order), kept.take(order)
@@ -188,20 +187,20 @@ def run_of_profiles(points, kept, place, profiles, cells, layer_jump):
     low, high, noise = (np.full((rows, cells), np.nan) for _ in range(3))
     owner = place[first_of]
     middle = 0.5 * (h[first_of + (count - 1) // 2] + h[first_of + count // 2])
-    top = h[first_of + np.rint(HIGH * (count - 1)).astype(np.int64)]
+    top = h[first_of + np.rint(TOP_QUANTILE * (count - 1)).astype(np.int64)]
     low.flat[owner], high.flat[owner] = middle, top
     many = count >= 4
-    noise.flat[owner[many]] = (top - middle)[many] / HIGH_SIGMA
+    noise.flat[owner[many]] = (top - middle)[many] / TOP_QUANTILE_SIGMAS
     held = np.bincount(place, minlength=rows * cells).reshape(rows, cells)
-    return RunOfProfiles(profiles, u, s, h, along, ground, held, low, high, _profile_noise(noise), _smooth(h, held, low))
+    return ProfileRun(profiles, u, s, h, along, ground, held, low, high, _profile_noise(noise), _smooth(h, held, low))
 
 
-def joined_runs(runs, profiles, width, spacing, origin):
+def join_profile_runs(runs, profiles, width, spacing, origin):
     """PseudoScanLines of profiles (first, last + 1) from runs of them that follow one another; those that none holds are empty."""
     rows, cells = profiles[1] - profiles[0], runs[0].low.shape[1]
     low, high = np.full((rows, cells), np.nan), np.full((rows, cells), np.nan)
     held = np.zeros((rows, cells), np.int64)
-    noise, smooth = np.full(rows, USUAL_NOISE), np.full(rows, np.nan)
+    noise, smooth = np.full(rows, DEFAULT_SCANNER_NOISE), np.full(rows, np.nan)
     for run in runs:
         own = slice(run.profiles[0] - profiles[0], run.profiles[1] - profiles[0])
         low[own], high[own], held[own], noise[own], smooth[own] = run.low, run.high, run.count, run.noise, run.smooth
@@ -210,21 +209,14 @@ def joined_runs(runs, profiles, width, spacing, origin):
                            _spread(smooth))
 
 
-def crowds_thinned(place):
-    """Indices of (N,) places, of every cell no more than about MOST, evenly spread over their order."""
-    if len(place) <= MOST:
-        return slice(None)
-    place = place - place.min()
-    return slice(None) if np.bincount(place).max() <= MOST else thinned(place, MOST)
 
-
-def places(u, s, h, seen, profiles, cells, width, spacing, origin):
+def cells_of_points(u, s, h, seen, profiles, cells, width, spacing, origin):
     """Of the points `seen` those within profiles and cells, and the place of each: profile * cells + cell, from the first profile."""
     u, s, h = u.take(seen), s.take(seen), h.take(seen)
     profile = np.floor(s / width).astype(np.int32)
     profile -= profiles[0]
     cell = np.floor((u - origin) / spacing).astype(np.int32)
-    kept = (profile >= 0) & (profile < profiles[1] - profiles[0]) & (cell >= 0) & (cell < cells) & (h > -DEPTH) & (h < REACH)
+    kept = (profile >= 0) & (profile < profiles[1] - profiles[0]) & (cell >= 0) & (cell < cells) & (h > -GROUND_DEPTH) & (h < GROUND_HEIGHT)
     place = profile * np.int32(cells) + cell
     return (seen, place) if kept.all() else (seen[kept], place[kept])
 
@@ -232,7 +224,7 @@ def places(u, s, h, seen, profiles, cells, width, spacing, origin):
 def _profile_noise(noise):
     """(P,) median spread of each profile's cells."""
     dense = np.isfinite(noise).sum(1) >= 20
-    return np.where(dense, np.fmax(_row_median(noise), LEAST_NOISE), USUAL_NOISE)
+    return np.where(dense, np.fmax(_row_median(noise), MIN_SCANNER_NOISE), DEFAULT_SCANNER_NOISE)
 
 
 def _smooth(h, held, low):
@@ -243,26 +235,26 @@ def _smooth(h, held, low):
         size = held.flat[there]
         first = np.cumsum(size) - size
         off = np.abs(h - np.repeat(low.flat[there], size))
-        near, count = off < SAME_GROUND, size
+        near, count = off < MAX_GROUND_DEVIATION, size
         if not near.all():
             off = np.where(near, off, 0.0)
             count = np.add.reduceat(near, first, dtype=np.int64)
         # 1.2533 mean distances of a normal distribution are its sigma
         mean = 1.2533 * np.add.reduceat(off, first) / np.maximum(count, 1)
-        own.flat[there] = np.where(count >= SPREAD_POINTS, mean, np.nan)
+        own.flat[there] = np.where(count >= MIN_SPREAD_POINTS, mean, np.nan)
     # grass is rough with any scanner, so the smoother cells tell
     ordered, n = _sorted_rows(own)
-    return np.where(n >= SPREAD_CELLS, ordered[np.arange(rows), np.maximum(n - 1, 0) * 3 // 10], np.nan)
+    return np.where(n >= MIN_SPREAD_CELLS, ordered[np.arange(rows), np.maximum(n - 1, 0) * 3 // 10], np.nan)
 
 
 def _spread(smooth):
     """(P,) spread of heights about the ground, in the smoother cells of profiles and their neighbours."""
     # one profile beside a bush says nothing about the scanner
-    padded = np.pad(smooth, SPREAD_ROWS, constant_values=np.nan)
-    around = np.sort(np.lib.stride_tricks.sliding_window_view(padded, 2 * SPREAD_ROWS + 1), axis=1)
+    padded = np.pad(smooth, SPREAD_PROFILES, constant_values=np.nan)
+    around = np.sort(np.lib.stride_tricks.sliding_window_view(padded, 2 * SPREAD_PROFILES + 1), axis=1)
     known = np.isfinite(around).sum(1)
     middle = around[np.arange(len(smooth)), np.maximum(known - 1, 0) // 2]
-    return np.where(known > 0, middle, LEAST_NOISE)
+    return np.where(known > 0, middle, MIN_SCANNER_NOISE)
 
 
 def _sorted_rows(values):

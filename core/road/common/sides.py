@@ -2,19 +2,19 @@
 
 import numpy as np
 
-from .decimation import FEW
-from .occlusion import TALL
-from .pseudo_scanlines import crowds_thinned, joined_runs, places, run_of_profiles
+from .decimation import POINTS_PER_LEVEL_CELL, limit_points_per_cell
+from .occlusion import MIN_OCCLUDER_HEIGHT
+from .pseudo_scanlines import cells_of_points, ground_of_profiles, join_profile_runs
 
-SIDES = {"left": 1, "right": -1}
-SECTION = 20.0  # m of road for which the length of blocks is decided
-WORK = 20.0     # m of road worked at a time
-REACH = 20.0    # m from the reference line beyond which no curb is sought
-NODE = 0.25     # m between the nodes of the expected height
-BESIDE = 4.0    # m along the road, and as much again as across, from which a point is used
+SIDE_SIGNS = {"left": 1, "right": -1}
+BLOCK_SECTION_LENGTH = 20.0  # m of road for which the length of blocks is decided
+WORK_SECTION_LENGTH = 20.0     # m of road worked at a time
+MAX_CURB_OFFSET = 20.0    # m from the reference line beyond which no curb is sought
+HEIGHT_NODE_SPACING = 0.25     # m between the nodes of the expected height
+MAX_LOOK_ALONG = 4.0    # m along the road, and as much again as across, from which a point is used
 
 
-class Track:
+class OutermostTrack:
     """Outward offset of the outermost driven track of one side."""
 
     def __init__(self, frame, road, sign):
@@ -30,23 +30,23 @@ class Track:
         return np.where(np.isfinite(offsets), offsets, 0.0)
 
 
-def sections_of(survey, road, width):
+def work_sections(survey, road, width):
     """The profiles of a road parted for work: list of (first, last + 1) profile numbers, about 20 m each."""
     start, end = survey.store.span(road)
     first, last = int(np.floor(start / width)), int(np.ceil(end / width))
-    count = max(int(np.ceil((end - start) / WORK)), 1)
+    count = max(int(np.ceil((end - start) / WORK_SECTION_LENGTH)), 1)
     bounds = np.unique(np.rint(np.linspace(first, last, count + 1)).astype(int))
     return [(int(a), int(b)) for a, b in zip(bounds[:-1], bounds[1:])]
 
 
-def profiles_beside(crowds, road, section, tracks, settings, most=FEW):
+def side_profiles(decimation, road, section, tracks, settings, most=POINTS_PER_LEVEL_CELL):
     """Profiles of one section, for each side and pass apart.
 
     Parameters
     ----------
-    crowds : Crowds of the survey
+    decimation : Crowds of the survey
     section : (first, last + 1) profile numbers
-    tracks : dict of side to Track
+    tracks : dict of side to OutermostTrack
     settings : CurbSettings
     most : points of a cell that are looked at (see `Crowds`); None for all, as far as they tell its layers better
 
@@ -54,33 +54,33 @@ def profiles_beside(crowds, road, section, tracks, settings, most=FEW):
     ------
     side, pass number, (u, s, h) of the tall points, PseudoScanLines
     """
-    survey, width, spacing = crowds.survey, crowds.width, crowds.spacing
+    survey, width, spacing = decimation.survey, decimation.width, decimation.spacing
     stations = (np.arange(*section) + 0.5) * width
-    origins = {side: np.floor(tracks[side](stations).min()) for side in SIDES}
+    origins = {side: np.floor(tracks[side](stations).min()) for side in SIDE_SIGNS}
     runs, tall = {}, {}
-    for part in crowds.few_of_every_cell(road, section, most):
+    for part in decimation.decimated_points(road, section, most):
         s, d = part.s, part.d
         if not len(s):
             continue
         along = ahead_of_vehicle(survey, part, s)
-        near = np.abs(along) < BESIDE + np.abs(d)
+        near = np.abs(along) < MAX_LOOK_ALONG + np.abs(d)
         h = part.z - expected_height(survey, road, s)
         first = int(np.floor(s[0] / width))
         own = max(first, section[0]), min(int(np.floor(s[-1] / width)) + 1, section[1])
-        for side, sign in SIDES.items():
+        for side, sign in SIDE_SIGNS.items():
             u = sign * d
-            cells = max(int(np.ceil((REACH - origins[side]) / spacing)), 1)
-            for number, seen in _by_pass(part.pass_number, near & (u > origins[side]) & (u < REACH)):
+            cells = max(int(np.ceil((MAX_CURB_OFFSET - origins[side]) / spacing)), 1)
+            for number, seen in _by_pass(part.pass_number, near & (u > origins[side]) & (u < MAX_CURB_OFFSET)):
                 key = side, number
-                kept, place = places(u, s, h, seen, own, cells, width, spacing, origins[side])
+                kept, place = cells_of_points(u, s, h, seen, own, cells, width, spacing, origins[side])
                 if most is None:
-                    few = crowds_thinned(place)
+                    few = limit_points_per_cell(place)
                     kept, place = kept[few], place[few]
-                runs.setdefault(key, []).append(run_of_profiles((u, s, h, along), kept, place, own, cells, settings.layer_jump))
-                high = seen[h.take(seen) > TALL]
+                runs.setdefault(key, []).append(ground_of_profiles((u, s, h, along), kept, place, own, cells, settings.layer_jump))
+                high = seen[h.take(seen) > MIN_OCCLUDER_HEIGHT]
                 tall.setdefault(key, []).append([v.take(high) for v in (u, s, h)])
-    for side, number in sorted(runs, key=lambda key: (list(SIDES).index(key[0]), key[1])):
-        lines = joined_runs(runs[side, number], section, width, spacing, origins[side])
+    for side, number in sorted(runs, key=lambda key: (list(SIDE_SIGNS).index(key[0]), key[1])):
+        lines = join_profile_runs(runs[side, number], section, width, spacing, origins[side])
         yield side, number, tuple(np.concatenate(column) for column in zip(*tall[side, number])), lines
 
 
@@ -99,10 +99,10 @@ def expected_height(survey, road, s):
     """(N,) local z at which the road is expected, from nodes at fixed stations, so that many points cost little."""
     if not len(s):
         return np.empty(0)
-    first = int(np.floor(np.min(s) / NODE))
-    last = int(np.floor(np.max(s) / NODE)) + 1
-    nodes = survey.road_height(road, np.arange(first, last + 1) * NODE)
-    at = s * (1.0 / NODE)
+    first = int(np.floor(np.min(s) / HEIGHT_NODE_SPACING))
+    last = int(np.floor(np.max(s) / HEIGHT_NODE_SPACING)) + 1
+    nodes = survey.road_height(road, np.arange(first, last + 1) * HEIGHT_NODE_SPACING)
+    at = s * (1.0 / HEIGHT_NODE_SPACING)
     at -= first
     k = at.astype(np.intp)
     at -= k

@@ -5,26 +5,25 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..common.sides import SIDES
-from ..common.tracking import ROUGH_ROAD
+from ..common.sides import SIDE_SIGNS
+from ..common.tracking import MAX_CHAIN_SCATTER, MAX_JOINED_GAP, MAX_ROAD_ROUGHNESS
 from .steps import PlanSteps
-from .tracking import CONNECT, groups_in_line
+from .tracking import group_lines
 
-SHORTEST = 1.0       # m of a line
-DENSEST = 0.6        # m between the steps of a line, on average, at most: scan lines lie apart
-WANDER = 0.02        # m, scatter about its own running line beyond the scanner's noise
-ALONG = np.cos(np.radians(45.0))  # of its angle to the road above which a curb is the road's own
-OVERLAP = 0.5        # m along the road that a piece of main curb may lie beside another
-STRAIGHT, STRAIGHT_LENGTH = 0.05, 2.0  # m off its chord within which a curb that left the road runs straight; m of it
-ISLAND_SHARE = 0.6   # share of an island's steps behind which it does
-ISLAND_LENGTH = 2.0  # m of lines about one island
-ONE_ISLAND = 3.0     # m between them
-ALONE = 5.0          # m of a line that is a side street's although nothing joins it to the main curb
-STREET, BESIDE_STREET = (2.5, 16.0), 4.0  # m from it at which its other side lies; m along by which the two may miss each other
+MIN_RETURN_LENGTH = 1.0       # m of a line
+MAX_STEP_SPACING = 0.6        # m between the steps of a line, on average, at most: scan lines lie apart
+MIN_ROAD_COSINE = np.cos(np.radians(45.0))  # of its angle to the road above which a curb is the road's own
+MAIN_CURB_OVERLAP = 0.5        # m along the road that a piece of main curb may lie beside another
+MAX_STRAIGHT_DEVIATION, MIN_STRAIGHT_LENGTH = 0.05, 2.0  # m off its chord within which a curb that left the road runs straight; m of it
+MIN_ISLAND_SHARE = 0.6   # share of an island's steps behind which it does
+MIN_ISLAND_LENGTH = 2.0  # m of lines about one island
+MAX_ISLAND_GAP = 3.0     # m between them
+MIN_ISOLATED_LENGTH = 5.0          # m of a line that is a side street's although nothing joins it to the main curb
+SIDE_STREET_WIDTHS, MAX_OPPOSITE_SHIFT = (2.5, 16.0), 4.0  # m from it at which its other side lies; m along by which the two may miss each other
 
 
 @dataclass
-class TurnedCurb:
+class CurbReturn:
     """One line: steps in order, uphill on the right; kind is main (a piece that profiles missed), corner, side_street or island."""
 
     steps: PlanSteps
@@ -35,18 +34,18 @@ class TurnedCurb:
     closed: bool = False
 
 
-def like_a_curb(chain, steps, usual, settings):
+def is_curb_like(chain, steps, scanner_noise, settings):
     """Is a line long, dense, steep and smooth enough?"""
     own = steps[chain.steps]
     length = _length(own.x, own.y)
-    if length < SHORTEST or length > DENSEST * len(own):
+    if length < MIN_RETURN_LENGTH or length > MAX_STEP_SPACING * len(own):
         return False
-    height, noise = np.median(own.height), np.median(usual[chain.steps])
+    height, noise = np.median(own.height), np.median(scanner_noise[chain.steps])
     sharp = max(np.quantile(own.run, 0.3) - 2 * noise, 0.0)
     if height < settings.min_height or np.degrees(np.arctan2(height, sharp)) < settings.slope:
         return False
-    return np.median(own.noise) <= max(ROUGH_ROAD, 2 * noise) and np.mean(own.behind >= 2) >= 0.5 \
-        and _wander(own) <= WANDER + noise
+    return np.median(own.noise) <= max(MAX_ROAD_ROUGHNESS, 2 * noise) and np.mean(own.behind >= 2) >= 0.5 \
+        and _wander(own) <= MAX_CHAIN_SCATTER + noise
 
 
 def _length(x, y):
@@ -62,7 +61,7 @@ def _wander(own):
     return float(np.median(off))
 
 
-def named_curbs(chains, steps, falls, runs, line, limits, passes):
+def classify_curbs(chains, steps, falls, runs, line, limits, passes):
     """The lines that are curbs, each with its kind and side.
 
     Parameters
@@ -75,12 +74,12 @@ def named_curbs(chains, steps, falls, runs, line, limits, passes):
 
     Returns
     -------
-    list of TurnedCurb
+    list of CurbReturn
     """
     places = [place for _, place in runs] + [(steps.x[c.steps], steps.y[c.steps], steps.h[c.steps]) for c in chains]
     if not chains:
         return []
-    group = groups_in_line(places)
+    group = group_lines(places)
     sides = {}
     for number, (side, _) in zip(group, runs):
         sides.setdefault(number, side)
@@ -89,14 +88,14 @@ def named_curbs(chains, steps, falls, runs, line, limits, passes):
         own = steps[chain.steps]
         s, d = line.locate(own.x, own.y)
         if chain.closed or number not in sides:
-            behind = np.any([sign * d > limits[side](s, 0.0, 0.0) for side, sign in SIDES.items()], axis=0)
+            behind = np.any([sign * d > limits[side](s, 0.0, 0.0) for side, sign in SIDE_SIGNS.items()], axis=0)
             side = "left" if np.nanmedian(d - np.mean([p.at_station(s)[0] for p in passes], axis=0)) > 0 else "right"
-            if np.mean(np.isfinite(falls[chain.steps]) & ~behind) >= ISLAND_SHARE:
-                islands.append(TurnedCurb(own, s, d, side, "island", chain.closed))
-            elif _length(own.x, own.y) >= ALONE and not behind.any() and np.median(_along(own, s, line)) < ALONG \
+            if np.mean(np.isfinite(falls[chain.steps]) & ~behind) >= MIN_ISLAND_SHARE:
+                islands.append(CurbReturn(own, s, d, side, "island", chain.closed))
+            elif _length(own.x, own.y) >= MIN_ISOLATED_LENGTH and not behind.any() and np.median(_along(own, s, line)) < MIN_ROAD_COSINE \
                     and _faced(own, [steps[c.steps] for c in chains]):
                 # of a street whose corner something hides
-                found.append(TurnedCurb(own, s, d, side, "side_street"))
+                found.append(CurbReturn(own, s, d, side, "side_street"))
             continue
         found += _away_from(own, s, d, sides[number], line, limits[sides[number]], places[:len(runs)])
     return found + _whole_islands(islands)
@@ -105,15 +104,15 @@ def named_curbs(chains, steps, falls, runs, line, limits, passes):
 def _away_from(own, s, d, side, line, limit, runs):
     """A line that continues a main curb: a piece of that curb, or a corner with the straight curb of a side street behind it."""
     along = _along(own, s, line)
-    if np.median(along) > ALONG and not limit.between(np.nanmin(s) + OVERLAP, np.nanmax(s) - OVERLAP):
-        return [TurnedCurb(own, s, d, side, "main")]
+    if np.median(along) > MIN_ROAD_COSINE and not limit.between(np.nanmin(s) + MAIN_CURB_OVERLAP, np.nanmax(s) - MAIN_CURB_OVERLAP):
+        return [CurbReturn(own, s, d, side, "main")]
     tips = np.array([(run[0][k], run[1][k]) for run in runs for k in (0, -1)])
     near = [np.hypot(*(tips - (own.x[k], own.y[k])).T).min() for k in (0, -1)]
     # in order from the main curb outward
     order = np.arange(len(own)) if near[0] <= near[1] else np.arange(len(own))[::-1]
-    cut = len(own) if max(near) <= CONNECT else _where_straight(own, order, along)
+    cut = len(own) if max(near) <= MAX_JOINED_GAP else _where_straight(own, order, along)
     parts = [(order[:cut + 1], "corner"), (order[cut:], "side_street")]
-    return [TurnedCurb(own[np.sort(part)], s[np.sort(part)], d[np.sort(part)], side, kind) for part, kind in parts if len(part) > 1]
+    return [CurbReturn(own[np.sort(part)], s[np.sort(part)], d[np.sort(part)], side, kind) for part, kind in parts if len(part) > 1]
 
 
 def _faced(own, lines):
@@ -123,7 +122,7 @@ def _faced(own, lines):
         dx, dy = other.x - own.x[k], other.y - own.y[k]
         out, aside = -(dx * own.nx[k] + dy * own.ny[k]), np.abs(dx * own.ny[k] - dy * own.nx[k])
         opposite = other.nx * own.nx[k] + other.ny * own.ny[k] < -0.7
-        if np.any((out > STREET[0]) & (out < STREET[1]) & (aside < BESIDE_STREET) & opposite):
+        if np.any((out > SIDE_STREET_WIDTHS[0]) & (out < SIDE_STREET_WIDTHS[1]) & (aside < MAX_OPPOSITE_SHIFT) & opposite):
             return True
     return False
 
@@ -141,10 +140,10 @@ def _where_straight(own, order, along):
     x, y = own.x[order], own.y[order]
     for k in range(len(x) - 2):
         rest = np.hypot(x[-1] - x[k], y[-1] - y[k])
-        if rest < STRAIGHT_LENGTH:
+        if rest < MIN_STRAIGHT_LENGTH:
             break
         off = np.abs((x[-1] - x[k]) * (y[k:] - y[k]) - (y[-1] - y[k]) * (x[k:] - x[k])) / rest
-        if off.max() <= STRAIGHT and np.median(along[order[k:]]) < ALONG:
+        if off.max() <= MAX_STRAIGHT_DEVIATION and np.median(along[order[k:]]) < MIN_ROAD_COSINE:
             return k
     return len(x)
 
@@ -157,7 +156,7 @@ def _whole_islands(lines):
     length = np.array([_length(line.steps.x, line.steps.y) for line in lines])
     kept = []
     for k, line in enumerate(lines):
-        near = [j for j in range(len(lines)) if j == k or trees[k].count_neighbors(trees[j], ONE_ISLAND)]
-        if length[near].sum() >= ISLAND_LENGTH:
+        near = [j for j in range(len(lines)) if j == k or trees[k].count_neighbors(trees[j], MAX_ISLAND_GAP)]
+        if length[near].sum() >= MIN_ISLAND_LENGTH:
             kept.append(line)
     return kept

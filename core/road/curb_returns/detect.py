@@ -13,52 +13,53 @@ from scipy.spatial import cKDTree
 from ...common.parallel import in_order
 from ...common.progress import Progress
 from ...survey.frame.road_frame import CORRIDOR
-from ..common.decimation import FEW_IN_PLAN
-from ..common.sides import BESIDE, SIDES, ahead_of_vehicle, expected_height, sections_of
-from .classify import like_a_curb, named_curbs
-from .raster import CELL, averaged, driven_ground, falls_again, ground_raster, ground_slopes, step_places
+from ..common.decimation import POINTS_PER_LEVEL_CELL_IN_PLAN
+from ..common.sides import MAX_LOOK_ALONG, SIDE_SIGNS, ahead_of_vehicle, expected_height, work_sections
+from ..common.tracking import MAX_JOINED_GAP
+from .classify import classify_curbs, is_curb_like
+from .raster import PLAN_CELL, averaged, driven_ground, falls_again, ground_raster, ground_slopes, step_places
 from .steps import PlanSteps, measure_plan_steps
-from .tracking import joined_chains, trace_chains
+from .tracking import join_chains, link_plan_steps
 
-KINDS = {"main": "of the road's own", "corner": "of corners", "side_street": "of side streets", "island": "of islands"}
-OPENING = 6.0        # m without main curb that are an opening and no driveway
-AT_OPENING = 6.0     # m of main curb beside an opening behind which corners are sought
-BEHIND_CURB = 0.6    # m behind a main curb that are looked at elsewhere
-INNER, INNER_HEIGHT = 0.5, 0.3  # m from a main curb, and about the expected road, where ground inside is road for certain
-NODE = 0.05          # m along the road between the stations at which that is decided
-MARGIN = 2.0         # m of road either side of a section that its own steps need
-NOISY, DENSE = 0.12, 6  # share of the least curb that heights in a cell scatter, and points in one, above which they are averaged
-ON_MAIN = 0.25       # m from a main curb within which a step is that curb
-RUN_GAP = 2.5        # m between points of one run of main curb
-RUN_ACROSS = 0.5     # m across between such points
-ISLAND_WIDTH = 8.0   # m within which the ground behind an island's curb comes down again
+KIND_TITLES = {"main": "of the road's own", "corner": "of corners", "side_street": "of side streets", "island": "of islands"}
+MIN_OPENING_LENGTH = 6.0        # m without main curb that are an opening and no driveway
+OPENING_MARGIN = 6.0     # m of main curb beside an opening behind which corners are sought
+SEARCH_BEHIND_CURB = 0.6    # m behind a main curb that are looked at elsewhere
+INNER_MARGIN, MAX_INNER_HEIGHT = 0.5, 0.3  # m from a main curb, and about the expected road, where ground inside is road for certain
+LIMIT_NODE_SPACING = 0.05          # m along the road between the stations at which that is decided
+SECTION_MARGIN = 2.0         # m of road either side of a section that its own steps need
+NOISY_RASTER_SHARE = 0.12   # share of the least curb height that heights within a cell scatter, above which they are averaged
+MIN_AVERAGING_POINTS = 6    # points in a cell, on average, that averaging needs
+MAIN_CURB_DISTANCE = 0.25       # m from a main curb within which a step is that curb
+MAX_RUN_JUMP = 0.5     # m across between such points
+MAX_ISLAND_WIDTH = 8.0   # m within which the ground behind an island's curb comes down again
 
 
-def add_turned_curbs(curb_points, crowds, settings, progress=Progress()):
+def add_curb_returns(curb_points, decimation, settings, progress=Progress()):
     """Add the points of corners, side streets and islands to those of the main curbs.
 
     Parameters
     ----------
     curb_points : Features CURB_POINTS of every road, kind main; more are added at the end
-    crowds : Crowds of the survey
+    decimation : Crowds of the survey
     settings : CurbSettings
     """
-    survey = crowds.survey
-    length = dict.fromkeys(KINDS, 0.0)
+    survey = decimation.survey
+    length = dict.fromkeys(KIND_TITLES, 0.0)
     roads = survey.store.roads()
     for i, road in enumerate(roads):
         part = progress.part(i / len(roads), (i + 1) / len(roads))
         main, chain = _main_curbs(curb_points, survey, road)
-        for number, curb in enumerate(find_turned_curbs(crowds, road, main, settings, part), chain):
+        for number, curb in enumerate(find_curb_returns(decimation, road, main, settings, part), chain):
             length[curb.kind] += _add_points(curb_points, survey, road, curb, number)
-    found = ", ".join(f"{length[kind]:.0f} m {title}" for kind, title in KINDS.items() if length[kind])
+    found = ", ".join(f"{length[kind]:.0f} m {title}" for kind, title in KIND_TITLES.items() if length[kind])
     progress.say(f"Curbs away from the road's direction: {found or 'none'}.")
 
 
 def _main_curbs(curb_points, survey, road):
     """Main curbs of a road, side -> (N, 4) station, offset, height and whether it was seen, and the first chain number that is free."""
     main, chain = {}, 0
-    for side in SIDES:
+    for side in SIDE_SIGNS:
         rows = [(r["station_m"], r["offset_m"], g.z - survey.frame.origin[2], r["status"] == "measured") for g, r in curb_points
                 if r["road"] == road and r["side"] == side and r.get("part", "bottom") == "bottom"]
         rows = np.array(rows, float).reshape(-1, 4)
@@ -85,12 +86,12 @@ def _add_points(curb_points, survey, road, curb, chain):
     return float(along[-1])
 
 
-def find_turned_curbs(crowds, road, main, settings, progress=Progress()):
+def find_curb_returns(decimation, road, main, settings, progress=Progress()):
     """Corners, side streets and islands of one road.
 
     Parameters
     ----------
-    crowds : Crowds of the survey
+    decimation : Crowds of the survey
     main : dict side -> (N, 4) of the main curb's points, ascending: station, offset, height above the
         expected road, 1 where it was measured and 0 where it is hidden
     settings : CurbSettings
@@ -99,21 +100,21 @@ def find_turned_curbs(crowds, road, main, settings, progress=Progress()):
     -------
     list of TurnedCurb
     """
-    survey = crowds.survey
-    limits = {side: _Limit(points, SIDES[side]) for side, points in main.items()}
+    survey = decimation.survey
+    limits = {side: _Limit(points, SIDE_SIGNS[side]) for side, points in main.items()}
     line = survey.frame.road(road)
-    known, barrier = cKDTree(_places_along(line, main, RUN_GAP)), _places_along(line, main, OPENING).T
+    known, barrier = cKDTree(_places_along(line, main, MAX_JOINED_GAP)), _places_along(line, main, MIN_OPENING_LENGTH).T
 
     def work(section):
-        return _steps_of_section(crowds, road, section, limits, known, barrier, settings)
+        return _steps_of_section(decimation, road, section, limits, known, barrier, settings)
 
-    found = [part for part in in_order(work, sections_of(survey, road, settings.profile_width), progress) if part is not None]
+    found = [part for part in in_order(work, work_sections(survey, road, settings.profile_width), progress) if part is not None]
     if not found:
         return []
     steps, falls = PlanSteps.join([part for part, _, _ in found]), np.concatenate([part for _, part, _ in found])
-    usual = np.concatenate([part for _, _, part in found])
-    chains = [c for c in joined_chains(trace_chains(steps), steps) if like_a_curb(c, steps, usual, settings)]
-    return named_curbs(chains, steps, falls, _runs(main, line), line, limits, survey.frame.passes_of(road))
+    scanner_noise = np.concatenate([part for _, _, part in found])
+    chains = [c for c in join_chains(link_plan_steps(steps), steps) if is_curb_like(c, steps, scanner_noise, settings)]
+    return classify_curbs(chains, steps, falls, _runs(main, line), line, limits, survey.frame.passes_of(road))
 
 
 class _Limit:
@@ -122,10 +123,10 @@ class _Limit:
     def __init__(self, points, sign):
         self.sign = sign
         self.s, self.u, self.seen = points[:, 0], sign * points[:, 1], points[points[:, 3] > 0, 0]
-        cuts = np.flatnonzero(np.diff(self.s) > OPENING) + 1
+        cuts = np.flatnonzero(np.diff(self.s) > MIN_OPENING_LENGTH) + 1
         self.runs = [(part[0], part[-1]) for part in np.split(self.s, cuts) if len(part)]
 
-    def __call__(self, s, behind=BEHIND_CURB, at_opening=AT_OPENING):
+    def __call__(self, s, behind=SEARCH_BEHIND_CURB, at_opening=OPENING_MARGIN):
         """(N,) largest outward offset at stations: `behind` metres behind the curb, but for its last metres beside openings."""
         if not len(self.s):
             return np.full(len(s), CORRIDOR)
@@ -144,15 +145,15 @@ def _places_along(line, main, gap):
     places = [np.empty((0, 2))]
     for points in main.values():
         for run in _split(points, gap):
-            s = np.arange(run[0, 0], run[-1, 0] + CELL, CELL)
+            s = np.arange(run[0, 0], run[-1, 0] + PLAN_CELL, PLAN_CELL)
             places.append(np.c_[line.to_map(s, np.interp(s, run[:, 0], run[:, 1]))])
     return np.concatenate(places)
 
 
-def _split(points, gap=RUN_GAP):
+def _split(points, gap=MAX_JOINED_GAP):
     if not len(points):
         return []
-    apart = (np.diff(points[:, 0]) > gap) | (np.abs(np.diff(points[:, 1])) > RUN_ACROSS + np.diff(points[:, 0]))
+    apart = (np.diff(points[:, 0]) > gap) | (np.abs(np.diff(points[:, 1])) > MAX_RUN_JUMP + np.diff(points[:, 0]))
     return np.split(points, np.flatnonzero(apart) + 1)
 
 
@@ -167,26 +168,26 @@ def _runs(main, line):
     return found
 
 
-def _steps_of_section(crowds, road, section, limits, known, barrier, settings, few=FEW_IN_PLAN):
+def _steps_of_section(decimation, road, section, limits, known, barrier, settings, few=POINTS_PER_LEVEL_CELL_IN_PLAN):
     """(PlanSteps of a section, where the ground behind each falls again, the scanner's noise); None where there are none."""
-    survey, width = crowds.survey, crowds.width
-    margin = int(np.ceil(MARGIN / width))
+    survey, width = decimation.survey, decimation.width
+    margin = int(np.ceil(SECTION_MARGIN / width))
     profiles = section[0] - margin, section[1] + margin
     start, end, first, last = (k * width for k in (*section, *profiles))
     reach = _Reach(limits, first, last)
-    most = None if few is None or crowds.mostly_uneven(road, sum(section) // 2) else few
-    seen = [_beside_vehicle(survey, road, part, reach) for part in crowds.few_of_every_cell(road, profiles, most)]
+    most = None if few is None or decimation.mostly_uneven(road, sum(section) // 2) else few
+    seen = [_beside_vehicle(survey, road, part, reach) for part in decimation.decimated_points(road, profiles, most)]
     if not seen:
         return None
     *place, along, inner = (np.concatenate(column) for column in zip(*seen))
     raster = ground_raster(*place, settings.layer_jump)
     if raster is None:
         return None
-    dense = len(raster.x) >= DENSE * np.isfinite(raster.low).sum()
-    noisy = dense and raster.noise > NOISY * settings.min_height
+    dense = len(raster.x) >= MIN_AVERAGING_POINTS * np.isfinite(raster.low).sum()
+    noisy = dense and raster.noise > NOISY_RASTER_SHARE * settings.min_height
     if noisy and most is not None:
         # where averages are wanted every point counts
-        return _steps_of_section(crowds, road, section, limits, known, barrier, settings, few=None)
+        return _steps_of_section(decimation, road, section, limits, known, barrier, settings, few=None)
     line = survey.frame.road(road)
     slopes = ground_slopes(raster.low)
     driven, stepped = driven_ground(raster, slopes, *_track(survey, road, first, last), [v[inner] for v in place[:2]], *barrier,
@@ -196,7 +197,7 @@ def _steps_of_section(crowds, road, section, limits, known, barrier, settings, f
         own, _ = line.locate(x, y)
         fresh = (own >= start) & (own < end)
         if known.n and len(x):
-            fresh &= known.query(np.c_[x, y])[0] > ON_MAIN
+            fresh &= known.query(np.c_[x, y])[0] > MAIN_CURB_DISTANCE
         return fresh
 
     x, y, nx, ny = step_places(raster, slopes, driven, stepped, settings.min_height, settings.max_height, wanted)
@@ -208,7 +209,7 @@ def _steps_of_section(crowds, road, section, limits, known, barrier, settings, f
     # within a tight bend a step may be measured beyond where stations end
     steps = steps[np.isfinite(line.locate(steps.x, steps.y)[0])]
     lean = [float(np.median(slope[driven])) for slope in slopes]
-    falls = falls_again(raster, lean, steps.x, steps.y, steps.nx, steps.ny, steps.h, steps.height, ISLAND_WIDTH)
+    falls = falls_again(raster, lean, steps.x, steps.y, steps.nx, steps.ny, steps.h, steps.height, MAX_ISLAND_WIDTH)
     return steps, falls, np.full(len(steps), views[0].noise)
 
 
@@ -221,27 +222,27 @@ def _beside_vehicle(survey, road, points, reach):
     own = np.flatnonzero(inside)
     s, d, inner, points = s.take(own), d.take(own), inner.take(own), points[own]
     along = ahead_of_vehicle(survey, points, s)
-    near = np.flatnonzero(np.abs(along) < BESIDE + np.abs(d))
+    near = np.flatnonzero(np.abs(along) < MAX_LOOK_ALONG + np.abs(d))
     if len(near) < len(s):
         s, inner, along, points = s.take(near), inner.take(near), along.take(near), points[near]
     h = points.z - expected_height(survey, road, s)
-    return points.x, points.y, h, along, inner & (np.abs(h) < INNER_HEIGHT)
+    return points.x, points.y, h, along, inner & (np.abs(h) < MAX_INNER_HEIGHT)
 
 
 class _Reach:
     """How far out both sides are looked at between two stations, at nodes, so that many points cost little."""
 
     def __init__(self, limits, first, last):
-        self.first = int(np.floor(first / NODE))
-        nodes = np.arange(self.first, int(np.ceil(last / NODE)) + 2) * NODE
-        left, right = (np.minimum(limits[side](nodes), CORRIDOR) for side in SIDES)
+        self.first = int(np.floor(first / LIMIT_NODE_SPACING))
+        nodes = np.arange(self.first, int(np.ceil(last / LIMIT_NODE_SPACING)) + 2) * LIMIT_NODE_SPACING
+        left, right = (np.minimum(limits[side](nodes), CORRIDOR) for side in SIDE_SIGNS)
         self.inside = -right, left
-        self.inner = [sign * np.where(limit < CORRIDOR, np.maximum(limit - BEHIND_CURB - INNER, 0.0), 0.0)
+        self.inner = [sign * np.where(limit < CORRIDOR, np.maximum(limit - SEARCH_BEHIND_CURB - INNER_MARGIN, 0.0), 0.0)
                       for sign, limit in ((-1, right), (1, left))]
 
     def __call__(self, s, d):
         """(N,) bool: within the limits, and between the road's own curbs for certain."""
-        k = np.rint(s * (1.0 / NODE)).astype(np.intp)
+        k = np.rint(s * (1.0 / LIMIT_NODE_SPACING)).astype(np.intp)
         k -= self.first
         return tuple((d >= low.take(k)) & (d <= high.take(k)) for low, high in (self.inside, self.inner))
 
@@ -256,7 +257,7 @@ def _track(survey, road, first, last):
     """Local places along the tracks of all passes between two stations."""
     line, xs, ys = survey.frame.road(road), [], []
     for p in survey.frame.passes_of(road):
-        s = np.arange(max(first, p.span[0]), min(last, p.span[1]), 0.8 * CELL)
+        s = np.arange(max(first, p.span[0]), min(last, p.span[1]), 0.8 * PLAN_CELL)
         x, y = line.to_map(s, p.at_station(s)[0])
         xs.append(x)
         ys.append(y)

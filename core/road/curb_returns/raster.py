@@ -11,28 +11,27 @@ import cv2
 import numpy as np
 
 from ...common.order_statistics import order_by
-from ..common.pseudo_scanlines import lowest_layers
+from ..common.pseudo_scanlines import DEFAULT_SCANNER_NOISE, MIN_SCANNER_NOISE, lowest_layers
 
-CELL = 0.10          # m
-BELOW, ABOVE = 1.0, 1.0  # m about the expected road within which ground is sought
-FINE_CELL = 0.05     # m, cells whose points are averaged for a noisy scanner
-NOWHERE = 1e6        # m, farther up and down than any ground
-UNEVEN = 0.7         # share of the least step that level ground may differ within WINDOW cells
-WINDOW = 5           # cells, a square of which is looked at together
-BLOCK, BLOCKS = 5, 5  # cells a side of a block, and blocks a side of the window, that tell the slope of the ground
-STEEPEST = 0.12      # rise over run of a road
-TRACK_HALF = 0.75    # m beside a driven track that is road for certain
-EMPTY_REACH = 3      # cells without ground that a vehicle would drive over between others: scan lines lie apart
-BESIDE_ROAD = 4      # cells from driven ground within which it may end at a step
-AT_ONCE = 512        # steps looked at together: what fits the processor's cache
-ABOUT = 4            # cells about a step whose ground tells its direction and height
-OUTER, STRIP = 0.11, 0.31  # m from the middle of a step beyond which ground is before or after it; m along it
-ROUGH = 0.25         # share of a step's height that the road before it may scatter
-FAINTEST = 0.6       # share of the least step that the cells of one must show
-BACK_DOWN = 0.4      # share of a step's height that the ground behind an island may lie above its bottom
-SPREAD_POINTS, SPREAD_CELLS = 4, 50  # points in a cell, and such cells, that tell the scanner's noise
-SMOOTHER = 0.3       # quantile of them that does
-USUAL_NOISE, LEAST_NOISE = 0.005, 0.002  # m
+PLAN_CELL = 0.10          # m
+PLAN_GROUND_DEPTH, PLAN_GROUND_HEIGHT = 1.0, 1.0  # m about the expected road within which ground is sought
+AVERAGING_CELL = 0.05     # m, cells whose points are averaged for a noisy scanner
+OUT_OF_RANGE_HEIGHT = 1e6        # m, farther up and down than any ground
+MAX_LEVEL_SHARE = 0.7         # share of the least step that level ground may differ within LEVEL_WINDOW_CELLS cells
+LEVEL_WINDOW_CELLS = 5           # cells, a square of which is looked at together
+SLOPE_BLOCK_CELLS, SLOPE_WINDOW_BLOCKS = 5, 5  # cells a side of a block, and blocks a side of the window, that tell the slope of the ground
+MAX_GROUND_SLOPE = 0.12      # rise over run of a road
+DRIVEN_HALF_WIDTH = 0.75    # m beside a driven track that is road for certain
+MAX_BRIDGED_CELLS = 3      # cells without ground that a vehicle would drive over between others: scan lines lie apart
+MAX_CELLS_FROM_ROAD = 4      # cells from driven ground within which it may end at a step
+STEPS_PER_BATCH = 512        # steps looked at together: what fits the processor's cache
+PATCH_CELLS = 4            # cells about a step whose ground tells its direction and height
+STEP_HALF_WIDTH, PATCH_HALF_LENGTH = 0.11, 0.31  # m from the middle of a step beyond which ground is before or after it; m along it
+MAX_PLAN_ROUGHNESS_SHARE = 0.25         # share of a step's height that the road before it may scatter
+MIN_PLAN_RISE_SHARE = 0.6       # share of the least step that the cells of one must show
+ISLAND_DROP_SHARE = 0.4      # share of a step's height that the ground behind an island may lie above its bottom
+MIN_NOISE_POINTS, MIN_NOISE_CELLS = 4, 50  # points in a cell, and such cells, that tell the scanner's noise
+NOISE_QUANTILE = 0.3       # quantile of them that does
 
 
 @dataclass
@@ -57,14 +56,14 @@ class GroundRaster:
 
     def inside(self, x, y):
         """(row, column) of those local places that lie on the grid."""
-        row, column = (np.floor(np.asarray(v) / CELL - np.rint(v0 / CELL)).astype(np.int64)
+        row, column = (np.floor(np.asarray(v) / PLAN_CELL - np.rint(v0 / PLAN_CELL)).astype(np.int64)
                        for v, v0 in ((y, self.y0), (x, self.x0)))
         on = (row >= 0) & (column >= 0) & (row < self.low.shape[0]) & (column < self.low.shape[1])
         return row[on], column[on]
 
     def middle(self, row, column):
         """Local x, y of the middle of cells."""
-        return self.x0 + (column + 0.5) * CELL, self.y0 + (row + 0.5) * CELL
+        return self.x0 + (column + 0.5) * PLAN_CELL, self.y0 + (row + 0.5) * PLAN_CELL
 
     def by_cell(self, x, y, reach):
         """The points within `reach` metres of local places, sorted by cell.
@@ -76,7 +75,7 @@ class GroundRaster:
         """
         near = np.zeros(self.low.shape, np.uint8)
         near[self.inside(x, y)] = 1
-        cells = 2 * int(np.ceil(reach / CELL)) + 1
+        cells = 2 * int(np.ceil(reach / PLAN_CELL)) + 1
         near = cv2.dilate(near, np.ones((cells, cells), np.uint8)).ravel().view(bool)
         own = np.flatnonzero(near.take(self.place))
         order = own.take(order_by(self.place.take(own)))
@@ -92,11 +91,11 @@ def ground_raster(x, y, h, layer_jump):
     x, y : (N,) local metres; h : (N,) m above the expected road
     layer_jump : m of height that parts ground from what is above it
     """
-    kept = np.flatnonzero((h > -BELOW) & (h < ABOVE))
+    kept = np.flatnonzero((h > -PLAN_GROUND_DEPTH) & (h < PLAN_GROUND_HEIGHT))
     if not len(kept):
         return None
     x, y, h = (v if len(kept) == len(h) else v.take(kept) for v in (x, y, h))
-    column, row = np.floor(x / CELL).astype(np.int32), np.floor(y / CELL).astype(np.int32)
+    column, row = np.floor(x / PLAN_CELL).astype(np.int32), np.floor(y / PLAN_CELL).astype(np.int32)
     first_column, first_row = int(column.min()), int(row.min())
     columns, rows = int(column.max()) - first_column + 1, int(row.max()) - first_row + 1
     row -= first_row
@@ -113,9 +112,9 @@ def ground_raster(x, y, h, layer_jump):
         low = total / n
         spread = np.sqrt(np.maximum(squares - total * low, 0.0) / (n - 1))
     # curbs and grass are rough with any scanner, so the smoother cells tell
-    tell = spread[n >= SPREAD_POINTS]
-    noise = max(float(np.quantile(tell, SMOOTHER)), LEAST_NOISE) if len(tell) >= SPREAD_CELLS else USUAL_NOISE
-    return GroundRaster(first_column * CELL, first_row * CELL, x, y, h, place, low.reshape(rows, columns), noise)
+    tell = spread[n >= MIN_NOISE_POINTS]
+    noise = max(float(np.quantile(tell, NOISE_QUANTILE)), MIN_SCANNER_NOISE) if len(tell) >= MIN_NOISE_CELLS else DEFAULT_SCANNER_NOISE
+    return GroundRaster(first_column * PLAN_CELL, first_row * PLAN_CELL, x, y, h, place, low.reshape(rows, columns), noise)
 
 
 def _above_ground(place, h, cells, layer_jump):
@@ -127,7 +126,7 @@ def _above_ground(place, h, cells, layer_jump):
     above = np.zeros(len(h), bool)
     own = np.flatnonzero(parted.take(place))
     if len(own):
-        order = own.take(order_by(np.rint((h.take(own) + BELOW) * 1e4).astype(np.int32), place.take(own)))
+        order = own.take(order_by(np.rint((h.take(own) + PLAN_GROUND_DEPTH) * 1e4).astype(np.int32), place.take(own)))
         ground, _, _ = lowest_layers(place.take(order), h.take(order), layer_jump)
         above[order] = ~ground
     return above
@@ -140,19 +139,19 @@ def _sums(place, h, cells):
 
 
 def averaged(raster, layer_jump):
-    """A raster of means: the points of every FINE_CELL made one, so that the noise of single heights goes down.
+    """A raster of means: the points of every AVERAGING_CELL made one, so that the noise of single heights goes down.
 
     None where there are no points. `noise` is what is left of it.
     """
     if raster is None:
         return None
-    column, row = np.floor(raster.x / FINE_CELL).astype(np.int64), np.floor(raster.y / FINE_CELL).astype(np.int64)
+    column, row = np.floor(raster.x / AVERAGING_CELL).astype(np.int64), np.floor(raster.y / AVERAGING_CELL).astype(np.int64)
     cell = (row - row.min()) * (column.max() - column.min() + 1) + column - column.min()
     count = np.bincount(cell)
     held = np.flatnonzero(count)
     count = count[held]
     mean = ground_raster(*(np.bincount(cell, v)[held] / count for v in (raster.x, raster.y, raster.h)), layer_jump)
-    mean.noise = max(raster.noise / np.sqrt(np.median(count)), LEAST_NOISE)
+    mean.noise = max(raster.noise / np.sqrt(np.median(count)), MIN_SCANNER_NOISE)
     return mean
 
 
@@ -162,8 +161,8 @@ def ground_slopes(low):
     The median over a few metres, so that the steps in it do not count; no more than a road's, so that banks are not level.
     """
     rows, columns = low.shape
-    padded = np.pad(low, ((0, -rows % BLOCK), (0, -columns % BLOCK)), constant_values=np.nan)
-    blocks = padded.reshape(padded.shape[0] // BLOCK, BLOCK, padded.shape[1] // BLOCK, BLOCK)
+    padded = np.pad(low, ((0, -rows % SLOPE_BLOCK_CELLS), (0, -columns % SLOPE_BLOCK_CELLS)), constant_values=np.nan)
+    blocks = padded.reshape(padded.shape[0] // SLOPE_BLOCK_CELLS, SLOPE_BLOCK_CELLS, padded.shape[1] // SLOPE_BLOCK_CELLS, SLOPE_BLOCK_CELLS)
     there = np.isfinite(blocks)
     with np.errstate(invalid="ignore", divide="ignore"):
         mean = np.where(there, blocks, 0.0).sum((1, 3)) / there.sum((1, 3))
@@ -173,9 +172,9 @@ def ground_slopes(low):
         ahead, behind = (slice(None), slice(1, None)), (slice(None), slice(None, -1))
         if axis == 0:
             ahead, behind = ahead[::-1], behind[::-1]
-        slope[behind] = (mean[ahead] - mean[behind]) / (BLOCK * CELL)
-        slope = np.clip(_median_about(slope, BLOCKS), -STEEPEST, STEEPEST)
-        found.append(np.repeat(np.repeat(slope, BLOCK, 0), BLOCK, 1)[:rows, :columns])
+        slope[behind] = (mean[ahead] - mean[behind]) / (SLOPE_BLOCK_CELLS * PLAN_CELL)
+        slope = np.clip(_median_about(slope, SLOPE_WINDOW_BLOCKS), -MAX_GROUND_SLOPE, MAX_GROUND_SLOPE)
+        found.append(np.repeat(np.repeat(slope, SLOPE_BLOCK_CELLS, 0), SLOPE_BLOCK_CELLS, 1)[:rows, :columns])
     return found
 
 
@@ -196,7 +195,7 @@ def driven_ground(raster, slopes, track_x, track_y, inner, barrier_x, barrier_y,
     Parameters
     ----------
     slopes : of `ground_slopes`
-    track_x, track_y : local places along the driven tracks, less than CELL apart
+    track_x, track_y : local places along the driven tracks, less than PLAN_CELL apart
     inner : (x, y) of local places that lie between the road's own curbs
     barrier_x, barrier_y : the same along lines that are known to bound the road
     least : m, the least step that is sought
@@ -207,17 +206,17 @@ def driven_ground(raster, slopes, track_x, track_y, inner, barrier_x, barrier_y,
     stepped : (rows, columns) bool, occupied cells in whose neighbourhood the ground rises more than its slope says
     """
     there = np.isfinite(raster.low)
-    window = np.ones((WINDOW, WINDOW), np.uint8)
-    span = cv2.dilate(np.where(there, raster.low, -NOWHERE), window) - cv2.erode(np.where(there, raster.low, NOWHERE), window)
-    level = span <= UNEVEN * least + (np.abs(slopes[0]) + np.abs(slopes[1])) * (WINDOW - 1) * CELL
-    passable = level & _grown(there, _diamond(EMPTY_REACH))
+    window = np.ones((LEVEL_WINDOW_CELLS, LEVEL_WINDOW_CELLS), np.uint8)
+    span = cv2.dilate(np.where(there, raster.low, -OUT_OF_RANGE_HEIGHT), window) - cv2.erode(np.where(there, raster.low, OUT_OF_RANGE_HEIGHT), window)
+    level = span <= MAX_LEVEL_SHARE * least + (np.abs(slopes[0]) + np.abs(slopes[1])) * (LEVEL_WINDOW_CELLS - 1) * PLAN_CELL
+    passable = level & _grown(there, _diamond(MAX_BRIDGED_CELLS))
     barrier = np.zeros(there.shape, bool)
     barrier[raster.inside(barrier_x, barrier_y)] = True
     passable &= ~_grown(barrier, np.ones((3, 3), np.uint8))
     count, label = cv2.connectedComponents(passable.view(np.uint8), connectivity=4)
     track = np.zeros(there.shape, bool)
     track[raster.inside(track_x, track_y)] = True
-    track = _grown(track, _diamond(int(round(TRACK_HALF / CELL))))
+    track = _grown(track, _diamond(int(round(DRIVEN_HALF_WIDTH / PLAN_CELL))))
     track[raster.inside(*inner)] = True
     wanted = np.zeros(count, bool)
     wanted[label[track & passable]] = True
@@ -246,16 +245,16 @@ def step_places(raster, slopes, driven, stepped, least, highest, wanted=None):
     x, y : (M,) local metres
     nx, ny : (M,) unit vector uphill
     """
-    beside = _grown(driven, _diamond(BESIDE_ROAD))
+    beside = _grown(driven, _diamond(MAX_CELLS_FROM_ROAD))
     row, column = np.nonzero(stepped & beside)
     if wanted is not None:
         x, y = raster.middle(row, column)
         _, square = np.unique(_squares(x, y), return_inverse=True)
         own = np.flatnonzero(np.bincount(square, wanted(x, y))[square])
         row, column = row[own], column[own]
-    ground = np.pad(raster.low, ABOUT, constant_values=np.nan)
-    parts = [_rises_at(raster, ground, slopes, row[a:a + AT_ONCE], column[a:a + AT_ONCE], least, highest)
-             for a in range(0, len(row), AT_ONCE)]
+    ground = np.pad(raster.low, PATCH_CELLS, constant_values=np.nan)
+    parts = [_rises_at(raster, ground, slopes, row[a:a + STEPS_PER_BATCH], column[a:a + STEPS_PER_BATCH], least, highest)
+             for a in range(0, len(row), STEPS_PER_BATCH)]
     x, y, nx, ny, cost = np.concatenate(parts, axis=1) if parts else np.empty((5, 0))
     best = _one_of_each_square(x, y, cost)
     return x[best], y[best], nx[best], ny[best]
@@ -264,12 +263,12 @@ def step_places(raster, slopes, driven, stepped, least, highest, wanted=None):
 def _rises_at(raster, ground, slopes, row, column, least, highest):
     """Of some cells those at which the ground rises like a step: x, y, unit vector uphill, and how far the middle is off; (5, M).
 
-    ground : the raster's, with ABOUT cells of nothing about it
+    ground : the raster's, with PATCH_CELLS cells of nothing about it
     """
-    reach = np.arange(-ABOUT, ABOUT + 1)
+    reach = np.arange(-PATCH_CELLS, PATCH_CELLS + 1)
     down, along = (v.ravel() for v in np.meshgrid(reach, reach, indexing="ij"))
-    around = ground[row[:, None] + down + ABOUT, column[:, None] + along + ABOUT]
-    dx, dy = along * CELL, down * CELL
+    around = ground[row[:, None] + down + PATCH_CELLS, column[:, None] + along + PATCH_CELLS]
+    dx, dy = along * PLAN_CELL, down * PLAN_CELL
     sx, sy = (v[row, column] for v in slopes)
     around -= sx[:, None] * dx + sy[:, None] * dy
     # what belongs to the step at this cell: neither the wall behind a curb nor what lies under a bridge
@@ -278,13 +277,14 @@ def _rises_at(raster, ground, slopes, row, column, least, highest):
     size = np.maximum(np.hypot(gx, gy), 1e-9)
     nx, ny = gx / size, gy / size
     u, v = nx[:, None] * dx + ny[:, None] * dy, ny[:, None] * dx - nx[:, None] * dy
-    strip = near & (np.abs(v) <= STRIP)
-    before, after, at = (_mean(around, strip & m) for m in ((u < -OUTER), (u > OUTER), (np.abs(u) < OUTER)))
+    strip = near & (np.abs(v) <= PATCH_HALF_LENGTH)
+    before, after, at = (_mean(around, strip & m) for m in ((u < -STEP_HALF_WIDTH), (u > STEP_HALF_WIDTH), (np.abs(u) < STEP_HALF_WIDTH)))
     rise = after - before
-    rough = np.sqrt(_mean((around - before[:, None]) ** 2, strip & (u < -OUTER)))
+    rough = np.sqrt(_mean((around - before[:, None]) ** 2, strip & (u < -STEP_HALF_WIDTH)))
     with np.errstate(invalid="ignore", divide="ignore"):
         part = (at - before) / rise
-        good = (part > 0.15) & (part < 0.85) & (rise >= FAINTEST * least) & (rise <= highest + 0.05) & (rough <= ROUGH * rise)
+        good = (part > 0.15) & (part < 0.85) & (rise >= MIN_PLAN_RISE_SHARE * least) & (rise <= highest + 0.05) \
+            & (rough <= MAX_PLAN_ROUGHNESS_SHARE * rise)
     # the middle of the step, not of the cell
     return np.array([*raster.middle(row[good], column[good]), nx[good], ny[good], np.abs(part - 0.5)[good]])
 
@@ -315,7 +315,7 @@ def _one_of_each_square(x, y, cost):
 
 def _squares(x, y):
     """(N,) number of the square of two cells in which places lie."""
-    return np.floor(y / (2 * CELL)).astype(np.int64) * 10_000_000 + np.floor(x / (2 * CELL)).astype(np.int64)
+    return np.floor(y / (2 * PLAN_CELL)).astype(np.int64) * 10_000_000 + np.floor(x / (2 * PLAN_CELL)).astype(np.int64)
 
 
 def falls_again(raster, lean, x, y, nx, ny, bottom, height, farthest):
@@ -324,12 +324,12 @@ def falls_again(raster, lean, x, y, nx, ny, bottom, height, farthest):
     lean : m per m along columns and rows, the slope of the road; bottom, height : (M,) metres; farthest : metres
     """
     lean = nx * lean[0] + ny * lean[1]
-    out = (np.arange(int(round(farthest / CELL))) + 2) * CELL
-    column = np.floor((x[:, None] + out * nx[:, None]) / CELL - np.rint(raster.x0 / CELL)).astype(np.int64)
-    row = np.floor((y[:, None] + out * ny[:, None]) / CELL - np.rint(raster.y0 / CELL)).astype(np.int64)
+    out = (np.arange(int(round(farthest / PLAN_CELL))) + 2) * PLAN_CELL
+    column = np.floor((x[:, None] + out * nx[:, None]) / PLAN_CELL - np.rint(raster.x0 / PLAN_CELL)).astype(np.int64)
+    row = np.floor((y[:, None] + out * ny[:, None]) / PLAN_CELL - np.rint(raster.y0 / PLAN_CELL)).astype(np.int64)
     on = (row >= 0) & (column >= 0) & (row < raster.low.shape[0]) & (column < raster.low.shape[1])
     there = np.where(on, raster.low[np.where(on, row, 0), np.where(on, column, 0)], np.nan)
     with np.errstate(invalid="ignore"):
-        down = there < (bottom + BACK_DOWN * height)[:, None] + lean[:, None] * out
+        down = there < (bottom + ISLAND_DROP_SHARE * height)[:, None] + lean[:, None] * out
     first = np.argmax(down, axis=1)
     return np.where(down.any(1), out[first], np.nan)

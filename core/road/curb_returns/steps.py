@@ -5,21 +5,20 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..common.corners import BEHIND, CLEARANCE, ROAD_SIDE, NearSteps
-from ..common.pseudo_scanlines import expand
-from .raster import CELL
+from ..common.corners import BEHIND_LENGTH, FACE_MARGIN, REMEASURE_SKEW, ROAD_SIDE_LENGTH, StepPatches
+from ..common.pseudo_scanlines import expand_ranges
+from .raster import PLAN_CELL
 
-SHORT, LONG = 0.30, 0.90  # m either way along the curb of the points that tell one step: dense scans, sparse ones
-LINE_REACH = 1.0     # m about a step within which others tell the direction of their line
-LINE_STEPS = 3       # others that do
-LINE_WIDTH = 0.12    # m, scatter across it
-FACE_REACH = 0.10    # m that a step may lie from the place where it is looked for
-ACROSS = max(ROAD_SIDE + CLEARANCE, BEHIND) + FACE_REACH  # m either way across of the points that tell one step
-REACH = 2.0          # m from where steps are looked for within which they are measured, however they turn
-EDGE = 1e-3          # cells: rounding leaves no point out
-ROUNDS = 3           # measurements of a step, each turned by what the one before saw
-TURNED = 0.1         # m outward per m along beyond which it is measured again
-ASIDE = 0.04         # m from where it was looked for beyond which it is
+SHORT_HALF_LENGTH, LONG_HALF_LENGTH = 0.30, 0.90  # m either way along the curb of the points that tell one step: dense scans, sparse ones
+LINE_RADIUS = 1.0     # m about a step within which others tell the direction of their line
+MIN_LINE_STEPS = 3       # others that do
+MAX_LINE_SCATTER = 0.12    # m, scatter across it
+MAX_FACE_OFFSET = 0.10    # m that a step may lie from the place where it is looked for
+PATCH_HALF_WIDTH = max(ROAD_SIDE_LENGTH + FACE_MARGIN, BEHIND_LENGTH) + MAX_FACE_OFFSET  # m either way across of the points that tell one step
+MEASURING_RADIUS = 2.0          # m from where steps are looked for within which they are measured, however they turn
+CELL_ROUNDING = 1e-3          # cells: rounding leaves no point out
+MEASURING_ROUNDS = 3           # measurements of a step, each turned by what the one before saw
+REMEASURE_OFFSET = 0.04         # m from where it was looked for beyond which it is
 
 
 @dataclass
@@ -71,11 +70,11 @@ def measure_plan_steps(rasters, x, y, nx, ny, least, highest):
     # the slope of the ground tells the direction where it is densely seen, else the line that the steps make
     found, left = [], np.arange(len(x))
     for raster in rasters:
-        points = raster.by_cell(x[left], y[left], REACH)
-        steps, good = _measured(raster, points, x[left], y[left], nx[left], ny[left], SHORT, least, highest)
+        points = raster.by_cell(x[left], y[left], MEASURING_RADIUS)
+        steps, good = _measured(raster, points, x[left], y[left], nx[left], ny[left], SHORT_HALF_LENGTH, least, highest)
         found.append(steps)
         left = left[~good & in_line[left]]
-        for half in (SHORT, LONG):
+        for half in (SHORT_HALF_LENGTH, LONG_HALF_LENGTH):
             steps, good = _measured(raster, points, x[left], y[left], line_x[left], line_y[left], half, least, highest)
             found.append(steps)
             left = left[~good]
@@ -85,11 +84,11 @@ def measure_plan_steps(rasters, x, y, nx, ny, least, highest):
 def _measured(raster, points, x, y, nx, ny, half, least, highest):
     """The steps, and (M,) bool: which places proved to be ones; `points` are the raster's by cell."""
     proved, place, found = np.zeros(len(x), bool), np.arange(len(x)), []
-    for turn in range(ROUNDS):
+    for turn in range(MEASURING_ROUNDS):
         owner, u, v, h = _points_about(raster, points, x, y, nx, ny, half)
-        seen = NearSteps(owner, u, v, h, np.full(len(x), raster.noise), least, highest).corners()
+        seen = StepPatches(owner, u, v, h, np.full(len(x), raster.noise), least, highest).corners()
         # a step that runs askew or lies aside is measured again, across its own direction and from its own place
-        settled = seen["good"] & ((np.abs(seen["skew"]) <= TURNED) & (np.abs(seen["u"]) <= ASIDE) | (turn == ROUNDS - 1))
+        settled = seen["good"] & ((np.abs(seen["skew"]) <= REMEASURE_SKEW) & (np.abs(seen["u"]) <= REMEASURE_OFFSET) | (turn == MEASURING_ROUNDS - 1))
         proved[place[settled]] = True
         # the tangent is uphill turned to the left
         steps = PlanSteps(x + seen["u"] * nx - seen["s"] * ny, y + seen["u"] * ny + seen["s"] * nx, *_turned(nx, ny, seen["skew"]),
@@ -104,7 +103,7 @@ def _measured(raster, points, x, y, nx, ny, half, least, highest):
 
 def _line_directions(x, y, nx, ny):
     """Uphill directions across the line that the places about each one make, and (M,) bool: do they make one?"""
-    pairs = cKDTree(np.c_[x, y]).query_pairs(LINE_REACH, output_type="ndarray")
+    pairs = cKDTree(np.c_[x, y]).query_pairs(LINE_RADIUS, output_type="ndarray")
     # places on the other side of an island face the other way
     pairs = pairs[nx[pairs[:, 0]] * nx[pairs[:, 1]] + ny[pairs[:, 0]] * ny[pairs[:, 1]] > 0.3]
     a, b = np.r_[pairs[:, 0], pairs[:, 1]], np.r_[pairs[:, 1], pairs[:, 0]]
@@ -116,7 +115,7 @@ def _line_directions(x, y, nx, ny):
     lx, ly = -np.sin(along), np.cos(along)
     side = np.where(lx * nx + ly * ny < 0, -1.0, 1.0)
     across = 0.5 * (sxx + syy - np.hypot(sxx - syy, 2 * sxy)) / np.maximum(k, 1)
-    return side * lx, side * ly, (n >= LINE_STEPS) & (across <= LINE_WIDTH**2)
+    return side * lx, side * ly, (n >= MIN_LINE_STEPS) & (across <= MAX_LINE_SCATTER**2)
 
 
 def _turned(nx, ny, skew):
@@ -129,33 +128,33 @@ def _points_about(raster, points, x, y, nx, ny, half):
     """Ground points near each place: owner, m uphill, m along, height."""
     px, py, ph, starts = points
     rows, columns = raster.low.shape
-    reach = int(np.ceil(np.hypot(ACROSS, half) / CELL))
-    row = np.floor(y / CELL - np.rint(raster.y0 / CELL)).astype(np.int64)
-    column = np.floor(x / CELL - np.rint(raster.x0 / CELL)).astype(np.int64)
+    reach = int(np.ceil(np.hypot(PATCH_HALF_WIDTH, half) / PLAN_CELL))
+    row = np.floor(y / PLAN_CELL - np.rint(raster.y0 / PLAN_CELL)).astype(np.int64)
+    column = np.floor(x / PLAN_CELL - np.rint(raster.x0 / PLAN_CELL)).astype(np.int64)
     line = row[:, None] + np.arange(-reach, reach + 1)
     # of every row of cells those between which the oblong about the place lies
-    low = raster.y0 + line * CELL - y[:, None]
-    left, right = _between(nx[:, None], ny[:, None], low, low + CELL, half)
-    first = np.clip(np.floor((x[:, None] + left - raster.x0) / CELL - EDGE), column[:, None] - reach, column[:, None] + reach + 1)
-    last = np.clip(np.floor((x[:, None] + right - raster.x0) / CELL + EDGE) + 1, column[:, None] - reach, column[:, None] + reach + 1)
+    low = raster.y0 + line * PLAN_CELL - y[:, None]
+    left, right = _between(nx[:, None], ny[:, None], low, low + PLAN_CELL, half)
+    first = np.clip(np.floor((x[:, None] + left - raster.x0) / PLAN_CELL - CELL_ROUNDING), column[:, None] - reach, column[:, None] + reach + 1)
+    last = np.clip(np.floor((x[:, None] + right - raster.x0) / PLAN_CELL + CELL_ROUNDING) + 1, column[:, None] - reach, column[:, None] + reach + 1)
     first, last = np.clip(first, 0, columns).astype(np.int64), np.clip(last, 0, columns).astype(np.int64)
     on = (line >= 0) & (line < rows)
     line = np.clip(line, 0, rows - 1) * columns
     start = starts[line + first]
     end = np.where(on, starts[line + np.maximum(first, last)], start)
-    owner, index = expand(start.ravel(), end.ravel())
+    owner, index = expand_ranges(start.ravel(), end.ravel())
     owner //= 2 * reach + 1
     dx, dy = px.take(index) - x.take(owner), py.take(index) - y.take(owner)
     ex, ey = nx.take(owner), ny.take(owner)
     u, v = ex * dx + ey * dy, ex * dy - ey * dx
-    near = np.flatnonzero((np.abs(v) <= half) & (np.abs(u) <= ACROSS))
+    near = np.flatnonzero((np.abs(v) <= half) & (np.abs(u) <= PATCH_HALF_WIDTH))
     return owner.take(near), u.take(near), v.take(near), ph.take(index.take(near))
 
 
 def _between(nx, ny, low, high, half):
-    """Metres along x between which |u| <= ACROSS and |v| <= half somewhere between `low` and `high` along y."""
+    """Metres along x between which |u| <= PATCH_HALF_WIDTH and |v| <= half somewhere between `low` and `high` along y."""
     left, right = -np.inf, np.inf
-    for along_x, along_y, most in ((nx, ny, ACROSS), (-ny, nx, half)):
+    for along_x, along_y, most in ((nx, ny, PATCH_HALF_WIDTH), (-ny, nx, half)):
         along_x = np.where(np.abs(along_x) < 1e-9, 1e-9, along_x)
         middles, width = (-along_y * low / along_x, -along_y * high / along_x), most / np.abs(along_x)
         left, right = np.maximum(left, np.minimum(*middles) - width), np.minimum(right, np.maximum(*middles) + width)

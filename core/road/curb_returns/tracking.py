@@ -7,31 +7,32 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-THIN_ALONG, THIN_ACROSS = 0.12, 0.06  # m within which the better supported of two steps stands for both
-LINK_REACH = 1.2     # m along a curb that a link may span
-SLACK = 0.03         # m across that two steps of one line may differ
-DRIFT, BENT = 0.06, 0.2  # the same per m along, and per m along and radian of turn
-SHARPEST = 0.4       # m, radius of the sharpest curb; it is that of an island's nose
-TURN_SLACK = np.radians(25.0)
-HEIGHT_SLACK, GRADE = 0.03, 0.08  # m, and m per m along, that bottoms of neighbours may differ
-CONNECT = 2.5        # m between chains of one line
-CONNECT_TURN = np.radians(45.0)
-NOSE, NOSE_RADIUS = 1.5, 0.6  # m between ends that the nose of an island may lie between, and its radius
-CONNECT_ACROSS = 0.25  # m, and as much per m, that two such chains may miss each other
-TIP = 0.6            # m at the end of a chain that gives its direction
-BACK = 0.3           # m that two such chains may overlap
-MISS = 0.05          # m across that they may miss each other anyway
+from ..common.tracking import HEIGHT_TOLERANCE, MAX_JOINED_GAP
+
+DUPLICATE_ALONG, DUPLICATE_ACROSS = 0.12, 0.06  # m within which the better supported of two steps stands for both
+MAX_PLAN_LINK = 1.2     # m along a curb that a link may span
+PLAN_LINK_TOLERANCE = 0.03         # m across that two steps of one line may differ
+PLAN_LINK_DRIFT, DRIFT_PER_TURN = 0.06, 0.2  # the same per m along, and per m along and radian of turn
+MIN_CURB_RADIUS = 0.4       # m, radius of the sharpest curb; it is that of an island's nose
+TURN_TOLERANCE = np.radians(25.0)
+MAX_HEIGHT_GRADE = 0.08  # m per m along that bottoms of neighbours may differ besides
+MAX_JOIN_TURN = np.radians(45.0)
+MAX_NOSE_GAP, NOSE_RADIUS = 1.5, 0.6  # m between ends that the nose of an island may lie between, and its radius
+JOIN_DRIFT = 0.25  # m, and as much per m, that two such chains may miss each other
+END_DIRECTION_LENGTH = 0.6            # m at the end of a chain that gives its direction
+MAX_JOIN_OVERLAP = 0.3           # m that two such chains may overlap
+JOIN_TOLERANCE = 0.05          # m across that they may miss each other anyway
 
 
 @dataclass
-class PlanChain:
+class PlanStepChain:
     """Steps of one line in order, uphill on the right: indices into the steps; closed where it goes round an island."""
 
     steps: np.ndarray
     closed: bool = False
 
 
-def trace_chains(steps):
+def link_plan_steps(steps):
     """Chains of steps, the uphill side of each on the right of its direction.
 
     Parameters
@@ -40,20 +41,20 @@ def trace_chains(steps):
 
     Returns
     -------
-    list of PlanChain
+    list of PlanStepChain
     """
-    kept = thinned(steps)
+    kept = without_duplicates(steps)
     ahead = _links(steps[kept])
-    return [PlanChain(kept[members], closed) for members, closed in _paths(ahead)]
+    return [PlanStepChain(kept[members], closed) for members, closed in _paths(ahead)]
 
 
-def thinned(steps):
+def without_duplicates(steps):
     """Indices of the steps that no better supported one stands for."""
     if not len(steps):
         return np.empty(0, np.int64)
-    a, b = cKDTree(np.c_[steps.x, steps.y]).query_pairs(THIN_ALONG, output_type="ndarray").T
+    a, b = cKDTree(np.c_[steps.x, steps.y]).query_pairs(DUPLICATE_ALONG, output_type="ndarray").T
     dx, dy = steps.x[b] - steps.x[a], steps.y[b] - steps.y[a]
-    same = (steps.nx[a] * steps.nx[b] + steps.ny[a] * steps.ny[b] > 0.5) & (np.abs(dx * steps.nx[a] + dy * steps.ny[a]) < THIN_ACROSS)
+    same = (steps.nx[a] * steps.nx[b] + steps.ny[a] * steps.ny[b] > 0.5) & (np.abs(dx * steps.nx[a] + dy * steps.ny[a]) < DUPLICATE_ACROSS)
     a, b = a[same], b[same]
     # ties go to the place, not to the order of the work
     rank = np.empty(len(steps), np.int64)
@@ -69,7 +70,7 @@ def _links(steps):
     following = np.full(count, -1)
     if count < 2:
         return following
-    pairs = cKDTree(np.c_[steps.x, steps.y]).query_pairs(LINK_REACH, output_type="ndarray")
+    pairs = cKDTree(np.c_[steps.x, steps.y]).query_pairs(MAX_PLAN_LINK, output_type="ndarray")
     a, b = np.r_[pairs[:, 0], pairs[:, 1]], np.r_[pairs[:, 1], pairs[:, 0]]
     dx, dy = steps.x[b] - steps.x[a], steps.y[b] - steps.y[a]
     # on an arc the chord points in the mean direction of its ends
@@ -79,10 +80,11 @@ def _links(steps):
     turn = np.abs(np.arctan2(steps.nx[a] * steps.ny[b] - steps.ny[a] * steps.nx[b], steps.nx[a] * steps.nx[b] + steps.ny[a] * steps.ny[b]))
     up = np.abs(steps.h[b] - steps.h[a])
     # where a curb bends sharply its direction is not so well known
-    good = (along > 0.02) & (across <= SLACK + (DRIFT + BENT * turn) * along) & (turn <= TURN_SLACK + along / SHARPEST) \
-        & (up <= HEIGHT_SLACK + GRADE * along)
+    good = (along > 0.02) & (across <= PLAN_LINK_TOLERANCE + (PLAN_LINK_DRIFT + DRIFT_PER_TURN * turn) * along) \
+        & (turn <= TURN_TOLERANCE + along / MIN_CURB_RADIUS) \
+        & (up <= HEIGHT_TOLERANCE + MAX_HEIGHT_GRADE * along)
     a, b, along, across, turn, up = (v[good] for v in (a, b, along, across, turn, up))
-    cost = along / 0.3 + (across / SLACK) ** 2 + (turn / TURN_SLACK) ** 2 + (up / HEIGHT_SLACK) ** 2
+    cost = along / 0.3 + (across / PLAN_LINK_TOLERANCE) ** 2 + (turn / TURN_TOLERANCE) ** 2 + (up / HEIGHT_TOLERANCE) ** 2
     ahead, behind = _cheapest(a, b, cost, count), _cheapest(b, a, cost, count)
     linked = np.flatnonzero(ahead >= 0)
     linked = linked[behind[ahead[linked]] == linked]
@@ -126,27 +128,27 @@ def _paths(following):
     return [(run, bool(ring[label[run[0]]])) for run in runs]
 
 
-def joined_chains(chains, steps):
+def join_chains(chains, steps):
     """Chains with those that lie in one line, a short gap apart, made one."""
     open_ones = [c for c in chains if not c.closed]
-    tips = Tips.of([(steps.x[c.steps], steps.y[c.steps], steps.h[c.steps]) for c in open_ones])
-    runs = _paths(tips.successors(NOSE))
-    return [PlanChain(np.concatenate([open_ones[k].steps for k in run]), ring) for run, ring in runs] + [c for c in chains if c.closed]
+    tips = LineEnds.of([(steps.x[c.steps], steps.y[c.steps], steps.h[c.steps]) for c in open_ones])
+    runs = _paths(tips.successors(MAX_NOSE_GAP))
+    return [PlanStepChain(np.concatenate([open_ones[k].steps for k in run]), ring) for run, ring in runs] + [c for c in chains if c.closed]
 
 
-def groups_in_line(places):
+def group_lines(places):
     """(K,) number of the line that each of K polylines belongs to; all have their uphill side on the same hand.
 
     places : list of (x, y, h), each (N,) metres
     """
-    following = Tips.of(places).successors()
+    following = LineEnds.of(places).successors()
     linked = np.flatnonzero(following >= 0)
     graph = coo_matrix((np.ones(len(linked)), (linked, following[linked])), shape=2 * (len(places),))
     return connected_components(graph, directed=False)[1]
 
 
 @dataclass
-class Tips:
+class LineEnds:
     """Heads and tails of K polylines: (K, 5) x, y, h and the unit vector that leads out of the line."""
 
     heads: np.ndarray
@@ -154,7 +156,7 @@ class Tips:
 
     @staticmethod
     def of(places):
-        return Tips(*(np.array([_tip(*(v[::step] for v in place)) for place in places]).reshape(-1, 5) for step in (-1, 1)))
+        return LineEnds(*(np.array([_tip(*(v[::step] for v in place)) for place in places]).reshape(-1, 5) for step in (-1, 1)))
 
     def successors(self, nose=0.0):
         """(K,) the line whose head goes on where the tail of each one ends, -1 where none does.
@@ -165,7 +167,7 @@ class Tips:
         following = np.full(count, -1)
         if not count:
             return following
-        near = cKDTree(self.tails[:, :2]).sparse_distance_matrix(cKDTree(self.heads[:, :2]), CONNECT, output_type="ndarray")
+        near = cKDTree(self.tails[:, :2]).sparse_distance_matrix(cKDTree(self.heads[:, :2]), MAX_JOINED_GAP, output_type="ndarray")
         a, b, gap = near["i"], near["j"], near["v"]
         tail, head = self.tails[a], self.heads[b]
         dx, dy = head[:, 0] - tail[:, 0], head[:, 1] - tail[:, 1]
@@ -175,11 +177,11 @@ class Tips:
         turn = np.arccos(np.clip(-(tail[:, 3] * head[:, 3] + tail[:, 4] * head[:, 4]), -1, 1))
         # uphill is on the right, so the line bends about it where the way out of the head lies to the left of the tail's
         about = tail[:, 3] * head[:, 4] - tail[:, 4] * head[:, 3] > 0
-        most = CONNECT_TURN + np.where(about & (gap <= nose), gap / NOSE_RADIUS, 0.0)
+        most = MAX_JOIN_TURN + np.where(about & (gap <= nose), gap / NOSE_RADIUS, 0.0)
         along, across = (dx * tx + dy * ty) / size, np.abs(dx * ty - dy * tx) / size
         up = np.abs(head[:, 2] - tail[:, 2])
-        good = (a != b) & (along > -BACK) & (across <= MISS + CONNECT_ACROSS * np.abs(along)) & (turn <= most) \
-            & (up <= HEIGHT_SLACK + GRADE * gap)
+        good = (a != b) & (along > -MAX_JOIN_OVERLAP) & (across <= JOIN_TOLERANCE + JOIN_DRIFT * np.abs(along)) & (turn <= most) \
+            & (up <= HEIGHT_TOLERANCE + MAX_HEIGHT_GRADE * gap)
         a, b, cost = a[good], b[good], (gap + 2 * across + turn)[good]
         ahead, behind = _cheapest(a, b, cost, count), _cheapest(b, a, cost, count)
         linked = np.flatnonzero(ahead >= 0)
@@ -191,7 +193,7 @@ class Tips:
 def _tip(x, y, h):
     """Where a line ends and the unit vector in which it leaves: x, y, h, tx, ty."""
     back = np.hypot(x - x[-1], y - y[-1])
-    far = np.flatnonzero(back >= TIP)
+    far = np.flatnonzero(back >= END_DIRECTION_LENGTH)
     # a curb that turns leaves in the direction of the last half metre or so
     k = int(far[-1]) if len(far) else 0
     tx, ty = x[-1] - x[k], y[-1] - y[k]

@@ -5,17 +5,17 @@ import shapely
 from scipy.interpolate import Akima1DInterpolator
 
 from ...common.schemas import of_main_curb
-from ..common.pseudo_scanlines import expand
+from ..common.pseudo_scanlines import expand_ranges
+from ..common.tracking import MAX_JOINED_GAP
 
-VERTEX = 0.25     # m between vertices: the nose of an island has a radius below a metre
-CONNECT = 2.5     # m from a main edge's end within which a corner begins there
-SHARP = np.radians(50.0)  # of turn from the chord before to the chord after, and
-SHARPEST = 0.45   # m of radius that such a turn would have, for a corner to be one
-SMOOTH = 0.5      # m along a curb within which its points tell its course
-SAME = 0.02       # m within which two places are one
+RETURN_VERTEX_SPACING = 0.25     # m between vertices: the nose of an island has a radius below a metre
+MIN_CORNER_TURN = np.radians(50.0)  # of turn from the chord before to the chord after, and
+MAX_CORNER_RADIUS = 0.45   # m of radius that such a turn would have, for a corner to be one
+SMOOTHING_HALF_LENGTH = 0.5      # m along a curb within which its points tell its course
+SAME_PLACE_DISTANCE = 0.02       # m within which two places are one
 
 
-def turned_lines(curb_points):
+def curb_return_lines(curb_points):
     """The measured curb points that are not of a main curb, by road and chain, each in order along its chain.
 
     Returns
@@ -35,7 +35,7 @@ def turned_lines(curb_points):
     return found
 
 
-def draw_turned(edges, road, lines, number):
+def draw_curb_returns(edges, road, lines, number):
     """Add the edges of one road that lead away from it; returns the next free line number.
 
     A corner begins with the vertex at which the main edge ends, so that the two touch.
@@ -43,7 +43,7 @@ def draw_turned(edges, road, lines, number):
     ends = _main_ends(edges, road)
     for rows, places in lines:
         kind = rows[0]["kind"]
-        closed = kind == "island" and np.hypot(*(places[0, :2] - places[-1, :2])) <= SAME
+        closed = kind == "island" and np.hypot(*(places[0, :2] - places[-1, :2])) <= SAME_PLACE_DISTANCE
         first, last = (None, None) if kind == "island" else (_nearest(ends, places[k]) for k in (0, -1))
         if first is not None and last is not None and np.array_equal(first, last):
             near = np.hypot(*(first[:2] - places[0, :2])) <= np.hypot(*(first[:2] - places[-1, :2]))
@@ -89,7 +89,7 @@ def _sharp_chords(places):
     turn[1:-1] = np.abs((heading[2:] - heading[:-2] + np.pi) % (2 * np.pi) - np.pi)
     around = length.copy()
     around[1:-1] += 0.5 * (length[2:] + length[:-2])
-    turn[(turn < SHARP) | (turn < around / SHARPEST)] = 0.0
+    turn[(turn < MIN_CORNER_TURN) | (turn < around / MAX_CORNER_RADIUS)] = 0.0
     beside = np.maximum(np.r_[0.0, turn[:-1]], np.r_[turn[1:], 0.0])
     return np.flatnonzero((turn > beside) | (turn == beside) & (turn > 0) & (np.r_[0.0, turn[:-1]] < turn))
 
@@ -108,11 +108,11 @@ def _corner(before, after):
 
 
 def _smoothed(places):
-    """Places moved onto the parabolas through their neighbours within SMOOTH metres: noise goes, arcs stay."""
+    """Places moved onto the parabolas through their neighbours within SMOOTHING_HALF_LENGTH metres: noise goes, arcs stay."""
     t = _chord_length(places[:, 0], places[:, 1])
-    owner, index = expand(np.searchsorted(t, t - SMOOTH), np.searchsorted(t, t + SMOOTH, side="right"))
+    owner, index = expand_ranges(np.searchsorted(t, t - SMOOTHING_HALF_LENGTH), np.searchsorted(t, t + SMOOTHING_HALF_LENGTH, side="right"))
     u = t[index] - t[owner]
-    weight = 1.0 - (u / (SMOOTH * 1.1)) ** 2
+    weight = 1.0 - (u / (SMOOTHING_HALF_LENGTH * 1.1)) ** 2
     count = np.bincount(owner, minlength=len(t))
     powers = [np.bincount(owner, weight * u**k, len(t)) for k in range(5)]
     # a stretch with few neighbours is drawn to its own places
@@ -126,11 +126,11 @@ def _smoothed(places):
 
 
 def _through(places):
-    """(M, 3) vertices of a curve through places, VERTEX apart."""
+    """(M, 3) vertices of a curve through places, RETURN_VERTEX_SPACING apart."""
     if len(places) < 3:
         return places
     t = _chord_length(places[:, 0], places[:, 1])
-    return Akima1DInterpolator(t, places)(np.linspace(0.0, t[-1], int(np.ceil(t[-1] / VERTEX)) + 1))
+    return Akima1DInterpolator(t, places)(np.linspace(0.0, t[-1], int(np.ceil(t[-1] / RETURN_VERTEX_SPACING)) + 1))
 
 
 def _chord_length(x, y):
@@ -145,13 +145,13 @@ def _main_ends(edges, road):
         return np.empty((0, 3))
     ends = np.array(ends)
     apart = np.hypot(*(ends[:, None, :2] - ends[None, :, :2]).transpose(2, 0, 1))
-    return ends[(apart <= SAME).sum(1) == 1]
+    return ends[(apart <= SAME_PLACE_DISTANCE).sum(1) == 1]
 
 
 def _nearest(ends, place):
-    """The end within CONNECT of a place, None where there is none."""
+    """The end within MAX_JOINED_GAP of a place, None where there is none."""
     if not len(ends):
         return None
     distance = np.hypot(*(ends[:, :2] - place[:2]).T)
     k = int(np.argmin(distance))
-    return ends[k] if distance[k] <= CONNECT else None
+    return ends[k] if distance[k] <= MAX_JOINED_GAP else None

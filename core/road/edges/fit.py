@@ -12,20 +12,20 @@ from ...common.parallel import go_on
 from ...common.progress import Progress
 from ...common.schemas import ROAD_EDGES, of_main_curb
 from ...common.setting import check_limits, setting
-from ..common.nearest_pass import name_passes
-from .curb_returns import draw_turned, turned_lines
+from ..common.nearest_pass import assign_nearest_pass
+from ..common.occlusion import HIDDEN_POINT_SPACING
+from ..common.tracking import MAX_JOINED_GAP
+from .curb_returns import curb_return_lines, draw_curb_returns
 
-CONNECT = 2.5          # m between curb points that are joined as measured
 MEDIAN_WINDOW = 5.0    # m of running median
 OUTLIER_MADS, OUTLIER_FLOOR = 3.0, 0.05  # MAD; m
-HIDDEN_STEP = 0.5      # m that a row of hidden curb stands for
-HIDDEN_SHARE = 0.5     # share of a gap that must be hidden for a bridge
-GAP_ENDS = 1.0         # m of a gap next to its ends, half in view, of which nothing is asked
-SHARPEST = 1.0         # m across per m along that a joined edge may run
-STEP_ACROSS = 0.25     # m across that two joined points may differ at any distance
-VERTEX = 0.5           # m between vertices
-SHORTEST = 2.0         # m of a piece with curb points
-LEAST_SIGMA = 0.001    # m, noise of a curb point at least: more would let the spline cut bends
+MIN_HIDDEN_SHARE = 0.5     # share of a gap that must be hidden for a bridge
+GAP_END_ALLOWANCE = 1.0         # m of a gap next to its ends, half in view, of which nothing is asked
+MAX_EDGE_SKEW = 1.0         # m across per m along that a joined edge may run
+MAX_EDGE_JUMP = 0.25     # m across that two joined points may differ at any distance
+EDGE_VERTEX_SPACING = 0.5           # m between vertices
+MIN_EDGE_LENGTH = 2.0         # m of a piece with curb points
+MIN_POINT_SIGMA = 0.001    # m, noise of a curb point at least: more would let the spline cut bends
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def fit_road_edges(curb_points, frame, settings=EdgeSettings(), progress=Progres
     vertices and `chain`.
     """
     edges = Features("LineStringZ", list(ROAD_EDGES), crs=curb_points.crs)
-    table, turned = _table(curb_points), turned_lines(curb_points)
+    table, turned = _table(curb_points), curb_return_lines(curb_points)
     lines = 0
     for road in frame.roads:
         for side in ("left", "right"):
@@ -69,8 +69,8 @@ def fit_road_edges(curb_points, frame, settings=EdgeSettings(), progress=Progres
                 lines += 1
             if settings.fallback_width:
                 lines = _draw_fallback(edges, frame, road, side, drawn, settings.fallback_width, lines)
-        lines = draw_turned(edges, road.number, turned.get(road.number, []), lines)
-    name_passes(edges, frame)
+        lines = draw_curb_returns(edges, road.number, turned.get(road.number, []), lines)
+    assign_nearest_pass(edges, frame)
     length = {status: sum(r["length_m"] for r in edges.rows if r["status"] == status) for status in ("measured", "bridged")}
     if len(edges):
         progress.say(f"Road edges: {length['measured']:.0f} m measured, {length['bridged']:.0f} m bridged.")
@@ -99,15 +99,15 @@ def _pieces(rows, max_gap):
         return []
     gap = np.diff(points["s"])
     across = np.abs(np.diff(points["d"]))
-    joined = (gap <= CONNECT) & (across <= STEP_ACROSS + SHARPEST * gap)
+    joined = (gap <= MAX_JOINED_GAP) & (across <= MAX_EDGE_JUMP + MAX_EDGE_SKEW * gap)
     start, end = points["s"][:-1], points["s"][1:]
-    covered = HIDDEN_STEP * (np.searchsorted(hidden, end) - np.searchsorted(hidden, start, side="right"))
-    bridged = (gap > CONNECT) & (gap <= max_gap) & (covered >= HIDDEN_SHARE * (gap - GAP_ENDS)) \
-        & (across <= STEP_ACROSS + 0.1 * gap)
+    covered = HIDDEN_POINT_SPACING * (np.searchsorted(hidden, end) - np.searchsorted(hidden, start, side="right"))
+    bridged = (gap > MAX_JOINED_GAP) & (gap <= max_gap) & (covered >= MIN_HIDDEN_SHARE * (gap - GAP_END_ALLOWANCE)) \
+        & (across <= MAX_EDGE_JUMP + 0.1 * gap)
     breaks = np.flatnonzero(~(joined | bridged)) + 1
     pieces = []
     for part, flags in zip(np.split(points, breaks), np.split(np.r_[bridged, False], breaks)):
-        if len(part) >= 2 and part["s"][-1] - part["s"][0] >= SHORTEST:
+        if len(part) >= 2 and part["s"][-1] - part["s"][0] >= MIN_EDGE_LENGTH:
             pieces.append((part, flags[:-1]))
     return pieces
 
@@ -155,11 +155,11 @@ class EdgeCurve:
 def _noise(t, values):
     """Scatter of single points about a smooth line, from how each differs from its neighbours' chord."""
     if len(values) < 4:
-        return LEAST_SIGMA
+        return MIN_POINT_SIGMA
     left, right = np.diff(t)[:-1], np.diff(t)[1:]
     f = left / (left + right)
     off = values[1:-1] - ((1 - f) * values[:-2] + f * values[2:])
-    return max(float(np.median(np.abs(off) / np.sqrt(1 + f**2 + (1 - f) ** 2))) * 1.4826, LEAST_SIGMA)
+    return max(float(np.median(np.abs(off) / np.sqrt(1 + f**2 + (1 - f) ** 2))) * 1.4826, MIN_POINT_SIGMA)
 
 
 def _draw(edges, frame, road, side, piece, number):
@@ -171,7 +171,7 @@ def _draw(edges, frame, road, side, piece, number):
     for i, j in zip(bounds[:-1], bounds[1:]):
         go_on()
         a, b = curve.t[i], curve.t[j]
-        vertices = curve.at(np.linspace(a, b, max(int(np.ceil((b - a) / VERTEX)), 1) + 1))
+        vertices = curve.at(np.linspace(a, b, max(int(np.ceil((b - a) / EDGE_VERTEX_SPACING)), 1) + 1))
         rows = points[i:j + 1]
         edges.add(shapely.linestrings(np.round(vertices, 4)), road=road.number, side=side,
                   status="bridged" if bridged[i] else "measured",
@@ -192,9 +192,9 @@ def _draw_fallback(edges, frame, road, side, drawn, width, number):
         at = max(at, b)
     free.append((at, end))
     for a, b in free:
-        if b - a < CONNECT:
+        if b - a < MAX_JOINED_GAP:
             continue
-        s = np.linspace(a, b, max(int(np.ceil((b - a) / VERTEX)), 1) + 1)
+        s = np.linspace(a, b, max(int(np.ceil((b - a) / EDGE_VERTEX_SPACING)), 1) + 1)
         tracks = np.array([p.at_station(s)[0] for p in passes])
         offset = 0.5 * (tracks.min(0) + tracks.max(0)) + (0.5 if side == "left" else -0.5) * width
         x, y, z = frame.to_map(road.number, s, offset, frame.track_height(road.number, s))

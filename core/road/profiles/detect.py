@@ -12,27 +12,26 @@ from ...common.parallel import in_order
 from ...common.progress import Progress
 from ...common.schemas import CURB_POINTS
 from ...common.setting import check_limits, setting
-from ..common.corners import Steps
-from ..common.decimation import FEW, Crowds
-from ..common.nearest_pass import name_passes
-from ..common.occlusion import Sight
-from ..common.pseudo_scanlines import SPREAD_ROWS
-from ..common.sides import REACH, SECTION, SIDES, Track, expected_height, profiles_beside, sections_of
-from ..common.tracking import NOISY, choose_along, curb_chains, link_chains, long_enough
-from ..curb_returns.detect import add_turned_curbs
-from .steps import AVERAGE, find_averaged_steps, find_steps
+from ..common.corners import CurbSteps
+from ..common.decimation import POINTS_PER_LEVEL_CELL, PointDecimation
+from ..common.nearest_pass import assign_nearest_pass
+from ..common.occlusion import HIDDEN_POINT_SPACING, OcclusionGrid
+from ..common.pseudo_scanlines import SPREAD_PROFILES
+from ..common.sides import BLOCK_SECTION_LENGTH, MAX_CURB_OFFSET, SIDE_SIGNS, OutermostTrack, expected_height, side_profiles, work_sections
+from ..common.tracking import NOISY_SHARE, curb_chains, drop_short_curbs, link_steps, select_along_road
+from ..curb_returns.detect import add_curb_returns
+from .steps import AVERAGING_LENGTH, find_averaged_steps, find_steps
 
-VEHICLE_HALF = 0.6      # m from the track: no curb nearer
-MERGE_ACROSS = 0.12     # m between the same step seen in two passes
-MERGE_UP = 0.10
-DROPPED = 0.5           # a lower curb counts where it continues a full one: share of MIN_HEIGHT
-STRAIGHT_BLOCK, SHARP_BLOCK = 2.0, 0.5  # m
-TURN_PER_BLOCK = np.radians(1.0)        # a block of road turns no more than this
-BENT = 0.015            # m off its own straight line beyond which a block is cut shorter
-END_STEPS = 3           # profiles that give the end point of a chain
-MAIN_SHARE = 0.6        # of the work
-HIDDEN_STEP = 0.5       # m between rows of hidden curb
-HIDDEN_REACH = 25.0     # m between curbs within which hidden curb is reported
+MIN_TRACK_DISTANCE = 0.6      # m from the track: no curb nearer
+PASS_MERGE_ACROSS = 0.12     # m between the same step seen in two passes
+PASS_MERGE_HEIGHT = 0.10
+LOW_CURB_SHARE = 0.5           # a lower curb counts where it continues a full one: share of MIN_HEIGHT
+MAX_BLOCK_LENGTH, MIN_BLOCK_LENGTH = 2.0, 0.5  # m
+MAX_BLOCK_TURN = np.radians(1.0)        # a block of road turns no more than this
+MAX_BLOCK_BEND = 0.015            # m off its own straight line beyond which a block is cut shorter
+CHAIN_END_STEPS = 3           # profiles that give the end point of a chain
+MAIN_CURB_PROGRESS = 0.6        # of the work
+MAX_HIDDEN_GAP = 25.0     # m between curbs within which hidden curb is reported
 
 
 @dataclass(frozen=True)
@@ -62,14 +61,14 @@ class CurbSettings:
                                       "must be above the minimum.")
 
 
-def detect_curbs(survey, settings=CurbSettings(), progress=Progress(), turned=True, crowds=None):
+def detect_curbs(survey, settings=CurbSettings(), progress=Progress(), turned=True, decimation=None):
     """Bottom corners of the curb on each side of every road, one per block.
 
     Parameters
     ----------
     survey : Survey
     turned : whether corners, side streets and islands are looked for too
-    crowds : Crowds of the survey, where it is used again
+    decimation : PointDecimation of the survey, where it is used again
 
     Returns
     -------
@@ -77,101 +76,101 @@ def detect_curbs(survey, settings=CurbSettings(), progress=Progress(), turned=Tr
     vertices of the road edge; rows of status `occluded` say where something hides
     it, at the place where it is expected.
     """
-    if crowds is None:
-        with closing(Crowds(survey, settings.profile_width, settings.point_spacing)) as own:
+    if decimation is None:
+        with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as own:
             return detect_curbs(survey, settings, progress, turned, own)
     found = Features("PointZ", list(CURB_POINTS), crs=survey.crs)
     roads = survey.store.roads()
     for i, road in enumerate(roads):
-        part = progress.part(MAIN_SHARE * i / len(roads), MAIN_SHARE * (i + 1) / len(roads))
-        steps, sight = _steps_of_road(crowds, road, settings, part)
-        for side in SIDES:
-            _report_side(found, survey, road, side, steps[side], sight[side], settings)
+        part = progress.part(MAIN_CURB_PROGRESS * i / len(roads), MAIN_CURB_PROGRESS * (i + 1) / len(roads))
+        steps, occlusion = _steps_of_road(decimation, road, settings, part)
+        for side in SIDE_SIGNS:
+            _report_side(found, survey, road, side, steps[side], occlusion[side], settings)
     measured = sum(row["status"] == "measured" for row in found.rows)
     if turned:
-        add_turned_curbs(found, crowds, settings, progress.part(MAIN_SHARE, 1.0))
-    name_passes(found, survey.frame)
+        add_curb_returns(found, decimation, settings, progress.part(MAIN_CURB_PROGRESS, 1.0))
+    assign_nearest_pass(found, survey.frame)
     progress.say(f"Curb points: {measured:,} measured, {len(found) - measured:,} hidden by something in front.")
     return found
 
 
-def _steps_of_road(crowds, road, settings, progress):
+def _steps_of_road(decimation, road, settings, progress):
     """Steps of each side, passes merged, and what was seen beside the road."""
-    survey, width = crowds.survey, crowds.width
-    sections = sections_of(survey, road, width)
+    survey, width = decimation.survey, decimation.width
+    sections = work_sections(survey, road, width)
     first, last = sections[0][0], sections[-1][1]
-    around = max(SPREAD_ROWS, int(np.ceil(AVERAGE / width)))
-    sight = {side: Sight(width, first, last - first, REACH) for side in SIDES}
-    tracks = {side: Track(survey.frame, road, sign) for side, sign in SIDES.items()}
+    around = max(SPREAD_PROFILES, int(np.ceil(AVERAGING_LENGTH / width)))
+    occlusion = {side: OcclusionGrid(width, first, last - first, MAX_CURB_OFFSET) for side in SIDE_SIGNS}
+    tracks = {side: OutermostTrack(survey.frame, road, sign) for side, sign in SIDE_SIGNS.items()}
 
     def work(section):
-        found = {side: [] for side in SIDES}
+        found = {side: [] for side in SIDE_SIGNS}
         wide = section[0] - around, section[1] + around
-        most = None if crowds.mostly_uneven(road, sum(section) // 2) else FEW
-        seen = list(profiles_beside(crowds, road, wide, tracks, settings, most))
+        most = None if decimation.mostly_uneven(road, sum(section) // 2) else POINTS_PER_LEVEL_CELL
+        seen = list(side_profiles(decimation, road, wide, tracks, settings, most))
         # where averages are wanted every point counts
-        if most and any((lines.part(*section).spread > NOISY * settings.min_height).any() for *_, lines in seen):
-            seen = profiles_beside(crowds, road, wide, tracks, settings, most=None)
+        if most and any((lines.part(*section).spread > NOISY_SHARE * settings.min_height).any() for *_, lines in seen):
+            seen = side_profiles(decimation, road, wide, tracks, settings, most=None)
         for side, _, beside, lines in seen:
-            sight[side].look(*beside, section, lines.part(*section))
+            occlusion[side].add_points(*beside, section, lines.part(*section))
             steps = _steps_by_noise(lines, section, settings)
-            found[side].append(steps[steps.u > tracks[side](steps.s) + VEHICLE_HALF])
+            found[side].append(steps[steps.u > tracks[side](steps.s) + MIN_TRACK_DISTANCE])
         return {side: _merge_passes(steps) for side, steps in found.items() if steps}
 
-    parts = {side: [] for side in SIDES}
+    parts = {side: [] for side in SIDE_SIGNS}
     for found in in_order(work, sections, progress):
         for side, steps in found.items():
             parts[side].append(steps)
-    return {side: Steps.join(parts[side]) if parts[side] else None for side in SIDES}, sight
+    return {side: CurbSteps.join(parts[side]) if parts[side] else None for side in SIDE_SIGNS}, occlusion
 
 
 def _steps_by_noise(lines, section, settings):
     """Steps of a section's profiles: of each by itself, or averaged with its neighbours where noise would hide a curb."""
     own = lines.part(*section)
-    least, noisy = DROPPED * settings.min_height, own.spread > NOISY * settings.min_height
+    least, noisy = LOW_CURB_SHARE * settings.min_height, own.spread > NOISY_SHARE * settings.min_height
     sharp = find_steps(own, least, settings.max_height)
     if not noisy.any():
         return sharp
     blurred = find_averaged_steps(lines, least, settings.max_height, settings.layer_jump)
     blurred = blurred[(blurred.profile >= section[0]) & (blurred.profile < section[1])]
-    return Steps.join([sharp[~noisy[sharp.profile - own.first]], blurred[noisy[blurred.profile - own.first]]])
+    return CurbSteps.join([sharp[~noisy[sharp.profile - own.first]], blurred[noisy[blurred.profile - own.first]]])
 
 
 def _merge_passes(found):
     """One step where several passes saw the same one: the mean, weighted by support."""
-    steps = Steps.join(found)
+    steps = CurbSteps.join(found)
     if len(found) < 2 or not len(steps):
         return steps
     order = np.lexsort((steps.u, steps.profile))
     steps = steps[order]
-    apart = (np.diff(steps.profile) > 0) | (np.diff(steps.u) > MERGE_ACROSS) | (np.abs(np.diff(steps.h)) > MERGE_UP)
+    apart = (np.diff(steps.profile) > 0) | (np.diff(steps.u) > PASS_MERGE_ACROSS) | (np.abs(np.diff(steps.h)) > PASS_MERGE_HEIGHT)
     group = np.r_[0, np.cumsum(apart)]
     weight = np.sqrt(np.maximum(steps.support, 1))
     total = np.bincount(group, weight)
     values = {name: np.bincount(group, weight * getattr(steps, name)) / total
-              for name in ("s", "u", "h", "skew", "height", "run", "noise", "usual")}
-    return Steps(profile=steps.profile[np.r_[True, apart]], **values,
+              for name in ("s", "u", "h", "skew", "height", "run", "noise", "scanner_noise")}
+    return CurbSteps(profile=steps.profile[np.r_[True, apart]], **values,
                  support=np.bincount(group, steps.support).astype(np.int64),
                  behind=np.bincount(group, steps.behind).astype(np.int64))
 
 
-def _report_side(found, survey, road, side, steps, sight, settings):
+def _report_side(found, survey, road, side, steps, occlusion, settings):
     """Curb points of one side of one road, measured and hidden, in order of station."""
     if steps is None or not len(steps):
         return
-    frame, sign = survey.frame, SIDES[side]
-    track = Track(frame, road, sign)
-    label = link_chains(steps, settings.profile_width)
+    frame, sign = survey.frame, SIDE_SIGNS[side]
+    track = OutermostTrack(frame, road, sign)
+    label = link_steps(steps, settings.profile_width)
     chains = curb_chains(steps, label, settings.profile_width, settings.min_height, np.radians(settings.slope))
-    chosen = long_enough(choose_along(chains, steps, track), chains, steps)
-    edges = block_edges(frame.road(road), *survey.store.span(road), settings.block_length)
+    chosen = drop_short_curbs(select_along_road(chains, steps, track), chains, steps)
+    edges = block_bounds(frame.road(road), *survey.store.span(road), settings.block_length)
     rows = []
     for number, (chain, a, b) in enumerate(chosen):
         members = chains[chain].steps
         members = members[(steps.s[members] >= a) & (steps.s[members] <= b)]
         rows += _block_points(steps[members], edges, number)
     measured = np.array([(r["s"], r["u"], r["h"]) for r in rows]).reshape(-1, 3)
-    rows += hidden_points(measured, sight, track)
+    rows += hidden_points(measured, occlusion, track)
     rows.sort(key=lambda r: r["s"])
     if not rows:
         return
@@ -182,21 +181,21 @@ def _report_side(found, survey, road, side, steps, sight, settings):
                   part="bottom", kind="main", **row["fields"])
 
 
-def block_edges(road, start, end, block_length):
+def block_bounds(road, start, end, block_length):
     """Stations at which blocks begin and end, counted from station 0.
 
     Automatic blocks are 0.5 to 2.0 m long, so that the road turns no more than a
     degree within one; the length is decided for every 20 m of road.
     """
     edges = []
-    first, last = int(np.floor(start / SECTION)), int(np.ceil(end / SECTION))
+    first, last = int(np.floor(start / BLOCK_SECTION_LENGTH)), int(np.ceil(end / BLOCK_SECTION_LENGTH))
     if block_length:
         return np.arange(np.floor(start / block_length), np.ceil(end / block_length) + 1) * block_length
     for k in range(first, last):
-        bend = np.abs(road.curvature(np.arange(k * SECTION, (k + 1) * SECTION, 0.5))).max()
-        length = np.clip(TURN_PER_BLOCK / max(bend, 1e-9), SHARP_BLOCK, STRAIGHT_BLOCK)
-        edges.append(np.linspace(k * SECTION, (k + 1) * SECTION, int(np.ceil(SECTION / length)) + 1)[:-1])
-    return np.r_[np.concatenate(edges), last * SECTION] if edges else np.array([start, end])
+        bend = np.abs(road.curvature(np.arange(k * BLOCK_SECTION_LENGTH, (k + 1) * BLOCK_SECTION_LENGTH, 0.5))).max()
+        length = np.clip(MAX_BLOCK_TURN / max(bend, 1e-9), MIN_BLOCK_LENGTH, MAX_BLOCK_LENGTH)
+        edges.append(np.linspace(k * BLOCK_SECTION_LENGTH, (k + 1) * BLOCK_SECTION_LENGTH, int(np.ceil(BLOCK_SECTION_LENGTH / length)) + 1)[:-1])
+    return np.r_[np.concatenate(edges), last * BLOCK_SECTION_LENGTH] if edges else np.array([start, end])
 
 
 def _block_points(steps, edges, chain):
@@ -228,26 +227,26 @@ def block_numbers(steps, edges):
     off = np.sqrt(np.bincount(member, (du - slope[member] * ds) ** 2) / n)
     start, length = edges[names - 1], np.diff(edges)[np.minimum(names, len(edges) - 1) - 1]
     quarter = np.clip(np.floor(4 * (steps.s - start[member]) / length[member]), 0, 3).astype(np.int64)
-    block = 8 * block + 2 * np.where(off[member] > BENT, quarter, 0)  # even numbers, so that there is room for the ends
+    block = 8 * block + 2 * np.where(off[member] > MAX_BLOCK_BEND, quarter, 0)  # even numbers, so that there is room for the ends
     # a chain's ends stand for themselves, not for the middle of their blocks
-    if len(steps) > 2 * END_STEPS:
-        block[:END_STEPS] = block[0] - 1
-        block[-END_STEPS:] = block[-1] + 1
+    if len(steps) > 2 * CHAIN_END_STEPS:
+        block[:CHAIN_END_STEPS] = block[0] - 1
+        block[-CHAIN_END_STEPS:] = block[-1] + 1
     return block
 
 
-def hidden_points(measured, sight, track):
+def hidden_points(measured, occlusion, track):
     """Places in the gaps between curb points where something hides the curb."""
     if len(measured) < 2:
         return []
     measured = measured[np.argsort(measured[:, 0], kind="stable")]
-    s = np.arange(np.ceil(measured[0, 0] / HIDDEN_STEP), np.floor(measured[-1, 0] / HIDDEN_STEP) + 1) * HIDDEN_STEP
+    s = np.arange(np.ceil(measured[0, 0] / HIDDEN_POINT_SPACING), np.floor(measured[-1, 0] / HIDDEN_POINT_SPACING) + 1) * HIDDEN_POINT_SPACING
     after = np.clip(np.searchsorted(measured[:, 0], s, side="right"), 1, len(measured) - 1)
     before_s, after_s = measured[after - 1, 0], measured[after, 0]
-    wide = (after_s - before_s <= HIDDEN_REACH) & (after_s - before_s > STRAIGHT_BLOCK) \
-        & (s - before_s > 0.5 * HIDDEN_STEP) & (after_s - s > 0.5 * HIDDEN_STEP)
+    wide = (after_s - before_s <= MAX_HIDDEN_GAP) & (after_s - before_s > MAX_BLOCK_LENGTH) \
+        & (s - before_s > 0.5 * HIDDEN_POINT_SPACING) & (after_s - s > 0.5 * HIDDEN_POINT_SPACING)
     s = s[wide]
     u, h = (np.interp(s, measured[:, 0], measured[:, k]) for k in (1, 2))
-    hidden = sight.hidden(s, u, h, track(s))
+    hidden = occlusion.hidden(s, u, h, track(s))
     return [dict(s=float(a), u=float(b), h=float(c), fields=dict(status="occluded"))
             for a, b, c in zip(s[hidden], u[hidden], h[hidden])]

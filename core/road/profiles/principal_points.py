@@ -8,8 +8,8 @@ from ...common.features import Features
 from ...common.parallel import in_order
 from ...common.progress import Progress
 from ...common.schemas import HEIGHT, OFFSET, PASS, ROAD, SIDE, STATION
-from ..common.decimation import Crowds
-from ..common.sides import SIDES, Track, expected_height, profiles_beside, sections_of
+from ..common.decimation import PointDecimation
+from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, side_profiles, work_sections
 
 PRINCIPAL_POINTS = [ROAD, PASS, SIDE, STATION, OFFSET, HEIGHT]
 
@@ -34,7 +34,7 @@ def principal_points(survey, settings, progress=Progress()):
     for i, road in enumerate(roads):
         part = progress.part(i / len(roads), (i + 1) / len(roads))
         for pass_number, side, s, u, h in _points_of_road(survey, road, settings, part):
-            d = SIDES[side] * u
+            d = SIDE_SIGNS[side] * u
             x, y, z = survey.frame.to_map(road, s, d, h + expected_height(survey, road, s))
             found.geometries += list(shapely.points(np.c_[x, y, z]))
             found.rows += [
@@ -46,16 +46,16 @@ def principal_points(survey, settings, progress=Progress()):
 
 def _points_of_road(survey, road, settings, progress):
     """(pass, side, stations, outward offsets, heights) of one section and side after the other."""
-    tracks = {side: Track(survey.frame, road, sign) for side, sign in SIDES.items()}
+    tracks = {side: OutermostTrack(survey.frame, road, sign) for side, sign in SIDE_SIGNS.items()}
 
     def work(section):
         found = []
-        for side, number, _, lines in profiles_beside(crowds, road, section, tracks, settings):
+        for side, number, _, lines in side_profiles(decimation, road, section, tracks, settings):
             profile, cell = np.nonzero(np.isfinite(lines.high))
             stations = (lines.first + profile + 0.5) * lines.width
             found.append((number, side, stations, lines.offset(cell), lines.high[profile, cell]))
         return found
 
-    with closing(Crowds(survey, settings.profile_width, settings.point_spacing)) as crowds:
-        for results in in_order(work, sections_of(survey, road, settings.profile_width), progress):
+    with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as decimation:
+        for results in in_order(work, work_sections(survey, road, settings.profile_width), progress):
             yield from results

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from ..common.corners import CLEARANCE, ROAD_SIDE, STEEPEST_ROAD
+from ..common.corners import FACE_MARGIN, MAX_ROAD_SLOPE, ROAD_SIDE_LENGTH
 from .grid import LINE_SEPARATION, MAX_GROUND_DEPTH, SCANLINE_RESOLUTION, row_of_lines
 
 # Vertices at equal steps along normalized scanlines, about the places where a curb may be.
@@ -228,7 +228,7 @@ def _rising(low, span, least):
 
 def _road_before(low, row, cell):
     """Line through the ground before some cells: its height there, slope, scatter, and count of cells."""
-    reach, skip = int(round(ROAD_SIDE / SCANLINE_RESOLUTION)), int(round(CLEARANCE / SCANLINE_RESOLUTION))
+    reach, skip = int(round(ROAD_SIDE_LENGTH / SCANLINE_RESOLUTION)), int(round(FACE_MARGIN / SCANLINE_RESOLUTION))
     back = np.arange(-reach - skip + 1, -skip + 1)
     padded = cv2.copyMakeBorder(low, 0, 0, reach + skip, 0, cv2.BORDER_CONSTANT, value=np.nan)
     place = row * padded.shape[1] + cell + reach + skip
@@ -244,7 +244,7 @@ def _road_before(low, row, cell):
         with np.errstate(all="ignore"):
             mu, mz = su / n, sz / n
             vuu, vuz, vzz = suu / n - mu * mu, suz / n - mu * mz, szz / n - mz * mz
-            slope = np.clip(np.where(vuu > 1e-4, vuz / vuu, 0.0), -STEEPEST_ROAD, STEEPEST_ROAD)
+            slope = np.clip(np.where(vuu > 1e-4, vuz / vuu, 0.0), -MAX_ROAD_SLOPE, MAX_ROAD_SLOPE)
             rough = np.sqrt(np.maximum(vzz - 2 * slope * vuz + slope * slope * vuu, 0.0))
             found.append((mz - slope * mu, slope, rough, n))
     return (np.concatenate(values) for values in zip(*found)) if found else (np.empty(0, np.float32),) * 4

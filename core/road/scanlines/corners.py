@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..common.corners import MOST_SKEW, Steps
+from ..common.corners import MAX_FACE_SKEW, CurbSteps
 
 # Planes about many candidates at once, by RANSAC and least squares.
 
@@ -154,7 +154,7 @@ MIN_MEETING = 0.1   # 1 - product of the slopes: planes that meet flatter give n
 
 
 @dataclass
-class CurbCorners(Steps):
+class CurbCorners(CurbSteps):
     """Steps measured by planes: besides the bottom corners, the top ones and the scatter about the planes.
 
     top_u, top_h : (M,) m, outward offset and height of the top corner above the expected road
@@ -177,7 +177,7 @@ def corners_of(side, candidates, settings):
 
     Returns
     -------
-    CurbCorners, at most one for each candidate, in their order; `usual` is the scatter
+    CurbCorners, at most one for each candidate, in their order; `scanner_noise` is the scatter
     about the planes of each, and no better known here
     """
     owner, s, u, h, steep = _neighbourhood(side, candidates, settings)
@@ -200,7 +200,7 @@ def corners_of(side, candidates, settings):
     with np.errstate(invalid="ignore"):
         # the angle of the face's normal from the vertical: its slope against height makes it lean
         over_run = np.abs(front.coefficients[:, 1] / np.hypot(1.0, front.coefficients[:, 2]))
-        good &= (np.degrees(np.arctan2(1.0, over_run)) >= settings.vertical_angle) & (np.abs(front.coefficients[:, 2]) <= MOST_SKEW)
+        good &= (np.degrees(np.arctan2(1.0, over_run)) >= settings.vertical_angle) & (np.abs(front.coefficients[:, 2]) <= MAX_FACE_SKEW)
     alive, front, front_points = alive[good], front[good], front_points[good]
     ground, ground_points, good = _planes(parts[0], alive, MAX_LEVEL_VERTICES, (h, u, s), candidates.rough, settings)
     good &= ground.steepness() <= lean
@@ -221,7 +221,7 @@ def corners_of(side, candidates, settings):
     row, noise = side.first + candidates.row, ground.sigma.astype(float)
     found = CurbCorners(profile=row, s=row * side.interval, u=candidates.u + bottom_u, h=candidates.base + bottom_h,
                         skew=front.coefficients[:, 2].astype(float), height=top_h - bottom_h, run=np.maximum(top_u - bottom_u, 0.0),
-                        noise=noise, usual=noise, support=ground.inliers + front.inliers, behind=top.inliers,
+                        noise=noise, scanner_noise=noise, support=ground.inliers + front.inliers, behind=top.inliers,
                         top_u=candidates.u + top_u, top_h=candidates.base + top_h, residual=residual)
     return found[good]
 

@@ -20,13 +20,13 @@ from ...common.parallel import in_order
 from ...common.progress import Progress
 from ...common.schemas import CURB_POINTS, ROAD_EDGES
 from ...common.setting import check_limits, setting
-from ..common.nearest_pass import name_passes
-from ..common.occlusion import TALL, Sight
-from ..common.pseudo_scanlines import LEAST_NOISE
-from ..common.sides import REACH, SECTION, SIDES, Track, expected_height
-from ..common.tracking import choose_along, curb_chains, link_chains, long_enough
-from ..edges.fit import HIDDEN_SHARE, HIDDEN_STEP, SHARPEST, SHORTEST, STEP_ACROSS, VERTEX, EdgeCurve, without_outliers
-from ..profiles.detect import MERGE_ACROSS, MERGE_UP, VEHICLE_HALF, block_edges, block_numbers, hidden_points
+from ..common.nearest_pass import assign_nearest_pass
+from ..common.occlusion import HIDDEN_POINT_SPACING, MIN_OCCLUDER_HEIGHT, OcclusionGrid
+from ..common.pseudo_scanlines import MIN_SCANNER_NOISE
+from ..common.sides import BLOCK_SECTION_LENGTH, MAX_CURB_OFFSET, SIDE_SIGNS, OutermostTrack, expected_height
+from ..common.tracking import curb_chains, drop_short_curbs, link_steps, select_along_road
+from ..edges.fit import EDGE_VERTEX_SPACING, MAX_EDGE_JUMP, MAX_EDGE_SKEW, MIN_EDGE_LENGTH, MIN_HIDDEN_SHARE, EdgeCurve, without_outliers
+from ..profiles.detect import MIN_TRACK_DISTANCE, PASS_MERGE_ACROSS, PASS_MERGE_HEIGHT, block_bounds, block_numbers, hidden_points
 from .candidates import NEIGHBOUR_LINES, find_candidates, gap_fill_rows, samples_near
 from .corners import CurbCorners, corners_of, plane_fit_rows
 from .grid import height_grid
@@ -56,14 +56,14 @@ def boundary_lines(corners, frame, max_gap, progress=Progress()):
     lines = Features("LineStringZ", list(ROAD_EDGES), crs=corners.crs)
     number = 0
     for road in frame.roads:
-        for side in SIDES:
+        for side in SIDE_SIGNS:
             hidden = np.sort([row["station_m"] for row in corners.rows
                               if row["road"] == road.number and row["side"] == side and row["status"] == "occluded"])
             for part in ("bottom", "top"):
                 for points, status in _pieces(_points(corners, road.number, side, part), hidden, max_gap):
                     _draw(lines, points, status, road=road.number, side=side, part=part, chain=number)
                     number += 1
-    name_passes(lines, frame)
+    assign_nearest_pass(lines, frame)
     length = {part: sum(row["length_m"] for row in lines.rows if row["part"] == part) for part in ("bottom", "top")}
     progress.say(f"Boundaries: {length['bottom']:.0f} m of bottom lines and {length['top']:.0f} m of top lines.")
     progress.at(1.0)
@@ -84,12 +84,12 @@ def _pieces(points, hidden, max_gap):
         return []
     gap, across = np.diff(points["s"]), np.abs(np.diff(points["d"]))
     near = gap <= MAX_MEASURED_GAP
-    joined = (near | (gap <= max_gap)) & (across <= STEP_ACROSS + SHARPEST * gap)
-    covered = HIDDEN_STEP * (np.searchsorted(hidden, points["s"][1:]) - np.searchsorted(hidden, points["s"][:-1], side="right"))
-    status = np.where(near, "measured", np.where(covered >= HIDDEN_SHARE * gap, "occluded", "bridged"))
+    joined = (near | (gap <= max_gap)) & (across <= MAX_EDGE_JUMP + MAX_EDGE_SKEW * gap)
+    covered = HIDDEN_POINT_SPACING * (np.searchsorted(hidden, points["s"][1:]) - np.searchsorted(hidden, points["s"][:-1], side="right"))
+    status = np.where(near, "measured", np.where(covered >= MIN_HIDDEN_SHARE * gap, "occluded", "bridged"))
     breaks = np.flatnonzero(~joined) + 1
     parts = zip(np.split(points, breaks), np.split(np.append(status, ""), breaks))
-    return [(part, flags[:-1]) for part, flags in parts if len(part) >= 2 and part["s"][-1] - part["s"][0] >= SHORTEST]
+    return [(part, flags[:-1]) for part, flags in parts if len(part) >= 2 and part["s"][-1] - part["s"][0] >= MIN_EDGE_LENGTH]
 
 
 def _draw(lines, points, status, **fields):
@@ -98,7 +98,7 @@ def _draw(lines, points, status, **fields):
     bounds = np.r_[0, np.flatnonzero(status[1:] != status[:-1]) + 1, len(points) - 1]
     for i, j in zip(bounds[:-1], bounds[1:]):
         a, b = curve.t[i], curve.t[j]
-        vertices = curve.at(np.linspace(a, b, max(int(np.ceil((b - a) / VERTEX)), 1) + 1))
+        vertices = curve.at(np.linspace(a, b, max(int(np.ceil((b - a) / EDGE_VERTEX_SPACING)), 1) + 1))
         rows = points[i:j + 1]
         lines.add(shapely.linestrings(np.round(vertices, 4)), status=str(status[i]), kind="main",
                   station_m=round(float(rows["s"][0]), 3), end_m=round(float(rows["s"][-1]), 3),
@@ -164,11 +164,11 @@ def curbs_from_scanlines(source, settings=ScanlineBoundarySettings(), block_leng
     roads = source.roads()
     for i, road in enumerate(roads):
         part = progress.part(i / len(roads), (i + 1) / len(roads))
-        corners, sight = _corners_of_road(source, road, settings, part)
-        for side in SIDES:
+        corners, occlusion = _corners_of_road(source, road, settings, part)
+        for side in SIDE_SIGNS:
             if corners[side] is not None and len(corners[side]):
-                _report_side(found, source, road, side, corners[side], sight[side], settings, block_length)
-    name_passes(found, source.frame)
+                _report_side(found, source, road, side, corners[side], occlusion[side], settings, block_length)
+    assign_nearest_pass(found, source.frame)
     bottoms = [row["status"] for row in found.rows if row["part"] == "bottom"]
     progress.say(f"Corners of curbs: {bottoms.count('measured'):,} measured on scanlines, "
                  f"{bottoms.count('occluded'):,} hidden by something in front.")
@@ -181,44 +181,44 @@ def _corners_of_road(source, road, settings, progress):
     sections = _sections(*source.span(road), interval)
     first, last = sections[0][0], sections[-1][1]
     margin = max(plane_fit_rows(interval, settings), NEIGHBOUR_LINES + gap_fill_rows(interval)) + 1
-    sight = {side: Sight(interval, first, last - first, REACH) for side in SIDES}
-    tracks = {side: Track(source.frame, road, sign) for side, sign in SIDES.items()}
+    occlusion = {side: OcclusionGrid(interval, first, last - first, MAX_CURB_OFFSET) for side in SIDE_SIGNS}
+    tracks = {side: OutermostTrack(source.frame, road, sign) for side, sign in SIDE_SIGNS.items()}
 
     def work(section):
         begin, end = section
         rows = begin - margin, end + margin
         stations = np.arange(*rows) * interval
-        nearest = {side: tracks[side](stations) + VEHICLE_HALF for side in SIDES}
-        found = {side: [] for side in SIDES}
+        nearest = {side: tracks[side](stations) + MIN_TRACK_DISTANCE for side in SIDE_SIGNS}
+        found = {side: [] for side in SIDE_SIGNS}
         for lines in source.runs(road, (rows[0] - 0.5) * interval, (rows[1] - 0.5) * interval):
             heights = lines.z - np.repeat(expected_height(source, road, lines.station), np.diff(lines.first))
-            grid = height_grid(lines, heights, rows, interval, min(REACH, source.corridor), settings.clipping_height)
+            grid = height_grid(lines, heights, rows, interval, min(MAX_CURB_OFFSET, source.corridor), settings.clipping_height)
             closed = grid.closed(gap_fill_rows(interval))
             tall = _tall(lines, heights, interval)
             candidates, strip = {}, _level_beside(source, road, int(lines.pass_number[0]), stations[margin:-margin])
-            for side, sign in SIDES.items():
+            for side, sign in SIDE_SIGNS.items():
                 origin = np.floor(nearest[side].min())
                 outward = grid.outward(sign, origin)
-                sight[side].look(sign * tall[0], *tall[1:], section, outward.part(margin, margin + end - begin))
+                occlusion[side].add_points(sign * tall[0], *tall[1:], section, outward.part(margin, margin + end - begin))
                 if strip is not None:
-                    sight[side].level(section, *strip[sign])
+                    occlusion[side].add_level_ground(section, *strip[sign])
                 of_side = find_candidates(closed.outward(sign, origin), outward.low, nearest[side], settings)
                 candidates[side] = of_side[(of_side.row >= margin) & (of_side.row < margin + end - begin)]
             for side, corners in _corners(lines, heights, rows, interval, candidates, settings):
                 found[side].append(corners)
         return {side: merged_corners(parts) for side, parts in found.items() if parts}
 
-    parts = {side: [] for side in SIDES}
+    parts = {side: [] for side in SIDE_SIGNS}
     for found in in_order(work, sections, progress):
         for side, corners in found.items():
             parts[side].append(corners)
-    return {side: _with_usual_noise(CurbCorners.join(found)) if found else None for side, found in parts.items()}, sight
+    return {side: _with_scanner_noise(CurbCorners.join(found)) if found else None for side, found in parts.items()}, occlusion
 
 
 def _sections(start, end, interval):
     """The section planes of a road parted for work: list of (first, last + 1) numbers, about 20 m each."""
     first, last = int(np.floor(start / interval)), int(np.ceil(end / interval)) + 1
-    count = max(int(np.ceil((end - start) / SECTION)), 1)
+    count = max(int(np.ceil((end - start) / BLOCK_SECTION_LENGTH)), 1)
     bounds = np.unique(np.rint(np.linspace(first, last, count + 1)).astype(int))
     return [(int(a), int(b)) for a, b in zip(bounds[:-1], bounds[1:])]
 
@@ -234,7 +234,7 @@ def _level_beside(source, road, number, stations):
 
 def _tall(lines, heights, interval):
     """(d, s, h) of the vertices of things that hide what lies behind."""
-    vertex = np.flatnonzero(heights > TALL)
+    vertex = np.flatnonzero(heights > MIN_OCCLUDER_HEIGHT)
     line = np.searchsorted(lines.first, vertex, side="right") - 1
     return lines.d[vertex], lines.station[line] + 0.5 * interval, heights[vertex]
 
@@ -243,12 +243,12 @@ def _corners(lines, heights, rows, interval, candidates, settings):
     """Yield (side, corners at its candidates) of one pass and scanner."""
     if not any(map(len, candidates.values())):
         return
-    places = (np.concatenate([c.row for c in candidates.values()]), np.concatenate([SIDES[side] * c.u for side, c in candidates.items()]))
+    places = (np.concatenate([c.row for c in candidates.values()]), np.concatenate([SIDE_SIGNS[side] * c.u for side, c in candidates.items()]))
     samples = samples_near(lines, heights, rows, interval, places, settings.distance_across, plane_fit_rows(interval, settings),
                            settings.clipping_height)
     for side, of_side in candidates.items():
         if len(of_side):
-            yield side, corners_of(samples.outward(SIDES[side]), of_side, settings)
+            yield side, corners_of(samples.outward(SIDE_SIGNS[side]), of_side, settings)
 
 
 def merged_corners(found):
@@ -257,39 +257,39 @@ def merged_corners(found):
     if len(found) < 2 or not len(corners):
         return corners
     corners = corners[np.lexsort((corners.u, corners.profile))]
-    apart = (np.diff(corners.profile) > 0) | (np.diff(corners.u) > MERGE_ACROSS) | (np.abs(np.diff(corners.h)) > MERGE_UP)
+    apart = (np.diff(corners.profile) > 0) | (np.diff(corners.u) > PASS_MERGE_ACROSS) | (np.abs(np.diff(corners.h)) > PASS_MERGE_HEIGHT)
     group = np.r_[0, np.cumsum(apart)]
     weight = np.sqrt(np.maximum(corners.support, 1))
     total = np.bincount(group, weight)
     values = {name: np.bincount(group, weight * getattr(corners, name)) / total
-              for name in ("s", "u", "h", "skew", "height", "run", "noise", "usual", "top_u", "top_h", "residual")}
+              for name in ("s", "u", "h", "skew", "height", "run", "noise", "scanner_noise", "top_u", "top_h", "residual")}
     return CurbCorners(profile=corners.profile[np.r_[True, apart]], **values,
                        support=np.bincount(group, corners.support).astype(np.int64),
                        behind=np.bincount(group, corners.behind).astype(np.int64))
 
 
-def _with_usual_noise(corners):
-    """The corners, each with the scatter that is usual about the planes of this road."""
+def _with_scanner_noise(corners):
+    """The corners, each with the median scatter about the planes of this road."""
     if len(corners):
-        corners.usual = np.full(len(corners), np.clip(np.median(corners.noise), LEAST_NOISE, MAX_USUAL_NOISE))
+        corners.scanner_noise = np.full(len(corners), np.clip(np.median(corners.noise), MIN_SCANNER_NOISE, MAX_USUAL_NOISE))
     return corners
 
 
-def _report_side(found, source, road, side, corners, sight, settings, block_length):
+def _report_side(found, source, road, side, corners, occlusion, settings, block_length):
     """Bottom and top corners of one side of one road, measured and hidden, in order of station."""
-    frame, sign = source.frame, SIDES[side]
-    track = Track(frame, road, sign)
-    label = link_chains(corners, source.interval)
+    frame, sign = source.frame, SIDE_SIGNS[side]
+    track = OutermostTrack(frame, road, sign)
+    label = link_steps(corners, source.interval)
     chains = curb_chains(corners, label, source.interval, settings.min_height, np.radians(settings.vertical_angle))
-    chosen = long_enough(choose_along(chains, corners, track), chains, corners)
-    edges = block_edges(frame.road(road), *source.span(road), block_length)
+    chosen = drop_short_curbs(select_along_road(chains, corners, track), chains, corners)
+    edges = block_bounds(frame.road(road), *source.span(road), block_length)
     rows = []
     for number, (chain, a, b) in enumerate(chosen):
         members = chains[chain].steps
         members = members[(corners.s[members] >= a) & (corners.s[members] <= b)]
         rows += _block_points(corners[members], edges, number)
     bottoms = np.array([(r["s"], r["u"], r["h"]) for r in rows if r["fields"]["part"] == "bottom"]).reshape(-1, 3)
-    rows += [{**r, "fields": dict(r["fields"], part="bottom")} for r in hidden_points(bottoms, sight, track)]
+    rows += [{**r, "fields": dict(r["fields"], part="bottom")} for r in hidden_points(bottoms, occlusion, track)]
     rows.sort(key=lambda r: (r["s"], r["fields"]["part"]))
     if not rows:
         return

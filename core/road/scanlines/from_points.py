@@ -8,7 +8,7 @@ stands above the ground is kept as lines of its own, for it tells what hides a c
 
 import numpy as np
 
-from ..common.occlusion import TALL
+from ..common.occlusion import MIN_OCCLUDER_HEIGHT
 from ..common.pseudo_scanlines import pseudo_scan_lines
 from ..common.sides import expected_height
 from .grid import SCANLINE_RESOLUTION
@@ -55,7 +55,7 @@ def point_scanlines(survey, road, start, end, interval, corridor):
         # the row stands in the station's place, so that slices may overlap
         cells = pseudo_scan_lines(d[index], rows + 0.5, h[index], points.intensity[index].astype(float), (first, last), 1.0,
                                   SCANLINE_RESOLUTION, SLICE_LAYER_JUMP, -corridor, corridor)
-        for chosen, at in ((cells.ground, 0.5), (~cells.ground & (cells.h > TALL), 1.0)):
+        for chosen, at in ((cells.ground, 0.5), (~cells.ground & (cells.h > MIN_OCCLUDER_HEIGHT), 1.0)):
             parts.append(_joined(*_vertices(cells, np.flatnonzero(chosen), at), first, interval, int(value) // 256, int(value) % 256))
     lines = Scanlines.join(parts)
     if not len(lines):

@@ -17,7 +17,7 @@ from ...common.parallel import in_order
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...survey.lattice.scan_lattice import find_lattice, scanner_runs
-from ..common.sides import SECTION
+from ..common.sides import BLOCK_SECTION_LENGTH
 from .from_points import MIN_SLICE_LENGTH, point_scanlines
 from .mesh import MAX_EDGE, MAX_LINES_AHEAD, MAX_RIB, PlaneVertices, Ribs, increasing, plane_order, ribs_of, scanner_lines, slanting_edges
 from .scanlines import Scanlines
@@ -99,7 +99,7 @@ def all_scanlines(survey, road, settings=ScanlineSettings(), lattice=None, progr
     if lattice is None:
         lattice = find_lattice(survey, settings.rotation_frequency)
     start, end = survey.store.span(road)
-    bounds = np.linspace(start, end, max(int(np.ceil((end - start) / SECTION)), 1) + 1)
+    bounds = np.linspace(start, end, max(int(np.ceil((end - start) / BLOCK_SECTION_LENGTH)), 1) + 1)
 
     def work(section):
         return scanlines_of(survey, road, *section, settings, lattice)

@@ -7,7 +7,7 @@ from curbed_streets import NORTH, parked_car, street, survey_of
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import CURB_POINTS
-from lanewright.core.road.agreement import chosen_points, note_agreement
+from lanewright.core.road.agreement import measure_agreement, select_curb_points
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from lanewright.core.road.edges.fit import fit_road_edges
 
@@ -67,13 +67,13 @@ def test_a_curb_that_only_one_method_finds_is_drawn_without_agreement():
 def test_of_two_lines_along_one_curb_the_one_with_less_scatter_is_drawn(frame):
     calm, rough = curb_points(frame, 3.50), curb_points(frame, 3.53, scatter=0.03)
     for first, second in ((calm, rough), (rough, calm)):
-        drawn = chosen_points(first, second, fit_road_edges(first, frame), fit_road_edges(second, frame), frame)
+        drawn = select_curb_points(first, second, fit_road_edges(first, frame), fit_road_edges(second, frame), frame)
         np.testing.assert_allclose(drawn.column("offset_m"), 3.50, atol=1e-6)
 
 
 def test_of_two_curbs_that_of_the_first_method_is_drawn_and_its_gaps_are_filled_by_the_other(frame):
     sure, other = curb_points(frame, 3.5, np.arange(1.0, 40.0)), curb_points(frame, 5.0, np.arange(20.0, 55.0))
-    drawn = chosen_points(sure, other, fit_road_edges(sure, frame), fit_road_edges(other, frame), frame)
+    drawn = select_curb_points(sure, other, fit_road_edges(sure, frame), fit_road_edges(other, frame), frame)
     s, d = np.array(drawn.column("station_m")), np.array(drawn.column("offset_m"))
     np.testing.assert_allclose(d[s < 39], 3.5)
     np.testing.assert_allclose(d[s > 41], 5.0)
@@ -83,7 +83,7 @@ def test_a_stretch_where_the_two_lie_eight_centimetres_apart_is_told(frame):
     one = fit_road_edges(curb_points(frame, 3.5), frame)
     other = fit_road_edges(curb_points(frame, lambda s: 3.5 + 0.08 * np.exp(-((s - 30) / 6) ** 4)), frame)
     drawn = fit_road_edges(curb_points(frame, 3.5), frame)
-    told = note_agreement(drawn, one, other, frame)
+    told = measure_agreement(drawn, one, other, frame)
     row, = told.rows
     assert 23 < row["station_m"] < 27 and 33 < row["end_m"] < 37
     assert row["agree_cm"] == pytest.approx(8.0, abs=0.5)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from curbed_streets import driven, survey_of
-from lanewright.core.road.common.decimation import FEW, LEVEL, Crowds
+from lanewright.core.road.common.decimation import LEVEL_CELL_STD, POINTS_PER_LEVEL_CELL, PointDecimation
 from lanewright.core.survey.store.records import COORDINATE_SCALE
 
 WIDTH, SPACING = 0.25, 0.025
@@ -22,7 +22,7 @@ def crowded(noise=0.003, seed=5):
 
 def taken(survey, profiles=(36, 60), **most):
     """(N, 3) station, offset and height of the points taken, in units."""
-    parts = [Crowds(survey, WIDTH, SPACING).few_of_every_cell(0, profiles, **most)]
+    parts = [PointDecimation(survey, WIDTH, SPACING).decimated_points(0, profiles, **most)]
     return np.concatenate([np.c_[part.records["s"], part.records["d"], part.records["z"]] for runs in parts for part in runs])
 
 
@@ -35,8 +35,8 @@ def in_cells(points):
 
 def test_of_level_ground_a_few_points_of_every_cell_are_taken():
     survey = survey_of(crowded(), driven(20.0))
-    assert np.median(in_cells(taken(survey, most=None))) > 4 * FEW
-    assert abs(np.mean(in_cells(taken(survey))) - FEW) < 0.1 * FEW
+    assert np.median(in_cells(taken(survey, most=None))) > 4 * POINTS_PER_LEVEL_CELL
+    assert abs(np.mean(in_cells(taken(survey))) - POINTS_PER_LEVEL_CELL) < 0.1 * POINTS_PER_LEVEL_CELL
     assert in_cells(taken(survey)).min() > 0
 
 
@@ -51,7 +51,7 @@ def test_a_curbs_face_keeps_its_points():
 
 
 def test_what_a_noisy_scanner_saw_is_taken_as_far_as_it_tells():
-    survey = survey_of(crowded(noise=2.5 * LEVEL), driven(20.0))
+    survey = survey_of(crowded(noise=2.5 * LEVEL_CELL_STD), driven(20.0))
     assert np.mean(in_cells(taken(survey))) > 0.9 * np.mean(np.minimum(in_cells(taken(survey, most=None)), 60))
 
 
@@ -80,8 +80,8 @@ def test_a_second_pass_takes_nothing_from_the_first():
 
 @pytest.mark.parametrize("noise, uneven", [(0.003, False), (0.02, True)])
 def test_only_to_a_noisy_scanner_level_ground_looks_uneven(noise, uneven):
-    assert Crowds(survey_of(crowded(noise), driven(20.0)), WIDTH, SPACING).mostly_uneven(0, 48) == uneven
+    assert PointDecimation(survey_of(crowded(noise), driven(20.0)), WIDTH, SPACING).mostly_uneven(0, 48) == uneven
 
 
 def test_where_nothing_was_scanned_nothing_is_uneven():
-    assert not Crowds(survey_of(crowded(), driven(20.0)), WIDTH, SPACING).mostly_uneven(0, 400)
+    assert not PointDecimation(survey_of(crowded(), driven(20.0)), WIDTH, SPACING).mostly_uneven(0, 400)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from curbed_streets import driven, survey_of
-from lanewright.core.road.common.decimation import Crowds
-from lanewright.core.road.common.occlusion import Sight
+from lanewright.core.road.common.decimation import PointDecimation
+from lanewright.core.road.common.occlusion import OcclusionGrid
 from lanewright.core.road.detect_boundaries import BoundarySettings, find_curb_points
 from lanewright.core.road.scanlines.detect import curbs_from_scanlines
 from lanewright.core.road.scanlines.source import SurveyScanlines
@@ -28,7 +28,7 @@ def crowded(height=0.03, noise=0.003, strays=0, skew=0.0, seed=5):
 
 def strip(points, profiles=(38, 58), **survey):
     """The LevelStrip of 5 m in the middle, and its offsets in metres."""
-    found = Crowds(survey_of(points, driven(20.0), **survey), WIDTH, SPACING).level_strip(0, 0, profiles, ACROSS, ALONG)
+    found = PointDecimation(survey_of(points, driven(20.0), **survey), WIDTH, SPACING).level_strip(0, 0, profiles, ACROSS, ALONG)
     return found, found.low * COORDINATE_SCALE, found.high * COORDINATE_SCALE
 
 
@@ -60,7 +60,7 @@ def test_to_a_noisy_scanner_no_ground_is_level_beyond_doubt(noise):
 
 
 def test_profiles_so_long_that_a_curb_may_look_like_a_slope_tell_of_no_strip():
-    found = Crowds(survey_of(crowded(), driven(20.0)), 0.5, SPACING).level_strip(0, 0, (20, 28), ACROSS, ALONG)
+    found = PointDecimation(survey_of(crowded(), driven(20.0)), 0.5, SPACING).level_strip(0, 0, (20, 28), ACROSS, ALONG)
     assert (found.low > found.high).all()
 
 
@@ -107,10 +107,10 @@ def test_most_of_a_dense_street_is_left_out():
     survey, seen = survey_of_scan(scanned(pulses=400_000.0, noise=0.002)), []
 
     def level(road, number, start, end):
-        seen.append(crowds.level_strip(road, number, (int(start / WIDTH), int(end / WIDTH)), ACROSS, ALONG))
+        seen.append(decimation.level_strip(road, number, (int(start / WIDTH), int(end / WIDTH)), ACROSS, ALONG))
         return seen[-1]
 
-    crowds = Crowds(survey, WIDTH, SPACING)
+    decimation = PointDecimation(survey, WIDTH, SPACING)
     SurveyScanlines(survey, level=level).runs(0, 20.0, 30.0)
     width = np.concatenate([(found.high - found.low) * COORDINATE_SCALE for found in seen])
     assert np.median(width) > 4.0
@@ -118,10 +118,10 @@ def test_most_of_a_dense_street_is_left_out():
 
 def test_level_ground_that_was_left_out_is_not_called_hidden():
     s = np.arange(2.0, 8.0, 0.5)
-    sight = Sight(WIDTH, 0, 40, 20.0)
-    sight.tall[:, 4] = True  # a row of posts 1 m from the track
+    occlusion = OcclusionGrid(WIDTH, 0, 40, 20.0)
+    occlusion.tall[:, 4] = True  # a row of posts 1 m from the track
     ends = np.zeros(40), np.full(40, 3.0), np.full(40, -0.02)
-    assert sight.hidden(s, np.full(len(s), 2.5), np.zeros(len(s)), np.zeros(len(s))).all()
-    sight.level((0, 40), *ends)
-    assert not sight.hidden(s, np.full(len(s), 2.5), np.zeros(len(s)), np.zeros(len(s))).any()
-    assert sight.hidden(s, np.full(len(s), 4.5), np.zeros(len(s)), np.zeros(len(s))).all()
+    assert occlusion.hidden(s, np.full(len(s), 2.5), np.zeros(len(s)), np.zeros(len(s))).all()
+    occlusion.add_level_ground((0, 40), *ends)
+    assert not occlusion.hidden(s, np.full(len(s), 2.5), np.zeros(len(s)), np.zeros(len(s))).any()
+    assert occlusion.hidden(s, np.full(len(s), 4.5), np.zeros(len(s)), np.zeros(len(s))).all()

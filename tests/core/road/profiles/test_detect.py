@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from curbed_streets import driven, measured, parked_car, ringed_street, street, survey_of
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.road.profiles.detect import CurbSettings, block_edges, detect_curbs
+from lanewright.core.road.profiles.detect import CurbSettings, block_bounds, detect_curbs
 
 
 def found(points, settings=CurbSettings(), **survey):
@@ -92,9 +92,9 @@ def test_a_bend_is_followed_with_shorter_blocks():
         distance = np.hypot(points[:, 0], points[:, 1] - radius)
         np.testing.assert_allclose(distance, radius - offset, atol=0.015)
     straight = survey_of(street()).frame.road(0)
-    assert np.diff(block_edges(straight, 0, 60, 0.0)).max() == 2.0
-    assert np.diff(block_edges(surveyed.frame.road(0), 0, 60, 0.0)).max() < 1.0
-    assert np.diff(block_edges(straight, 0, 60, 1.5)) == pytest.approx(1.5)
+    assert np.diff(block_bounds(straight, 0, 60, 0.0)).max() == 2.0
+    assert np.diff(block_bounds(surveyed.frame.road(0), 0, 60, 0.0)).max() < 1.0
+    assert np.diff(block_bounds(straight, 0, 60, 1.5)) == pytest.approx(1.5)
 
 
 def test_a_parked_car_hides_the_curb_and_its_foot_is_none():
