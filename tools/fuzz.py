@@ -25,7 +25,8 @@ MEMORY = 6 * 1024**3   # bytes
 def seeds(folder):
     """Whole files of every kind, by the reader they are for."""
     import laspy
-    from lanewright.core.survey.las.reader import CloudReaders, read_blocks, read_header
+    from lanewright.core.survey.las.parallel_reader import ParallelCloudReader
+    from lanewright.core.survey.las.reader import read_blocks, read_header
     from lanewright.core.survey.trajectory.reader import read_trajectory
     from pyproj import CRS
 
@@ -33,7 +34,7 @@ def seeds(folder):
         header = read_header(path)
         for block in read_blocks(path, 1000):
             np.asarray(block.array["X"])
-        with CloudReaders() as readers:  # as a survey is read
+        with ParallelCloudReader() as readers:  # as a survey is read
             for load in readers.blocks([header], 100):
                 np.asarray(load().array["X"])
             for times in readers.times(header) if header.has_time and header.count else ():

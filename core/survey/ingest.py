@@ -10,7 +10,7 @@ import numpy as np
 from ..common.memory import KeptArrays
 from ..common.parallel import PATIENCE
 from .frame.projection import AT_ONCE, Placing
-from .las.reader import CloudReaders
+from .las.parallel_reader import ParallelCloudReader
 from .las.scale import LasAxis
 from .scanners import ScannerCensus, times_by_value
 from .sensor_height import DEFAULT_HEIGHT, HeightTally, Tracks, first_estimate
@@ -51,7 +51,7 @@ class SurveyReader:
         """Read all files, `block` points at a time."""
         total, done = sum(file.count for file in files), 0
         threads = min(THREADS, os.cpu_count() or 1)
-        with CloudReaders(LAYERS) as readers, ThreadPoolExecutor(threads) as pool:
+        with ParallelCloudReader(LAYERS) as readers, ThreadPoolExecutor(threads) as pool:
             waiting = deque()
 
             def take():

@@ -12,7 +12,8 @@ from .adjustment.adjust import fit_passes
 from .clock_check import check_clock
 from .frame.road_frame import CORRIDOR, build_frame
 from .ingest import ABOVE, BELOW, SurveyReader, carried_on
-from .las.reader import POINTS_PER_BLOCK, CloudReaders, read_headers
+from .las.parallel_reader import ParallelCloudReader
+from .las.reader import POINTS_PER_BLOCK, read_headers
 from .scanners import numbers_by_value
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, Points, point_dtype
 from .store.section_store import MEMORY_LIMIT, SECTION_LENGTH, SectionStore
@@ -191,7 +192,7 @@ def _time_span(files):
     Whole files are not read for it: points at several places of each, its last
     among them, give the span to within the overlap test's needs.
     """
-    with CloudReaders(("gps_time",)) as readers:
+    with ParallelCloudReader(("gps_time",)) as readers:
         samples = [time[np.isfinite(time)] for file in files if file.count for time in readers.times(file)]
     times = np.concatenate(samples)
     if not len(times) or times.max() <= times.min():

@@ -90,7 +90,7 @@ def storing(size):
         def blocks(self, files, size):
             return (lambda block=block: block for file in files for block in decoded[file.path])
 
-    reading.CloudReaders = Decoded
+    reading.ParallelCloudReader = Decoded
     survey, seconds = timed(lambda: open_survey(clouds, trajectory))
     return dict(seconds, points=survey.store.count)
 

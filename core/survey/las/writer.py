@@ -1,44 +1,67 @@
-"""A LAS or LAZ file that appears whole or not at all."""
+"""Writing a LAS or LAZ file whole or not at all."""
+
+from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from ...common.errors import RoadExtractionError
 from ..store.records import COORDINATE_SCALE
 
-REACH = 2**31 - 2    # whole numbers either side of the offset that a LAS file can hold
+MAX_LAS_INTEGER = 2**31 - 2    # largest coordinate, as an integer about the offset, in a LAS file
 
 
-def scale_for(farthest):
-    """Metres that one whole number of a LAS file stands for: 0.1 mm, or the least power of ten times it in which `farthest` metres fit."""
-    for finer in (10_000, 1_000, 100, 10):
-        if farthest * finer <= REACH:
-            return COORDINATE_SCALE if finer == 10_000 else 1 / finer
-    raise RoadExtractionError(f"The points lie up to {farthest / 1000:,.0f} km from the start of the survey, farther than a LAS file can hold. "
-                              "Check the coordinates of the trajectory, or process the files of each region by themselves.")
+def scale_for(farthest: float) -> float:
+    """The coordinate scale of a LAS file: 0.1 mm, or the least power of ten times it with which all points fit.
 
+    Parameters
+    ----------
+    farthest : metres, the largest coordinate counted from the offset of the file
 
-@contextmanager
-def new_laz(path, header):
-    """laspy's writer of a new file, compressed unless `path` ends in .las; the file is there when all is written.
+    Returns
+    -------
+    Metres per integer
 
     Raises
     ------
     RoadExtractionError
-        Where it cannot be written.
+        If even 0.1 m is too fine.
+    """
+    for per_metre in (10_000, 1_000, 100, 10):
+        if farthest * per_metre <= MAX_LAS_INTEGER:
+            return COORDINATE_SCALE if per_metre == 10_000 else 1 / per_metre
+    raise RoadExtractionError(f"The points lie up to {farthest / 1000:,.0f} km from the start of the survey, farther than a LAS file can hold. "
+                              "Check the coordinates of the trajectory, or process the files of each region separately.")
+
+
+@contextmanager
+def new_laz(path: str | os.PathLike[str], header: Any) -> Iterator[Any]:
+    """A laspy writer of a new file, which appears at its path only when all is written.
+
+    Parameters
+    ----------
+    path : of the file; compressed unless it ends in .las
+    header : laspy.LasHeader
+
+    Raises
+    ------
+    RoadExtractionError
+        If the file cannot be written.
     """
     import laspy
 
     suffix = ".las" if str(path).lower().endswith(".las") else ".laz"
     unfinished = Path(f"{path}.unfinished{suffix}")
     try:
-        # of a file that it opened itself laspy lets go only when the last points went onto the disk
+        # A file that laspy opened itself would stay open when its last points cannot be written.
         with open(unfinished, "wb") as stream, laspy.open(
                 stream, mode="w", header=header, do_compress=suffix == ".laz", closefd=False) as writer:
             yield writer
         os.replace(unfinished, path)
     except (OSError, RuntimeError) as problem:  # lazrs raises RuntimeErrors
-        raise RoadExtractionError(f"{path} cannot be written ({problem}). Choose another folder or free its space.") from problem
+        raise RoadExtractionError(f"{path} cannot be written ({problem}). Choose another folder or free some disk space.") from problem
     finally:
         unfinished.unlink(missing_ok=True)

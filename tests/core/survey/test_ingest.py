@@ -9,7 +9,8 @@ from drives import ahead, bend, chain, contents, drive, surveyed_points, write_c
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.survey import ingest as reading
-from lanewright.core.survey.las.reader import CloudReaders, read_blocks, read_header
+from lanewright.core.survey.las.parallel_reader import ParallelCloudReader
+from lanewright.core.survey.las.reader import read_blocks, read_header
 from lanewright.core.survey.open_survey import SurveySettings, open_survey
 
 CRS = "EPSG:32632"
@@ -38,7 +39,7 @@ def thousands(tmp_path, suffix, count=120_000):
 def test_blocks_asked_for_in_any_order_by_several_threads_are_the_file(tmp_path, suffix, size):
     file = thousands(tmp_path, suffix)
     whole = np.concatenate([block.array for block in read_blocks(file.path, 33_333)])
-    with CloudReaders() as readers, ThreadPoolExecutor(3) as pool:
+    with ParallelCloudReader() as readers, ThreadPoolExecutor(3) as pool:
         loads = list(readers.blocks([file, file], size))
         order = np.random.default_rng(size).permutation(len(loads))
         found = dict(zip(order.tolist(), pool.map(lambda k: loads[k]().array.copy(), order)))
@@ -50,13 +51,13 @@ def test_blocks_asked_for_in_any_order_by_several_threads_are_the_file(tmp_path,
 @pytest.mark.parametrize("suffix, size, lengths", [
     ("las", 60_000, [60_000, 60_000]), ("laz", 60_000, [50_000, 50_000, 20_000]), ("laz", 1000, [1000] * 120)])
 def test_blocks_are_whole_chunks_where_these_are_not_far_larger(tmp_path, suffix, size, lengths):
-    with CloudReaders() as readers:
+    with ParallelCloudReader() as readers:
         assert [len(load()) for load in readers.blocks([thousands(tmp_path, suffix)], size)] == lengths
 
 
 @pytest.mark.parametrize("suffix", ["las", "laz", "copc.laz"])
 def test_the_times_looked_at_span_the_file(tmp_path, suffix):
-    with CloudReaders(("gps_time",)) as readers:
+    with ParallelCloudReader(("gps_time",)) as readers:
         times = np.concatenate(list(readers.times(thousands(tmp_path, suffix))))
     # the points of an octree lie in no order of time
     assert times.min() == 0.0 if suffix != "copc.laz" else 0.0 <= times.min() < 0.1

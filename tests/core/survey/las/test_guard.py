@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from copc_files import write_copc
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.survey.las.guard import damage
+from lanewright.core.survey.las.guard import find_damage
 from lanewright.core.survey.las.reader import read_blocks
 
 
@@ -33,14 +33,14 @@ def read(path):
 
 
 def test_a_whole_file_has_no_damage(cloud):
-    assert damage(cloud) == "" and read(cloud) == 300
+    assert find_damage(cloud) == "" and read(cloud) == 300
 
 
 @pytest.mark.parametrize("at, kind, value, says", [
-    (96, "<I", 0xFFFFFFF0, "points are said to begin"), (96, "<I", 10, "points are said to begin"),
-    (100, "<I", 0x7FFFFFFF, "header records"), (94, "<H", 60000, "points are said to begin"),
+    (96, "<I", 0xFFFFFFF0, "points begin at byte"), (96, "<I", 10, "points begin at byte"),
+    (100, "<I", 0x7FFFFFFF, "variable length records"), (94, "<H", 60000, "points begin at byte"),
 ])
-def test_wrong_lengths_are_told_in_one_sentence(cloud, at, kind, value, says):
+def test_wrong_lengths_are_reported_in_one_sentence(cloud, at, kind, value, says):
     with pytest.raises(RoadExtractionError, match=says):
         read(changed(cloud, at, kind, value))
 
@@ -56,7 +56,7 @@ def test_more_chunks_than_bytes_are_not_believed(cloud):
         read(changed(cloud, table + 4, "<I", 1_800_000_000))
 
 
-def test_a_table_of_chunks_outside_the_file_is_told(cloud):
+def test_a_table_of_chunks_outside_the_file_is_reported(cloud):
     if cloud.suffix == ".las":
         return
     points_at = struct.unpack_from("<I", cloud.read_bytes(), 96)[0]
@@ -80,20 +80,20 @@ def first_layer_length(path):
 def test_layers_longer_than_their_chunk_are_not_believed(cloud):
     """The decoder would ask for as much memory as they say, gigabytes for each, and end QGIS where there is none."""
     if cloud.suffix == ".laz" and laspy.open(cloud).header.point_format.id == 6:
-        with pytest.raises(RoadExtractionError, match="chunk of .* bytes is said to hold layers of"):
+        with pytest.raises(RoadExtractionError, match="chunk of .* bytes states layers of"):
             read(changed(cloud, first_layer_length(cloud), "<I", 0xFFFFFFF0))
 
 
 def test_chunks_of_all_sizes_are_no_damage(copc):
-    assert damage(copc) == "" and read(copc) == 300
+    assert find_damage(copc) == "" and read(copc) == 300
 
 
-def test_chunks_that_hold_other_points_than_the_header_promises_are_told(copc):
+def test_chunks_that_hold_other_points_than_the_header_promises_are_reported(copc):
     with pytest.raises(RoadExtractionError, match="its header promises 301 points, its chunks 300"):
         read(changed(copc, 247, "<Q", 301))
 
 
-def test_a_table_of_chunks_overwritten_is_told(copc):
+def test_a_table_of_chunks_overwritten_is_reported(copc):
     """Read as it stands it asks for thousands of gigabytes."""
     data = copc.read_bytes()
     table = struct.unpack_from("<q", data, struct.unpack_from("<I", data, 96)[0])[0]
@@ -103,8 +103,8 @@ def test_a_table_of_chunks_overwritten_is_told(copc):
             read(copc)
 
 
-def test_a_record_behind_the_points_that_ends_outside_the_file_is_told(copc):
+def test_a_record_behind_the_points_that_ends_outside_the_file_is_reported(copc):
     """Read as it stands it asks for as much memory, which is no reason to say that there is too little."""
     first = struct.unpack_from("<Q", copc.read_bytes(), 235)[0]
-    with pytest.raises(RoadExtractionError, match="damaged or cut off: its record 1 behind the points is said to end at byte"):
+    with pytest.raises(RoadExtractionError, match="damaged or cut off: its extended record 1 ends at byte"):
         read(changed(copc, first + 20, "<Q", 2**50))

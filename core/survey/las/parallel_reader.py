@@ -1,0 +1,155 @@
+"""Blocks of point cloud files, decoded by several threads at once."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from .guard import chunks_of
+from .reader import CloudHeader, layer_selection, open_cloud, read_blocks, read_points, truncated_file_error, wrap_read_error
+
+MAX_BLOCKS_PER_CHUNK = 4   # larger chunks are not decoded as a whole: the points are read one block after the other
+TIME_SAMPLES = 5           # places in a file at which gps_time is sampled
+POINTS_PER_TIME_SAMPLE = 1000
+
+
+class ParallelCloudReader:
+    """Files read by several threads, each of which reuses one buffer for the points that it decodes.
+
+    Parameters
+    ----------
+    layers : names of the layers that are decoded, as in `open_cloud`
+    """
+
+    def __init__(self, layers: Sequence[str] | None = None):
+        self._layers = layers
+        self._readers: dict[int, tuple[str, Any]] = {}  # thread -> path, laspy.LasReader
+        self._buffers = threading.local()
+
+    def __enter__(self) -> ParallelCloudReader:
+        return self
+
+    def __exit__(self, *problem: object) -> None:
+        for _, reader in self._readers.values():
+            reader.close()
+
+    def blocks(self, files: Sequence[CloudHeader], size: int) -> Iterator[Callable[[], Any]]:
+        """Yield functions, in the order of the points, that return a laspy point record of about `size` points.
+
+        Any thread may call them; its next call may overwrite the record. A file that cannot be
+        decoded in parallel is read here, one block after the other.
+        """
+        for file in files:
+            if not file.count:
+                continue
+            if min(file.chunk, file.count) > MAX_BLOCKS_PER_CHUNK * size:
+                for points in read_blocks(file.path, size, self._layers):
+                    yield partial(_identity, points)
+                continue
+            with open_cloud(file.path, self._layers, checked=True) as reader:
+                header = reader.header
+            if header.are_points_compressed:
+                yield from (partial(self._read_chunks, file.path, header, *run) for run in _chunk_runs(file, size))
+            else:
+                yield from (partial(self._read_uncompressed, file.path, header, first, min(size, file.count - first))
+                            for first in range(0, file.count, size))
+
+    def times(self, file: CloudHeader) -> Iterator[np.ndarray]:
+        """Yield (N,) gps_time in seconds of a few points at several places of a file, its first and last points among them."""
+        loads: list[Callable[[], Any]]
+        if file.chunk:
+            starts = np.linspace(0, max(file.count - POINTS_PER_TIME_SAMPLE, 0), TIME_SAMPLES).astype(int)
+            starts[:-1] -= starts[:-1] % file.chunk   # a chunk is decoded from its start on
+            loads = [partial(self._read_points, file.path, int(start), POINTS_PER_TIME_SAMPLE) for start in np.unique(starts)]
+        else:
+            with open_cloud(file.path, self._layers, checked=True) as reader:
+                loads = [partial(self._read_chunks, file.path, reader.header, *run) for run in _chunk_runs(file, 1)]
+            loads = [loads[k] for k in np.unique(np.linspace(0, len(loads) - 1, TIME_SAMPLES).astype(int))]
+        for load in loads:
+            yield np.array(load()["gps_time"], float)
+
+    def _read_points(self, path, first, count):
+        return read_points(self._reader(path), path, first, count)
+
+    def _read_chunks(self, path, header, record, place, first, table):
+        """The points of chunks that begin at a byte; `table` has (points, bytes) of each."""
+        import lazrs
+
+        buffer = self._buffer(header, sum(count for count, _ in table))
+
+        def read():
+            with open(path, "rb") as file:
+                file.seek(place)
+                compressed = file.read(sum(length for _, length in table))
+            lazrs.decompress_points_with_chunk_table(compressed, record, buffer, table, layer_selection(self._layers).to_lazrs())
+
+        wrap_read_error(read, path, header.point_count, first)
+        return _point_record(buffer, header)
+
+    def _read_uncompressed(self, path, header, first, count):
+        """`count` points of a LAS file from index `first` on."""
+        buffer = self._buffer(header, count)
+
+        def read():
+            with open(path, "rb", buffering=0) as file:
+                file.seek(header.offset_to_point_data + first * header.point_format.size)
+                left = memoryview(buffer)
+                while len(left) and (some := file.readinto(left)):
+                    left = left[some:]
+                return (len(buffer) - len(left)) // header.point_format.size
+
+        found = wrap_read_error(read, path, header.point_count, first)
+        if found < count:
+            raise truncated_file_error(path, header.point_count, first + found)
+        return _point_record(buffer, header)
+
+    def _buffer(self, header, count):
+        """Bytes for points; this thread's previous buffer where it is large enough, which avoids page faults."""
+        size, buffer = count * header.point_format.size, getattr(self._buffers, "bytes", None)
+        if buffer is None or len(buffer) < size:
+            buffer = self._buffers.bytes = np.empty(size, np.uint8)
+        return buffer[:size]
+
+    def _reader(self, path):
+        thread = threading.get_ident()
+        opened, reader = self._readers.get(thread, ("", None))
+        if opened != path:
+            if reader is not None:
+                reader.close()
+            reader = open_cloud(path, self._layers, checked=True, sparse=True)
+            self._readers[thread] = path, reader
+        return reader
+
+
+def _point_record(buffer, header):
+    import laspy
+
+    packed = laspy.PackedPointRecord.from_buffer(buffer, header.point_format)
+    return laspy.ScaleAwarePointRecord(packed.array, packed.point_format, header.scales, header.offsets)
+
+
+def _chunk_runs(file, size):
+    """Runs of as many chunks as `size` points hold, at least one: (LASzip record, first byte, index of the first point, [(points, bytes)])."""
+    record, place, table = chunks_of(file.path)
+    first, points, run = 0, 0, []
+    for count, length in table:
+        # for the last chunk the table may state the capacity
+        count = min(count, file.count - first - points)
+        if run and points + count > size:
+            yield record, place, first, run
+            place, first, points, run = place + sum(length for _, length in run), first + points, 0, []
+        if count > 0:
+            run.append((count, length))
+            points += count
+    if run:
+        yield record, place, first, run
+    if first + points < file.count:
+        raise truncated_file_error(file.path, file.count, first + points)
+
+
+def _identity(points):
+    return points
