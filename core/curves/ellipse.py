@@ -1,26 +1,35 @@
 """An ellipse through points."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..common.errors import RoadExtractionError
-from .base import Fit, TabledCurve, checked
+from .base import TabulatedCurve
 from .batched_lsq import minimise
+from .curve_fit import CurveFit, checked_points
 
-LEAST_TURN = np.radians(60.0)  # on a shorter arc an ellipse cannot be told from a circle
+MIN_ELLIPSE_TURN = np.radians(60.0)  # on a shorter arc an ellipse cannot be distinguished from a circle
 
 
 @dataclass(frozen=True)
-class Ellipse(TabledCurve):
-    """Centre (x, y), semi-axes a and b, axis a turned by `tilt`; walked from angle `first` to `last`."""
+class Ellipse(TabulatedCurve):
+    """An elliptic arc.
+
+    x, y : centre, metres
+    a, b : semi-axes, metres
+    tilt : direction of axis a, radians
+    first, last : eccentric angles at start and end, radians; `first` is above `last` where the curve turns right
+    """
 
     x: float
     y: float
     a: float
     b: float
-    tilt: float   # radians
-    first: float  # radians of the eccentric angle; above `last` where the curve turns right
+    tilt: float
+    first: float
     last: float
 
     kind = "ellipse"
@@ -42,24 +51,24 @@ class Ellipse(TabledCurve):
     def _bend(self, t):
         return self._turned(-self.a * np.cos(t), -self.b * np.sin(t))
 
-    def moved(self, dx, dy):
+    def moved(self, dx: float, dy: float) -> Ellipse:
         return Ellipse(self.x + dx, self.y + dy, self.a, self.b, self.tilt, self.first, self.last)
 
-    def reversed(self):
+    def reversed(self) -> Ellipse:
         return Ellipse(self.x, self.y, self.a, self.b, self.tilt, self.last, self.first)
 
 
-def fit_ellipse(x, y, hopeless=np.inf):
-    """An ellipse: Halir and Flusser's direct fit as start, then robust orthogonal distances.
+def fit_ellipse(x: np.ndarray, y: np.ndarray, max_misfit: float = np.inf) -> CurveFit:
+    """Fit an ellipse: Halir and Flusser's direct fit as start, then robust orthogonal distances.
 
     Parameters
     ----------
     x, y : (N,) metres, N >= 6, ordered along the line
-    hopeless : metres; what misses by so much on average is given up when steps gain little
+    max_misfit : metres; a fit with a larger root mean square residual is given up once steps gain little
 
     Returns
     -------
-    Fit with an Ellipse from the first point's foot to the last's.
+    CurveFit with an Ellipse from the first point's projection to the last's.
 
     Raises
     ------
@@ -70,7 +79,7 @@ def fit_ellipse(x, y, hopeless=np.inf):
     ----------
     Halir and Flusser (1998), Numerically stable direct least squares fitting of ellipses.
     """
-    x, y = checked(x, y, 6)
+    x, y = checked_points(x, y, 6)
     middle = np.array([x.mean(), y.mean()])
     dx, dy = x - middle[0], y - middle[1]
     size = float(np.sqrt(np.mean(dx**2 + dy**2)))
@@ -79,7 +88,7 @@ def fit_ellipse(x, y, hopeless=np.inf):
         raise RoadExtractionError("The points do not lie on an ellipse. Choose curve = automatic, circle or b-spline.")
     start = start * [size, size, size, size, 1.0]
 
-    def foot(unknown):
+    def nearest(unknown):
         t = _nearest_angle(dx, dy, unknown)
         cx, cy, a, b, tilt = unknown
         c, s = np.cos(tilt), np.sin(tilt)
@@ -90,27 +99,27 @@ def fit_ellipse(x, y, hopeless=np.inf):
         return t, normal, gap_along * normal[:, 0] + gap_across * normal[:, 1]
 
     def residuals(unknown):
-        return foot(unknown)[2]
+        return nearest(unknown)[2]
 
     def jacobian(unknown):
-        t, normal, _ = foot(unknown)
+        t, normal, _ = nearest(unknown)
         _, _, a, b, tilt = unknown
         c, s = np.cos(tilt), np.sin(tilt)
         return -np.stack([normal[:, 0] * c - normal[:, 1] * s, normal[:, 0] * s + normal[:, 1] * c,
                           normal[:, 0] * np.cos(t), normal[:, 1] * np.sin(t),
                           normal[:, 1] * a * np.cos(t) - normal[:, 0] * b * np.sin(t)], 1)
 
-    unknown = minimise(residuals, jacobian, start, [size, size, size, size, 1.0], hopeless)
-    t, _, e = foot(unknown)
+    unknown = minimise(residuals, jacobian, start, [size, size, size, size, 1.0], max_misfit)
+    t, _, e = nearest(unknown)
     cx, cy, a, b, tilt = unknown
     t = np.unwrap(t)
     found = Ellipse(float(cx), float(cy), abs(float(a)), abs(float(b)), float(tilt), float(t[0]), float(t[-1]))
-    if abs(found.heading(np.array([found.length]))[0] - found.heading(np.zeros(1))[0]) < LEAST_TURN:
+    if abs(found.heading(np.array([found.length]))[0] - found.heading(np.zeros(1))[0]) < MIN_ELLIPSE_TURN:
         raise RoadExtractionError(
-            "The points turn by less than 60 degrees, where an ellipse cannot be told from a circle. "
+            "The points turn by less than 60 degrees, where an ellipse cannot be distinguished from a circle. "
             "Choose curve = automatic or circle.")
     # outside the ellipse is right of a left turn
-    return Fit(found.moved(*middle), -np.sign(t[-1] - t[0]) * e, 5)
+    return CurveFit(found.moved(*middle), -np.sign(t[-1] - t[0]) * e, 5)
 
 
 def _direct(x, y):
@@ -142,7 +151,7 @@ def _direct(x, y):
 
 
 def _nearest_angle(x, y, unknown):
-    """Eccentric angle of the nearest place on the ellipse, by Newton from the affine guess."""
+    """Eccentric angles of the nearest points of the ellipse, by Newton's method from the affine approximation."""
     cx, cy, a, b, tilt = unknown
     c, s = np.cos(tilt), np.sin(tilt)
     p, q = (x - cx) * c + (y - cy) * s, (y - cy) * c - (x - cx) * s

@@ -1,45 +1,50 @@
-"""Fit a named curve, or the simplest that the points allow."""
+"""Fit a curve of a given kind, or the simplest kind that describes the points."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from ..common.errors import RoadExtractionError
-from .base import Arc, least_bic
-from .batched_lsq import FEW, Places
+from .base import Arc, Curve
+from .batched_lsq import COARSE_POINTS, PointGroups
 from .bspline import Spline, fit_spline, fit_splines
 from .clothoid import Clothoid, fit_clothoid, fit_clothoids
-from .ellipse import Ellipse, fit_ellipse
+from .curve_fit import CurveFit, bic_lower_bound
+from .ellipse import MIN_ELLIPSE_TURN, Ellipse, fit_ellipse
 from .line_circle import fit_circle, fit_circles, fit_line, fit_lines
 from .polynomial import Polynomial, fit_polynomial
 
 CURVES = ("automatic", "line", "circle", "ellipse", "clothoid", "polynomial", "b-spline")
-WORST_RESIDUAL = 0.05  # m: 95 % of the points must be nearer than this to a simpler curve
-FEWEST_NUMBERS = 3     # that any curve but a straight line has
-HOPELESS = 10 * WORST_RESIDUAL  # what is farther off is not fitted to the millimetre
-LEAST_TURN = np.radians(60.0)  # of a circle that may be an ellipse
-BIC_MARGIN = 6.0       # a simpler curve is taken while its BIC is within this of the best
+MAX_RESIDUAL_P95 = 0.05  # m; a simpler curve is selected only if 95 % of the points are nearer
+MIN_CURVE_PARAMETERS = 3  # of any curve but a straight line
+MAX_MISFIT = 10 * MAX_RESIDUAL_P95  # m; a curve farther off is not fitted to the millimetre
+BIC_MARGIN = 6.0  # a simpler curve is selected if its BIC is within this of the best
 
 
-def fit_curve(x, y, curve="automatic", degree=2):
-    """The curve of one kind, or the simplest acceptable one.
+def fit_curve(x: np.ndarray, y: np.ndarray, curve: str = "automatic", degree: int = 2) -> CurveFit:
+    """Fit a curve of one kind, or select the simplest acceptable kind.
 
-    Automatic fits line, circle, clothoid, ellipse and B-spline and takes the
-    simplest whose BIC is within 6 of the best and whose 95 % residual is below
-    5 cm. A polynomial is never chosen: it is no shape of a road.
+    "automatic" fits line, circle, clothoid, ellipse and B-spline and selects the
+    simplest whose BIC is within 6 of the best and whose 95th percentile of the
+    residuals is below 5 cm. It never selects a polynomial, which is not an element of road design.
 
     Parameters
     ----------
-    x, y : (N,) metres, thinned (one place per 0.25 m or so), ordered along the line
+    x, y : (N,) metres, about one point per 0.25 m, ordered along the line
     curve : one of CURVES
     degree : of the polynomial
 
     Returns
     -------
-    Fit
+    CurveFit
 
     Raises
     ------
     RoadExtractionError
-        If the kind is unknown or these points cannot carry it.
+        If the kind is unknown or these points do not allow it.
     """
     if curve not in CURVES:
         raise RoadExtractionError(f"There is no curve called {curve!r}. Choose one of {', '.join(CURVES)}.")
@@ -53,99 +58,122 @@ def fit_curve(x, y, curve="automatic", degree=2):
     return fit_polynomial(x, y, degree) if curve == "polynomial" else fits[curve](x, y)
 
 
-def fit_curves(places):
-    """The simplest acceptable curve of each of many lines, as `fit_curve` takes it, all fitted together: a list of (x, y) to a list of Fit.
+def fit_curves(lines: Sequence[tuple[np.ndarray, np.ndarray]]) -> list[CurveFit]:
+    """The simplest acceptable curve of each of many lines, selected as `fit_curve` does.
 
-    Where no curve is near enough, the one of the least 95 % residual.
+    Parameters
+    ----------
+    lines : list of (x, y), each (N,) metres, ordered along the line
+
+    Returns
+    -------
+    list of CurveFit; if no kind is acceptable, the one with the smallest 95th percentile of the residuals
     """
-    choices = choose_each(places, (*ALIGNMENT, ("ellipse", 12, _ellipses), ("b-spline", 6, fit_splines)), WORST_RESIDUAL)
-    return [choice.best or min(choice.found, key=lambda fit: fit.worst) for choice in choices]
+    choices = select_each(lines, (*ALIGNMENT_CURVES, ("ellipse", 12, _ellipses), ("b-spline", 6, fit_splines)), MAX_RESIDUAL_P95)
+    return [choice.best or min(choice.found, key=lambda fit: fit.residual_p95) for choice in choices]
 
 
-def _lines(places):
-    return fit_lines(places, HOPELESS)
+def _lines(lines):
+    return fit_lines(lines, MAX_MISFIT)
 
 
-def _circles(places):
-    return fit_circles(places, HOPELESS)
+def _circles(lines):
+    return fit_circles(lines, MAX_MISFIT)
 
 
-def _clothoids(places):
-    return fit_clothoids(places, HOPELESS)
+def _clothoids(lines):
+    return fit_clothoids(lines, MAX_MISFIT)
 
 
-def _ellipses(places):
-    """Fits, None of what is no ellipse or misses by more than HOPELESS."""
-    return [_ellipse(x, y) for x, y in places]
+def _ellipses(lines):
+    """Fits, None where the points are not on an ellipse or miss it by more than MAX_MISFIT."""
+    return [_ellipse(x, y) for x, y in lines]
 
 
 def _ellipse(x, y):
-    rows = Places([len(x)]).thinned(FEW)
+    rows = PointGroups([len(x)]).subsampled(COARSE_POINTS)
     try:
-        few = fit_ellipse(x[rows], y[rows], HOPELESS)
+        few = fit_ellipse(x[rows], y[rows], MAX_MISFIT)
         if len(rows) == len(x):
             return few
-        return fit_ellipse(x, y) if few.worst <= HOPELESS else None
+        return fit_ellipse(x, y) if few.residual_p95 <= MAX_MISFIT else None
     except RoadExtractionError:
         return None
 
 
-# name, fewest places, function of a list of (x, y): what roads are made of, simplest first
-ALIGNMENT = ("line", 2, _lines), ("circle", 4, _circles), ("clothoid", 8, _clothoids)
+# (name, minimum number of points, function of a list of lines) of the elements of a road alignment, simplest first
+ALIGNMENT_CURVES = ("line", 2, _lines), ("circle", 4, _circles), ("clothoid", 8, _clothoids)
 
 
-def choose_each(places, kinds=ALIGNMENT, worst=np.inf):
-    """The Choice of each of many lines, of curves of some kinds, simplest first; no more are fitted than are needed to know.
+def select_each(lines: Sequence[tuple[np.ndarray, np.ndarray]],
+                kinds: Sequence[tuple[str, int, Callable[..., Any]]] = ALIGNMENT_CURVES, max_residual: float = np.inf) -> list[ModelSelection]:
+    """Select the kind of curve of each of many lines; kinds that cannot change a selection are not fitted.
 
-    places : list of (x, y)
-    kinds : as ALIGNMENT
-    worst : metres, the 95 % residual of a curve that is taken
+    Parameters
+    ----------
+    lines : list of (x, y), each (N,) metres, ordered along the line
+    kinds : as ALIGNMENT_CURVES, simplest first
+    max_residual : metres; largest acceptable 95th percentile of the residuals
+
+    Returns
+    -------
+    list of ModelSelection, one for each line
     """
-    choices = [Choice(worst) for _ in places]
+    choices = [ModelSelection(max_residual) for _ in lines]
     for name, fewest, fit_all in kinds:
-        open_ones = [k for k, choice in enumerate(choices) if not choice.decided and len(places[k][0]) >= fewest
-                     and (name != "ellipse" or choice.turn > LEAST_TURN)]
-        for k, fit in zip(open_ones, fit_all([places[k] for k in open_ones])):
+        open_ones = [k for k, choice in enumerate(choices) if not choice.decided and len(lines[k][0]) >= fewest
+                     and (name != "ellipse" or choice.turn > MIN_ELLIPSE_TURN)]
+        for k, fit in zip(open_ones, fit_all([lines[k] for k in open_ones])):
             if fit is not None:
                 choices[k].add(fit)
     return choices
 
 
-class Choice:
-    """The simplest of fits that are added, simplest first: the first whose BIC is within 6 of the best and whose 95 % residual is below `worst`."""
+class ModelSelection:
+    """Selects among fits that are added, simplest first.
 
-    def __init__(self, worst=np.inf):
-        self.found, self.decided, self._worst = [], False, worst
+    The first fit whose BIC is within 6 of the best and whose 95th percentile of the residuals is
+    below `max_residual` metres is `best`.
 
-    def add(self, fit):
+    found : list of CurveFit added so far
+    decided : whether no further fit can change the selection
+    """
+
+    def __init__(self, max_residual: float = np.inf) -> None:
+        self.found: list[CurveFit] = []
+        self.decided = False
+        self._max_residual = max_residual
+
+    def add(self, fit: CurveFit) -> None:
+        """Add the fit of the next kind."""
         self.found.append(fit)
-        least = least_bic(len(fit.residuals), FEWEST_NUMBERS)
-        for one in self._near_enough():
+        least = bic_lower_bound(len(fit.residuals), MIN_CURVE_PARAMETERS)
+        for one in self._acceptable():
             if one.bic <= least + BIC_MARGIN:
                 self.decided = True  # whatever may follow
             if one.bic <= self._best_bic() + BIC_MARGIN:
                 break                # what follows decides
 
-    def _near_enough(self):
-        return [fit for fit in self.found if fit.worst < self._worst]
+    def _acceptable(self):
+        return [fit for fit in self.found if fit.residual_p95 < self._max_residual]
 
     def _best_bic(self):
         return min(fit.bic for fit in self.found)
 
     @property
-    def best(self):
-        """A Fit, or None where none is near enough."""
-        return next((fit for fit in self._near_enough() if fit.bic <= self._best_bic() + BIC_MARGIN), None)
+    def best(self) -> CurveFit | None:
+        """The selected fit, or None if none is acceptable."""
+        return next((fit for fit in self._acceptable() if fit.bic <= self._best_bic() + BIC_MARGIN), None)
 
     @property
-    def turn(self):
-        """Radians by which the circle turns."""
+    def turn(self) -> float:
+        """Angle by which the fitted circle turns, radians; 0 without one."""
         return max((abs(fit.curve.bend) * fit.curve.length for fit in self.found if fit.curve.kind == "circle"), default=0.0)
 
 
-def simplest(fits, worst=np.inf):
-    """The best of a Choice among an iterable of Fit, simplest first; no more are made than are needed to know."""
-    choice = Choice(worst)
+def select_simplest(fits: Iterable[CurveFit], max_residual: float = np.inf) -> CurveFit | None:
+    """The best of a ModelSelection among fits, simplest first; a lazy iterable is read only as far as needed."""
+    choice = ModelSelection(max_residual)
     for fit in fits:
         choice.add(fit)
         if choice.decided:
@@ -153,7 +181,7 @@ def simplest(fits, worst=np.inf):
     return choice.best
 
 
-_NUMBERS = {
+_PARAMETERS = {
     "clothoid": (Clothoid, ("x", "y", "direction", "bend", "change", "length")),
     "ellipse": (Ellipse, ("x", "y", "a", "b", "tilt", "first", "last")),
     "polynomial": (Polynomial, ("x", "y", "tilt", "scale", "coefficients", "first", "last")),
@@ -163,10 +191,16 @@ _NUMBERS = {
 }
 
 
-def curve_of(params):
-    """The curve of a dict that `Curve.params` made (or of its JSON, loaded); other entries are ignored."""
+def curve_from_params(params: Mapping[str, Any]) -> Curve:
+    """The curve described by a dict of `Curve.params`, also after a round trip through JSON.
+
+    Raises
+    ------
+    RoadExtractionError
+        If its kind is unknown.
+    """
     kind = params["curve"]
-    if kind not in _NUMBERS:
+    if kind not in _PARAMETERS:
         raise RoadExtractionError(f"There is no curve called {kind!r}. Choose one of {', '.join(CURVES[1:])}.")
-    maker, names = _NUMBERS[kind]
+    maker, names = _PARAMETERS[kind]
     return maker(*(tuple(params[name]) if isinstance(params[name], list) else params[name] for name in names))

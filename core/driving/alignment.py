@@ -6,8 +6,8 @@ import numpy as np
 
 from ..curves.base import Arc
 from ..curves.clothoid import fit_clothoids
-from ..curves.model_selection import HOPELESS, choose_each
-from ..curves.segmentation import cuts_of
+from ..curves.model_selection import MAX_MISFIT, select_each
+from ..curves.segmentation import element_ranges
 from .cross_section import STEP
 from .lane_tracking import BRIDGED
 
@@ -130,9 +130,9 @@ class _Axis:
 def _divided(axes):
     """[(start station, end station, curve)] of each of some axes, whose parts are fitted together."""
     long = [k for k, axis in enumerate(axes) if len(axis.at) >= LEAST_PLACES]
-    cuts = cuts_of([axes[k].thinned for k in long])
+    cuts = element_ranges([axes[k].thinned for k in long])
     parts = [(k, first, last) for k, bounds in zip(long, cuts) for first, last in bounds]
-    choices = choose_each([axes[k].part(first, last) for k, first, last in parts])
+    choices = select_each([axes[k].part(first, last) for k, first, last in parts])
     found = [[] for _ in axes]
     for (k, first, last), choice in zip(parts, choices):
         found[k].append((first, last, choice.best))
@@ -153,10 +153,10 @@ def _without_steps(axes, found):
     while open_ones:
         pairs = {k: _steps(found[k]) for k in open_ones}
         new = [(k, first, last) for k, steps in pairs.items() for _, first, last in steps if (first, last) not in joints[k]]
-        for (k, first, last), joint in zip(new, fit_clothoids([axes[k].part(first, last) for k, first, last in new], HOPELESS)):
+        for (k, first, last), joint in zip(new, fit_clothoids([axes[k].part(first, last) for k, first, last in new], MAX_MISFIT)):
             joints[k][first, last] = joint
         for k, steps in pairs.items():
-            merged = [(joints[k][first, last].worst, j, joints[k][first, last]) for j, first, last in steps]
+            merged = [(joints[k][first, last].residual_p95, j, joints[k][first, last]) for j, first, last in steps]
             merged = [one for one in merged if one[0] < STAIRCASE]
             if merged:
                 _, j, joint = min(merged, key=lambda one: one[:2])
@@ -190,9 +190,9 @@ def _of_lane(track, offset, divided, s, road):
         inside = (at >= a) & (at <= b)
         if inside.sum() < LEAST_PLACES:
             continue
-        u, e = curve.parallel(offset).foot(x[inside], y[inside])
+        u, e = curve.parallel(offset).project(x[inside], y[inside])
         arc = curve.parallel(offset + float(np.median(e)))
-        u, e = arc.foot(x[inside], y[inside])
+        u, e = arc.project(x[inside], y[inside])
         complete = 0 < k < len(divided) - 1 and start >= at[0] and end <= at[-1]
         elements.append(Element(a, b, _cut(arc, float(u[0]), float(u[-1])), float(np.sqrt(np.mean(e**2))), complete))
     return elements

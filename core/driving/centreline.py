@@ -81,7 +81,7 @@ def _drawn_to(element, places, station):
         share = np.minimum(share, (at - element.start) / BLEND)
     if station[-1] - element.end > STEP:
         share = np.minimum(share, (element.end - at) / BLEND)
-    u, e = element.arc.foot(places[inside, 0], places[inside, 1])
+    u, e = element.arc.project(places[inside, 0], places[inside, 1])
     heading = element.arc.heading(u)
     moved = places.copy()
     moved[inside] -= (np.clip(share, 0.0, 1.0) * e)[:, None] * np.c_[-np.sin(heading), np.cos(heading)]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from ..curves.base import median
+from ..curves.robust import median
 
 STEP = 0.5                    # m of station between places where lanes are looked for
 OBLIQUE = np.tan(np.radians(25.0))  # a line that runs more across the road than this bounds no lane

@@ -56,7 +56,7 @@ def named_by_lines(markings, lines, frame):
 class LineSettings:
     """How marking lines are linked and which curve is fitted.
 
-    curve : one of core.curves.choice.CURVES; degree : of the polynomial
+    curve : one of core.curves.model_selection.CURVES; degree : of the polynomial
     max_gap : m along the road over which paint of one line is linked
     max_bridge : m over which it is linked where the line's own rhythm or a neighbouring line carries over
     min_paint : m of paint without which there is no line (unless it fits another one's dashes)

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...common.errors import RoadExtractionError
-from ...curves.base import Fit, median
 from ...curves.bspline import fit_splines, smooth_profiles
+from ...curves.curve_fit import CurveFit
 from ...curves.model_selection import fit_curve, fit_curves
+from ...curves.robust import median
 
 FAINT = 3            # points that a place must have to count, where there are enough such places
 GUIDED_GAP = 4.0     # m: in a longer gap the curve is guided parallel to the other lines
@@ -21,11 +22,11 @@ STEP = 0.5           # m between vertices
 class LineShape:
     """A line that can be drawn between two stations.
 
-    fit : Fit of the curve; residuals belong to the places `s`
+    fit : CurveFit of the curve; residuals belong to the places `s`
     s : (K,) stations of the places
     """
 
-    fit: Fit
+    fit: CurveFit
     s: np.ndarray
     _station_to_u: tuple
     _height: object
@@ -81,9 +82,9 @@ def shapes_of(lines, spans, road, drift, track_height, settings):
     heights = smooth_profiles([(course.s[course.own], course.z - below) for course, below in zip(courses, track)], HEIGHT_SMOOTHING)
     found = []
     for k, (course, fit, height) in enumerate(zip(courses, fits, heights)):
-        u, e = fit.curve.foot(x[k], y[k], near[k])
+        u, e = fit.curve.project(x[k], y[k], near[k])
         if near[k] is not None:
-            fit = Fit(fit.curve, e[course.own], fit.parameters)
+            fit = CurveFit(fit.curve, e[course.own], fit.parameters)
         rising = np.maximum.accumulate(u)
         keep = np.append(True, np.diff(rising) > 1e-6)
         found.append(LineShape(fit, course.s[course.own], (course.s[keep], rising[keep]),

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...curves.base import median
+from ...curves.robust import median
 from ..objects.classify import LANE
 from .dash_pattern import LONGEST_DASH, Piece, merged, pieces, stretches
 from .linking import TWIN, Line

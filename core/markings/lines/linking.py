@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...curves.base import median
+from ...curves.robust import median
 
 BIN = 0.5            # m, nodes of the drift
 MEMORY = 5.0         # m that slopes are averaged over

@@ -15,7 +15,7 @@ from scipy.sparse.csgraph import connected_components
 from ...common.order_statistics import order_by
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
-from ...curves.base import median
+from ...curves.robust import median
 from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
 from .classify import LINES, NOT_PAINT, ClassSettings, classify, contrast, too_pale
 from .connected_cells import components, occupied

@@ -10,7 +10,7 @@ import shapely
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
-from ...curves.base import medians
+from ...curves.robust import row_medians
 from ...survey.store.records import COORDINATE_SCALE
 from .shape import fill_gaps, middle
 
@@ -116,6 +116,6 @@ def to_local(shape, road, places):
     x, y = road.to_map(vertices[:, 0], vertices[:, 1])
     k = min(HEIGHT_NEIGHBOURS, len(places))
     _, nearest = cKDTree(places[:, :2], balanced_tree=False, compact_nodes=False).query(np.c_[x, y], k)
-    z = medians(places[:, 2][nearest.reshape(len(x), k)])[:, 0]
+    z = row_medians(places[:, 2][nearest.reshape(len(x), k)])[:, 0]
     lifted = shapely.force_3d(shape)
     return shapely.set_coordinates(lifted, np.c_[x, y, z])

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from ...common.order_statistics import order_by
-from ...curves.base import median, percentiles
+from ...curves.robust import median, percentiles
 from ...survey.store.records import COORDINATE_SCALE
 from .connected_cells import occupied
 

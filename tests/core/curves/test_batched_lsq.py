@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
-from lanewright.core.curves.base import Arc, percentiles
+from lanewright.core.curves.base import Arc
 from lanewright.core.curves.bspline import fit_splines, smooth_profiles
 from lanewright.core.curves.clothoid import Clothoid
 from lanewright.core.curves.line_circle import fit_circles
 from lanewright.core.curves.model_selection import fit_curves
-from lanewright.core.curves.segmentation import cuts_of, segment_line
+from lanewright.core.curves.robust import percentiles
+from lanewright.core.curves.segmentation import element_ranges, segment_line
 
 
 def painted(curve, step=0.25, seed=1):
@@ -44,12 +45,12 @@ def test_splines_and_profiles_do_not_depend_on_what_is_fitted_beside_them():
 
 
 def test_what_is_left_unrefined_is_hopeless_all_the_same():
-    refined, left = (fit_circles([winding()], hopeless)[0] for hopeless in (np.inf, 0.5))
-    assert refined.worst > 0.5 and left.worst > 0.5 and len(left.residuals) == len(refined.residuals)
+    refined, left = (fit_circles([winding()], max_misfit)[0] for max_misfit in (np.inf, 0.5))
+    assert refined.residual_p95 > 0.5 and left.residual_p95 > 0.5 and len(left.residuals) == len(refined.residuals)
 
 
 def test_a_circle_worth_refining_is_refined():
-    refined, anyway = (fit_circles([STREET[5]], hopeless)[0] for hopeless in (np.inf, 0.5))
+    refined, anyway = (fit_circles([STREET[5]], max_misfit)[0] for max_misfit in (np.inf, 0.5))
     np.testing.assert_allclose(refined.residuals, anyway.residuals, atol=1e-12)
 
 
@@ -64,7 +65,7 @@ def test_a_road_ten_times_as_long_is_divided_where_its_tenth_is():
     curvature = np.tile(np.repeat([0.0, 1 / 120, 0.0, -1 / 80], 60), 10)
     heading = np.cumsum(curvature)
     x, y = np.cumsum(np.cos(heading)) + rng.normal(0, 0.01, 2400), np.cumsum(np.sin(heading)) + rng.normal(0, 0.01, 2400)
-    long, short = cuts_of([(x, y), (x[:480], y[:480])])
+    long, short = element_ranges([(x, y), (x[:480], y[:480])])
     assert len(long) >= 36
     for (first, last), (a, b) in zip(long[:6], short[:6]):
         assert first == pytest.approx(a, abs=5.0) and last == pytest.approx(b, abs=5.0)

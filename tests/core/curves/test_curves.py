@@ -10,7 +10,7 @@ from lanewright.core.curves.bspline import fit_spline
 from lanewright.core.curves.clothoid import Clothoid, fit_clothoid
 from lanewright.core.curves.ellipse import Ellipse, fit_ellipse
 from lanewright.core.curves.line_circle import fit_circle, fit_line
-from lanewright.core.curves.model_selection import curve_of, fit_curve
+from lanewright.core.curves.model_selection import curve_from_params, fit_curve
 from lanewright.core.curves.polynomial import fit_polynomial
 from lanewright.core.curves.segmentation import segment_line
 
@@ -25,7 +25,7 @@ EVERY_CURVE = [
 
 
 def painted(curve, noise=0.01, step=0.25, seed=1):
-    """Places on a line with lateral noise, one per `step` metres."""
+    """PointGroups on a line with lateral noise, one per `step` metres."""
     u = np.arange(0.0, curve.length, step)
     heading = curve.heading(u)
     e = np.random.default_rng(seed).normal(0, noise, len(u)) if noise else np.zeros(len(u))
@@ -33,7 +33,7 @@ def painted(curve, noise=0.01, step=0.25, seed=1):
 
 
 def along(elements, noise=0.008, step=0.5):
-    """Places along straights (0, 0, L), arcs (k, k, L) and transitions (k0, k1, L) laid end to end."""
+    """PointGroups along straights (0, 0, L), arcs (k, k, L) and transitions (k0, k1, L) laid end to end."""
     x, y, heading, places = 0.0, 0.0, 0.0, []
     for k, (first, last, length) in enumerate(elements):
         curve = Clothoid(x, y, heading, first, (last - first) / length, length)
@@ -88,7 +88,7 @@ def test_a_clothoid_is_recovered():
     fit = fit_clothoid(*painted(truth))
     assert fit.curve.bend == pytest.approx(truth.bend, abs=2e-4)
     assert fit.curve.change == pytest.approx(truth.change, rel=0.03)
-    assert np.abs(truth.foot(*fit.curve.sample(1.0).T)[1]).max() < 0.01
+    assert np.abs(truth.project(*fit.curve.sample(1.0).T)[1]).max() < 0.01
 
 
 def test_an_ellipse_is_recovered_whichever_way_it_is_walked():
@@ -115,14 +115,14 @@ def test_a_winding_road_becomes_a_spline_that_lies_on_the_paint():
     fit = fit_curve(x, y)
     assert fit.curve.kind == "b-spline"
     exact = along([(0, 0, 60), (1 / 60, 1 / 60, 50), (-1 / 90, -1 / 90, 50), (0, 0, 40)], noise=0)
-    assert np.sqrt(np.mean(fit.curve.foot(*exact)[1] ** 2)) < 0.006
+    assert np.sqrt(np.mean(fit.curve.project(*exact)[1] ** 2)) < 0.006
 
 
 @pytest.mark.parametrize("radius, off", [(9.0, 0.02), (6.0, 0.03)])
 def test_the_line_of_a_hairpin_stays_on_its_paint_where_the_bend_begins_and_ends(radius, off):
     course = [(0, 0, 45), (1 / radius, 1 / radius, np.pi * radius), (0, 0, 45)]
     fit = fit_curve(*along(course))
-    assert np.abs(fit.curve.foot(*along(course, noise=0))[1]).max() < off
+    assert np.abs(fit.curve.project(*along(course, noise=0))[1]).max() < off
 
 
 def test_a_spline_crosses_the_gaps_of_a_dashed_bend():
@@ -131,7 +131,7 @@ def test_a_spline_crosses_the_gaps_of_a_dashed_bend():
     x, y = painted(truth)
     painted_there = np.arange(len(x)) * 0.25 % 15 < 6
     fit = fit_spline(x[painted_there], y[painted_there])
-    assert np.abs(truth.foot(*fit.curve.sample(0.5).T)[1]).max() < 0.02
+    assert np.abs(truth.project(*fit.curve.sample(0.5).T)[1]).max() < 0.02
 
 
 
@@ -162,7 +162,7 @@ def test_arc_length_heading_and_curvature_belong_together(curve):
 
 @pytest.mark.parametrize("curve", EVERY_CURVE, ids=lambda c: f"{c.kind}{c.length:.0f}")
 def test_a_curve_survives_json_shifting_and_walking_back(curve):
-    again = curve_of(json.loads(json.dumps(curve.moved(1000.0, -2000.0).params())))
+    again = curve_from_params(json.loads(json.dumps(curve.moved(1000.0, -2000.0).params())))
     u = np.linspace(0, curve.length, 50)
     np.testing.assert_allclose(again.at(u), curve.at(u) + [1000.0, -2000.0], atol=1e-8)
     back = curve.reversed()
@@ -175,7 +175,7 @@ def test_the_foot_of_a_point_gives_back_where_it_was_put():
         u = np.linspace(2, curve.length - 2, 40)
         heading = curve.heading(u)
         x, y = (curve.at(u) + 3.0 * np.c_[-np.sin(heading), np.cos(heading)]).T
-        found_u, found_e = curve.foot(x, y)
+        found_u, found_e = curve.project(x, y)
         np.testing.assert_allclose(found_u, u, atol=1e-5)
         np.testing.assert_allclose(found_e, 3.0, atol=1e-6)
 

@@ -9,7 +9,7 @@ from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import Features
 from lanewright.core.common.progress import Progress
 from lanewright.core.common.schemas import MARKINGS
-from lanewright.core.curves.model_selection import curve_of
+from lanewright.core.curves.model_selection import curve_from_params
 from lanewright.core.markings.lines.fit import LineSettings, fit_marking_lines
 from lanewright.core.markings.objects.marking_objects import markings_from_features
 from lanewright.core.survey.frame.road_frame import build_frame
@@ -390,7 +390,7 @@ def test_every_piece_lies_on_the_curve_that_its_params_tell():
     street = Street().dashes(3.0, 6.0, 0.0, missing=(4, 5)).paint(0, 120, 4.5, kind="edge")
     for geometry, row in street.lines():
         params = json.loads(row["params"])
-        curve = curve_of(params)
+        curve = curve_from_params(params)
         assert params["curve"] == row["curve"]
         ends = curve.at(np.array([params["from"], params["to"]]))
         np.testing.assert_allclose(shapely.get_coordinates(geometry)[[0, -1]], ends, atol=1e-3)
