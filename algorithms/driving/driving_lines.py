@@ -62,7 +62,11 @@ class DrivingLines(Algorithm):
         self.add_sink("CURVE_ELEMENTS", tr("Curve elements"), fields=CURVE_ELEMENTS, geometry="None", optional=True)
 
     def work(self, call, progress):
-        from ...core.driving.driving_lines import driving_lines
+        from ...core.driving.driving_layers import curve_elements_to_features, driving_lines_to_features
+        from ...core.driving.driving_lines import make_driving_lines
+        from ...core.driving.road_edges import edges_from_features
+        from ...core.markings.lines.painted_lines import lines_from_features
+        from ...core.markings.objects.marking_objects import markings_from_features
 
         marking_lines = call.features("MARKING_LINES", MARKING_LINES, "LineStringZ")
         markings = call.features("MARKINGS", MARKINGS, "PolygonZ")
@@ -70,9 +74,10 @@ class DrivingLines(Algorithm):
         road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.3)) if call.cloud("ROAD_POINTS") else None
         layers = {"MARKING_LINES": marking_lines, "MARKINGS": markings, "ROAD_EDGES": edges}
         frame = frame_of(call, marking_lines.crs, progress, road_points, layers)
-        lines, elements = driving_lines(
-            marking_lines, frame, call.settings(DRIVING_SETTINGS), progress.part(0.3, 1.0),
-            markings=markings, edges=edges, road_points=road_points,
+        lines, elements = make_driving_lines(
+            lines_from_features(marking_lines, frame), frame, call.settings(DRIVING_SETTINGS), progress.part(0.3, 1.0),
+            markings=None if markings is None else markings_from_features(markings, frame),
+            edges=None if edges is None else edges_from_features(edges, frame), road_points=road_points,
         )
-        call.layer("DRIVING_LINES", lines)
-        call.layer("CURVE_ELEMENTS", elements)
+        call.layer("DRIVING_LINES", driving_lines_to_features(lines, frame))
+        call.layer("CURVE_ELEMENTS", curve_elements_to_features(elements, frame))

@@ -6,7 +6,7 @@ from ..parameters import SettingSpec
 from ..survey_input import frame_of, paint_of
 from ..texts import tr
 
-LINES = "markings.lines.fit:LineSettings"
+LINES = "markings.lines.fit:MarkingLineSettings"
 
 LINE_SETTINGS = (
     SettingSpec(
@@ -53,7 +53,9 @@ class FitMarkingLines(Algorithm):
                               "centre line looks like any other."))
 
     def work(self, call, progress):
-        from ...core.markings.lines.fit import fit_marking_lines, named_by_lines
+        from ...core.markings.lines.fit import fit_marking_lines
+        from ...core.markings.lines.naming import named_by_lines
+        from ...core.markings.lines.painted_lines import lines_to_features
         from ...core.markings.objects.marking_objects import markings_from_features, with_kinds_of
 
         layer = call.features("MARKINGS", MARKINGS, "PolygonZ")
@@ -61,6 +63,6 @@ class FitMarkingLines(Algorithm):
         frame = frame_of(call, points.crs, progress, points, {"MARKINGS": layer})
         markings = markings_from_features(layer, frame)
         lines = fit_marking_lines(points, markings, frame, call.settings(LINE_SETTINGS), progress.part(0.2, 1.0))
-        call.layer("MARKING_LINES", lines)
+        call.layer("MARKING_LINES", lines_to_features(lines, frame))
         if call.wants("NAMED_MARKINGS"):
-            call.layer("NAMED_MARKINGS", with_kinds_of(layer, named_by_lines(markings, lines, frame)))
+            call.layer("NAMED_MARKINGS", with_kinds_of(layer, named_by_lines(markings, lines)))

@@ -1,11 +1,15 @@
-"""Marking lines as lateral positions d(s): what lanes are made of."""
+"""Lines as offsets d(s) at common stations: what lanes are made of."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-import shapely
 
 from ..curves.robust import median
+from ..markings.lines.frame_lines import FrameLines
+from ..markings.lines.painted_lines import PaintedLines
+from .road_edges import RoadEdges
 
 STEP = 0.5                    # m of station between places where lanes are looked for
 OBLIQUE = np.tan(np.radians(25.0))  # a line that runs more across the road than this bounds no lane
@@ -15,11 +19,11 @@ DASH_GAP = 9.5                # m that a dashed line may be silent at its ends b
 
 
 @dataclass
-class Boundaries:
+class CrossSections:
     """All lines of one road on a common grid of stations.
 
     s : (K,) stations; d, z : (L, K) offset and height of each line, NaN where it is not;
-    seen : (L, K) False where the line itself was bridged; numbers, kinds, patterns : per line, of its longest piece
+    seen : (L, K) False where the line itself was bridged; kinds, patterns : per line, of its longest piece
     drawn : (L, K) how it is drawn at each place, a row of `names`; -1 where that is not known
     """
 
@@ -27,7 +31,6 @@ class Boundaries:
     d: np.ndarray
     z: np.ndarray
     seen: np.ndarray
-    numbers: list
     kinds: list
     patterns: list
     drawn: np.ndarray
@@ -39,67 +42,55 @@ class Boundaries:
         return STEP * (self.seen & np.isfinite(self.d)).sum(1)
 
 
-def road_boundaries(marking_lines, frame):
-    """The lines of every road as d(s).
+def cross_sections(lines: FrameLines, number: np.ndarray, kind: np.ndarray, pattern: np.ndarray, seen: np.ndarray) -> dict[int, CrossSections]:
+    """Lines of every road as offsets at common stations.
 
     Parameters
     ----------
-    marking_lines : Features MARKING_LINES; `road`, `line`, `kind`, `pattern` and
-        `status` are used where they are, so that lines drawn by hand serve as well
-    frame : RoadFrame
+    lines : FrameLines of P pieces
+    number : (P,) int, the pieces of one line share a number
+    kind, pattern : (P,) str objects, "" where unknown
+    seen : (P,) bool, False for pieces that are bridged
 
     Returns
     -------
-    dict of road number to Boundaries
+    dict of road number to CrossSections
     """
-    rows, parts = [], []
-    for number, (geometry, row) in enumerate(marking_lines):
-        if geometry is None or geometry.is_empty:
-            continue
-        for part in getattr(geometry, "geoms", [geometry]):
-            rows.append((number, row))
-            parts.append(part)
-    pieces = {}
-    for (number, row), piece in zip(rows, _pieces(parts, [row for _, row in rows], frame)):
+    pieces: dict[int, dict[int, list[_Piece]]] = {}
+    for k in range(len(lines)):
+        road, window = int(lines.road[k]), lines.line(k)
+        piece = _piece(lines.s[window], lines.d[window], lines.z[window], kind[k], pattern[k], bool(seen[k]))
         if piece is not None:
-            line = row.get("line")
-            pieces.setdefault(piece["road"], {}).setdefault((0, int(line)) if line is not None else (1, number), []).append(piece)
-    return {road: _on_grid(frame.roads[road], lines) for road, lines in sorted(pieces.items())}
+            pieces.setdefault(road, {}).setdefault(int(number[k]), []).append(piece)
+    return {road: _on_grid(found) for road, found in sorted(pieces.items())}
 
 
-def _pieces(lines, rows, frame):
-    """Stations, offsets and heights of each of some lines, None of what bounds no lane."""
-    if not lines:
-        return []
-    # straight between far vertices on the map is not straight in the road's frame
-    x, y, z, counts = _vertices(shapely.segmentize(np.asarray(lines, object), STEP), frame)
-    bounds = np.cumsum(counts)[:-1]
-    known = [row.get("road") for row in rows]
-    roads = [int(road) if road is not None and 0 <= int(road) < len(frame.roads) else _road_of(frame, px, py)
-             for road, px, py in zip(known, np.split(x, bounds), np.split(y, bounds))]
-    of_place = np.repeat(roads, counts)
-    s, d = np.full((2, len(x)), np.nan)
-    for road in sorted(set(roads) - {-1}):
-        there = np.flatnonzero(of_place == road)
-        s[there], d[there] = frame.roads[road].locate(x[there], y[there])
-    return [_piece(road, row, *places) for road, row, *places in zip(roads, rows, *(np.split(v, bounds) for v in (s, d, z)))]
+def sections_of_lines(lines: PaintedLines) -> dict[int, CrossSections]:
+    """CrossSections of marking lines, by road number."""
+    return cross_sections(lines.course, lines.line, lines.kind, lines.pattern, lines.status != "bridged")
 
 
-def _vertices(lines, frame):
-    """Local x, y and z (NaN where there is none) of the vertices of lines, one after the other, and how many each has."""
-    places, owner = shapely.get_coordinates(lines, include_z=True, return_index=True)
-    x, y = frame.to_local(places[:, 0], places[:, 1])
-    return x, y, places[:, 2] - frame.origin[2], np.bincount(owner, minlength=len(lines))
+def sections_of_edges(edges: RoadEdges) -> dict[int, CrossSections]:
+    """CrossSections of the main road edges, by road number."""
+    main = np.flatnonzero(edges.kind == "main")
+    return cross_sections(edges.course.take(main), edges.edge[main], edges.kind[main], np.full(len(main), "", object),
+                          edges.status[main] != "bridged")
 
 
-def _road_of(frame, x, y):
-    """The road that most places are nearest to, -1 where there is none."""
-    numbers, _, _ = frame.locate_nearest(x, y)
-    numbers = numbers[numbers >= 0]
-    return int(np.bincount(numbers).argmax()) if len(numbers) else -1
+@dataclass
+class _Piece:
+    """Part of a line with rising stations: s, d, z (N,) metres, and how it is drawn."""
+
+    s: np.ndarray
+    d: np.ndarray
+    z: np.ndarray
+    kind: str
+    pattern: str
+    seen: bool
 
 
-def _piece(road, row, s, d, z):
+def _piece(s, d, z, kind, pattern, seen):
+    """A _Piece of the vertices of a line, None where it bounds no lane."""
     good = np.isfinite(s)
     if not good.all():
         s, d, z = s[good], d[good], z[good]
@@ -112,33 +103,32 @@ def _piece(road, row, s, d, z):
         s, d, z = s[rising], d[rising], z[rising]
     if len(s) < 2 or median(np.abs(np.diff(d)) / np.diff(s)) > OBLIQUE:
         return None
-    return dict(road=road, s=s, d=d, z=z, kind=str(row.get("kind") or ""), pattern=str(row.get("pattern") or ""),
-                seen=str(row.get("status") or "measured") != "bridged")
+    return _Piece(s, d, z, kind, pattern, seen)
 
 
-def _on_grid(road, lines):
-    first = np.ceil(min(p["s"][0] for pieces in lines.values() for p in pieces) / STEP)
-    last = np.floor(max(p["s"][-1] for pieces in lines.values() for p in pieces) / STEP)
+def _on_grid(lines: dict[int, list[_Piece]]) -> CrossSections:
+    first = np.ceil(min(p.s[0] for pieces in lines.values() for p in pieces) / STEP)
+    last = np.floor(max(p.s[-1] for pieces in lines.values() for p in pieces) / STEP)
     s = STEP * np.arange(first, last + 1)
     # the order of the layer's rows must not matter
-    order = sorted(lines, key=lambda key: (min(p["s"][0] for p in lines[key]), np.median(lines[key][0]["d"]), key))
+    order = sorted(lines, key=lambda key: (min(p.s[0] for p in lines[key]), np.median(lines[key][0].d), key))
     d, z = np.full((2, len(order), len(s)), np.nan)
     seen, drawn = np.zeros((len(order), len(s)), bool), np.full((len(order), len(s)), -1, np.int16)
-    names = sorted({p["pattern"] for pieces in lines.values() for p in pieces})
+    names = sorted({p.pattern for pieces in lines.values() for p in pieces})
     kinds, patterns = [], []
     for k, key in enumerate(order):
-        pieces = sorted(lines[key], key=lambda p: (p["s"][0], p["s"][-1]))
+        pieces = sorted(lines[key], key=lambda p: (p.s[0], p.s[-1]))
         for p in pieces:
-            # pieces of one line touch: the hair between two grid stations belongs to the line too
-            inside = slice(np.searchsorted(s, p["s"][0] - 1e-6), np.searchsorted(s, p["s"][-1] + 1e-6, side="right"))
-            d[k, inside] = np.interp(s[inside], p["s"], p["d"])
-            z[k, inside] = np.interp(s[inside], p["s"], p["z"])
-            seen[k, inside] |= p["seen"]
-            drawn[k, inside] = names.index(p["pattern"])
-        longest = max(pieces, key=lambda p: (p["seen"], p["s"][-1] - p["s"][0]))
-        kinds.append(longest["kind"])
-        patterns.append(longest["pattern"])
-    found, gaps = _joined(Boundaries(s, d, z, seen, [key[1] for key in order], kinds, patterns, drawn, names))
+            # pieces of one line touch: a grid station between their ends belongs to the line too
+            inside = slice(np.searchsorted(s, p.s[0] - 1e-6), np.searchsorted(s, p.s[-1] + 1e-6, side="right"))
+            d[k, inside] = np.interp(s[inside], p.s, p.d)
+            z[k, inside] = np.interp(s[inside], p.s, p.z)
+            seen[k, inside] |= p.seen
+            drawn[k, inside] = names.index(p.pattern)
+        longest = max(pieces, key=lambda p: (p.seen, p.s[-1] - p.s[0]))
+        kinds.append(longest.kind)
+        patterns.append(longest.pattern)
+    found, gaps = _joined(CrossSections(s, d, z, seen, kinds, patterns, drawn, names))
     _even_doubles(found, _lead_over(found, gaps))
     _lengthen_dashed(found)
     return found
@@ -147,7 +137,7 @@ def _on_grid(road, lines):
 def _joined(lines):
     """Lines that go on as another line after at most a dash gap, in one row: a dashed line turns solid at a junction.
 
-    Returns the Boundaries, and of each gap that was closed the row, the stations (as columns) on both its sides and
+    Returns the CrossSections, and of each gap that was closed the row, the stations (as columns) on both its sides and
     whether the line is double there.
     """
     rows, gaps = list(range(len(lines.d))), []
@@ -179,8 +169,8 @@ def _joined(lines):
         lines.seen[j, gap] = any(lines.patterns[i].startswith("dash") for i in (j, k))
         end[j], at_end[j], at_end[k] = end[k], lines.d[j, end[k]], np.nan
         rows.remove(k)
-    found = Boundaries(lines.s, lines.d[rows], lines.z[rows], lines.seen[rows], [lines.numbers[k] for k in rows],
-                       [lines.kinds[k] for k in rows], [lines.patterns[k] for k in rows], lines.drawn[rows], lines.names)
+    found = CrossSections(lines.s, lines.d[rows], lines.z[rows], lines.seen[rows], [lines.kinds[k] for k in rows],
+                          [lines.patterns[k] for k in rows], lines.drawn[rows], lines.names)
     return found, [(rows.index(j), *gap) for j, *gap in gaps]
 
 

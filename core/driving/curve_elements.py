@@ -1,6 +1,13 @@
-"""Elements of the curves along driving lines, in metres and feet, and the design code's word on them."""
+"""Elements of the curves along driving lines, in metres and feet, and their check against the design code."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
+
+from ..curves.base import Arc
 
 FOOT = 0.3048
 # CJJ 37-2012 as printed in the driving-line thesis, table 4.11:
@@ -8,9 +15,10 @@ FOOT = 0.3048
 DESIGN_CODE = ((30, 85.0, 25.0), (40, 150.0, 35.0), (50, 200.0, 40.0), (60, 300.0, 50.0), (80, 400.0, 70.0))
 STRAIGHT = 5000.0    # m: flatter arcs are straights to any driver
 LEAST_TURN = np.radians(1.0)
+MAX_TURN = np.pi * 0.95   # the tangents of a half circle do not meet
 
 
-def curve_elements(radius, delta):
+def circular_curve_elements(radius: float, delta: float) -> dict[str, float]:
     """The elements of a circular curve.
 
     ::
@@ -43,8 +51,21 @@ def curve_elements(radius, delta):
     return found
 
 
-def curve_points(start, heading, radius, delta, left):
-    """PC, PI and PT of a curve that begins at `start` in direction `heading` (radians), (2,) each."""
+def curve_points(start: Sequence[float], heading: float, radius: float, delta: float, left: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Points of curvature, of intersection and of tangency of a circular curve.
+
+    Parameters
+    ----------
+    start : (2,) metres, where the curve begins
+    heading : radians counter-clockwise from east, its direction there
+    radius : metres
+    delta : radians, its deflection angle
+    left : whether it turns left
+
+    Returns
+    -------
+    PC, PI, PT : (2,) metres each
+    """
     turn = delta if left else -delta
     tangent = radius * np.tan(delta / 2)
     pc = np.asarray(start, float)
@@ -53,10 +74,18 @@ def curve_points(start, heading, radius, delta, left):
     return pc, pi, pt
 
 
-def design_check(radius, length, complete=True):
-    """The highest design speed that CJJ 37-2012 allows for a curve, km/h (None below all), and a sentence.
+def design_check(radius: float, length: float, complete: bool = True) -> tuple[int | None, str]:
+    """Check a curve against CJJ 37-2012, as printed in the driving-line thesis, table 4.11.
 
+    Parameters
+    ----------
+    radius, length : metres
     complete : False where the arc runs on beyond the line, so that its length is not known
+
+    Returns
+    -------
+    speed : the highest design speed that the code allows, km/h; None where it allows none
+    text : a sentence
     """
     by_radius = max((speed for speed, least, _ in DESIGN_CODE if radius >= least), default=0)
     by_length = max((speed for speed, _, least in DESIGN_CODE if length >= least), default=0)
@@ -71,15 +100,28 @@ def design_check(radius, length, complete=True):
     return speed, text + f", length {by_length} km/h"
 
 
-def element_row(arc, complete, rmse, origin):
-    """One row of CURVE_ELEMENTS for an Arc (local metres) in the direction of travel; None for a straight."""
-    if not arc.bend or arc.radius > STRAIGHT:
-        return None
+def is_curve(arc: Arc) -> bool:
+    """Whether an arc is a curve with elements: no straight, and no turn so small or so large that its elements mean nothing."""
+    return bool(arc.bend and arc.radius <= STRAIGHT and LEAST_TURN < abs(arc.bend) * arc.length < MAX_TURN)
+
+
+def element_row(arc: Arc, complete: bool, rmse: float, origin: np.ndarray) -> dict[str, Any]:
+    """Fields of CURVE_ELEMENTS of an arc.
+
+    Parameters
+    ----------
+    arc : Arc for which `is_curve` holds, local metres, in the direction of travel
+    complete : False where the arc runs on beyond the line
+    rmse : metres, of the line from the arc
+    origin : (2,) or (3,) map coordinates of the local origin
+
+    Returns
+    -------
+    dict of field name to value
+    """
     delta, left = abs(arc.bend) * arc.length, arc.bend > 0
-    if not LEAST_TURN < delta < np.pi * 0.95:
-        return None
     pc, pi, pt = curve_points((arc.x + origin[0], arc.y + origin[1]), arc.direction, arc.radius, delta, left)
     speed, code = design_check(arc.radius, arc.length, complete)
-    return dict(curve_elements(arc.radius, delta), turn="left" if left else "right", pc_x=float(pc[0]), pc_y=float(pc[1]),
+    return dict(circular_curve_elements(arc.radius, delta), turn="left" if left else "right", pc_x=float(pc[0]), pc_y=float(pc[1]),
                 pi_x=float(pi[0]), pi_y=float(pi[1]), pt_x=float(pt[0]), pt_y=float(pt[1]), rmse_m=float(rmse),
                 speed_kmh=speed, code=code)

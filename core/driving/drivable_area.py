@@ -1,40 +1,50 @@
-"""Where a lane cannot be: on a curb, or on a hatched area."""
+"""Where a lane can be: not on a curb, and not on a hatched area."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 
+from ..markings.objects.marking_objects import MarkingObjects
+from .cross_section import CrossSections
+from .lane_tracking import Track
 from .settings import NARROWEST
+
+if TYPE_CHECKING:
+    from ..survey.frame.road_frame import RoadFrame
 
 ON_CURB = 0.3       # share of a lane's width: a curb this near its middle runs along the lane
 MOSTLY = 0.5        # of its length beside such a curb, and it is no lane
 HATCHED = 0.25      # of its middle on the stripes of a hatched area (they cover less than half of it)
 
 
-class Room:
-    """Says of a Track whether it is where a lane can be.
+class DrivableArea:
+    """Answers whether a Track is where a lane can be.
 
     Parameters
     ----------
-    lines : Boundaries of the road
+    lines : CrossSections of the road
     frame : RoadFrame
     number : of the road
-    curbs : Boundaries made from the road edges, or None
-    markings : Features MARKINGS or None
+    curbs : CrossSections of the road edges, or None
+    markings : MarkingObjects or None
     """
 
-    def __init__(self, lines, frame, number, curbs, markings):
-        self.s, self.road, self.origin = lines.s, frame.roads[number], frame.origin
+    def __init__(self, lines: CrossSections, frame: RoadFrame, number: int, curbs: CrossSections | None,
+                 markings: MarkingObjects | None) -> None:
+        self.s, self.road = lines.s, frame.roads[number]
         self.curbs = np.empty((0, len(lines.s)))
         if curbs is not None:
             self.curbs = np.array([np.interp(lines.s, curbs.s, row, left=np.nan, right=np.nan) for row in curbs.d])
-        hatched = [] if markings is None else [
-            shapely.force_2d(geometry) for geometry, row in markings
-            if row.get("class") == "hatch" and geometry is not None and not geometry.is_empty]
-        self.hatched = shapely.union_all(hatched) if hatched else None
-        if self.hatched is not None:
+        self.hatched = None
+        if markings is not None and (markings.kind == "hatch").any():
+            self.hatched = shapely.union_all(shapely.force_2d(markings.outlines.polygons()[markings.kind == "hatch"]))
             shapely.prepare(self.hatched)
 
-    def clear(self, track):
+    def clear(self, track: Track) -> bool:
+        """Whether neither a curb nor a hatched area lies in the way of a Track."""
         window = slice(track.first, track.last + 1)
         if len(self.curbs):
             with np.errstate(invalid="ignore"):
@@ -42,14 +52,21 @@ class Room:
             if beside.mean() > MOSTLY:
                 return False
         if self.hatched is not None:
-            x, y = self.road.to_map(self.s[window], track.d)
-            return shapely.contains_xy(self.hatched, x + self.origin[0], y + self.origin[1]).mean() < HATCHED
+            return bool(shapely.contains_xy(self.hatched, *self.road.to_map(self.s[window], track.d)).mean() < HATCHED)
         return True
 
-    def half_lane(self, d, side, half):
-        """(K,) metres from a line at offsets d (K,) to the middle of a lane on one side of it: `half`, or less where a curb leaves less.
+    def half_lane(self, d: np.ndarray, side: int, half: float) -> np.ndarray:
+        """Distance from a line to the middle of a lane on one side of it: `half`, or less where a curb leaves less.
 
-        A curb counts that is known along most of the line; over its gaps it goes on from end to end.
+        Parameters
+        ----------
+        d : (K,) metres, offsets of the line at the stations of the road, NaN where it is not
+        side : 1 for the lane on the left, -1 on the right
+        half : metres
+
+        Returns
+        -------
+        (K,) metres. A curb counts that is known along most of the line; over its gaps it goes on from end to end.
         """
         beyond = side * (self.curbs - d)
         with np.errstate(invalid="ignore"):

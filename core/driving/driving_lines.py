@@ -1,29 +1,38 @@
 """Driving lines: the middle of every lane, in the direction of travel, and the curves along them."""
 
-import json
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import shapely
 
-from ..common.features import Features
 from ..common.progress import Progress
-from ..common.schemas import CURVE_ELEMENTS, DRIVING_LINES, of_main_curb
+from ..markings.lines.painted_lines import PaintedLines
+from ..markings.objects.marking_objects import MarkingObjects
 from .alignment import lane_elements
 from .centreline import element_of, lane_courses, pieces, settled
-from .cross_section import STEP, road_boundaries
-from .curve_elements import element_row
+from .cross_section import STEP, CrossSections, sections_of_edges, sections_of_lines
+from .curve_elements import is_curve
 from .direction import divide, driven_offsets, lane_directions, side_votes
-from .drivable_area import Room
+from .drivable_area import DrivableArea
+from .driving_layers import CurveElements, DrivingLines
 from .heights import lane_heights
-from .lane_tracking import STATUS, connect, extend
+from .lane_tracking import STATUS, Track, connect, extend
 from .lanes import chosen_lines, divided_strips, lone_lanes, paired_lanes, strips, usual_width
+from .road_edges import RoadEdges
 from .settings import DrivingSettings
 
-__all__ = ["DrivingSettings", "driving_lines"]
+if TYPE_CHECKING:
+    from ..survey.frame.road_frame import RoadFrame
+    from ..survey.store.road_points import RoadPoints
+
+__all__ = ["DrivingSettings", "make_driving_lines"]
 
 
-def driving_lines(marking_lines, frame, settings=DrivingSettings(), progress=Progress(),
-                  markings=None, edges=None, road_points=None):
+def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: DrivingSettings = DrivingSettings(),
+                       progress: Progress = Progress(), markings: MarkingObjects | None = None, edges: RoadEdges | None = None,
+                       road_points: RoadPoints | None = None) -> tuple[DrivingLines, CurveElements]:
     """Lines to drive on.
 
     Neighbouring marking lines as far apart as a lane is wide make a lane; its middle
@@ -33,32 +42,31 @@ def driving_lines(marking_lines, frame, settings=DrivingSettings(), progress=Pro
 
     Parameters
     ----------
-    marking_lines : Features MARKING_LINES
+    marking_lines : PaintedLines
     frame : RoadFrame
-    markings : Features MARKINGS or None: no lane leads along a hatched area
-    edges : Features ROAD_EDGES or None: no lane leads over a curb
+    settings : DrivingSettings
+    progress : Progress
+    markings : MarkingObjects or None: no lane leads along a hatched area
+    edges : RoadEdges or None: no lane leads over a curb
     road_points : RoadPoints or None: the heights of the road
 
     Returns
     -------
-    lines : Features DRIVING_LINES, digitised in the direction of travel. Lanes are
-        numbered from 1 on every road by where they begin, from right to left. A lane is cut into pieces
-        by `status`; pieces of one lane touch. `radius_m` and `curve` are the piece's
-        own, `params` the function of the arc, the straight or the
-        whole lane that the piece is on, in map coordinates, along the road.
-    elements : Features CURVE_ELEMENTS, a row per arc of every lane
+    lines : DrivingLines. Lanes are numbered from 1 on every road by where they begin, from right to left. A lane is cut
+        into pieces by `status`; pieces of one lane touch
+    elements : CurveElements of every lane
     """
-    lines = Features("LineStringZ", DRIVING_LINES, crs=marking_lines.crs)
-    elements = Features("None", CURVE_ELEMENTS, crs=marking_lines.crs)
-    curbs = road_boundaries([(g, r) for g, r in edges or () if of_main_curb(r)], frame)
+    rows: list[dict[str, Any]] = []
+    arcs: list[dict[str, Any]] = []
+    curbs = sections_of_edges(edges) if edges is not None else {}
     found = {}
-    boundaries = road_boundaries(marking_lines, frame)
-    for count, (number, road_lines) in enumerate(boundaries.items()):
+    sections = sections_of_lines(marking_lines)
+    for count, (number, road_lines) in enumerate(sections.items()):
         driven, directions = driven_offsets(frame, number, road_lines.s)
-        room = Room(road_lines, frame, number, curbs.get(number), markings)
-        tracks = road_lanes(road_lines, driven, settings, room)
+        area = DrivableArea(road_lines, frame, number, curbs.get(number), markings)
+        tracks = road_lanes(road_lines, driven, settings, area)
         found[number] = road_lines, tracks, driven, directions, divide(road_lines, tracks, driven, directions)
-        progress.at(0.4 * (count + 1) / len(boundaries))
+        progress.at(0.4 * (count + 1) / len(sections))
     side = _traffic_side(found, settings, progress)
     for count, (number, (road_lines, tracks, driven, directions, middle)) in enumerate(found.items()):
         ways = lane_directions(tracks, middle, driven, directions, side, settings.traffic_side != "automatic")
@@ -68,42 +76,44 @@ def driving_lines(marking_lines, frame, settings=DrivingSettings(), progress=Pro
             progress.warn("Neither the marking lines nor road points have heights; the trajectory's are used.")
             heights = [frame.track_height(number, road_lines.s[t.first:t.last + 1]) for t in tracks]
         courses = lane_courses(tracks, road_lines.s, frame.roads[number], alignment)
-        for lane, (track, way, course, found_elements, z) in enumerate(zip(tracks, ways, courses, alignment, heights), start=1):
-            _write_lane(lines, lane, track, way, course, found_elements, road_lines, z, frame, number)
-            _write_elements(elements, lane, way, found_elements, number, frame.origin)
+        for lane, (track, way, course, elements, z) in enumerate(zip(tracks, ways, courses, alignment, heights), start=1):
+            rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(track, way, course, elements, road_lines, z)]
+            arcs += [dict(row, road=number, lane=lane) for row in _lane_curves(way, elements)]
         progress.at(0.4 + 0.6 * (count + 1) / len(found))
-    _say(lines, side, progress)
-    return lines, elements
+    lines = _driving_lines(rows, marking_lines.crs)
+    _report_lengths(lines, side, progress)
+    return lines, _curve_elements(arcs, marking_lines.crs)
 
 
-def road_lanes(lines, driven, settings, where):
+def road_lanes(lines: CrossSections, driven: np.ndarray, settings: DrivingSettings, area: DrivableArea) -> list[Track]:
     """The lanes of one road as a list of Track, by first station, then from right to left.
 
     Parameters
     ----------
-    lines : Boundaries
-    driven : (P, K) offset of the passes on the grid, NaN where they were not
-    where : Room
+    lines : CrossSections
+    driven : (P, K) metres, offsets of the passes at the stations of `lines`, NaN where they were not
+    settings : DrivingSettings
+    area : DrivableArea
     """
-    room = where.clear
+    clear = area.clear
     kept = chosen_lines(lines, driven)
     all_strips = strips(lines, kept)
-    tracks = paired_lanes(lines, all_strips, driven, room)
+    tracks = paired_lanes(lines, all_strips, driven, clear)
     lane_width = settings.lane_width or usual_width(tracks)
     gaps = settings.max_bridge, settings.max_inferred
     tracks = connect(tracks, lines, 0.0, 0.0)
     tracks = [track for track in tracks if len(track) * STEP >= settings.shortest]
     tracks = connect(tracks, lines, 0.0, settings.max_inferred)
-    tracks = connect(extend(tracks, lines, kept, room, settings.max_bridge), lines, *gaps)
-    tracks += divided_strips(lines, all_strips, tracks, driven, lane_width, room)
+    tracks = connect(extend(tracks, lines, kept, clear, settings.max_bridge), lines, *gaps)
+    tracks += divided_strips(lines, all_strips, tracks, driven, lane_width, clear)
     tracks = connect(tracks, lines, *gaps)
-    tracks = connect(extend(tracks, lines, kept, room, settings.max_bridge), lines, *gaps)
+    tracks = connect(extend(tracks, lines, kept, clear, settings.max_bridge), lines, *gaps)
     half = (usual_width(tracks, painted=False) if tracks else lane_width) / 2
 
     def half_lane(d, side):
-        return np.full(len(d), settings.line_distance) if settings.line_distance else where.half_lane(d, side, half)
+        return np.full(len(d), settings.line_distance) if settings.line_distance else area.half_lane(d, side, half)
 
-    tracks = connect(tracks + lone_lanes(lines, kept, tracks, driven, half_lane, settings.max_bridge, room), lines, *gaps)
+    tracks = connect(tracks + lone_lanes(lines, kept, tracks, driven, half_lane, settings.max_bridge, clear), lines, *gaps)
     tracks = [track.without_bridged_ends() for track in tracks]
     tracks = [track for track in tracks if track is not None and len(track) * STEP >= settings.shortest]
     return sorted(tracks, key=lambda track: (track.first, float(track.d[0])))
@@ -120,30 +130,22 @@ def _traffic_side(found, settings, progress):
     return "left" if left > right else "right"
 
 
-def _write_lane(lines, lane, track, way, course, elements, road_lines, z, frame, number):
-    origin, s = frame.origin, road_lines.s
+def _lane_pieces(track, way, course, elements, road_lines, z) -> Iterator[dict[str, Any]]:
+    """The pieces of one lane by status, in order of station."""
+    s = road_lines.s
     grid = s[track.first:track.last + 1]
     status = settled(track.status)
-    functions = {}   # of curves by identity: those of long splines are long, and many pieces share one
     for code, start, end in pieces(status, track.first, s):
         rows = slice(np.searchsorted(grid, start), np.searchsorted(grid, end) + 1)
         x, y, at = _between(course, start, end, code_first=start == grid[0], code_last=end == grid[-1])
         if len(x) < 2:
             continue
-        places = np.c_[x + origin[0], y + origin[1], np.interp(at, grid, z) + origin[2]]
-        if way < 0:
-            places = places[::-1]
+        places = np.c_[x, y, np.interp(at, grid, z)]
         element = element_of(elements, start, end)
-        curve = element.arc if element is not None else course.curve
-        if id(curve) not in functions:
-            functions[id(curve)] = _function(curve.moved(*origin[:2]))
-        length = float(np.hypot(*np.diff(places[:, :2], axis=0).T).sum())
-        lines.add(shapely.linestrings(places), road=number, lane=lane, kind="lane",
-                  pattern=_patterns(track, rows, way, road_lines), direction=way,
-                  source="offset" if track.offset[rows].mean() > 0.5 else "pair", status=STATUS[code], curve=curve.kind,
-                  radius_m=float(curve.radius) if np.isfinite(curve.radius) else None, rmse_m=float(course.rmse),
-                  station_m=start, end_m=end, offset_m=float(np.median(track.d[rows])), length_m=length,
-                  width_m=float(np.median(track.width[rows])), params=functions[id(curve)])
+        yield dict(
+            pattern=_patterns(track, rows, way, road_lines), direction=way, source="offset" if track.offset[rows].mean() > 0.5 else "pair",
+            status=STATUS[code], curve=element.arc if element is not None else course.curve, rmse=course.rmse, station=start, end=end,
+            offset=np.median(track.d[rows]), width=np.median(track.width[rows]), places=places[::-1] if way < 0 else places)
 
 
 def _patterns(track, rows, way, lines):
@@ -170,24 +172,38 @@ def _between(course, start, end, code_first, code_last):
     return np.interp(at, s, course.x), np.interp(at, s, course.y), at
 
 
-def _function(curve):
-    """The numbers of a curve as JSON, those of long splines to 0.1 mm."""
-    return json.dumps({name: [round(v, 4) for v in value] if isinstance(value, list) and len(value) > 4 else value
-                       for name, value in curve.params().items()})
-
-
-def _write_elements(elements, lane, way, found, number, origin):
-    for element in found:
+def _lane_curves(way, elements) -> Iterator[dict[str, Any]]:
+    """The circular curves of one lane."""
+    for element in elements:
         arc = element.arc if way > 0 else element.arc.reversed()
-        row = element_row(arc, element.complete, element.rmse, origin)
-        if row is not None:
-            elements.add(None, road=number, lane=lane, station_m=float(element.start), end_m=float(element.end), **row)
+        if is_curve(arc):
+            yield dict(arc=arc, complete=element.complete, rmse=element.rmse, station=element.start, end=element.end)
 
 
-def _say(lines, side, progress):
-    length = {name: sum(m for m, s in zip(lines.column("length_m"), lines.column("status")) if s == name) for name in STATUS}
-    if len(lines):
-        progress.say(f"Driving lines: {len({(r['road'], r['lane']) for r in lines.rows})} lanes, {side}-hand traffic: "
-                     + ", ".join(f"{metres:.0f} m {name}" for name, metres in length.items() if metres))
-    else:
+def _column(rows: list[dict[str, Any]], name: str, kind: Any) -> np.ndarray:
+    return np.array([row[name] for row in rows], kind)
+
+
+def _driving_lines(rows: list[dict[str, Any]], crs: str) -> DrivingLines:
+    places = [row["places"] for row in rows]
+    return DrivingLines(
+        _column(rows, "road", int), _column(rows, "lane", int), _column(rows, "pattern", object), _column(rows, "direction", int),
+        _column(rows, "source", object), _column(rows, "status", object), [row["curve"] for row in rows],
+        *(_column(rows, name, float) for name in ("rmse", "station", "end", "offset", "width")),
+        np.concatenate([*places, np.empty((0, 3))]), np.append(0, np.cumsum([len(some) for some in places], dtype=int)), crs)
+
+
+def _curve_elements(rows: list[dict[str, Any]], crs: str) -> CurveElements:
+    return CurveElements(
+        _column(rows, "road", int), _column(rows, "lane", int), _column(rows, "station", float), _column(rows, "end", float),
+        [row["arc"] for row in rows], _column(rows, "complete", bool), _column(rows, "rmse", float), crs)
+
+
+def _report_lengths(lines: DrivingLines, side: str, progress: Progress) -> None:
+    if not len(lines):
         progress.warn("No two marking lines lie a lane's width apart, so there are no driving lines.")
+        return
+    lanes = len(set(zip(lines.road.tolist(), lines.lane.tolist())))
+    length = {name: float(lines.length[lines.status == name].sum()) for name in STATUS}
+    progress.say(f"Driving lines: {lanes} lanes, {side}-hand traffic: "
+                 + ", ".join(f"{metres:.0f} m {name}" for name, metres in length.items() if metres))

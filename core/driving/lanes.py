@@ -31,7 +31,7 @@ def chosen_lines(lines, driven):
 
     Parameters
     ----------
-    lines : Boundaries
+    lines : CrossSections
     driven : (P, K) offset of the passes, NaN where a pass was not
 
     Returns

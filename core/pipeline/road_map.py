@@ -11,10 +11,14 @@ import numpy as np
 from ..assess.curvature import marking_curvature
 from ..common.features import Features
 from ..common.progress import Progress
-from ..driving.driving_lines import DrivingSettings, driving_lines
+from ..driving.driving_layers import curve_elements_to_features, driving_lines_to_features
+from ..driving.driving_lines import DrivingSettings, make_driving_lines
+from ..driving.road_edges import edges_from_features
 from ..intensity.correction import IntensitySettings, correct_intensity
 from ..intensity.image import ImageSettings, IntensityImage, check_fits, write_intensity_image
-from ..markings.lines.fit import LineSettings, fit_marking_lines, named_by_lines
+from ..markings.lines.fit import MarkingLineSettings, fit_marking_lines
+from ..markings.lines.naming import named_by_lines
+from ..markings.lines.painted_lines import lines_to_features
 from ..markings.objects.cluster import ClusterSettings, cluster_markings
 from ..markings.objects.marking_objects import markings_to_features
 from ..markings.objects.outliers import OutlierSettings, remove_outliers
@@ -48,7 +52,7 @@ class RoadMapSettings:
     markings: MarkingSettings = MarkingSettings()
     outliers: OutlierSettings = OutlierSettings()
     clusters: ClusterSettings = ClusterSettings()
-    lines: LineSettings = LineSettings()
+    lines: MarkingLineSettings = MarkingLineSettings()
     driving: DrivingSettings = DrivingSettings()
 
     @property
@@ -181,13 +185,14 @@ def _paint(result, image_path, settings, stages):
         points = stages.run("outliers", "Removing outliers …", remove_outliers, points, settings.outliers)
     result.counts["marking_points_kept"] = len(points)
     markings, clustered = stages.run("clusters", "Clustering markings …", cluster_markings, points, frame, settings.clusters)
-    result.marking_lines = stages.run("lines", "Fitting marking lines …", fit_marking_lines,
-                                      clustered, markings, frame, settings.lines)
-    result.markings = markings_to_features(named_by_lines(markings, result.marking_lines, frame), frame)
+    lines = stages.run("lines", "Fitting marking lines …", fit_marking_lines, clustered, markings, frame, settings.lines)
+    markings = named_by_lines(markings, lines)
+    result.markings, result.marking_lines = markings_to_features(markings, frame), lines_to_features(lines, frame)
     result.marking_curvature = marking_curvature(_places(clustered), result.marking_lines.geometries, frame.origin)
-    result.driving_lines, result.curve_elements = stages.run(
-        "driving", "Making driving lines …", driving_lines, result.marking_lines, frame, settings.driving,
-        markings=result.markings, edges=result.edges, road_points=result.road_points)
+    driving, elements = stages.run(
+        "driving", "Making driving lines …", make_driving_lines, lines, frame, settings.driving,
+        markings=markings, edges=edges_from_features(result.edges, frame), road_points=result.road_points)
+    result.driving_lines, result.curve_elements = driving_lines_to_features(driving, frame), curve_elements_to_features(elements, frame)
     if not len(result.markings):
         result.without_paint = "No paint was found on this road, so there are no marking lines and no driving lines."
         stages.progress.warn(result.without_paint)

@@ -17,8 +17,8 @@ BESIDE = {
     ("PeakSettings", "widest"): {"narrowest": 0.0},
     ("PeakSettings", "profile_length"): {"gap": 10.0},
     ("PeakSettings", "gap"): {"profile_length": 0.02},
-    ("LineSettings", "max_gap"): {"max_bridge": 200.0},
-    ("LineSettings", "max_bridge"): {"max_gap": 0.1},
+    ("MarkingLineSettings", "max_gap"): {"max_bridge": 200.0},
+    ("MarkingLineSettings", "max_bridge"): {"max_gap": 0.1},
 }
 
 

@@ -3,7 +3,11 @@
 import numpy as np
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import MARKING_LINES
-from lanewright.core.driving.driving_lines import DrivingSettings, driving_lines
+from lanewright.core.driving.driving_layers import curve_elements_to_features, driving_lines_to_features
+from lanewright.core.driving.driving_lines import DrivingSettings, make_driving_lines
+from lanewright.core.driving.road_edges import edges_from_features
+from lanewright.core.markings.lines.painted_lines import lines_from_features
+from lanewright.core.markings.objects.marking_objects import markings_from_features
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 from shapely.geometry import LineString
@@ -52,7 +56,7 @@ class Street:
     def lanes(self, **settings):
         """Driving lines and curve elements; inputs beside the lines are named."""
         inputs = {name: settings.pop(name) for name in ("markings", "edges", "road_points") if name in settings}
-        return driving_lines(self.lines, self.frame, DrivingSettings(**settings), **inputs)
+        return driving_layers(self.lines, self.frame, DrivingSettings(**settings), **inputs)
 
     def offsets(self, line):
         """(N,) offsets of a line's vertices from the axis, left positive."""
@@ -60,6 +64,14 @@ class Street:
         if self.radius is None:
             return y - NORTH
         return self.radius - np.hypot(x - EAST, y - NORTH - self.radius)
+
+
+def driving_layers(lines, frame, settings=DrivingSettings(), markings=None, edges=None, road_points=None):
+    """The layers of driving lines and curve elements made from layers."""
+    found, elements = make_driving_lines(
+        lines_from_features(lines, frame), frame, settings, markings=None if markings is None else markings_from_features(markings, frame),
+        edges=None if edges is None else edges_from_features(edges, frame), road_points=road_points)
+    return driving_lines_to_features(found, frame), curve_elements_to_features(elements, frame)
 
 
 def middle(street, found):

@@ -3,7 +3,8 @@
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from lanewright.core.driving.driving_lines import driving_lines
+from lanewright.core.driving.driving_layers import driving_lines_to_features
+from lanewright.core.driving.driving_lines import make_driving_lines
 from lanewright.core.pipeline.road_map import RoadMapSettings
 from lanewright.core.road.common.tracking import StepChain
 from lanewright.core.road.surface.extract import extract_road_surface
@@ -50,7 +51,8 @@ def _keep_all(work, settings):
 
 
 def _driving_alone(work, settings):
-    work.driving, _ = driving_lines(work.lines, work.frame, settings.driving, road_points=work.bright)
+    lines, _ = make_driving_lines(work.lines, work.frame, settings.driving, road_points=work.bright)
+    work.driving = driving_lines_to_features(lines, work.frame)
 
 
 ABLATIONS = (

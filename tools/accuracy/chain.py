@@ -5,7 +5,9 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from importlib import import_module
 
-from lanewright.core.driving.driving_lines import driving_lines
+from lanewright.core.driving.driving_layers import driving_lines_to_features
+from lanewright.core.driving.driving_lines import make_driving_lines
+from lanewright.core.driving.road_edges import edges_from_features
 from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.intensity.image import IntensityImage, write_intensity_image
 from lanewright.core.markings.lines.fit import fit_marking_lines
@@ -73,7 +75,9 @@ def _lines(w, settings):
 
 
 def _driving(w, settings):
-    w.driving, _ = driving_lines(w.lines, w.frame, settings.driving, markings=w.markings, edges=w.edges, road_points=w.bright)
+    lines, _ = make_driving_lines(w.lines, w.frame, settings.driving, markings=w.marking_objects,
+                                  edges=edges_from_features(w.edges, w.frame), road_points=w.bright)
+    w.driving = driving_lines_to_features(lines, w.frame)
 
 
 STAGES = dict(curbs=_curbs, edges=_edges, surface=_surface, intensity=_intensity, image=_image, markings=_markings,

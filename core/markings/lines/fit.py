@@ -1,59 +1,37 @@
-"""Marking lines: the painted lines of a road as curves, dashes linked, gaps told."""
+"""Marking lines: the painted lines of a road traced, linked over gaps and fitted with curves."""
 
-import json
+from __future__ import annotations
+
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import shapely
-from shapely.geometry import LineString
 
 from ...common.errors import RoadExtractionError
-from ...common.features import Features
 from ...common.progress import Progress
-from ...common.schemas import MARKING_LINES
 from ...common.setting import check_limits, setting
 from ...curves.model_selection import CURVES
 from ...survey.store.records import join_columns
 from ..lines import labelling as line_choice
-from ..objects.classify import LINES
+from ..objects.marking_objects import MarkingObjects
 from .dash_pattern import same_rhythm
+from .frame_lines import frame_lines
 from .geometry import shapes_of
 from .linking import Drift, Line, link, link_far, without_strays
+from .painted_lines import FittedPieces, PaintedLines
 from .strands import line_paint, trace
 
-# Markings called what the line is that they make: a dash alone does not know whether it parts lanes or directions.
+if TYPE_CHECKING:
+    from ...survey.frame.road_frame import RoadFrame
+    from ...survey.store.road_points import RoadPoints
 
-ON_LINE = 0.15   # m between a marking and the line along it
+PAINT_BESIDE_PIECE = 2.0   # m of station before and after a piece whose paint counts for its offset
 
-
-def named_by_lines(markings, lines, frame):
-    """Markings of lines (use keep) with the `kind` of the marking line that runs along them.
-
-    Parameters
-    ----------
-    markings : MarkingObjects
-    lines : Features MARKING_LINES fitted to them
-    frame : RoadFrame
-
-    Returns
-    -------
-    MarkingObjects, the same with the new names
-    """
-    rows = np.flatnonzero(markings.keep & np.isin(markings.kind.astype(str), LINES))
-    if not len(rows) or not len(lines):
-        return markings
-    places = shapely.point_on_surface(markings.outlines.polygons(frame.origin)[rows])
-    tree = shapely.STRtree(np.array(lines.geometries, object))
-    of, line = tree.query_nearest(places, max_distance=ON_LINE, all_matches=False)
-    kind = markings.kind.copy()
-    for k, j in zip(rows[of].tolist(), line.tolist()):
-        if markings.road[k] == lines.rows[j]["road"]:
-            kind[k] = lines.rows[j]["kind"]
-    return markings.with_kinds(kind)
 
 @dataclass(frozen=True)
-class LineSettings:
+class MarkingLineSettings:
     """How marking lines are linked and which curve is fitted.
 
     curve : one of core.curves.model_selection.CURVES; degree : of the polynomial
@@ -78,7 +56,8 @@ class LineSettings:
                 "be below the first.")
 
 
-def fit_marking_lines(clustered_points, markings, frame, settings=LineSettings(), progress=Progress()):
+def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, frame: RoadFrame,
+                      settings: MarkingLineSettings = MarkingLineSettings(), progress: Progress = Progress()) -> PaintedLines:
     """Trace, link and fit the painted lines of all roads.
 
     Parameters
@@ -89,10 +68,9 @@ def fit_marking_lines(clustered_points, markings, frame, settings=LineSettings()
 
     Returns
     -------
-    Features MARKING_LINES: a line that is partly bridged, or changes between dashed and
+    PaintedLines with `fitted`: a line that is partly bridged, or changes between dashed and
     solid, comes in touching pieces with one `line` number. Every piece is drawn on the
-    line's one curve, whose numbers (map coordinates, and the arc lengths `from` and
-    `to` of the piece) are in `params`. `rmse_m` is NULL on bridged pieces.
+    line's one curve.
 
     Raises
     ------
@@ -102,7 +80,7 @@ def fit_marking_lines(clustered_points, markings, frame, settings=LineSettings()
     if not clustered_points.has_cluster:
         raise RoadExtractionError(
             "The points have no field “cluster”. Give the file that “Cluster markings” wrote, together with its layer.")
-    found = Features("LineStringZ", MARKING_LINES, crs=clustered_points.crs)
+    rows: list[dict[str, Any]] = []
     number, replaced, dropped = 0, 0, 0
     roads = clustered_points.roads()
     for k, road in enumerate(roads):
@@ -127,13 +105,13 @@ def fit_marking_lines(clustered_points, markings, frame, settings=LineSettings()
         replaced += unwanted
         for j, (one, shape) in enumerate(zip(chosen, shapes)):
             number += 1
-            _add(found, one, shape, number, road, frame.origin)
+            rows += [dict(row, line=number, road=int(road)) for row in _drawn_pieces(one, shape, frame.origin)]
             part.at(0.8 + 0.2 * (j + 1) / len(chosen))
     progress.say(f"Marking lines: {number}; {dropped} fragments were left out.")
     if replaced:
         progress.warn(f"{replaced} of {number} lines cannot take the curve “{settings.curve}”; "
                       "the automatic curve was used for them.")
-    return found
+    return _painted_lines(rows, frame, clustered_points.crs)
 
 
 def _linked(strands, settings):
@@ -149,32 +127,30 @@ def _records_of(points, road):
     return join_columns(parts, points.store.dtype)
 
 
-def _add(found, one, shape, number, road, origin):
-    curve = shape.fit.curve.moved(*origin[:2])
-    numbers = json.dumps(_rounded(curve.params()))[:-1]  # once for all pieces: those of long splines are long
+def _drawn_pieces(one, shape, origin) -> Iterator[dict[str, Any]]:
+    """The pieces of one line that have a length on the map."""
     s, d, *_ = one.line.places()
     for piece in one.pieces:
-        places = shape.draw(piece.first, piece.last) + origin
-        geometry = LineString(places)
-        if not geometry.length > 0:
+        places = shape.draw(piece.first, piece.last)
+        if not np.ptp(places[:, :2] + origin[:2], axis=0).any():
             continue
-        inside = (shape.s >= piece.first) & (shape.s <= piece.last)
-        residuals = shape.fit.residuals[inside]
+        residuals = shape.fit.residuals[(shape.s >= piece.first) & (shape.s <= piece.last)]
         measured = piece.status == "measured" and len(residuals)
-        start, end = shape.u(np.array([piece.first, piece.last]))
-        near = (s >= piece.first - 2.0) & (s <= piece.last + 2.0)
-        found.add(
-            geometry, road=int(road), line=number, kind=one.kind,
-            pattern=f"double-{piece.pattern}" if one.double else piece.pattern, status=piece.status,
-            curve=curve.kind, radius_m=float(curve.radius) if curve.kind == "circle" else None,
-            rmse_m=float(np.sqrt(np.mean(residuals**2))) if measured else None,
-            station_m=float(piece.first), end_m=float(piece.last),
-            offset_m=float(np.median(d[near])) if near.any() else None,
-            length_m=float(geometry.length), width_m=float(one.width),
-            params=f'{numbers}, {json.dumps({"from": round(float(start), 4), "to": round(float(end), 4)})[1:]}')
+        near = (s >= piece.first - PAINT_BESIDE_PIECE) & (s <= piece.last + PAINT_BESIDE_PIECE)
+        yield dict(
+            kind=one.kind, pattern=f"double-{piece.pattern}" if one.double else piece.pattern, status=piece.status,
+            curve=shape.fit.curve, arc=shape.u(np.array([piece.first, piece.last])), places=places,
+            station=piece.first, end=piece.last, offset=np.median(d[near]) if near.any() else np.nan, width=one.width,
+            rmse=np.sqrt(np.mean(residuals**2)) if measured else np.nan)
 
 
-def _rounded(numbers):
-    """Long lists to 0.1 mm: a spline of a long road stays readable."""
-    long = ("knots", "control_x", "control_y")
-    return {key: [round(v, 4) for v in value] if key in long else value for key, value in numbers.items()}
+def _painted_lines(rows: list[dict[str, Any]], frame: RoadFrame, crs: str) -> PaintedLines:
+    def column(name: str, kind: Any) -> np.ndarray:
+        return np.array([row[name] for row in rows], kind)
+
+    places = [row["places"] for row in rows]
+    fitted = FittedPieces([row["curve"] for row in rows], column("arc", float).reshape(-1, 2), np.concatenate([*places, np.empty((0, 3))]),
+                          np.append(0, np.cumsum([len(some) for some in places], dtype=int)),
+                          *(column(name, float) for name in ("station", "end", "offset", "width", "rmse")))
+    course = frame_lines(fitted.linestrings(frame), column("road", int), frame)
+    return PaintedLines(column("line", int), *(column(name, object) for name in ("kind", "pattern", "status")), course, fitted, crs)

@@ -58,7 +58,7 @@ def shapes_of(lines, spans, road, drift, track_height, settings):
     drift : Drift, how the painted lines of the road run together
     track_height : function of stations (N,), height of the trajectory; the line's height is
         smoothed as the difference to it, so that it goes on along the road's slope
-    settings : LineSettings
+    settings : MarkingLineSettings
 
     Returns
     -------

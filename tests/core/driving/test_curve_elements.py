@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from lanewright.core.driving.curve_elements import FOOT, curve_elements, curve_points, design_check
+from lanewright.core.driving.curve_elements import FOOT, circular_curve_elements, curve_points, design_check
 from lined_streets import EAST, NORTH, Street
 
 
 @pytest.mark.parametrize("radius", [15.0, 140.8, 900.0])
 @pytest.mark.parametrize("delta_deg", [2.0, 10.49, 85.0, 170.0])
 def test_the_middle_ordinate_is_the_external_distance_times_the_cosine_of_half_the_turn(radius, delta_deg):
-    found = curve_elements(radius, np.radians(delta_deg))
+    found = circular_curve_elements(radius, np.radians(delta_deg))
     assert found["middle_m"] == pytest.approx(found["ext_m"] * np.cos(np.radians(delta_deg) / 2), rel=1e-12)
     assert found["middle_m"] < found["ext_m"]
     assert found["chord_m"] < found["length_m"] < 2 * found["tangent_m"]
@@ -17,7 +17,7 @@ def test_the_middle_ordinate_is_the_external_distance_times_the_cosine_of_half_t
 
 def test_the_published_curve_of_12_4_degrees_per_100_feet():
     radius = 5729.578 / 12.4 * FOOT
-    found = curve_elements(radius, np.radians(10.49))
+    found = circular_curve_elements(radius, np.radians(10.49))
     assert found["radius_ft"] == pytest.approx(462.06, abs=0.01)
     assert found["degree_ft"] == pytest.approx(12.4, abs=1e-5)
     assert found["tangent_ft"] == pytest.approx(42.42, abs=0.01)
@@ -32,7 +32,7 @@ def test_the_published_curve_of_12_4_degrees_per_100_feet():
 @pytest.mark.parametrize("left", [True, False])
 def test_pi_lies_on_both_tangents_and_a_chord_apart_are_pc_and_pt(left):
     pc, pi, pt = curve_points((10.0, 20.0), 0.3, 80.0, 0.7, left)
-    found = curve_elements(80.0, 0.7)
+    found = circular_curve_elements(80.0, 0.7)
     assert np.hypot(*(pt - pc)) == pytest.approx(found["chord_m"])
     assert np.hypot(*(pi - pc)) == pytest.approx(np.hypot(*(pt - pi))) == pytest.approx(found["tangent_m"])
     turn = (pt - pc)[1] * np.cos(0.3) - (pt - pc)[0] * np.sin(0.3)
@@ -50,7 +50,7 @@ def test_an_arc_cut_by_the_end_of_the_line_is_judged_by_its_radius_alone():
     assert speed == 50 and "goes on" in text
 
 
-def test_a_straight_street_has_no_curve_elements():
+def test_a_straight_street_has_no_circular_curve_elements():
     _, elements = Street().paint(0.0).paint(-3.5).lanes()
     assert len(elements) == 0
 

@@ -5,11 +5,11 @@ import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import MARKING_LINES, MARKINGS, ROAD_EDGES
-from lanewright.core.driving.driving_lines import DrivingSettings, driving_lines
+from lanewright.core.driving.driving_lines import DrivingSettings
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
 from lanewright.core.survey.store.section_store import SectionStore
-from lined_streets import EAST, HEIGHT, Street, middle
+from lined_streets import EAST, HEIGHT, Street, driving_layers, middle
 from shapely import force_2d
 from shapely.geometry import LineString, Polygon
 
@@ -254,7 +254,7 @@ def test_neither_the_order_of_rows_nor_the_drawing_of_lines_changes_the_result()
     lines, _ = street.lanes()
     turned = Features("LineStringZ", MARKING_LINES, [line.reverse() for line in street.lines.geometries[::-1]],
                       street.lines.rows[::-1])
-    again, _ = driving_lines(turned, street.frame)
+    again, _ = driving_layers(turned, street.frame)
     assert [dict(row) for row in again.rows] == [dict(row) for row in lines.rows]
     for one, two in zip(lines.geometries, again.geometries):
         np.testing.assert_allclose(np.asarray(one.coords), np.asarray(two.coords), atol=1e-6)
@@ -264,14 +264,14 @@ def test_lines_drawn_by_hand_with_no_fields_at_all_serve_too():
     street = Street(vehicle=-1.75).paint(0.0).paint(-3.5)
     bare = Features("LineStringZ", MARKING_LINES, [LineString([line.coords[0], line.coords[-1]])
                                                    for line in street.lines.geometries], [{}, {}])
-    lines, _ = driving_lines(bare, street.frame)
+    lines, _ = driving_layers(bare, street.frame)
     assert middle(street, lines) == [pytest.approx(-1.75, abs=0.005)]
 
 
 def test_flat_lines_without_road_points_take_the_trajectory_s_height():
     street = Street(vehicle=-1.75).paint(0.0).paint(-3.5)
     flat = Features("LineStringZ", MARKING_LINES, [force_2d(line) for line in street.lines.geometries], street.lines.rows)
-    lines, _ = driving_lines(flat, street.frame)
+    lines, _ = driving_layers(flat, street.frame)
     np.testing.assert_allclose(np.asarray(lines.geometries[0].coords)[:, 2], HEIGHT + 2.5, atol=1e-6)
 
 

@@ -10,7 +10,8 @@ from lanewright.core.common.features import Features
 from lanewright.core.common.progress import Progress
 from lanewright.core.common.schemas import MARKINGS
 from lanewright.core.curves.model_selection import curve_from_params
-from lanewright.core.markings.lines.fit import LineSettings, fit_marking_lines
+from lanewright.core.markings.lines.fit import MarkingLineSettings, fit_marking_lines
+from lanewright.core.markings.lines.painted_lines import lines_from_features, lines_to_features
 from lanewright.core.markings.objects.marking_objects import markings_from_features
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
@@ -70,7 +71,11 @@ class Street:
                 self.paint(s, s + dash, offset, **kind)
         return self
 
-    def lines(self, settings=LineSettings(), progress=Progress()):
+    def lines(self, settings=MarkingLineSettings(), progress=Progress()):
+        """The layer of the marking lines found."""
+        return lines_to_features(self.painted_lines(settings, progress), self.frame)
+
+    def painted_lines(self, settings=MarkingLineSettings(), progress=Progress()):
         """The marking lines found."""
         points = RoadPoints.empty_like(origin=self.frame.origin)
         points.has_cluster = True
@@ -398,7 +403,7 @@ def test_every_piece_lies_on_the_curve_that_its_params_tell():
 
 @pytest.mark.parametrize("curve", ["line", "circle", "clothoid", "polynomial", "b-spline"])
 def test_a_chosen_curve_is_used_for_every_line(curve):
-    lines = Street().paint(0, 120, 0.0, kind="centre").paint(0, 120, 4.5, kind="edge").lines(LineSettings(curve=curve))
+    lines = Street().paint(0, 120, 0.0, kind="centre").paint(0, 120, 4.5, kind="edge").lines(MarkingLineSettings(curve=curve))
     assert told(lines, "curve") == [(curve,)] * 2
     assert all((row["radius_m"] is not None) == (curve == "circle") for row in lines.rows)
 
@@ -410,9 +415,21 @@ def test_where_the_chosen_curve_cannot_be_the_user_is_told():
         def warn(self, text):
             self.warnings.append(text)
 
-    lines = Street().paint(0, 50, 0.0, kind="centre").lines(LineSettings(curve="ellipse"), Listener())
+    lines = Street().paint(0, 50, 0.0, kind="centre").lines(MarkingLineSettings(curve="ellipse"), Listener())
     assert told(lines, "curve") == [("circle",)]
     assert Listener.warnings == ["1 of 1 lines cannot take the curve “ellipse”; the automatic curve was used for them."]
+
+
+def test_lines_that_are_written_as_a_layer_and_read_again_lie_at_the_same_stations_and_offsets():
+    street = Street().paint(0, 120, 4.0, kind="edge").dashes(3.0, 6.0, 0.0, missing=(4, 5))
+    lines = street.painted_lines()
+    again = lines_from_features(lines_to_features(lines, street.frame), street.frame)
+    for name in ("line", "kind", "pattern", "status"):
+        np.testing.assert_array_equal(getattr(again, name), getattr(lines, name))
+    for name in ("road", "start", "s", "d", "z"):
+        np.testing.assert_array_equal(getattr(again.course, name), getattr(lines.course, name))
+    with pytest.raises(ValueError, match="no fitted curves"):
+        lines_to_features(again, street.frame)
 
 
 def test_a_road_without_painted_lines_has_none():
@@ -429,4 +446,4 @@ def test_points_that_were_not_clustered_are_refused():
 def test_settings_out_of_range_are_refused():
     for wrong in (dict(curve="sinusoid"), dict(degree=12), dict(max_gap=40.0)):
         with pytest.raises(RoadExtractionError):
-            LineSettings(**wrong)
+            MarkingLineSettings(**wrong)

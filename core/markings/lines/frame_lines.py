@@ -1,0 +1,92 @@
+"""Lines of a map in the road frame: the one conversion from map coordinates to station and offset that lines go through."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+
+from ..objects.placement import located
+
+if TYPE_CHECKING:
+    from ...survey.frame.road_frame import RoadFrame
+
+VERTEX_SPACING = 0.5  # m between vertices at most: straight on the map is not straight in the road frame
+
+
+@dataclass(frozen=True)
+class FrameLines:
+    """L lines, stored vertex by vertex, at most half a metre apart.
+
+    road : (L,) int, number of the road; -1 where a line lies on none
+    start : (L + 1,) int, first vertex of each line, and V
+    x, y, z : (V,) local metres (map coordinates less the origin of the frame); z is NaN where there is none
+    s, d : (V,) metres, station and offset; NaN where a vertex has no foot on its road
+    """
+
+    road: np.ndarray
+    start: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    z: np.ndarray
+    s: np.ndarray
+    d: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.road)
+
+    def line(self, k: int) -> slice:
+        """The vertices of line k."""
+        return slice(int(self.start[k]), int(self.start[k + 1]))
+
+    def take(self, rows: np.ndarray) -> FrameLines:
+        """Some of the lines, by their numbers."""
+        count = np.diff(self.start)[rows]
+        start = np.append(0, np.cumsum(count))
+        at = np.repeat(self.start[rows] - start[:-1], count) + np.arange(start[-1])
+        return FrameLines(self.road[rows], start, *(values[at] for values in (self.x, self.y, self.z, self.s, self.d)))
+
+    def linestrings(self) -> np.ndarray:
+        """(L,) shapely lines in local x, y."""
+        owner = np.repeat(np.arange(len(self)), np.diff(self.start))
+        found = np.full(len(self), None, object)
+        return shapely.linestrings(np.c_[self.x, self.y], indices=owner, out=found) if len(owner) else found
+
+
+def frame_lines(lines: Sequence[Any], road: Sequence[int] | np.ndarray, frame: RoadFrame) -> FrameLines:
+    """Lines in map coordinates as FrameLines.
+
+    Parameters
+    ----------
+    lines : L shapely LineStrings in map coordinates
+    road : (L,) int, number of the road of each; where the frame has no such road, the one that most vertices are nearest to
+    frame : RoadFrame
+
+    Returns
+    -------
+    FrameLines
+    """
+    shapes = shapely.segmentize(np.asarray(lines, object), VERTEX_SPACING) if len(lines) else np.empty(0, object)
+    places, owner = shapely.get_coordinates(shapes, include_z=True, return_index=True)
+    start = np.append(0, np.cumsum(np.bincount(owner, minlength=len(lines))))
+    x, y = frame.to_local(places[:, 0], places[:, 1])
+    roads = np.array([int(number) if 0 <= number < len(frame.roads) else _nearest_road(frame, x[a:b], y[a:b])
+                      for number, a, b in zip(road, start[:-1], start[1:])], int)
+    return FrameLines(roads, start, x, y, places[:, 2] - frame.origin[2], *located(frame, roads[owner], x, y))
+
+
+def _nearest_road(frame: RoadFrame, x: np.ndarray, y: np.ndarray) -> int:
+    """The road that most places are nearest to, -1 where there is none."""
+    numbers, _, _ = frame.locate_nearest(x, y)
+    numbers = numbers[numbers >= 0]
+    return int(np.bincount(numbers).argmax()) if len(numbers) else -1
+
+
+def line_parts(geometries: Sequence[Any]) -> tuple[list[Any], list[int]]:
+    """The LineStrings of lines and multi-lines that are not empty, and the row that each comes from."""
+    parts = [(part, row) for row, geometry in enumerate(geometries) if geometry is not None and not geometry.is_empty
+             for part in getattr(geometry, "geoms", [geometry])]
+    return [part for part, _ in parts], [row for _, row in parts]

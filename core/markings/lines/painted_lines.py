@@ -1,0 +1,153 @@
+"""Marking lines as arrays, and their conversion from and to the layer MARKING_LINES.
+
+Stages hand each other `PaintedLines`. Map coordinates are made in one place,
+`lines_to_features`, and read in one place, `lines_from_features`.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+
+from ...common.features import Features
+from ...common.schemas import MARKING_LINES
+from ...curves.base import Curve
+from .frame_lines import FrameLines, frame_lines, line_parts
+
+if TYPE_CHECKING:
+    from ...survey.frame.road_frame import RoadFrame
+
+LONG_LISTS = ("knots", "control_x", "control_y")  # parameters of splines
+
+
+@dataclass(frozen=True)
+class FittedPieces:
+    """What a fit says of P pieces of marking lines.
+
+    curve : P Curve in local coordinates; the pieces of one line share one
+    arc : (P, 2) metres, arc lengths on the curve where the piece begins and ends
+    vertices : (V, 3) local metres, the pieces as they are drawn, one after the other
+    start : (P + 1,) int, first vertex of each piece, and V
+    station, end : (P,) metres
+    offset : (P,) metres, median of the paint along the piece; NaN where there is none, as between dashes
+    width : (P,) metres
+    rmse : (P,) metres, of the paint from the curve; NaN on bridged pieces
+    """
+
+    curve: list[Curve]
+    arc: np.ndarray
+    vertices: np.ndarray
+    start: np.ndarray
+    station: np.ndarray
+    end: np.ndarray
+    offset: np.ndarray
+    width: np.ndarray
+    rmse: np.ndarray
+
+    def linestrings(self, frame: RoadFrame) -> np.ndarray:
+        """(P,) shapely lines with Z in map coordinates."""
+        owner = np.repeat(np.arange(len(self.curve)), np.diff(self.start))
+        found = np.full(len(self.curve), None, object)
+        return shapely.linestrings(self.vertices + frame.origin, indices=owner, out=found) if len(owner) else found
+
+
+@dataclass(frozen=True)
+class PaintedLines:
+    """Marking lines in P pieces, each of one status and pattern.
+
+    line : (P,) int, number of the line; its pieces share it
+    kind : (P,) str objects, edge, lane or centre; "" where unknown
+    pattern : (P,) str objects, solid, dashed, double-solid, double-dashed; "" where unknown
+    status : (P,) str objects, measured or bridged
+    course : FrameLines, one per piece
+    fitted : FittedPieces, None for lines that were read from a layer
+    crs : WKT, "" where unknown
+    """
+
+    line: np.ndarray
+    kind: np.ndarray
+    pattern: np.ndarray
+    status: np.ndarray
+    course: FrameLines
+    fitted: FittedPieces | None = None
+    crs: str = ""
+
+    def __len__(self) -> int:
+        return len(self.line)
+
+
+def lines_to_features(lines: PaintedLines, frame: RoadFrame) -> Features:
+    """The layer MARKING_LINES: fitted lines in map coordinates with their fields.
+
+    Parameters
+    ----------
+    lines : PaintedLines with `fitted`
+    frame : RoadFrame, whose origin is added to local coordinates
+
+    Returns
+    -------
+    Features MARKING_LINES, one row a piece, in the same order. `params` holds the
+    numbers of the line's curve in map coordinates as JSON, and the arc lengths `from` and `to` of the piece
+
+    Raises
+    ------
+    ValueError
+        If the lines were not fitted but read from a layer.
+    """
+    fitted = lines.fitted
+    if fitted is None:
+        raise ValueError("Lines that were read from a layer have no fitted curves to write.")
+    layer = Features("LineStringZ", MARKING_LINES, crs=lines.crs)
+    curves: dict[int, tuple[Curve, str]] = {}
+    for k, geometry in enumerate(fitted.linestrings(frame)):
+        key = id(fitted.curve[k])
+        if key not in curves:
+            moved = fitted.curve[k].moved(*frame.origin[:2])
+            curves[key] = moved, json.dumps(_rounded(moved.params()))[:-1]  # once for all pieces: those of long splines are long
+        curve, numbers = curves[key]
+        first, last = fitted.arc[k].tolist()
+        layer.add(
+            geometry, road=int(lines.course.road[k]), line=int(lines.line[k]), kind=lines.kind[k], pattern=lines.pattern[k],
+            status=lines.status[k], curve=curve.kind, radius_m=float(curve.radius) if curve.kind == "circle" else None,
+            rmse_m=_known(fitted.rmse[k]), station_m=float(fitted.station[k]), end_m=float(fitted.end[k]),
+            offset_m=_known(fitted.offset[k]), length_m=float(geometry.length), width_m=float(fitted.width[k]),
+            params=f'{numbers}, {json.dumps({"from": round(first, 4), "to": round(last, 4)})[1:]}')
+    return layer
+
+
+def _known(value: float) -> float | None:
+    return None if np.isnan(value) else float(value)
+
+
+def _rounded(numbers: dict[str, Any]) -> dict[str, Any]:
+    """Long lists to 0.1 mm: a spline of a long road stays readable."""
+    return {key: [round(v, 4) for v in value] if key in LONG_LISTS else value for key, value in numbers.items()}
+
+
+def lines_from_features(features: Features, frame: RoadFrame) -> PaintedLines:
+    """Read the layer MARKING_LINES.
+
+    Parameters
+    ----------
+    features : Features with lines in map coordinates; `road`, `line`, `kind`, `pattern` and `status` are used where they are, so
+        that lines drawn by hand serve as well
+    frame : RoadFrame
+
+    Returns
+    -------
+    PaintedLines, one piece a LineString; rows without geometry are left out
+    """
+    parts, row_of = line_parts(features.geometries)
+    rows = [features.rows[k] for k in row_of]
+    # rows without a number are lines of their own, numbered behind the others
+    numbers = [None if row.get("line") is None else int(row["line"]) for row in rows]
+    free = max((number for number in numbers if number is not None), default=0) + 1
+    line = np.array([free + k if number is None else number for number, k in zip(numbers, row_of)], int)
+    road = [-1 if row.get("road") is None else int(row["road"]) for row in rows]
+    names = [np.array([str(row.get(name) or missing) for row in rows], object)
+             for name, missing in (("kind", ""), ("pattern", ""), ("status", "measured"))]
+    return PaintedLines(line, *names, frame_lines(parts, road, frame), crs=features.crs)
