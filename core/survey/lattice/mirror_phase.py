@@ -1,30 +1,33 @@
-"""When the mirror of a scanner stood where: turns as a function of time."""
+"""The phase of a scanner's mirror: turns as a function of time."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-FEWEST_IN_BIN = 8     # points that tell a phase
-LEAST_SHARE = 0.3     # of the usual number: bins that are cut off tell a phase of their own
-LEAST_COHERENT = 0.3  # of the mean phasor of a bin
-PER_BIN = 5           # nodes of the smooth curve through the bins' phases
-JUMP_IN_BINS = 1.5    # of the usual step: farther apart, the phase between is foretold from the rate before
+MIN_PHASE_BIN_POINTS = 8     # points of a bin, or it gives no phase
+MIN_PHASE_BIN_SHARE = 0.3    # of the median number of points: bins that are cut off have a biased phase
+MIN_PHASE_COHERENCE = 0.3    # length of the mean phasor of a bin
+NODES_PER_BIN = 5            # of the smooth curve through the phases of the bins
+MAX_BIN_STEP = 1.5           # bins between two phases; farther apart, the phase in between is extrapolated from the rate before
 
 
 @dataclass(frozen=True)
 class MirrorPhase:
-    """The turns of one scanner during one pass; a scan line is a turn.
+    """The turns of one scanner's mirror during one pass; a scan line is a turn.
 
     Attributes
     ----------
     frequency : Hz, the mean; negative where the mirror turns clockwise seen in the direction of the road
-    time, turns : (K,) nodes between which the mirror turns evenly; turns increase
+    time, turns : (K,) seconds and turns of nodes between which the mirror turns evenly; turns increase
     pulse : usual share of a turn between neighbouring points of a line
     spacing : turns between neighbouring lines, more than 1 where lines were left out of the cloud
     leftward : whether the lines run to the left, offset increasing with time
-    peak : 0 to 1, how clearly the cloud shows this frequency
-    origin : "angle" where the points' angles told the phase, "gap" where the times alone did
+    peak : 0 to 1, how well the points fit this frequency
+    origin : "angle" where the phase follows from the points' angles, "gap" where it follows from gaps in their times
     """
 
     frequency: float
@@ -36,28 +39,29 @@ class MirrorPhase:
     peak: float = 1.0
     origin: str = "angle"
 
-    def turns_at(self, time):
-        """(N,) turns since the pass began, at times in seconds; line and mirror phase in one number."""
+    def turns_at(self, time: np.ndarray) -> np.ndarray:
+        """(N,) turns since the pass began, at (N,) times in seconds: whole turns count lines, the fraction is the mirror phase."""
         time = np.asarray(time, float)
-        return _beyond(time, self.time, self.turns, abs(self.frequency))
+        return _interpolate(time, self.time, self.turns, abs(self.frequency))
 
-    def times_at(self, turns):
-        """(N,) seconds at which the mirror had turned so far."""
+    def times_at(self, turns: np.ndarray) -> np.ndarray:
+        """(N,) seconds at which the mirror had made (N,) turns."""
         turns = np.asarray(turns, float)
-        return _beyond(turns, self.turns, self.time, 1.0 / abs(self.frequency))
+        return _interpolate(turns, self.turns, self.time, 1.0 / abs(self.frequency))
 
-    def lines_and_phase(self, time, angle=None):
+    def lines_and_phase(self, time: np.ndarray, angle: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
         """Line number and mirror phase of points.
 
         Parameters
         ----------
         time : (N,) seconds
-        angle : (N,) radians about the trajectory, 0 at the zenith; given, it decides on which side of the
-            zenith a point lies, so that a ceiling is parted exactly above the vehicle whatever the phase's error
+        angle : (N,) radians about the trajectory, 0 at the zenith. If given, it decides on which side of the
+            zenith a point lies, so that a ceiling is split exactly above the vehicle whatever the error of the phase
 
         Returns
         -------
-        (N,) int64 line, (N,) float64 phase in turns: 0 at the zenith, 0.5 below, in [0, 1) unless an angle moved it
+        line : (N,) int64
+        phase : (N,) float64, turns: 0 at the zenith, 0.5 below; in [0, 1) unless an angle changed the line
         """
         turns = self.turns_at(time)
         line = np.floor(turns)
@@ -66,13 +70,9 @@ class MirrorPhase:
             line = np.round(turns - np.where(share < 0, share + 1.0, share))
         return line.astype(np.int64), turns - line
 
-    def columns(self, phase):
-        """(N,) int64 place in the line of points of a mirror phase; neighbours in neighbouring lines share it."""
-        return np.floor(np.asarray(phase) / self.pulse).astype(np.int64)
 
-
-def _beyond(x, nodes, values, rate):
-    """Values at x between nodes, and straight on beyond them as they go there (at `rate` where there is one node)."""
+def _interpolate(x, nodes, values, rate):
+    """Values at x between nodes, extrapolated linearly beyond them (at `rate` where there is one node)."""
     found = np.interp(x, nodes, values)
     before, behind = np.minimum(x - nodes[0], 0.0), np.maximum(x - nodes[-1], 0.0)
     if len(nodes) < 2:
@@ -81,8 +81,9 @@ def _beyond(x, nodes, values, rate):
     return found + first * before + last * behind
 
 
-def mirror_phase_from_phasors(frequency, time, phasor, count, bin_length, start=0.0, **more):
-    """A clock from what the bins of a pass say about the phase.
+def mirror_phase_from_phasors(frequency: float, time: np.ndarray, phasor: np.ndarray, count: np.ndarray, bin_length: float,
+                              start: float = 0.0, **fields: Any) -> MirrorPhase | None:
+    """The mirror phase of a pass from the mean phase of its bins.
 
     Parameters
     ----------
@@ -91,30 +92,31 @@ def mirror_phase_from_phasors(frequency, time, phasor, count, bin_length, start=
     phasor : (B,) complex, sums of exp(i (angle - 2 pi frequency t)) over the points of each bin
     count : (B,) points
     bin_length, start : seconds
+    fields : further attributes of the MirrorPhase
 
     Returns
     -------
-    MirrorPhase, or None where no bin tells a phase
+    MirrorPhase, or None where no bin has a phase
     """
-    told = np.flatnonzero((count >= FEWEST_IN_BIN) & (np.abs(phasor) >= LEAST_COHERENT * count))
-    if not len(told):
+    usable = np.flatnonzero((count >= MIN_PHASE_BIN_POINTS) & (np.abs(phasor) >= MIN_PHASE_COHERENCE * count))
+    if not len(usable):
         return None
-    told = told[count[told] >= LEAST_SHARE * np.median(count[told])]
-    time = time[told] / count[told]
-    # the rotation as found, and what it was ahead of that
-    turns = np.sign(frequency) * (frequency * time + _unwrapped(time, np.angle(phasor[told]), bin_length) / (2 * np.pi))
+    usable = usable[count[usable] >= MIN_PHASE_BIN_SHARE * np.median(count[usable])]
+    time = time[usable] / count[usable]
+    # even rotation, and what the mirror was ahead of it
+    turns = np.sign(frequency) * (frequency * time + _unwrap(time, np.angle(phasor[usable]), bin_length) / (2 * np.pi))
     rising = np.r_[True, np.diff(np.maximum.accumulate(turns)) > 0]
     time, turns = time[rising], turns[rising]
     mean = (turns[-1] - turns[0]) / (time[-1] - time[0]) if len(time) > 1 else abs(frequency)
-    time, turns = _smooth(time, turns, bin_length)
-    return MirrorPhase(float(np.sign(frequency) * mean), start + time, turns - np.floor(turns[0]), **more)
+    time, turns = _smooth_nodes(time, turns, bin_length)
+    return MirrorPhase(float(np.sign(frequency) * mean), start + time, turns - np.floor(turns[0]), **fields)
 
 
-def _smooth(time, turns, bin_length):
-    """Nodes PER_BIN a bin on a smooth curve through those given: between straight pieces lines would not line up."""
+def _smooth_nodes(time, turns, bin_length):
+    """NODES_PER_BIN nodes per bin on a cubic spline: with linear pieces the points of neighbouring lines would not line up."""
     if len(time) < 4:
         return time, turns
-    steps = np.minimum(np.ceil(np.diff(time) / bin_length * PER_BIN), PER_BIN).astype(np.int64)
+    steps = np.minimum(np.ceil(np.diff(time) / bin_length * NODES_PER_BIN), NODES_PER_BIN).astype(np.int64)
     share = np.concatenate([np.arange(n) / n for n in steps])
     piece = np.repeat(np.arange(len(steps)), steps)
     fine = np.r_[time[piece] + share * np.diff(time)[piece], time[-1]]
@@ -122,14 +124,14 @@ def _smooth(time, turns, bin_length):
     return (fine, found) if (np.diff(found) > 0).all() else (time, turns)
 
 
-def _unwrapped(time, phase, bin_length):
-    """(K,) phases in which neighbours differ by less than half a turn from what the rate before foretold."""
+def _unwrap(time, phase, bin_length):
+    """(K,) phases, each within half a turn of the one that the rate before it predicts."""
     apart = np.diff(time)
     step = (np.diff(phase) + np.pi) % (2 * np.pi) - np.pi
-    near = apart < JUMP_IN_BINS * bin_length
+    near = apart < MAX_BIN_STEP * bin_length
     if near.any() and not near.all():
         before = np.maximum.accumulate(np.where(near, np.arange(len(near)), -1))
         rate = np.where(before >= 0, (step / apart)[before], 0.0)
-        foretold = rate * apart
-        step = np.where(near, step, foretold + (np.diff(phase) - foretold + np.pi) % (2 * np.pi) - np.pi)
+        predicted = rate * apart
+        step = np.where(near, step, predicted + (np.diff(phase) - predicted + np.pi) % (2 * np.pi) - np.pi)
     return phase[0] + np.r_[0.0, np.cumsum(step)]

@@ -32,7 +32,7 @@ def test_every_point_gets_its_line(case):
     assert lines_found(cloud, lattice) >= 0.9999
 
 
-def test_two_scanners_and_two_passes_have_clocks_of_their_own():
+def test_two_scanners_and_two_passes_each_have_a_mirror_phase():
     time, x = driven(seconds=4.0)
     back = time + 100.0, x[::-1]
     left, right = scanned(drive=(time, x), rotation=120.0), scanned(drive=(time, x), rotation=120.0, yaw=-45.0)
