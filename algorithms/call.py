@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 
 from ..core.common.errors import Cancelled, RoadExtractionError
-from ..core.common.parallel import heard
+from ..core.common.parallel import cancellation_scope
 from .destinations import UnfinishedFiles, check_suffix, check_writable, destination_path
 from .parameters import settings_class
 from .texts import tr
@@ -246,7 +246,7 @@ def run(call, progress):
     """
     try:
         call.check_destinations()
-        with heard(progress):
+        with cancellation_scope(progress):
             results = call.algorithm.work(call, progress)
         return call.finish(results or {}), ""
     except RoadExtractionError as error:

@@ -93,7 +93,7 @@ def _on_clock_of(road_points, trajectory, progress):
         return trajectory, not len(road_points)
     offset, note = align_time(trajectory.time, (first, last))
     if note:
-        progress.say(note)
+        progress.info(note)
     return trajectory.shifted(offset), True
 
 
@@ -148,5 +148,5 @@ def imported_trajectory(call, progress):
     if headers:
         trajectory, note, *_ = match_clocks(headers, trajectory, call.settings(SURVEY_SETTINGS), progress)
         if note:
-            progress.say(note)
+            progress.info(note)
     return trajectory

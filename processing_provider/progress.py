@@ -12,18 +12,18 @@ class FeedbackProgress(Progress):
         self.feedback = feedback
         self._remaining = remaining or RemainingTime()
 
-    def ask(self):
+    def check_cancelled(self):
         if self.feedback.isCanceled():
             raise Cancelled
 
-    def at(self, fraction):
-        self.ask()
+    def report(self, fraction):
+        self.check_cancelled()
         self.feedback.setProgress(100.0 * fraction)
         left = self._remaining.after(fraction)
         if left is not None:
             self.feedback.setProgressText(time_left(left))
 
-    def say(self, text):
+    def info(self, text):
         self.feedback.pushInfo(text)
 
     def warn(self, text):

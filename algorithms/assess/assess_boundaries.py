@@ -91,7 +91,7 @@ class AssessBoundaries(Algorithm):
         crs = common_crs((reference, result))
         result, reference = in_crs(result, crs, warn), in_crs(reference, crs, warn)
         check_overlap(result, reference)
-        progress.at(0.2)
+        progress.report(0.2)
         frame, area = frame_of_drive(call, crs), area_of(call, crs, warn)
         for choose in (bottoms_only, along_the_road_only):
             result, _ = choose(result, warn)
@@ -99,17 +99,17 @@ class AssessBoundaries(Algorithm):
             excluded, kinds = ([values[k] for k in kept] for values in (excluded, kinds))
         judged = reference.only([not x for x in excluded])
         check_reference(judged, result, frame, area, settings.corridor, warn)
-        progress.at(0.4)
+        progress.report(0.4)
         accuracy = assess_boundaries(
             result.geometries, judged.geometries, settings, frame, reference.only(excluded).geometries,
             [kind for kind, out in zip(kinds, excluded) if out], area, judged.column("side"), progress.part(0.4, 0.8))
-        progress.at(0.8)
+        progress.report(0.8)
         layer = boundary_layer(accuracy, crs, progress.part(0.8, 0.95))
         call.layer("OUTPUT", layer)
         if call.wants("REPORT"):
             call.text("REPORT", boundary_report(accuracy, layer, (call.layer_name("INPUT"), call.layer_name("REFERENCE")), warnings))
         numbers = found_numbers(_numbers(accuracy))
-        progress.say(tr("Intervals within {tolerance:g} cm: {correct:.0f} correct, {missed:.0f} missed, {false:.0f} false; {rates}.").format(
+        progress.info(tr("Intervals within {tolerance:g} cm: {correct:.0f} correct, {missed:.0f} missed, {false:.0f} false; {rates}.").format(
             correct=numbers["CORRECT"], missed=numbers["MISSED"], false=numbers["FALSE"], tolerance=100 * settings.tolerance,
             rates=shares_of(numbers, ("PRECISION", "RECALL", "F1"))))
         return numbers

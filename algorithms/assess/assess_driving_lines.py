@@ -88,10 +88,10 @@ class AssessDrivingLines(Algorithm):
         check_overlap(result, reference)
         frame, area = frame_of_drive(call, crs), area_of(call, crs, warn)
         check_reference(reference, result, frame, area, warn=warn)
-        progress.at(0.3)
+        progress.report(0.3)
         match = match_lines(result.geometries, reference.geometries, area, settings.max_angle, progress.part(0.3, 0.7))
         accuracy = match.accuracy(settings.tolerances)
-        progress.at(0.7)
+        progress.report(0.7)
         layer = driving_line_layer(match, settings, crs, progress.part(0.7, 0.95))
         call.layer("OUTPUT", layer)
         if call.wants("REPORT"):
@@ -100,7 +100,7 @@ class AssessDrivingLines(Algorithm):
                 match, accuracy, settings, layer, (call.layer_name("INPUT"), call.layer_name("REFERENCE")), station, along,
                 call.choice("WIDTH") == "total-width", warnings))
         numbers = found_numbers(_numbers(accuracy, settings.tolerance))
-        progress.say(tr("Within {tolerance:g} cm to either side: {rates}.").format(
+        progress.info(tr("Within {tolerance:g} cm to either side: {rates}.").format(
             tolerance=100 * settings.tolerance, rates=shares_of(numbers, ("COMPLETENESS", "CORRECTNESS", "MISCODING"))))
         return numbers
 

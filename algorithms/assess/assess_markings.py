@@ -105,7 +105,7 @@ class AssessMarkings(Algorithm):
         if call.wants("REPORT"):
             self._report(call, accuracy, layer, frame, image, warnings)
         numbers = found_numbers(_numbers(accuracy))
-        progress.say(tr("Cells, strict: {strict}; with a tolerance of {cells}: {tolerant}.").format(
+        progress.info(tr("Cells, strict: {strict}; with a tolerance of {cells}: {tolerant}.").format(
             cells=settings.tolerance, strict=shares_of(numbers, ("PRECISION", "RECALL", "F1")),
             tolerant=shares_of(numbers, ("PRECISION_TOLERANT", "RECALL_TOLERANT", "F1_TOLERANT"))))
         return numbers

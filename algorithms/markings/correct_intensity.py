@@ -40,5 +40,5 @@ class CorrectIntensity(Algorithm):
         write_road_points(corrected, call.new_file("OUTPUT"), progress.part(0.8, 1.0))
         for line in report.lines()[1:]:  # the first was said when it was found, as was a warning
             if line != report.clipped:
-                progress.say(line)
+                progress.info(line)
         call.text("REPORT", report.to_html())

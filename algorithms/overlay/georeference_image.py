@@ -97,16 +97,16 @@ class GeoreferenceImage(Algorithm):
         image = open_image(call.raster("IMAGE"))
         if image.geotransform is None:
             # QGIS looks at a raster as a map layer before it starts an algorithm, and passes on what GDAL thinks of it
-            progress.say(tr("The image has no position yet; the control points give it one. A line above, GDAL ERROR 1: Unable to compute "
+            progress.info(tr("The image has no position yet; the control points give it one. A line above, GDAL ERROR 1: Unable to compute "
                             "a transformation, is QGIS saying the same and harmless."))
         found = georeference(image, _control_points(call, image, progress), call.settings(GEOREFERENCE_SETTINGS))
         for note in found.notes:
             progress.warn(note)
         values = _numbers(found)
-        progress.say(tr("Control points: {count}, order {order}, RMSE {rmse:.3f} m, each left out in turn {left:.3f} m.").format(
+        progress.info(tr("Control points: {count}, order {order}, RMSE {rmse:.3f} m, each left out in turn {left:.3f} m.").format(
             count=values["POINTS"], order=found.settings.order, rmse=values["RMSE"], left=found.left_out_rmse))
         if values["CHECK_POINTS"]:
-            progress.say(tr("Check points: {count}, RMSE {rmse:.3f} m.").format(count=values["CHECK_POINTS"], rmse=values["CHECK_RMSE"]))
+            progress.info(tr("Check points: {count}, RMSE {rmse:.3f} m.").format(count=values["CHECK_POINTS"], rmse=values["CHECK_RMSE"]))
         drawn = call.new_file("OUTPUT")
         departure = draw_image(found, drawn, progress.part(0.02, 0.97))
         call.layer("RESIDUALS", residual_vectors(found))

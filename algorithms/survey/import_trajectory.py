@@ -41,10 +41,10 @@ class ImportTrajectory(Algorithm):
 
         trajectory = clean_trajectory(imported_trajectory(call, progress))
         for note in trajectory.notes:
-            progress.say(note)
+            progress.info(note)
         if not trajectory.crs:
             progress.warn(tr("The trajectory names no CRS and none was given, so its layer has none: set CRS of the trajectory, or "
                              "CRS to bring it to where the coordinates are in that of the point clouds."))
-        progress.say(tr("Trajectory: {count} positions.").format(count=f"{len(trajectory):,}"))
+        progress.info(tr("Trajectory: {count} positions.").format(count=f"{len(trajectory):,}"))
         call.layer("OUTPUT", trajectory_features(trajectory))
         return {"ROWS": len(trajectory)}

@@ -54,12 +54,12 @@ class InspectSurvey(Algorithm):
         )
         for note in found.notes:
             progress.warn(note)
-        progress.say(tr("Survey: {count} points in {files} file(s), {density:.0f} points per m² where there are any, {scanners} scanner(s), "
+        progress.info(tr("Survey: {count} points in {files} file(s), {density:.0f} points per m² where there are any, {scanners} scanner(s), "
                         "intensities {darkest} to {brightest}.").format(
             count=f"{found.count:,}", files=len(found.files), density=found.per_area["mean"], scanners=len(found.scanners),
             darkest=found.intensity.nonzero()[0].min(), brightest=found.intensity.nonzero()[0].max()))
         if found.near_share is not None:
-            progress.say(tr("Trajectory: {near:.0f} % of the points lie within {metres:.0f} m of it.").format(
+            progress.info(tr("Trajectory: {near:.0f} % of the points lie within {metres:.0f} m of it.").format(
                 near=100 * found.near_share, metres=NEAR))
         call.text("REPORT", inspection_report(found))
         if call.wants("DENSITY"):

@@ -94,7 +94,7 @@ class SampleSurvey(Algorithm):
         settings = call.settings(SAMPLE_SETTINGS, **({"crs": call.crs()} if call.crs() else {}))
         survey = make_sample_survey(settings, progress.part(0.0, 0.1))
         count = survey.write_cloud(call.new_file("POINT_CLOUD"), progress.part(0.1, 0.9 if call.wants("UAV_IMAGE") else 1.0))
-        progress.say(tr("Sample survey: {count} points along {length:.0f} m of road.").format(count=count, length=settings.length))
+        progress.info(tr("Sample survey: {count} points along {length:.0f} m of road.").format(count=count, length=settings.length))
         if call.wants("UAV_IMAGE"):
             from ...core.sample.orthophoto import write_uav_image
 

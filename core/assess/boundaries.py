@@ -138,13 +138,13 @@ def assess_boundaries(result, reference, settings=BoundarySettings(), frame=None
     their_places, other_places = places_along(theirs).inside(area), places_along(others).inside(area)
     placed = [along.of_result(my_places, feet), along.of_reference(their_places),
               _of_excluded(along, other_places, reference_segments)]
-    progress.at(0.6)
+    progress.report(0.6)
     keys, intervals = _intervals(placed, settings.interval)
     groups = [_Group(*group) for group in zip((mine, theirs, others), (mine_owner, theirs_owner, others_owner),
                                               (my_places, their_places, other_places), placed, intervals)]
     signed = np.where(np.isfinite(feet.distance), along.outward(my_places, feet, placed[0]) * feet.distance, NAN)
     table = _judge(keys, groups, feet, signed, settings, reasons)
-    progress.at(0.9)
+    progress.report(0.9)
     beyond = float(my_places.length[groups[0].interval < 0].sum())
     by_side, total = _summary(table, groups[0], feet, signed, settings)
     return BoundaryAccuracy(by_side, total, table, beyond, settings, along, *groups, signed)

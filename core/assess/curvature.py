@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
-from ..common.parallel import go_on
+from ..common.parallel import check_cancelled
 from .matching import Segments, single_lines
 
 KERNEL = 0.2         # m, radius of the neighbourhood, as the driving-line thesis has it
@@ -101,7 +101,7 @@ def _before_and_after(xyz, which, feet, segments):
     heading = segments.heading_at(feet.line, feet.station)
     ahead = np.stack([np.cos(heading), np.sin(heading)], axis=1)
     for first in range(0, len(which), BLOCK):
-        go_on()
+        check_cancelled()
         rows = np.arange(first, min(first + BLOCK, len(which)))
         owner, member = _around(tree, xyz, which[rows], KERNEL)
         own = rows[owner]

@@ -69,7 +69,7 @@ def _polygonize(band, layer, progress):
 
     def tell(share, *_):
         try:
-            progress.at(share)
+            progress.report(share)
         except Exception as reason:
             stopped.append(reason)
             return 0
@@ -94,7 +94,7 @@ def _values(raster, path, progress):
     band, target = raster.GetRasterBand(1), copy.GetRasterBand(1)
     nodata = band.GetNoDataValue()
     for row in range(0, height, BLOCK):
-        progress.at(row / height)
+        progress.report(row / height)
         for column in range(0, width, BLOCK):
             wide, high = min(BLOCK, width - column), min(BLOCK, height - row)
             data = np.frombuffer(band.ReadRaster(column, row, wide, high, buf_type=gdal.GDT_Float64), np.float64)

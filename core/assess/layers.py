@@ -19,7 +19,7 @@ def boundary_layer(accuracy, crs, progress=Progress()):
     step, k = settings.interval, settings.tolerances.index(settings.tolerance)
     for number, (outcome, row, geometry) in enumerate(interval_lines(accuracy, settings.tolerance)):
         if number % TOLD == 0:
-            progress.at(row / len(table.unit))
+            progress.report(row / len(table.unit))
         largest, lateral = table.largest[row], table.lateral[row]
         measured = outcome in ("correct", "false") and table.judged[row]
         layer.add(
@@ -52,7 +52,7 @@ def driving_line_layer(match, settings, crs, progress=Progress()):
     layer = Features("MultiLineStringZ", ASSESSED_DRIVING_LINES, crs=crs)
     for number, (outcome, owner, geometry, first, last) in enumerate(match.pieces(settings.tolerance)):
         if number % TOLD == 0:
-            progress.at(0.5 * (first / max(len(match.theirs), 1) + 1) if outcome == "missed" else 0.5 * first / len(match.mine))
+            progress.report(0.5 * (first / max(len(match.theirs), 1) + 1) if outcome == "missed" else 0.5 * first / len(match.mine))
         rows = slice(first, last + 1)
         places = match.theirs if outcome == "missed" else match.mine
         distance = (match.to_result if outcome == "missed" else match.to_reference)[rows]

@@ -114,7 +114,7 @@ def assess_markings(result, reference, settings=MarkingAccuracySettings(), resul
     shape = (TILE + 2 * margin,) * 2
     inner = slice(margin, margin + TILE)
     for number, tile in enumerate(tiles):
-        progress.at(number / len(tiles))
+        progress.report(number / len(tiles))
         bounds = tile_bounds(tile, settings.cell_size, margin)
         mine, theirs = (burner.burn(bounds, shape) for burner in burners)
         judged = np.logical_and.reduce([raster.burn(bounds, shape)[inner, inner] > 0 for raster in valid]) if valid else True

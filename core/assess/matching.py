@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from ..common.parallel import go_on
+from ..common.parallel import check_cancelled
 from ..common.progress import Progress
 
 STEP = 0.1       # m between compared places along a line
@@ -170,8 +170,8 @@ class Segments:
             self._tree = shapely.STRtree(shapely.linestrings(np.stack([self.a[:, :2], self.b[:, :2]], axis=1)))
         parts = []
         for k in range(0, len(xy), BATCH):
-            progress.at(k / len(xy))
-            go_on()
+            progress.report(k / len(xy))
+            check_cancelled()
             some = slice(k, k + BATCH)
             if max_angle is not None and self._heading is None:
                 self._heading = self.heading_at(self.line, self.start + self.length / 2)

@@ -9,7 +9,7 @@ import numpy as np
 
 # Memory that was freed and is kept all the same, handed back to the system.
 
-def hand_back():
+def trim_heap():
     """Ask the C library for what it keeps of memory that was freed.
 
     glibc keeps it for the threads that had asked for it, and the threads of the
@@ -21,7 +21,7 @@ def hand_back():
         if trim is not None:
             trim(0)
 
-class KeptArrays(threading.local):
+class ScratchBuffers(threading.local):
     """Working arrays by name, of every thread its own; what they held is not remembered from one use to the next."""
 
     def __init__(self):
@@ -39,4 +39,4 @@ class KeptArrays(threading.local):
         return data[:nbytes].view(dtype)
 
 
-columns_kept = KeptArrays()   # those in which columns are put down and picked up again
+column_buffers = ScratchBuffers()   # those in which columns are put down and picked up again

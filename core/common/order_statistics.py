@@ -21,8 +21,8 @@ def order_by(*keys):
     return order
 
 
-def dealt(cell, count, own=None):
-    """Rows dealt to cells, in linear time where there are less than 2**16 of them.
+def bucket_argsort(cell, count, own=None):
+    """Rows bucket_argsort to cells, in linear time where there are less than 2**16 of them.
 
     Parameters
     ----------

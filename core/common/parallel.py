@@ -14,12 +14,12 @@ PATIENCE = 0.2   # s between two questions whether to go on, while a result is w
 _thread = threading.local()
 
 
-def in_order(function, items, progress=Progress(), threads=None):
+def ordered_map(function, items, progress=Progress(), threads=None):
     """Yield function(item) for every item, in order, computed by a few threads.
 
     No more results wait than there are threads, so memory stays bounded. An
     error or a cancel stops the rest and is raised here; a cancel is heard while a
-    result is waited for too, and ends the workers at their next `go_on`. numpy and scipy
+    result is waited for too, and ends the workers at their next `check_cancelled`. numpy and scipy
     release the interpreter lock in their heavy loops, which is where the time goes.
     """
     items = list(items)
@@ -41,9 +41,9 @@ def in_order(function, items, progress=Progress(), threads=None):
                 while len(waiting) <= threads and done + len(waiting) < len(items):
                     waiting.append(pool.submit(work, items[done + len(waiting)]))
                 while not wait(list(waiting)[:1], PATIENCE).done:
-                    progress.at(done / len(items))
+                    progress.report(done / len(items))
                 yield waiting.popleft().result()
-                progress.at((done + 1) / len(items))
+                progress.report((done + 1) / len(items))
         finally:
             stop.set()
             for future in waiting:
@@ -51,23 +51,23 @@ def in_order(function, items, progress=Progress(), threads=None):
 
 
 @contextmanager
-def heard(progress):
-    """While this lasts, `go_on` in this thread asks `progress` whether to go on."""
+def cancellation_scope(progress):
+    """While this lasts, `check_cancelled` in this thread asks `progress` whether to go on."""
     before = getattr(_thread, "ask", None)
-    _thread.ask = progress.ask
+    _thread.ask = progress.check_cancelled
     try:
         yield
     finally:
         _thread.ask = before
 
 
-def go_on():
+def check_cancelled():
     """Called now and then in long work that has no `progress` at hand.
 
     Raises
     ------
     Cancelled
-        Where the user pressed Cancel (`heard`), or in a thread of `in_order` whose results
+        Where the user pressed Cancel (`cancellation_scope`), or in a thread of `ordered_map` whose results
         are no longer taken.
     """
     ask = getattr(_thread, "ask", None)

@@ -3,22 +3,21 @@
 import math
 import time
 
-# How a long computation tells how far it is, and learns that it shall stop.
 
 class Progress:
     """A silent listener; the shell's listener moves the bar, prints, and raises Cancelled.
 
     Every core function that takes longer than a blink has `progress` as its
-    last argument. `at` may raise Cancelled, so call it once per section.
+    last argument. `report` may raise Cancelled, so call it once per section.
     """
 
-    def at(self, fraction):
+    def report(self, fraction):
         """Report the fraction done, 0 to 1, of this computation."""
 
-    def ask(self):
+    def check_cancelled(self):
         """Raise Cancelled where the work shall stop; the bar stays where it is."""
 
-    def say(self, text):
+    def info(self, text):
         """Report a finding or a step in one line."""
 
     def warn(self, text):
@@ -32,10 +31,10 @@ class Progress:
 class _Part(Progress):
     def __init__(self, whole, start, end):
         self.whole, self.start, self.span = whole, start, end - start
-        self.say, self.warn, self.ask = whole.say, whole.warn, whole.ask
+        self.info, self.warn, self.check_cancelled = whole.info, whole.warn, whole.check_cancelled
 
-    def at(self, fraction):
-        self.whole.at(self.start + self.span * min(max(fraction, 0.0), 1.0))
+    def report(self, fraction):
+        self.whole.report(self.start + self.span * min(max(fraction, 0.0), 1.0))
 
 STEPS = (10, 20, 40, 60, 120, 180, 300, 600, 900, 1200, 1800, 2700, 3600, 7200, 10800, 18000, 28800, 43200, 86400)  # s, what is told
 EARLIEST = 5.0      # s of work before anything is told,

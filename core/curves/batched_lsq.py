@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..common.parallel import go_on
+from ..common.parallel import check_cancelled
 from .robust import MAD_TO_SIGMA, SOFT_L1_SCALE
 
 POINTS_PER_BATCH = 8192        # fits the processor's cache
@@ -166,7 +166,7 @@ def _levenberg_marquardt(problem, found, scale, f_scale, state, exact, max_misfi
     residuals, state = problem.evaluate(found, state)
     now, damping, steps = _cost(problem, residuals, f_scale), np.full(len(found), 1e-3), np.zeros(len(found), int)
     while True:
-        go_on()
+        check_cancelled()
         groups = problem.groups
         owner = groups.owner
         weight = 1.0 / np.sqrt(1.0 + (residuals / f_scale[owner]) ** 2)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..common.parallel import go_on
+from ..common.parallel import check_cancelled
 from .robust import SOFT_L1_SCALE, percentiles
 
 NOISE_FLOOR = 0.004  # m; a residual below it does not justify a more complex curve
@@ -76,7 +76,7 @@ def checked_points(x: np.ndarray, y: np.ndarray, min_points: int) -> tuple[np.nd
     ValueError
         If the arrays differ in shape or are too short: a mistake of the caller, not of the data.
     """
-    go_on()  # every fit begins here, and a long drive has hundreds
+    check_cancelled()  # every fit begins here, and a long drive has hundreds
     x, y = np.asarray(x, float), np.asarray(y, float)
     if x.shape != y.shape or x.ndim != 1 or len(x) < min_points:
         raise ValueError(f"a curve needs x and y of one length, at least {min_points} points; got {x.shape} and {y.shape}")

@@ -66,7 +66,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
         area = DrivableArea(road_lines, frame, number, curbs.get(number), markings)
         tracks = road_lanes(road_lines, driven, settings, area)
         found[number] = road_lines, tracks, driven, directions, divide(road_lines, tracks, driven, directions)
-        progress.at(0.4 * (count + 1) / len(sections))
+        progress.report(0.4 * (count + 1) / len(sections))
     side = _traffic_side(found, settings, progress)
     for count, (number, (road_lines, tracks, driven, directions, middle)) in enumerate(found.items()):
         ways = lane_directions(tracks, middle, driven, directions, side, settings.traffic_side != "automatic")
@@ -79,7 +79,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
         for lane, (track, way, course, elements, z) in enumerate(zip(tracks, ways, courses, alignment, heights), start=1):
             rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(track, way, course, elements, road_lines, z)]
             arcs += [dict(row, road=number, lane=lane) for row in _lane_curves(way, elements)]
-        progress.at(0.4 + 0.6 * (count + 1) / len(found))
+        progress.report(0.4 + 0.6 * (count + 1) / len(found))
     lines = _driving_lines(rows, marking_lines.crs)
     _report_lengths(lines, side, progress)
     return lines, _curve_elements(arcs, marking_lines.crs)
@@ -205,5 +205,5 @@ def _report_lengths(lines: DrivingLines, side: str, progress: Progress) -> None:
         return
     lanes = len(set(zip(lines.road.tolist(), lines.lane.tolist())))
     length = {name: float(lines.length[lines.status == name].sum()) for name in STATUS}
-    progress.say(f"Driving lines: {lanes} lanes, {side}-hand traffic: "
+    progress.info(f"Driving lines: {lanes} lanes, {side}-hand traffic: "
                  + ", ".join(f"{metres:.0f} m {name}" for name, metres in length.items() if metres))

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d, median_filter
 
 from ..common.order_statistics import order_by
-from ..common.parallel import in_order
+from ..common.parallel import ordered_map
 from ..survey.store.records import COORDINATE_SCALE
 from .cross_section import STEP
 
@@ -45,7 +45,7 @@ def road_heights(road_points, road, s, tracks):
         heights = _heights([records for records in sections if len(records)], s[first:last + 1], lanes)
         return [(k, a - tracks[k].first, z) for (k, a, _), z in zip(inside, heights)]
 
-    for heights in in_order(of_window, range(0, len(s), size)):
+    for heights in ordered_map(of_window, range(0, len(s), size)):
         for k, first, z in heights:
             found[k][first:first + len(z)] = z
     return found

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from ..common.parallel import in_order
+from ..common.parallel import ordered_map
 from ..common.progress import Progress
 from ..survey.store.columns import Columns
 from ..survey.store.records import Points
@@ -171,7 +171,7 @@ class Beams:
             return None
         found = cls(views, {}, {}, {})
         counts = 0
-        for section in in_order(lambda key: found._count(road_points.section(*key)), road_points.all_sections(), progress):
+        for section in ordered_map(lambda key: found._count(road_points.section(*key)), road_points.all_sections(), progress):
             counts = counts + section
         for scanner, levels in zip(views, counts):
             found._learn(scanner, levels)

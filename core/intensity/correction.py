@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..common.errors import RoadExtractionError
-from ..common.parallel import in_order
+from ..common.parallel import ordered_map
 from ..common.progress import Progress
 from ..survey.store.records import Points
 from .asphalt_model import BIN, REACH, AsphaltTable, LevelCounts, asphalt_of
@@ -124,7 +124,7 @@ def correct_intensity(road_points, frame, settings=IntensitySettings(), progress
         progress.warn(reason)
         return road_points, IntensityReport(reason=reason)
     sections = road_points.all_sections()
-    by_scanner = sum(in_order(lambda key: _by_scanner(road_points.section(*key)), sections))
+    by_scanner = sum(ordered_map(lambda key: _by_scanner(road_points.section(*key)), sections))
     scanners = int(np.flatnonzero(by_scanner)[-1]) + 1
     beams = Beams.of(road_points, frame, scanners, progress.part(0.0, 0.2))
     even = beams.even if beams else (lambda points: points.intensity)
@@ -140,7 +140,7 @@ def correct_intensity(road_points, frame, settings=IntensitySettings(), progress
         return raw, even_ones, points.intensity.max(initial=0), np.count_nonzero(places[0] == UNKNOWN), len(points)
 
     placeless, highest = np.zeros(2, np.int64), 0
-    for raw, even_ones, brightest, *lost in in_order(count, sections, progress.part(0.2, 0.5)):
+    for raw, even_ones, brightest, *lost in ordered_map(count, sections, progress.part(0.2, 0.5)):
         before.add(raw, step)
         evened.add(even_ones, step)
         placeless += lost
@@ -173,7 +173,7 @@ def correct_intensity(road_points, frame, settings=IntensitySettings(), progress
         return key, corrected, after.of(some.scanner, tracks.places(some, ways), some.corrected, ways)
 
     result = replace(road_points, store=road_points.store.with_column("corrected"), has_corrected=True)
-    for key, corrected, counts in in_order(correct, sections, progress.part(0.5, 1.0)):
+    for key, corrected, counts in ordered_map(correct, sections, progress.part(0.5, 1.0)):
         result.store.put(*key, corrected)
         after.add(counts, step)
     report = _report(before.counts, after.counts, table, by_scanner)
@@ -182,7 +182,7 @@ def correct_intensity(road_points, frame, settings=IntensitySettings(), progress
     if report.clipped:
         progress.warn(report.clipped)
     for line in report.lines()[:1]:
-        progress.say(line)
+        progress.info(line)
     return result, report
 
 

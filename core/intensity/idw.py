@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 from scipy import sparse
 
-from ..common.memory import KeptArrays
+from ..common.memory import ScratchBuffers
 from ..common.order_statistics import order_by
 from ..survey.store.records import COORDINATE_SCALE
 
@@ -138,7 +138,7 @@ class _Kernel:
     def __init__(self, settings, offsets):
         self.settings, self.offsets = settings, offsets
         self.at_once = max(AT_ONCE // max(len(offsets), 1), 1)
-        self._kept = KeptArrays()   # used again and again: memory is dear when it is new
+        self._kept = ScratchBuffers()   # used again and again: memory is dear when it is new
         right, up = np.array(offsets, np.float32).reshape(-1, 2).T
         # squared distances as a product: (e - r)^2 + (n - u)^2 = (e^2 + n^2) 1 - 2 e r - 2 n u + 1 (r^2 + u^2)
         self._squares = np.stack([np.ones_like(right), -2 * right, -2 * up, right**2 + up**2])

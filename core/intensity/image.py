@@ -6,7 +6,7 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.order_statistics import quantiles
-from ..common.parallel import in_order
+from ..common.parallel import ordered_map
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage, new_geotiff, write_display_image
@@ -79,7 +79,7 @@ def write_intensity_image(road_points, path, settings=ImageSettings(), progress=
         raise RoadExtractionError("There are no road points to make an intensity image of. Check the road surface first.")
     # The grid is fixed in the map: pixel column = column of the map's lattice minus the first one
     windows = [(road, k) for road in road_points.roads() for k in _window_numbers(road_points, road)]
-    found = list(in_order(lambda window: _survey_window(road_points, window, settings), windows, progress.part(0.0, 0.3)))
+    found = list(ordered_map(lambda window: _survey_window(road_points, window, settings), windows, progress.part(0.0, 0.3)))
     pieces = {piece: extent for _, extents, _ in found for piece, extent in extents.items()}
     steps = {piece: step for *_, steps in found for piece, step in steps.items()}
     c0, c1 = min(e[0] for e in pieces.values()), max(e[1] for e in pieces.values()) + 1
@@ -104,7 +104,7 @@ def write_intensity_image(road_points, path, settings=ImageSettings(), progress=
                 image.write(column * GEOTIFF_TILE, row * GEOTIFF_TILE, values)
                 # compressed by another thread while the next tiles are made
                 image.flush()
-    progress.say(f"Intensity image: {grid.width:,} x {grid.height:,} cells of {settings.cell_size:g} m.")
+    progress.info(f"Intensity image: {grid.width:,} x {grid.height:,} cells of {settings.cell_size:g} m.")
 
 
 def check_fits(width, height, settings):
@@ -190,7 +190,7 @@ def _with_pieces(work, sums, progress):
         for first, last in zip(np.r_[0, cuts + 1], np.r_[cuts, len(tiles) - 1]):
             made[tiles[first]].append(piece)
             done[tiles[last]].append(piece)
-    results = in_order(sums, [piece for pieces in made for piece in pieces], progress)
+    results = ordered_map(sums, [piece for pieces in made for piece in pieces], progress)
     kept = {}
     for k, (tile, pieces) in enumerate(work):
         kept.update((piece, next(results)) for piece in made[k])

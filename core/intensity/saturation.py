@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..common.parallel import in_order
+from ..common.parallel import ordered_map
 from .asphalt_model import LEVELS, LOWER, to_intensity, to_level
 
 HIGHEST = 0.05   # share of points at their scanner's highest intensity: more than paint covers of most roads
@@ -68,4 +68,4 @@ def clipping_of(road_points):
             found += np.bincount(scanner[rows].astype(np.int32) * np.int32(LEVELS) + to_level(intensity[rows]), minlength=len(found))
         return found
 
-    return Clipping.of(sum(in_order(count, road_points.all_sections()), np.zeros(256 * LEVELS, np.int64)).reshape(256, LEVELS))
+    return Clipping.of(sum(ordered_map(count, road_points.all_sections()), np.zeros(256 * LEVELS, np.int64)).reshape(256, LEVELS))

@@ -307,8 +307,8 @@ def write_display_image(image_path, path, progress=Progress()):
             if known.any():
                 grey = 1 + np.rint(254 * np.clip((values - low) / max(high - low, 1e-9), 0, 1))
                 picture.write(column, row, np.where(known, grey, 0).astype(np.uint8))
-            progress.at(row / image.height)
-    progress.at(1.0)
+            progress.report(row / image.height)
+    progress.report(1.0)
 
 
 def _stretch(image):

@@ -113,7 +113,7 @@ def draw_image(found, path, progress=None):
     if failure:
         raise RoadExtractionError(
             f"The image could not be drawn to {path} ({failure}). Is {found.image.path} whole, and is there room on the disk?")
-    progress.at(1.0)
+    progress.report(1.0)
     return off
 
 
@@ -123,7 +123,7 @@ def _callback(progress, start, end, cancelled):
 
     def tell(fraction, *_):
         try:
-            part.at(fraction)
+            part.report(fraction)
             return 1
         except Cancelled:
             cancelled.append(True)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..common.memory import hand_back
+from ..common.memory import trim_heap
 from ..io.crs import check_projected, reproject_trajectory
 from ..survey.frame.road_frame import CORRIDOR
 from ..survey.las.reader import read_headers
@@ -76,12 +76,12 @@ class Stages:
 
     def run(self, name, title, function, *arguments, **options):
         share = self.shares[name]
-        self.progress.say(title)
+        self.progress.info(title)
         began = time.perf_counter()
         result = function(*arguments, progress=self.progress.part(self.done, self.done + share), **options)
-        hand_back()
+        trim_heap()
         self.seconds[name] = time.perf_counter() - began
         self.done += share
         self.waiting.remove(name)
-        self.progress.at(self.done)
+        self.progress.report(self.done)
         return result

@@ -132,6 +132,6 @@ def draw_boundaries(found, frame, settings=EdgeSettings(), progress=Progress()):
     lengths = {method: sum(row["length_m"] for row in lines.rows if row["status"] == "measured") for method, lines in alone.items()}
     doubtful = sum(row["length_m"] for row in differences.rows)
     if any(lengths.values()):
-        progress.say(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "
+        progress.info(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "
                      f"they lie more than 5 cm apart along {doubtful:.0f} m.")
     return RoadBoundaries(found["both"], edges, differences, lengths)

@@ -329,7 +329,7 @@ def write_uav_image(survey, path, progress=None):
         dataset = gdal.GetDriverByName("GTiff").Create(str(unfinished), camera.width, camera.height, 3, gdal.GDT_Byte, [
             "TILED=YES", f"BLOCKXSIZE={_TILE}", f"BLOCKYSIZE={_TILE}", "COMPRESS=JPEG", "JPEG_QUALITY=92", "PHOTOMETRIC=YCBCR"])
         for column in range(0, camera.width, _TILE):
-            progress.at(column / camera.width)
+            progress.report(column / camera.width)
             width = min(_TILE, camera.width - column)
             for row in range(0, camera.height, 2 * _TILE):
                 height = min(2 * _TILE, camera.height - row)
@@ -344,7 +344,7 @@ def write_uav_image(survey, path, progress=None):
     finally:
         dataset = None
         unfinished.unlink(missing_ok=True)
-    progress.at(1.0)
+    progress.report(1.0)
 
 
 def _render(seen, camera, column, row, width, height):

@@ -109,12 +109,12 @@ class SampleSurvey:
             self.drives.append(drive)
             start = np.ceil(start + drive.duration + _PAUSE)
         self.trajectory = self._trajectory()
-        progress.at(0.3)
+        progress.report(0.3)
         self.truth_boundaries = truth.true_boundaries(self.scene, settings.origin, crs)
         self.truth_markings = truth.true_markings(self.scene, settings.origin, crs)
         self.truth_driving_lines = truth.true_driving_lines(self.scene, settings.origin, crs)
         self.truth_surface = truth.true_surface(self.scene, settings.origin, crs)
-        progress.at(1.0)
+        progress.report(1.0)
 
     def _trajectory(self):
         columns = []
@@ -149,7 +149,7 @@ class SampleSurvey:
                     waiting.append(pool.submit(self._measure, *job, noise))
                     if len(waiting) > 4:
                         yield waiting.popleft().result()
-                        progress.at(done / len(jobs))
+                        progress.report(done / len(jobs))
                 while waiting:
                     yield waiting.popleft().result()
             finally:
@@ -228,7 +228,7 @@ class SampleSurvey:
         finally:
             if os.path.exists(part):
                 os.remove(part)
-        progress.at(1.0)
+        progress.report(1.0)
         return count
 
     def _header(self, laspy):

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..common.memory import KeptArrays
+from ..common.memory import ScratchBuffers
 from ..common.parallel import PATIENCE
 from .frame.projection import AT_ONCE, Placing
 from .las.parallel_reader import ParallelCloudReader
@@ -57,9 +57,9 @@ class SurveyReader:
             def take():
                 nonlocal done
                 while not wait([waiting[0]], PATIENCE).done:
-                    progress.at(done / total)
+                    progress.report(done / total)
                 done += self._take(*waiting.popleft().result())
-                progress.at(done / total)
+                progress.report(done / total)
 
             try:
                 for load in readers.blocks(files, block):
@@ -120,7 +120,7 @@ class SurveyReader:
     def _choose(self, parts):
         """Choose by height what was placed before that was known, and store it."""
         for road, points in parts:
-            kept = KeptArrays().of(len(points))
+            kept = ScratchBuffers().of(len(points))
             near = self._ground.near(road, points["s"], points["z"], kept)
             if near.any():
                 self.store.add(self._parted(road, points, near))
@@ -181,7 +181,7 @@ class Ground:
             self._roads[road.number] = first, to_units(lowest)
 
     def near(self, road, s, z, kept):
-        """(N,) bool: which places of a road, int32 units of 0.1 mm, are near its height. `kept` as of KeptArrays."""
+        """(N,) bool: which places of a road, int32 units of 0.1 mm, are near its height. `kept` as of ScratchBuffers."""
         first, lowest = self._roads[int(road)]
         cell, k = np.right_shift(s, GROUND_BITS, out=kept("cell", np.int32)), kept("k", np.intp)
         np.copyto(k, np.subtract(cell, first, out=cell))
@@ -206,7 +206,7 @@ class BlockReading:
         self.dtype = point_dtype(SURVEY_POINT, frame.farthest)
         self.placing = Placing(frame, corridor) if has_time else None
         self.roads = np.array([p.road for p in frame.passes] + [-1])
-        self._kept = KeptArrays()
+        self._kept = ScratchBuffers()
 
     def read(self, block, found, ground=None):
         """Yield the points of a laspy point record near a road, those near its height where a Ground is given.

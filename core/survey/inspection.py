@@ -96,7 +96,7 @@ def inspect_survey(paths, trajectory=None, settings=InspectionSettings(), crs=""
         for block in read_blocks(file.path, POINTS_PER_BLOCK):
             counter.take(block)
             done += len(block)
-            progress.at(done / total)
+            progress.report(done / total)
     return counter.inspection(files, wkt, trajectory, progress)
 
 

@@ -128,12 +128,12 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
     trajectory = reproject_trajectory(trajectory, crs)
     trajectory, time_note, has_time, week_ends = match_clocks(files, trajectory, settings, progress)
     if time_note:
-        progress.say(time_note)
+        progress.info(time_note)
     frame = build_frame(trajectory)
     frame.crs = crs
     frame.has_time = has_time
     for note in frame.notes:
-        progress.say(note)
+        progress.info(note)
     if not has_time and len(frame.passes) > len(frame.roads):
         progress.warn(f"The trajectory drives {len(frame.passes)} times over {len(frame.roads)} road(s), and without time in the points and the "
                       "trajectory the passes are mixed: whatever they differ by blurs the map. Export both with gps_time, or process "
@@ -162,7 +162,7 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
     survey = Survey(files, frame, store, crs, reader.heights, scanner_field, scanners,
                     reader.brightest > reader.darkest, has_time,
                     dict(read=total, kept=store.count, outside=total - store.count))
-    progress.say(f"Points read: {total:,} from {len(files)} file(s), {store.count:,} near the road kept; "
+    progress.info(f"Points read: {total:,} from {len(files)} file(s), {store.count:,} near the road kept; "
                  f"{len(frame.roads)} road(s), {len(frame.passes)} pass(es), {len(scanners)} scanner(s); "
                  f"sensor {height:.2f} m above the road.")
     if has_time:

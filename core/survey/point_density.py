@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..common.parallel import in_order
+from ..common.parallel import ordered_map
 from ..common.progress import Progress
 from ..io.gdal_errors import gdal_exceptions
 
@@ -35,7 +35,7 @@ def cube_density(sections, points_of=lambda section: section, progress=Progress(
     points_of : function of one of them that returns its points, Points
     """
     keys, counts = [], []
-    for found in in_order(lambda section: _counted(points_of(section)), sections, progress):
+    for found in ordered_map(lambda section: _counted(points_of(section)), sections, progress):
         if found is not None:
             keys.append(found[0])
             counts.append(found[1])

@@ -37,7 +37,7 @@ def write_road_points(road_points, path, progress=Progress()):
     with new_laz(path, header) as writer:
         for k, (road, number) in enumerate(sections):
             writer.write_points(_record(road_points, road, number, header))
-            progress.at((k + 1) / len(sections))
+            progress.report((k + 1) / len(sections))
 
 
 def _header(road_points):
@@ -149,7 +149,7 @@ def read_road_points(path, progress=Progress()):
         for road in np.unique(roads):
             store.append(int(road), records[roads == road])
         done += len(block)
-        progress.at(done / max(total, 1))
+        progress.report(done / max(total, 1))
     if not store.count:
         raise RoadExtractionError(f"{path} holds no points. Run the stage that made it again with other settings.")
     return RoadPoints(store, origin, "" if crs is None else crs.to_wkt(), has_corrected, has_cluster, moves)

@@ -24,7 +24,7 @@ def test_the_time_left_is_told_a_few_times_while_the_bar_moves(qgis_app):
     progress = FeedbackProgress(dialog, RemainingTime(lambda: now[0])).part(0.0, 1.0)
     for step in range(1001):
         now[0] = 0.2 * step
-        progress.at(step / 1000)
+        progress.report(step / 1000)
     assert dialog.texts == ["About 3 min left", "About 2 min left", "About 1 min left", "About 40 s left", "About 20 s left",
                             "About 10 s left"]
     assert dialog.progress() == pytest.approx(100.0)
@@ -38,10 +38,10 @@ def test_long_times_are_told_in_hours():
 def test_cancel_is_raised_at_the_next_question(qgis_app):
     dialog = Dialog()
     progress = FeedbackProgress(dialog)
-    progress.at(0.1)
+    progress.report(0.1)
     dialog.cancel()
     with pytest.raises(Cancelled):
-        progress.at(0.2)
+        progress.report(0.2)
 
 
 @pytest.mark.parametrize("end", [Cancelled(), RoadExtractionError("The road ends here."), OSError(28, "No space left on device", "map.gpkg")])

@@ -85,11 +85,11 @@ def test_a_bar_that_moves_evenly_is_not_off_and_the_longest_silence_is_found(mon
     watch = Watch()
     for second, what in ((1.0, "Reading"), (2.0, "Curbs"), (5.0, ""), (6.0, ""), (8.0, "")):
         now[0] = second
-        watch.at(second / 8.0)
+        watch.report(second / 8.0)
         if what:
-            watch.say(what)
+            watch.info(what)
     assert watch.figures() == dict(bar_off=0.0, silence=(3.0, "Curbs"))
-    watch.at(0.5)
+    watch.report(0.5)
     assert watch.figures()["bar_off"] == pytest.approx(0.5)
 
 

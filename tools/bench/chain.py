@@ -3,7 +3,7 @@
 import time
 from pathlib import Path
 
-from lanewright.core.common.parallel import heard
+from lanewright.core.common.parallel import cancellation_scope
 from lanewright.core.common.progress import Progress
 from lanewright.core.pipeline.road_map import RoadMapSettings, make_road_map
 from lanewright.core.survey.trajectory.reader import read_trajectory
@@ -20,13 +20,13 @@ class Watch(Progress):
         self.began = time.perf_counter()
         self.moments = [(0.0, 0.0, "")]  # seconds, fraction, the last line of the log
 
-    def at(self, fraction):
+    def report(self, fraction):
         self.moments.append((time.perf_counter() - self.began, fraction, self.moments[-1][2]))
 
-    def ask(self):
-        self.at(self.moments[-1][1])
+    def check_cancelled(self):
+        self.report(self.moments[-1][1])
 
-    def say(self, text):
+    def info(self, text):
         self.moments.append((*self.moments[-1][:2], text))
 
     def figures(self):
@@ -44,7 +44,7 @@ def run(survey, size, method="profiles", suffix="laz"):
     watch = Watch()
     settings = RoadMapSettings(boundary_method=method)
     clouds = clouds_of(survey, size, suffix)
-    with heard(watch):
+    with cancellation_scope(watch):
         road_map, seconds = timed(lambda: make_road_map(clouds, read_trajectory(trajectory_of(survey, size)), target, settings, watch))
     Path(target).unlink()
     found = {name: len(getattr(road_map, name) or ()) for name in ("edges", "markings", "marking_lines", "driving_lines")}

@@ -44,7 +44,7 @@ def read(size):
 
 def placing(size):
     """Station and offset of points that are decoded already, from their raw coordinates and times."""
-    from lanewright.core.common.parallel import in_order
+    from lanewright.core.common.parallel import ordered_map
     from lanewright.core.survey import ingest as reading
     from lanewright.core.survey.frame.projection import Placing
     from lanewright.core.survey.frame.road_frame import CORRIDOR, build_frame
@@ -61,7 +61,7 @@ def placing(size):
         return int(np.isfinite(d).sum())
 
     places = Placing(frame, CORRIDOR)
-    points, seconds = timed(lambda: sum(in_order(place, blocks)))
+    points, seconds = timed(lambda: sum(ordered_map(place, blocks)))
     return dict(seconds, points=points)
 
 

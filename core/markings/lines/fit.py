@@ -86,28 +86,28 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     for k, road in enumerate(roads):
         part = progress.part(k / len(roads), (k + 1) / len(roads))
         records, rank = line_paint(_records_of(clustered_points, road), markings, road)
-        part.at(0.1)
+        part.report(0.1)
         strands = trace(records, rank)
-        part.at(0.4)
+        part.report(0.4)
         hatched = line_choice.bars(markings, road)
         lines, drift = _linked(strands, settings)
         # a line that leads up to a hatched area may be taken for its border: linked anew without that, it goes on behind the area
         while borders := line_choice.hatching_borders(lines, hatched):
             strands = [strand for strand in strands if not any(strand is border for border in borders)]
             lines, drift = _linked(strands, settings)
-        part.at(0.5)
+        part.report(0.5)
         chosen = line_choice.choose(lines, drift, line_choice.crossings(markings, road), settings.min_paint,
                                     hatched, frame.passes_of(road))
         dropped += len(lines) - len(chosen)
         shapes, unwanted = shapes_of([one.line for one in chosen], [one.span for one in chosen], frame.road(road), drift,
                                      partial(frame.track_height, road), settings)
-        part.at(0.8)
+        part.report(0.8)
         replaced += unwanted
         for j, (one, shape) in enumerate(zip(chosen, shapes)):
             number += 1
             rows += [dict(row, line=number, road=int(road)) for row in _drawn_pieces(one, shape, frame.origin)]
-            part.at(0.8 + 0.2 * (j + 1) / len(chosen))
-    progress.say(f"Marking lines: {number}; {dropped} fragments were left out.")
+            part.report(0.8 + 0.2 * (j + 1) / len(chosen))
+    progress.info(f"Marking lines: {number}; {dropped} fragments were left out.")
     if replaced:
         progress.warn(f"{replaced} of {number} lines cannot take the curve “{settings.curve}”; "
                       "the automatic curve was used for them.")

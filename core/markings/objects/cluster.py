@@ -99,9 +99,9 @@ def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress
             for polygon in _outline(records[a:b], shapes[i], kinds[i][0], frame.road(road)):
                 polygons.append(polygon)
                 rows.append(_row(records[a:b], shapes[i], kinds[i], number, road, frame))
-            part.at(0.4 + 0.6 * number / max(len(bounds), 1))
+            part.report(0.4 + 0.6 * number / max(len(bounds), 1))
         _put(clustered.store, road, cluster, marking_points)
-    progress.say(f"Markings: {number} found; {refused} clusters were left out as gutters, seams, covers, specks or the feet of what "
+    progress.info(f"Markings: {number} found; {refused} clusters were left out as gutters, seams, covers, specks or the feet of what "
                  "stands on the road.")
     return marking_objects(rows, polygons, frame, marking_points.crs), clustered
 
@@ -162,7 +162,7 @@ def group(marking_points, road, distance, progress=Progress()):
         own = found["s"] // CELL < last
         records.append(found[own])
         labels.append(component[member[own]])
-        progress.at((step + 1) / len(windows))
+        progress.report((step + 1) / len(windows))
     if not records:
         return join_columns([], marking_points.store.dtype), np.empty(0, np.int64)
     pairs = np.concatenate(links)

@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 from ...common.errors import RoadExtractionError
 from ...common.order_statistics import order_by
-from ...common.parallel import in_order
+from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...survey.store.records import COORDINATE_SCALE, take_rows
@@ -231,7 +231,7 @@ def mean_distances(units, k, progress=Progress()):
         return np.full(len(units), np.inf)
     means, unsettled = np.empty(len(units)), []
     tiles = list(_tiles(units))
-    asked = in_order(lambda tile: Neighbours(units.take(tile[1], axis=0), k).distances(np.arange(tile[0])), tiles, progress)
+    asked = ordered_map(lambda tile: Neighbours(units.take(tile[1], axis=0), k).distances(np.arange(tile[0])), tiles, progress)
     for (own, rows), (distances, farthest) in zip(tiles, asked):
         means[rows[:own]] = distances
         # beyond the margin there may be nearer ones
@@ -334,9 +334,9 @@ def remove_outliers(points, settings=OutlierSettings(), progress=Progress()):
         _put(kept, points, _kept_of_all(points, settings, progress))
     else:
         windows = [(road, number) for road in points.roads() for number in _windows(*points.store.span(road))]
-        keep = list(in_order(lambda window: _kept_of_window(points, *window, settings), windows, progress))
+        keep = list(ordered_map(lambda window: _kept_of_window(points, *window, settings), windows, progress))
         _put(kept, points, np.concatenate([np.empty(0, bool), *keep]))
-    progress.say(f"Outliers: {len(points) - len(kept):,} of {len(points):,} points lay apart from the others and were left out.")
+    progress.info(f"Outliers: {len(points) - len(kept):,} of {len(points):,} points lay apart from the others and were left out.")
     return kept
 
 

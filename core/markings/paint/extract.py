@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...common.errors import RoadExtractionError
-from ...common.parallel import in_order
+from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...intensity.saturation import clipping_of
@@ -94,7 +94,7 @@ def extract_markings(road_points, image, frame, settings=MarkingSettings(), prog
             kept = _extract_from_points(road_points, settings, progress)
             if burn is not None:
                 burn_points(burn, kept, image, frame)
-    progress.say(f"Paint: {len(kept):,} of {len(road_points):,} road points lie on it.")
+    progress.info(f"Paint: {len(kept):,} of {len(road_points):,} road points lie on it.")
     return kept
 
 
@@ -118,11 +118,11 @@ def _extract(road_points, image, frame, settings, progress, burn):
     roads = road_points.roads()
     windows = [(road, window) for road in roads for window in _windows(road_points, road)]
     scatter = Scatter.of(lambda road, window: _window(road_points, road, window), windows, progress.part(0.0, 0.1))
-    progress.say(scatter.line(WINDOW * CELL * COORDINATE_SCALE))
+    progress.info(scatter.line(WINDOW * CELL * COORDINATE_SCALE))
     for k, road in enumerate(roads):
         part = progress.part(0.1 + 0.9 * k / len(roads), 0.1 + 0.9 * (k + 1) / len(roads))
         look = _Look(road_points, image, frame, road, settings, burn is not None, scatter.averaged(road))
-        painted = in_order(look.find, look.windows(), part)
+        painted = ordered_map(look.find, look.windows(), part)
         sections = _Sections(kept.store, road)
         for records, x, y in painted:
             sections.add(records)

@@ -16,7 +16,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ...common.errors import RoadExtractionError
-from ...common.parallel import in_order
+from ...common.parallel import ordered_map
 from ...common.setting import check_limits, setting
 from ...survey.store.records import COORDINATE_SCALE, Points, take_rows
 
@@ -81,11 +81,11 @@ def points_on_peaks(road_points, road, settings, progress):
     def records_of(window):
         return _window(road_points, road, window * count, (window + 1) * count, profile)
 
-    found = list(in_order(lambda window: peaks_of(*records_of(window), settings), windows, progress.part(0.0, 0.6)))
+    found = list(ordered_map(lambda window: peaks_of(*records_of(window), settings), windows, progress.part(0.0, 0.6)))
     row, left, right = (np.concatenate([f[k] for f in found]) for k in range(3))
     kept = chained(row, (left + right) / 2, settings)
     row, left, right = row[kept], left[kept], right[kept]
-    yield from in_order(lambda window: _between(*records_of(window), row, left, right), windows, progress.part(0.6, 1.0))
+    yield from ordered_map(lambda window: _between(*records_of(window), row, left, right), windows, progress.part(0.6, 1.0))
 
 
 def _window(road_points, road, first, last, profile):

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...common.parallel import in_order
+from ...common.parallel import ordered_map
 from ...common.setting import check_limits, setting
 from ...intensity.asphalt_model import asphalt
 from ...survey.store.records import COORDINATE_SCALE, Points, take_rows
@@ -64,7 +64,7 @@ def points_in_segments(road_points, road, settings, progress):
         records = _window(road_points, road, window * length, (window + 1) * length)
         return segment_thresholds(records, settings)
 
-    limits = dict(zip(windows, in_order(limits_of, windows, progress.part(0.0, 0.5))))
+    limits = dict(zip(windows, ordered_map(limits_of, windows, progress.part(0.0, 0.5))))
     reach = int(np.ceil(settings.radius / COORDINATE_SCALE)) + 1
 
     def paint_of(window):
@@ -73,7 +73,7 @@ def points_in_segments(road_points, road, settings, progress):
         own = (records["s"] >= first) & (records["s"] < last)
         return take_rows(records, own & dense_enough(records, own, settings))
 
-    yield from in_order(paint_of, windows, progress.part(0.5, 1.0))
+    yield from ordered_map(paint_of, windows, progress.part(0.5, 1.0))
 
 
 def _window(road_points, road, first, last):

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...common.order_statistics import order_by
-from ...common.parallel import in_order
+from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...intensity.asphalt_model import LOWER
 from ...survey.store.records import COORDINATE_SCALE
@@ -53,13 +53,13 @@ class Scatter:
             points = points_in(*key)
             return np.bincount(points.scanner), squares_of(points) if key in chosen else None
 
-        for key, (count, found) in zip(windows, in_order(look, windows, progress)):
+        for key, (count, found) in zip(windows, ordered_map(look, windows, progress)):
             counts[key] = count
             squares += [] if found is None else [found]
         shares = _shares(squares)
         missing = {scanner for count in counts.values() for scanner in np.flatnonzero(count).tolist()} - set(shares)
         rest = [key for key in windows if key not in chosen and any(counts[key][k] for k in missing if k < len(counts[key]))]
-        squares += in_order(lambda key: squares_of(points_in(*key)), rest)
+        squares += ordered_map(lambda key: squares_of(points_in(*key)), rest)
         return cls({**{scanner: share for scanner, share in _shares(squares).items() if scanner in missing}, **shares}, counts)
 
     @property

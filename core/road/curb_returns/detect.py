@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
-from ...common.parallel import in_order
+from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...survey.frame.road_frame import CORRIDOR
 from ..common.decimation import POINTS_PER_LEVEL_CELL_IN_PLAN
@@ -53,7 +53,7 @@ def add_curb_returns(curb_points, decimation, settings, progress=Progress()):
         for number, curb in enumerate(find_curb_returns(decimation, road, main, settings, part), chain):
             length[curb.kind] += _add_points(curb_points, survey, road, curb, number)
     found = ", ".join(f"{length[kind]:.0f} m {title}" for kind, title in KIND_TITLES.items() if length[kind])
-    progress.say(f"Curbs away from the road's direction: {found or 'none'}.")
+    progress.info(f"Curbs away from the road's direction: {found or 'none'}.")
 
 
 def _main_curbs(curb_points, survey, road):
@@ -108,7 +108,7 @@ def find_curb_returns(decimation, road, main, settings, progress=Progress()):
     def work(section):
         return _steps_of_section(decimation, road, section, limits, known, barrier, settings)
 
-    found = [part for part in in_order(work, work_sections(survey, road, settings.profile_width), progress) if part is not None]
+    found = [part for part in ordered_map(work, work_sections(survey, road, settings.profile_width), progress) if part is not None]
     if not found:
         return []
     steps, falls = PlanSteps.join([part for part, _, _ in found]), np.concatenate([part for _, part, _ in found])

@@ -8,7 +8,7 @@ from scipy.interpolate import splev, splprep, splrep
 from scipy.ndimage import median_filter
 
 from ...common.features import Features
-from ...common.parallel import go_on
+from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...common.schemas import ROAD_EDGES, of_main_curb
 from ...common.setting import check_limits, setting
@@ -73,11 +73,11 @@ def fit_road_edges(curb_points, frame, settings=EdgeSettings(), progress=Progres
     assign_nearest_pass(edges, frame)
     length = {status: sum(r["length_m"] for r in edges.rows if r["status"] == status) for status in ("measured", "bridged")}
     if len(edges):
-        progress.say(f"Road edges: {length['measured']:.0f} m measured, {length['bridged']:.0f} m bridged.")
+        progress.info(f"Road edges: {length['measured']:.0f} m measured, {length['bridged']:.0f} m bridged.")
     else:
         progress.warn("No curb was found along this road, so there are no road edges. A verge is none; a lower minimum curb "
                       "height finds low curbs, an assumed road width draws edges all the same.")
-    progress.at(1.0)
+    progress.report(1.0)
     return edges
 
 
@@ -169,7 +169,7 @@ def _draw(edges, frame, road, side, piece, number):
     changes = np.flatnonzero(np.diff(bridged.astype(int))) + 1
     bounds = np.r_[0, changes, len(points) - 1]
     for i, j in zip(bounds[:-1], bounds[1:]):
-        go_on()
+        check_cancelled()
         a, b = curve.t[i], curve.t[j]
         vertices = curve.at(np.linspace(a, b, max(int(np.ceil((b - a) / EDGE_VERTEX_SPACING)), 1) + 1))
         rows = points[i:j + 1]

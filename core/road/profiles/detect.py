@@ -8,7 +8,7 @@ import shapely
 
 from ...common.errors import RoadExtractionError
 from ...common.features import Features
-from ...common.parallel import in_order
+from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.schemas import CURB_POINTS
 from ...common.setting import check_limits, setting
@@ -90,7 +90,7 @@ def detect_curbs(survey, settings=CurbSettings(), progress=Progress(), turned=Tr
     if turned:
         add_curb_returns(found, decimation, settings, progress.part(MAIN_CURB_PROGRESS, 1.0))
     assign_nearest_pass(found, survey.frame)
-    progress.say(f"Curb points: {measured:,} measured, {len(found) - measured:,} hidden by something in front.")
+    progress.info(f"Curb points: {measured:,} measured, {len(found) - measured:,} hidden by something in front.")
     return found
 
 
@@ -118,7 +118,7 @@ def _steps_of_road(decimation, road, settings, progress):
         return {side: _merge_passes(steps) for side, steps in found.items() if steps}
 
     parts = {side: [] for side in SIDE_SIGNS}
-    for found in in_order(work, sections, progress):
+    for found in ordered_map(work, sections, progress):
         for side, steps in found.items():
             parts[side].append(steps)
     return {side: CurbSteps.join(parts[side]) if parts[side] else None for side in SIDE_SIGNS}, occlusion

@@ -5,7 +5,7 @@ from contextlib import closing
 import numpy as np
 
 from ...common.features import Features
-from ...common.parallel import in_order
+from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.schemas import HEIGHT, OFFSET, PASS, ROAD, SIDE, STATION
 from ..common.decimation import PointDecimation
@@ -57,5 +57,5 @@ def _points_of_road(survey, road, settings, progress):
         return found
 
     with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as decimation:
-        for results in in_order(work, work_sections(survey, road, settings.profile_width), progress):
+        for results in ordered_map(work, work_sections(survey, road, settings.profile_width), progress):
             yield from results

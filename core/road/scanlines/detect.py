@@ -16,7 +16,7 @@ import shapely
 
 from ...common.errors import RoadExtractionError
 from ...common.features import Features
-from ...common.parallel import in_order
+from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.schemas import CURB_POINTS, ROAD_EDGES
 from ...common.setting import check_limits, setting
@@ -65,8 +65,8 @@ def boundary_lines(corners, frame, max_gap, progress=Progress()):
                     number += 1
     assign_nearest_pass(lines, frame)
     length = {part: sum(row["length_m"] for row in lines.rows if row["part"] == part) for part in ("bottom", "top")}
-    progress.say(f"Boundaries: {length['bottom']:.0f} m of bottom lines and {length['top']:.0f} m of top lines.")
-    progress.at(1.0)
+    progress.info(f"Boundaries: {length['bottom']:.0f} m of bottom lines and {length['top']:.0f} m of top lines.")
+    progress.report(1.0)
     return lines
 
 
@@ -170,7 +170,7 @@ def curbs_from_scanlines(source, settings=ScanlineBoundarySettings(), block_leng
                 _report_side(found, source, road, side, corners[side], occlusion[side], settings, block_length)
     assign_nearest_pass(found, source.frame)
     bottoms = [row["status"] for row in found.rows if row["part"] == "bottom"]
-    progress.say(f"Corners of curbs: {bottoms.count('measured'):,} measured on scanlines, "
+    progress.info(f"Corners of curbs: {bottoms.count('measured'):,} measured on scanlines, "
                  f"{bottoms.count('occluded'):,} hidden by something in front.")
     return found
 
@@ -209,7 +209,7 @@ def _corners_of_road(source, road, settings, progress):
         return {side: merged_corners(parts) for side, parts in found.items() if parts}
 
     parts = {side: [] for side in SIDE_SIGNS}
-    for found in in_order(work, sections, progress):
+    for found in ordered_map(work, sections, progress):
         for side, corners in found.items():
             parts[side].append(corners)
     return {side: _with_scanner_noise(CurbCorners.join(found)) if found else None for side, found in parts.items()}, occlusion

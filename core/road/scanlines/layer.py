@@ -124,7 +124,7 @@ def write_scanlines(survey, settings=ScanlineSettings(), layer=None, points=None
             if points is not None:
                 points.add(lines, survey.frame, road)
     short = count - len(spool) if layer is not None else 0
-    progress.say(f"Scanlines: {count:,}, {settings.interval:g} m apart"
+    progress.info(f"Scanlines: {count:,}, {settings.interval:g} m apart"
                  + (f"; {short:,} pieces shorter than {MIN_LAYER_LINE:g} m are not in the layer." if short else "."))
     return spool, count
 

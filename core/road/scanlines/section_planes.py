@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...common.parallel import in_order
+from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...survey.lattice.scan_lattice import find_lattice, scanner_runs
@@ -104,7 +104,7 @@ def all_scanlines(survey, road, settings=ScanlineSettings(), lattice=None, progr
     def work(section):
         return scanlines_of(survey, road, *section, settings, lattice)
 
-    yield from in_order(work, list(zip(bounds[:-1].tolist(), bounds[1:].tolist())), progress)
+    yield from ordered_map(work, list(zip(bounds[:-1].tolist(), bounds[1:].tolist())), progress)
 
 
 def _margin(survey, road, lattice):

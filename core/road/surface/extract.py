@@ -13,7 +13,7 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...common.features import Features
-from ...common.parallel import in_order
+from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.schemas import ROAD_SURFACE
 from ...common.setting import check_limits, setting
@@ -123,7 +123,7 @@ def extract_road_surface(survey: Survey, edges: Features | None = None, settings
         raise RoadExtractionError("No road surface was found: no points lie under or beside the trajectory at the height "
                                   "of the road. Check that the trajectory belongs to the point cloud.")
     grown = sum(g.area for g, r in surface if r["status"] == "grown")
-    progress.say(f"Road surface: {len(road_points):,} points, {sum(g.area for g in surface.geometries):.0f} m², "
+    progress.info(f"Road surface: {len(road_points):,} points, {sum(g.area for g in surface.geometries):.0f} m², "
                  f"{grown:.0f} m² of it without a measured edge on both sides.")
     return road_points, surface
 
@@ -161,7 +161,7 @@ def find_carriageway(survey: Survey, road: int, edges: Features | None, settings
     def road_height(s):
         return survey.road_height(road, s)
 
-    measured_windows = list(in_order(measure, windows, progress))
+    measured_windows = list(ordered_map(measure, windows, progress))
     cells = GroundCells.joined([part for part, _ in measured_windows])
     profiles = [part for _, part in measured_windows if part is not None]
     prior = road_height(stations)
@@ -210,7 +210,7 @@ def _take_points(survey, road, carriageway, road_points, progress):
         counts = np.bincount(np.clip(row, 0, len(per_row) - 1), minlength=len(per_row))
         return number, rows - first, dict(half_width=found.half_width[own], covered=beneath[own].astype(np.uint8)), counts
 
-    for number, rows, columns, counts in in_order(take, store.sections(road), progress):
+    for number, rows, columns, counts in ordered_map(take, store.sections(road), progress):
         road_points.store.put(road, number, rows, **columns)
         per_row += counts
     return per_row

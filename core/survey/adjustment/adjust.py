@@ -12,7 +12,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import spsolve
 
-from ...common.parallel import in_order
+from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ..store.records import COORDINATE_SCALE, to_units
 from ..store.section_store import SectionStore
@@ -103,11 +103,11 @@ def _tell(road, offsets, moved, progress):
     """What was found and done, in a line; a warning where it is beyond what drifts."""
     if moved:
         plan, up = (f"{100 * np.median(v):.1f} cm (at most {100 * v.max():.1f})" if len(v) else "an unknown distance" for v in _distances(offsets))
-        progress.say(f"Road {road}: its passes lay {plan} beside and {up} above each other, as navigation drifts between two drives. "
+        progress.info(f"Road {road}: its passes lay {plan} beside and {up} above each other, as navigation drifts between two drives. "
                      "They were laid on each other, each moved by its share.")
     elif all(len(v) for v in _distances(offsets)):
         plan, up = (100 * np.percentile(v, 90) for v in _distances(offsets))
-        progress.say(f"Road {road}: nine tenths of its passes lie within {plan:.1f} cm beside and {up:.1f} cm above each other; "
+        progress.info(f"Road {road}: nine tenths of its passes lie within {plan:.1f} cm beside and {up:.1f} cm above each other; "
                      "they stay as they were measured.")
     beyond = WINDOW * sum(pair.beyond for pair in offsets)
     if beyond:
@@ -167,7 +167,7 @@ def _move(survey, moves, progress):
         return store.partition(key[0], records) if len(records) else None
 
     try:
-        for points in in_order(part, [(road, number) for road in before.roads() for number in before.sections(road)], progress):
+        for points in ordered_map(part, [(road, number) for road in before.roads() for number in before.sections(road)], progress):
             if points is not None:
                 store.add(points)
     except BaseException:

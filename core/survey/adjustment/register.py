@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from ...common.parallel import in_order
+from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from .corrections import STEP
 
@@ -142,7 +142,7 @@ def pass_offsets(survey, road, progress=Progress()):
     windows = [number for number in range(int(np.floor(start / WINDOW)), int(np.ceil(end / WINDOW)))
                if _shared(survey.frame.passes_of(road), number * WINDOW, (number + 1) * WINDOW)]
     seen = {}
-    for number, found in zip(windows, in_order(lambda number: _looked_at(survey, road, number), windows, progress)):
+    for number, found in zip(windows, ordered_map(lambda number: _looked_at(survey, road, number), windows, progress)):
         for pair, evidence in found.items():
             seen.setdefault(pair, []).append((number, *evidence))
     return [_settled(pair, evidence) for pair, evidence in sorted(seen.items())]

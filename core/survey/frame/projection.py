@@ -7,7 +7,7 @@ than a hundredth of a millimetre is lost: half the memory of double is moved.
 
 import numpy as np
 
-from ...common.memory import KeptArrays
+from ...common.memory import ScratchBuffers
 from ..store.records import COORDINATE_SCALE, to_units
 from .passes import MOST_TICKS, TICK
 from .reference_line import NODE
@@ -28,7 +28,7 @@ class LineTable:
     """
 
     def __init__(self, road):
-        self.road, self.last, self._few = road, len(road.x) - 2, KeptArrays()
+        self.road, self.last, self._few = road, len(road.x) - 2, ScratchBuffers()
         self.start = round(road.start / COORDINATE_SCALE)
         self.end = self.start + STEP * (len(road.x) - 1)
         # where places have 64 bits, 32 of them tell them apart within the box about the line
@@ -49,7 +49,7 @@ class LineTable:
         start : (N,) intp
         corridor : metres either side
         s, d : (N,) int32 units, where there is no foot anything
-        kept : of KeptArrays, for N
+        kept : of ScratchBuffers, for N
 
         Returns
         -------
@@ -205,7 +205,7 @@ class Placing:
         self.starts = np.array([p.time[0] for p in frame.passes])
         self.ends = np.array([p.time[-1] for p in frame.passes])
         self._lines = [LineTable(road) for road in frame.roads]
-        self._kept = KeptArrays()
+        self._kept = ScratchBuffers()
         self._ticks = [_Ticks(p, frame.road(p.road)) for p in frame.passes]
 
     def place(self, x, y, time):

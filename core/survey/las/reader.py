@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ...common.errors import Cancelled, RoadExtractionError
-from ...common.parallel import go_on
+from ...common.parallel import check_cancelled
 from .guard import find_damage, points_per_chunk
 
 POINTS_PER_BLOCK = 400_000  # points decoded at a time
@@ -196,7 +196,7 @@ def read_blocks(path: str | os.PathLike[str], size: int = POINTS_PER_BLOCK, laye
     with open_cloud(path, layers) as reader:
         promised, read = reader.header.point_count, 0
         while read < promised:
-            go_on()
+            check_cancelled()
             points = read_points(reader, path, read, size)
             read += len(points)
             yield points

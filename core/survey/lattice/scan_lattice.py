@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from ...common.order_statistics import BITS
-from ...common.parallel import in_order
+from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ..store.records import COORDINATE_SCALE, take_rows
 from .mirror_phase import MirrorPhase, mirror_phase_from_phasors
@@ -97,7 +97,7 @@ def _report_lattice(lattice, progress):
     found, missing = lattice.mirror_phases, lattice.without
     if found:
         rates = sorted({f"{abs(mirror.frequency) / mirror.spacing:.2f}" for mirror in found.values()}, key=float)
-        progress.say(f"Scan lattice found for {len(found)} run(s) of a scanner: {', '.join(rates)} lines per second.")
+        progress.info(f"Scan lattice found for {len(found)} run(s) of a scanner: {', '.join(rates)} lines per second.")
     if not found and not missing:
         lattice.notes.append(f"There are too few points to distinguish scan lines (fewer than {MIN_WINDOW_POINTS} in {ROTATION_WINDOW:g} s "
                              "of each scanner); scanlines are made of the points near each section plane.")
@@ -180,7 +180,7 @@ def _sample_windows(survey, road):
         return found
 
     samples = {}
-    for found in in_order(windows_at, places):
+    for found in ordered_map(windows_at, places):
         for key, window in found.items():
             samples.setdefault(key, []).append(window)
     return samples
@@ -242,7 +242,7 @@ def _mirror_phases(survey, road, rotations, samples, progress):
             gathered.append((key, bins[key].sums_of(since, phasor * np.exp(-2j * np.pi * frequency * since))))
         return gathered
 
-    for gathered in in_order(work, stretches, progress):
+    for gathered in ordered_map(work, stretches, progress):
         for key, sums in gathered:
             bins[key].add(*sums)
     found = {}

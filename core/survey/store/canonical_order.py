@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...common.order_statistics import BITS, above_least, dealt, order_by
+from ...common.order_statistics import BITS, above_least, bucket_argsort, order_by
 from .columns import Columns
 from .records import take_rows
 
@@ -32,7 +32,7 @@ def canonical_order(records: np.ndarray | Columns, mask: np.ndarray | None = Non
     along, across = records["s"], records["d"]
     cell = above_least(along)
     cell >>= max(int(cell.max()).bit_length() - STATION_CELL_BITS, 0)
-    order, ends = dealt(cell, 2**STATION_CELL_BITS, mask)
+    order, ends = bucket_argsort(cell, 2**STATION_CELL_BITS, mask)
     tied_parts, first = [np.empty(0, np.intp)], 0
     for end in _chunk_ends(ends):
         rows = order[first:end]

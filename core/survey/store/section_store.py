@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from ...common.memory import KeptArrays, columns_kept
-from ...common.order_statistics import dealt
-from ...common.parallel import go_on
+from ...common.memory import ScratchBuffers, column_buffers
+from ...common.order_statistics import bucket_argsort
+from ...common.parallel import check_cancelled
 from .canonical_order import canonical_order
 from .columns import Columns, columns_in_order
 from .records import COORDINATE_SCALE, Points
@@ -68,14 +68,14 @@ class StoredSection:
         """
         parts, count = self.parts, sum(map(self._count, self.parts))
         names = self.dtype.names or ()
-        buffer = columns_kept.of(count)
+        buffer = column_buffers.of(count)
         records = Columns({}, self.dtype, count, lambda name: self._fill(file, name, buffer(name, self.dtype[name])))
         mask = None if finish is None else finish(records)
         order = canonical_order(records, mask)
         spilled = [part for part in parts if not isinstance(part, Columns)]
         arrays: dict[str, np.ndarray] = {}
         stored: dict[str, StoredColumn] = {}
-        sorted_buffer = columns_kept.of(len(order))
+        sorted_buffer = column_buffers.of(len(order))
         for name in names if len(order) else ():
             column = records[name]
             if file is None or not spilled:
@@ -106,7 +106,7 @@ class StoredSection:
 
 def _concatenate_into_buffer(columns):
     """Arrays of a column one after the other, in a buffer of this thread that the next call overwrites."""
-    return np.concatenate(columns, out=columns_kept.of(sum(map(len, columns)))("column", columns[0].dtype))
+    return np.concatenate(columns, out=column_buffers.of(sum(map(len, columns)))("column", columns[0].dtype))
 
 
 @dataclass(frozen=True)
@@ -151,7 +151,7 @@ class SectionStore:
         self.section_length = section_length
         self.memory_limit = memory_limit
         self.finish = finish
-        self._buffers = KeptArrays()
+        self._buffers = ScratchBuffers()
         self._sections: dict[tuple[int, int], StoredSection] = {}
         self._cache: OrderedDict[tuple[int, int], Columns] = OrderedDict()   # the spilled sections read last
         self._cache_bytes, self._cache_limit = 0, cache_limit
@@ -186,7 +186,7 @@ class SectionStore:
         strip *= STRIPS_PER_SECTION
         np.floor(strip, out=strip)
         strip -= STRIPS_PER_SECTION * low
-        order, ends = dealt(strip, STRIPS_PER_SECTION * (high + 1 - low), mask)
+        order, ends = bucket_argsort(strip, STRIPS_PER_SECTION * (high + 1 - low), mask)
         columns = records.take(order).load_all() if isinstance(records, Columns) else columns_in_order(records, order)
         return PartitionedPoints(int(road), columns, low, ends[STRIPS_PER_SECTION - 1::STRIPS_PER_SECTION].tolist())
 
@@ -230,7 +230,7 @@ class SectionStore:
 
     def section(self, road: int, section: int) -> Columns:
         """The Columns of one section in canonical order, read-only; empty where there are no points."""
-        go_on()
+        check_cancelled()
         key = (road, section)
         with self._section_locks[hash(key) % SECTION_LOCKS]:
             with self._lock:

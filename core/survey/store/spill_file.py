@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...common.memory import columns_kept
+from ...common.memory import column_buffers
 
 PACKING_CHUNK = 1 << 15  # values packed at a time: they fit the processor's cache
 PART_WIDTHS = {0: (), 1: (1,), 2: (2,), 3: (2, 1), 4: (4,), 5: (4, 1), 6: (4, 2)}  # bytes of a value -> bytes of its parts, lowest first
@@ -95,7 +95,7 @@ def pack(column: np.ndarray) -> tuple[Packing, np.ndarray]:
     packing = Packing(column.dtype, len(column), least, widths)
     bits = column.view(f"u{itemsize}")
     offset = bits.dtype.type(least % 2**(8 * itemsize))
-    data = columns_kept.of(packing.nbytes)("packed", np.uint8)
+    data = column_buffers.of(packing.nbytes)("packed", np.uint8)
     parts = _part_views(data, packing)
     buffer = np.empty(min(len(bits), PACKING_CHUNK), bits.dtype)
     for first in range(0, len(bits) if parts else 0, PACKING_CHUNK):
@@ -177,11 +177,11 @@ class SpillFile:
         elif packing.widths == (packing.dtype.itemsize,) and rows is None:
             self._read(place, column)
         elif rows is not None and 2 * count > packing.size:   # for most rows, unpacking all is faster
-            np.take(self.get(stored, columns_kept.of(packing.size)("column", packing.dtype)), rows, out=column, mode="clip")
+            np.take(self.get(stored, column_buffers.of(packing.size)("column", packing.dtype)), rows, out=column, mode="clip")
         elif count:
             first, end = (0, packing.size) if rows is None else (int(rows.min()), int(rows.max()) + 1)
             span = packing._replace(size=end - first)
-            data, begin = columns_kept.of(span.nbytes)("packed", np.uint8), 0
+            data, begin = column_buffers.of(span.nbytes)("packed", np.uint8), 0
             for width in packing.widths:
                 self._read(place + first * width, data[begin:begin + span.size * width])
                 place, begin = place + packing.size * width, begin + span.size * width

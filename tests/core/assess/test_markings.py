@@ -137,7 +137,7 @@ def test_cells_that_cannot_be_meant_are_refused():
 
 def test_cancel_is_heard_while_a_mask_is_read(tmp_path):
     class Impatient(Progress):
-        def at(self, fraction):
+        def report(self, fraction):
             if fraction > 0.7:
                 raise Cancelled
 

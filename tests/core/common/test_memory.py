@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from lanewright.core.common.memory import hand_back
+from lanewright.core.common.memory import trim_heap
 
 BLOCK, BLOCKS = 100_000, 1000  # bytes; small blocks are kept by the C library, large ones are not
 
@@ -23,6 +23,6 @@ def test_what_threads_freed_goes_back_to_the_system():
         blocks = pool.submit(lambda: [np.ones(BLOCK, np.uint8) for _ in range(BLOCKS)]).result()
         full = resident()
         del blocks[:-1]  # the last one stands in the way of what the C library hands back unasked
-        hand_back()
+        trim_heap()
         assert full - resident() > 0.8 * BLOCK * BLOCKS
         assert blocks[0].all()

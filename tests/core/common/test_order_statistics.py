@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.order_statistics import dealt, quantiles, ranked
+from lanewright.core.common.order_statistics import bucket_argsort, quantiles, ranked
 
 RNG = np.random.default_rng(7)
 COLUMNS = {
@@ -31,8 +31,8 @@ def test_quantiles_are_those_of_numpy(values):
 @pytest.mark.parametrize("count", [1, 255, 256, 70_000])
 def test_rows_are_dealt_to_their_cells_and_lie_there_in_the_order_they_came_in(count):
     cell, own = RNG.integers(0, count, 5000), RNG.random(5000) < 0.7
-    rows, ends = dealt(cell, count, own)
+    rows, ends = bucket_argsort(cell, count, own)
     mine = np.flatnonzero(own)
     np.testing.assert_array_equal(rows, mine[np.argsort(cell[mine], kind="stable")])
     np.testing.assert_array_equal(ends, np.cumsum(np.bincount(cell[mine], minlength=count)))
-    assert len(dealt(cell, count)[0]) == 5000
+    assert len(bucket_argsort(cell, count)[0]) == 5000

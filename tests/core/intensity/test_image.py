@@ -288,7 +288,7 @@ def test_a_cancelled_image_leaves_the_last_one_as_it_was(tmp_path):
     from lanewright.core.common.progress import Progress
 
     class Stop(Progress):
-        def at(self, fraction):
+        def report(self, fraction):
             if fraction > 0.6:
                 raise Cancelled
 

@@ -191,7 +191,7 @@ def test_only_the_hull_is_drawn_where_the_rest_is_left_out(tmp_path):
 
 
 class Stop(Progress):
-    def at(self, fraction):
+    def report(self, fraction):
         if fraction > 0.02:
             raise Cancelled
 

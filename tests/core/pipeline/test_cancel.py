@@ -4,7 +4,7 @@ from collections import Counter
 
 import pytest
 from lanewright.core.common.errors import Cancelled
-from lanewright.core.common.parallel import heard
+from lanewright.core.common.parallel import cancellation_scope
 from lanewright.core.common.progress import Progress
 from lanewright.core.pipeline import road_map as chain
 from lanewright.core.pipeline.road_map import RoadMapSettings, make_road_map
@@ -21,13 +21,13 @@ class Questions(Progress):
     def __init__(self, last=None):
         self.asked, self.stage, self.last = Counter(), "", last
 
-    def ask(self):
+    def check_cancelled(self):
         if self.asked.total() == self.last:
             raise Cancelled
         self.asked[self.stage] += 1
 
-    def at(self, fraction):
-        self.ask()
+    def report(self, fraction):
+        self.check_cancelled()
 
 
 def questions(monkeypatch, survey, folder, last=None):
@@ -39,7 +39,7 @@ def questions(monkeypatch, survey, folder, last=None):
         found.stage = name
         return run(self, name, *arguments, **options)
 
-    with monkeypatch.context() as patch, heard(found):
+    with monkeypatch.context() as patch, cancellation_scope(found):
         patch.setattr(chain.Stages, "run", noted)
         patch.setattr("lanewright.core.common.parallel.PATIENCE", 60.0)  # no question depends on the machine's speed
         make_road_map([cloud], sample.trajectory, folder / "image.tif", RoadMapSettings(), found)

@@ -14,12 +14,12 @@ class Bar(Progress):
     def __init__(self):
         self.places = []
 
-    def at(self, fraction):
+    def report(self, fraction):
         self.places.append(fraction)
 
 
 def nothing(progress):
-    progress.at(1.0)
+    progress.report(1.0)
 
 
 def test_many_points_on_a_short_road_are_mostly_reading_and_as_many_on_a_long_one_mostly_paint():

@@ -22,10 +22,10 @@ class Log(Progress):
     def __init__(self):
         self.lines = []
 
-    def say(self, text):
+    def info(self, text):
         self.lines.append(text)
 
-    warn = say
+    warn = info
 
 
 @pytest.fixture(scope="module")

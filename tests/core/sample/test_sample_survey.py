@@ -361,7 +361,7 @@ def test_cancelling_leaves_no_file(tmp_path):
     from lanewright.core.common.progress import Progress
 
     class Impatient(Progress):
-        def at(self, fraction):
+        def report(self, fraction):
             if fraction > 0.2:
                 raise Cancelled
 

@@ -90,7 +90,7 @@ def test_a_cancel_ends_the_reading_at_once(street):
     class Impatient(Progress):
         asked = 0
 
-        def at(self, fraction):
+        def report(self, fraction):
             self.asked += 1
             if self.asked > 3:
                 raise Cancelled

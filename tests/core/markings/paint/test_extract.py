@@ -146,7 +146,7 @@ class Listener(Progress):
     def warn(self, text):
         self.warnings.append(text)
 
-    def say(self, text):
+    def info(self, text):
         self.said.append(text)
 
     def part(self, first, last):

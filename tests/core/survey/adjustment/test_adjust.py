@@ -55,7 +55,7 @@ class Heard(Progress):
     def __init__(self):
         self.said, self.warned = [], []
 
-    def say(self, text):
+    def info(self, text):
         self.said.append(text)
 
     def warn(self, text):

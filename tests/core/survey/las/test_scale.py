@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.memory import KeptArrays
+from lanewright.core.common.memory import ScratchBuffers
 from lanewright.core.survey.las.scale import LasAxis
 from lanewright.core.survey.store.records import COORDINATE_SCALE
 
@@ -12,7 +12,7 @@ RAW = np.dtype([("X", "i4"), ("Y", "i4"), ("Z", "i4"), ("intensity", "u2")])
 def units(axis, numbers):
     raw = np.zeros(len(numbers), RAW)
     raw[axis.name] = numbers
-    return axis.units(raw, KeptArrays().of(len(raw)))
+    return axis.units(raw, ScratchBuffers().of(len(raw)))
 
 
 @pytest.mark.parametrize("scale, offset", [(0.001, 610_400.0), (0.0001, 0.0), (0.00025, 610_399.12345), (1 / 3000, 610_400.05), (-0.01, 610_500.0)])
