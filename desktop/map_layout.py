@@ -1,32 +1,68 @@
-"""A print layout of a road map: intensity image below, lines above, title, legend, scale bar and north arrow."""
+"""A print layout of a road map: A4 or A3, a round scale, legend, scale bar and north arrow; an atlas where the road is long."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
 
 from qgis.core import (
     Qgis,
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsCsException,
     QgsExpressionContextUtils,
+    QgsFeature,
     QgsGeometry,
     QgsLayoutItemLabel,
     QgsLayoutItemLegend,
     QgsLayoutItemMap,
     QgsLayoutItemPicture,
     QgsLayoutItemScaleBar,
+    QgsLayoutObject,
     QgsLayoutPoint,
     QgsLayoutSize,
+    QgsLegendStyle,
+    QgsMapLayer,
     QgsPrintLayout,
+    QgsProject,
+    QgsProperty,
     QgsRectangle,
     QgsRenderContext,
     QgsTextFormat,
+    QgsVectorLayer,
 )
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QColor, QFont
 
-PAGE_WIDTH, HEADING = 400.0, 12.0  # mm
-LEGEND, ENTRY = 14.0, 6.6  # mm: titles and margins, each entry below a title
-MARGIN = 4.0  # m of ground around the road
-ARROW = 16.0  # mm
+from ..processing_provider.texts import tr
+from .page_series import MapPage, pages_along
+
+PAPERS = {"A4": (297.0, 210.0), "A3": (420.0, 297.0)}  # mm, landscape
+BORDER, HEADING = 8.0, 10.0   # mm: rim of the page, and the line of the title
+LEGEND, ENTRY = 12.0, 5.4     # mm: titles and margins of the legend, and each entry below a title
+MOST_LEGEND = 0.4             # of the page's height
+MARGIN = 4.0                  # m of ground around the road
+ARROW = 12.0                  # mm
+SCALES = (100, 200, 250, 500, 1000, 2000, 2500, 5000, 10_000, 20_000, 25_000, 50_000, 100_000)
+ATLAS_FROM = 1000             # smaller scales show no lane any more: the road is divided into pages of 1:ATLAS_SCALE
+ATLAS_SCALE = 500
 NORTH_ARROW = ":/images/north_arrows/layout_default_north_arrow.svg"  # of QGIS itself
 
 
-def road_map_layout(project, layers, title):
+@dataclass(frozen=True)
+class Frame:
+    """The page and the map on it, mm."""
+
+    page_width: float
+    page_height: float
+    map_height: float
+
+    @property
+    def map_width(self) -> float:
+        return self.page_width - 2 * BORDER
+
+
+def road_map_layout(project: QgsProject, layers: list[QgsMapLayer], title: str, paper: str = "A4",
+                    below: list[QgsMapLayer] | None = None, scale: int = 0) -> QgsPrintLayout:
     """A layout with the road along the page.
 
     Parameters
@@ -34,34 +70,55 @@ def road_map_layout(project, layers, title):
     project : QgsProject that will own the layout
     layers : its layers from above
     title : what stands over the map
+    paper : "A4" or "A3"; landscape or portrait, whichever shows the road larger
+    below : layers drawn below these and left out of the legend: an orthoimage, a web map
+    scale : denominator of the scale; 0 takes the largest round scale at which the whole road fits,
+        and an atlas of pages of 1 : 500 where that would be smaller than 1 : 1000
 
     Returns
     -------
     QgsPrintLayout, not yet added to the project's layouts.
     """
-    centre, angle, length, width = lie_of_the_road(layers)
-    # As tall as the road needs, between a strip and a square
-    map_height = PAGE_WIDTH * min(max((width + 2 * MARGIN) / (length + 2 * MARGIN), 0.25), 0.8)
+    crs = map_crs(layers, project)
+    centre, angle, length, width = lie_of_the_road(layers, crs, project)
+    legend = legend_height(layers)
+    frame, fitting = _largest(paper, legend, length + 2 * MARGIN, width + 2 * MARGIN)
     layout = QgsPrintLayout(project)
     layout.initializeDefaults()
     layout.setName(title)
-    page(layout, map_height + HEADING + legend_height(layers))
-    chart = add_map(layout, layers, centre, angle, length, map_height)
-    add_heading(layout, title, project.crs())
-    add_legend(layout, chart, layers, HEADING + map_height)
-    add_scale_bar(layout, chart, HEADING + map_height, length)
-    add_north_arrow(layout, chart)
+    layout.pageCollection().page(0).setPageSize(QgsLayoutSize(frame.page_width, frame.page_height, Qgis.LayoutUnit.Millimeters))
+    pages: list[MapPage] = []
+    if scale or fitting > ATLAS_FROM:
+        shown = scale or ATLAS_SCALE
+        if shown < fitting:
+            pages = pages_along(_lines(layers, crs, project), frame.map_width / 1000 * shown, frame.map_height / 1000 * shown)
+    else:
+        shown = fitting
+    chart = _add_map(layout, [*layers, *(below or [])], crs, frame, centre, angle, shown)
+    _add_heading(layout, title, crs, frame, atlas=len(pages) > 1)
+    _add_legend(layout, chart, layers, frame)
+    _add_scale_bar(layout, chart, frame, shown)
+    _add_north_arrow(layout, chart, frame)
+    if len(pages) > 1:
+        _add_atlas(project, layout, chart, pages, crs, title)
     return layout
 
 
-def lie_of_the_road(layers):
-    """Centre, angle to the page (degrees), length and width of the rectangle around the road.
+def map_crs(layers: list[QgsMapLayer], project: QgsProject) -> QgsCoordinateReferenceSystem:
+    """The CRS that the map is drawn in: that of the first layer with a projected one, whatever the project shows."""
+    known = [layer.crs() for layer in layers if layer.isSpatial() and layer.crs().isValid()]
+    return next((crs for crs in known if not crs.isGeographic()), known[0] if known else project.crs())
+
+
+def lie_of_the_road(layers: list[QgsMapLayer], crs: QgsCoordinateReferenceSystem | None = None,
+                    project: QgsProject | None = None) -> tuple:
+    """Centre, angle to the page (degrees), length and width of the rectangle around the road, in the map's CRS.
 
     Of the road's surface where it is among the layers, or of whatever is drawn.
     """
     vectors = [layer for layer in layers if layer.type() == Qgis.LayerType.Vector and layer.isSpatial()]
     surfaces = [layer for layer in vectors if layer.geometryType() == Qgis.GeometryType.Polygon and "surface" in layer.source()]
-    hulls = [feature.geometry().convexHull() for layer in surfaces or vectors for feature in layer.getFeatures()]
+    hulls = [hull for layer in surfaces or vectors for hull in _on_the_map(layer, crs, project, QgsGeometry.convexHull)]
     whole = QgsGeometry.collectGeometry([hull for hull in hulls if not hull.isEmpty()])
     if whole.isEmpty():
         whole = QgsGeometry.fromRect(layers[-1].extent())
@@ -72,7 +129,52 @@ def lie_of_the_road(layers):
     return box.centroid().asPoint(), (angle + 90.0) % 180.0 - 90.0, width, height
 
 
-def legend_height(layers):
+def _on_the_map(layer, crs, project, of=QgsGeometry) -> list[QgsGeometry]:
+    """`of` every geometry of a layer, in the CRS of the map; what cannot be transformed is left out."""
+    transform = None
+    if crs is not None and layer.crs().isValid() and layer.crs() != crs:
+        transform = QgsCoordinateTransform(layer.crs(), crs, project or QgsProject.instance())
+    found = []
+    for feature in layer.getFeatures():
+        if not feature.hasGeometry():
+            continue
+        geometry = of(feature.geometry())
+        if transform is not None:
+            try:
+                geometry.transform(transform)
+            except QgsCsException:
+                continue
+        found.append(geometry)
+    return found
+
+
+def _lines(layers, crs, project) -> list[QgsGeometry]:
+    """What pages are laid along: driving lines where there are any, else marking lines, else edges, else all lines."""
+    lines = [layer for layer in layers if layer.type() == Qgis.LayerType.Vector and layer.isSpatial()
+             and layer.geometryType() == Qgis.GeometryType.Line]
+    for word in ("driving", "marking", "edge"):
+        chosen = [layer for layer in lines if word in f"{layer.source()} {layer.name()}".lower() and layer.featureCount()]
+        if chosen:
+            lines = chosen[:1]
+            break
+    return [geometry for layer in lines for geometry in _on_the_map(layer, crs, project)]
+
+
+def _largest(paper: str, legend: float, length: float, width: float) -> tuple[Frame, int]:
+    """The frame, landscape or portrait, that shows the road largest, and the round scale at which all of it fits."""
+    long, short = PAPERS[paper]
+    best = None
+    for page_width, page_height in ((long, short), (short, long)):
+        map_height = page_height - 2 * BORDER - HEADING - min(legend, MOST_LEGEND * page_height)
+        frame = Frame(page_width, page_height, map_height)
+        needed = max(length / frame.map_width, width / map_height) * 1000
+        fitting = next((scale for scale in SCALES if scale >= needed), int(needed) + 1)
+        if best is None or fitting < best[1]:
+            best = frame, fitting
+    return best
+
+
+def legend_height(layers: list[QgsMapLayer]) -> float:
     """mm that the longest column of the legend takes, with the classes there are."""
     entries = [1]
     for layer in layers:
@@ -86,63 +188,72 @@ def legend_height(layers):
     return LEGEND + ENTRY * max(entries)
 
 
-def page(layout, height):
-    layout.pageCollection().page(0).setPageSize(QgsLayoutSize(PAGE_WIDTH, height, Qgis.LayoutUnit.Millimeters))
-
-
-def place(layout, item, x, y, width=None, height=None):
+def _place(layout, item, x, y, width=None, height=None):
     layout.addLayoutItem(item)
     item.attemptMove(QgsLayoutPoint(x, y, Qgis.LayoutUnit.Millimeters))
     if width:
         item.attemptResize(QgsLayoutSize(width, height, Qgis.LayoutUnit.Millimeters))
 
 
-def add_map(layout, layers, centre, angle, length, height):
+def _text(size: float) -> QgsTextFormat:
+    style = QgsTextFormat()
+    style.setFont(QFont("DejaVu Sans"))
+    style.setSize(size)
+    return style
+
+
+def _add_map(layout, layers, crs, frame, centre, angle, scale):
     chart = QgsLayoutItemMap(layout)
-    place(layout, chart, 0, HEADING, PAGE_WIDTH, height)
+    chart.setId("Map")
+    _place(layout, chart, BORDER, BORDER + HEADING, frame.map_width, frame.map_height)
+    chart.setCrs(crs)
     chart.setLayers(layers)
-    span = length + 2 * MARGIN
-    chart.zoomToExtent(QgsRectangle.fromCenterAndSize(centre, span, span * height / PAGE_WIDTH))
+    width, height = frame.map_width / 1000 * scale, frame.map_height / 1000 * scale
+    chart.zoomToExtent(QgsRectangle.fromCenterAndSize(centre, width, height))
+    chart.setScale(scale)
     chart.setMapRotation(-angle)
-    chart.setBackgroundColor(QColor(28, 28, 30))
+    chart.setBackgroundColor(QColor(255, 255, 255))
+    chart.setFrameEnabled(True)
     return chart
 
 
-def add_heading(layout, title, crs):
-    """The title, and on the right the CRS of the map."""
-    for text, size, side in ((title, 15, Qt.AlignmentFlag.AlignLeft), (crs.userFriendlyIdentifier(), 9, Qt.AlignmentFlag.AlignRight)):
+def _add_heading(layout, title, crs, frame, atlas):
+    """The title, and on the right the CRS of the map and the page of an atlas."""
+    page = ", " + tr("page") + " [% @atlas_featurenumber %] / [% @atlas_totalfeatures %]" if atlas else ""
+    for text, size, side in ((title, 13, Qt.AlignmentFlag.AlignLeft), (crs.userFriendlyIdentifier() + page, 8, Qt.AlignmentFlag.AlignRight)):
         heading = QgsLayoutItemLabel(layout)
         heading.setText(text)
         heading.setHAlign(side)
         heading.setVAlign(Qt.AlignmentFlag.AlignVCenter)
-        style = QgsTextFormat()
-        style.setFont(QFont("DejaVu Sans"))
-        style.setSize(size)
-        heading.setTextFormat(style)
-        place(layout, heading, 5, 1, PAGE_WIDTH - 10, HEADING - 2)
+        heading.setTextFormat(_text(size))
+        _place(layout, heading, BORDER, BORDER - 1, frame.map_width, HEADING - 1)
 
 
-def add_legend(layout, chart, layers, top):
+def _add_legend(layout, chart, layers, frame):
     legend = QgsLayoutItemLegend(layout)
     legend.setLinkedMap(chart)
-    place(layout, legend, 3, top + 2)
+    _place(layout, legend, BORDER, BORDER + HEADING + frame.map_height + 2)
     legend.setAutoUpdateModel(False)
     root = legend.model().rootGroup()
     root.clear()
-    for layer in layers:
-        if layer.type() == Qgis.LayerType.Vector:
-            root.addLayer(layer)
-    legend.setColumnCount(5)
+    vectors = [layer for layer in layers if layer.type() == Qgis.LayerType.Vector and layer.isSpatial()]
+    for layer in vectors:
+        root.addLayer(layer)
+    for style in (QgsLegendStyle.Style.Title, QgsLegendStyle.Style.Group, QgsLegendStyle.Style.Subgroup, QgsLegendStyle.Style.SymbolLabel):
+        one = legend.style(style)
+        one.setTextFormat(_text(8 if style != QgsLegendStyle.Style.SymbolLabel else 7))
+        legend.setStyle(style, one)
+    legend.setColumnCount(max(1, min(len(vectors), 5 if frame.page_width > frame.page_height else 3)))
     legend.setSplitLayer(False)
-    legend.setEqualColumnWidth(True)
-    legend.setColumnSpace(4)
+    legend.setEqualColumnWidth(False)
+    legend.setColumnSpace(3)
     # Of all the classes there may be, those that are there
     legend.setLegendFilterByMapEnabled(True)
     legend.adjustBoxSize()
 
 
-def add_scale_bar(layout, chart, bottom, length):
-    """In the lower right corner of the map."""
+def _add_scale_bar(layout, chart, frame, scale):
+    """In the lower right corner of the map, with the scale as a number."""
     bar = QgsLayoutItemScaleBar(layout)
     bar.setStyle("Single Box")
     bar.setLinkedMap(chart)
@@ -151,21 +262,65 @@ def add_scale_bar(layout, chart, bottom, length):
     bar.setNumberOfSegments(4)
     bar.setNumberOfSegmentsLeft(0)
     # Four segments in an eighth to a quarter of the page
-    least = length / 40
+    least = frame.map_width / 1000 * scale / 40
     bar.setUnitsPerSegment(next(step * 10**power for power in range(7) for step in (1, 2, 5) if step * 10**power >= least))
+    bar.setTextFormat(_text(7))
+    bar.setHeight(2)
     bar.setBackgroundEnabled(True)
     bar.setBackgroundColor(QColor(255, 255, 255, 225))
     bar.update()
-    place(layout, bar, PAGE_WIDTH - bar.rect().width() - 4, bottom - bar.rect().height() - 4)
+    bottom = BORDER + HEADING + frame.map_height
+    _place(layout, bar, BORDER + frame.map_width - bar.rect().width() - 3, bottom - bar.rect().height() - 3)
+    number = QgsLayoutItemLabel(layout)
+    number.setId("Scale")
+    number.setText("1 : [% format_number(round(item_variables('Map')['map_scale'] / 10) * 10, 0) %]")
+    number.setTextFormat(_text(8))
+    number.setHAlign(Qt.AlignmentFlag.AlignRight)
+    number.setBackgroundEnabled(True)
+    number.setBackgroundColor(QColor(255, 255, 255, 225))
+    _place(layout, number, BORDER + frame.map_width - 27, bottom - bar.rect().height() - 8, 24, 4.5)
 
 
-def add_north_arrow(layout, chart):
+def _add_north_arrow(layout, chart, frame):
     """In the upper right corner of the map, which is turned so that the road lies along the page."""
     arrow = QgsLayoutItemPicture(layout)
     arrow.setId("North")
     arrow.setPicturePath(NORTH_ARROW)
-    arrow.setSvgFillColor(QColor(255, 255, 255))
-    arrow.setSvgStrokeColor(QColor(255, 255, 255))
+    arrow.setSvgFillColor(QColor(40, 40, 40))
+    arrow.setSvgStrokeColor(QColor(40, 40, 40))
+    arrow.setBackgroundEnabled(True)
+    arrow.setBackgroundColor(QColor(255, 255, 255, 200))
     arrow.setLinkedMap(chart)
     arrow.setNorthMode(QgsLayoutItemPicture.NorthMode.GridNorth)
-    place(layout, arrow, PAGE_WIDTH - ARROW - 4, HEADING + 4, ARROW, ARROW)
+    _place(layout, arrow, BORDER + frame.map_width - ARROW - 3, BORDER + HEADING + 3, ARROW, ARROW)
+
+
+def _add_atlas(project, layout, chart, pages, crs, title):
+    """One page of the atlas for each MapPage: its centre and its angle steer the map, the scale stays."""
+    cover = QgsVectorLayer(f"Polygon?field=number:integer&field=angle:double&index=yes&crs={crs.authid()}",
+                           tr("Pages of {title}").format(title=title), "memory")
+    if not crs.authid():
+        cover.setCrs(crs)
+    features = []
+    for number, page in enumerate(pages, 1):
+        feature = QgsFeature(cover.fields())
+        feature.setGeometry(page.outline)
+        feature.setAttributes([number, -page.angle])
+        features.append(feature)
+    cover.dataProvider().addFeatures(features)
+    cover.updateExtents()
+    # It steers the pages; it is no part of the map, and not asked about when QGIS is closed
+    cover.setCustomProperty("skipMemoryLayersCheck", 1)
+    project.addMapLayer(cover, False)
+    atlas = layout.atlas()
+    atlas.setCoverageLayer(cover)
+    atlas.setHideCoverage(True)
+    atlas.setEnabled(True)
+    atlas.setSortFeatures(True)
+    atlas.setSortExpression("number")
+    chart.setAtlasDriven(True)
+    chart.setAtlasScalingMode(QgsLayoutItemMap.AtlasScalingMode.Fixed)
+    chart.dataDefinedProperties().setProperty(QgsLayoutObject.DataDefinedProperty.MapRotation, QgsProperty.fromField("angle"))
+    atlas.updateFeatures()
+    atlas.beginRender()
+    atlas.first()

@@ -7,12 +7,12 @@ from qgis.PyQt.QtCore import QObject
 from qgis.PyQt.QtGui import QAction, QIcon
 
 from ..processing_provider.texts import tr
+from .layout_dialog import LayoutDialog, road_map_groups, shown_layers
 from .manual import ManualWindow
 from .map_layout import road_map_layout
 from .sample_run import SampleRun
 
 ICON = Path(__file__).resolve().parents[1] / "resources" / "icon.svg"
-LAYER_GROUP = "Lanewright"
 
 
 class Menu(QObject):
@@ -59,16 +59,22 @@ class Menu(QObject):
             self.dialog.show()
 
     def open_layout(self):
-        """A layout of the newest Lanewright group, opened in QGIS's designer."""
+        """A layout of a road map of the project, opened in QGIS's designer."""
         project = QgsProject.instance()
-        groups = [node for node in project.layerTreeRoot().findGroups() if node.name().startswith(LAYER_GROUP)]
-        layers = [node.layer() for node in (groups[0].findLayers() if groups else []) if node.layer() and node.layer().isSpatial()]
-        if not layers:
+        groups = road_map_groups(project)
+        if not groups:
             self.iface.messageBar().pushMessage(
                 "Lanewright", tr("There is no road map in this project yet: run Road map first."), level=Qgis.MessageLevel.Info
             )
             return
-        layout = road_map_layout(project, layers, unused_name(project, groups[0].name()))
+        dialog = LayoutDialog(project, groups, self.iface.mainWindow())
+        if dialog.exec():
+            self.print_layout(project, **dialog.choice)
+
+    def print_layout(self, project, group, **chosen):
+        """The layout of one group's layers that are switched on (of all where none is), added to the project and shown."""
+        layers = shown_layers(group) or shown_layers(group, hidden=True)
+        layout = road_map_layout(project, layers, unused_name(project, group.name()), **chosen)
         project.layoutManager().addLayout(layout)
         self.iface.openLayoutDesigner(layout)
 

@@ -2684,6 +2684,41 @@
             <translation>{label} hat Geometrien ohne Höhen (Z). Den Layer verwenden, den Lanewright geschrieben hat.</translation>
         </message>
         <message>
+            <location filename="../../desktop/layout_dialog.py" />
+            <source>Lanewright</source>
+            <translation>Lanewright</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/layout_dialog.py" />
+            <source>Print layout of the road map</source>
+            <translation>Drucklayout der Straßenkarte</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/layout_dialog.py" />
+            <source>The largest at which the road fits; long roads on several pages</source>
+            <translation>Der größte, bei dem die Straße auf das Blatt passt; lange Straßen auf mehreren Seiten</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/layout_dialog.py" />
+            <source>Nothing</source>
+            <translation>Nichts</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/layout_dialog.py" />
+            <source>Paper</source>
+            <translation>Papier</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/layout_dialog.py" />
+            <source>Scale</source>
+            <translation>Maßstab</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/layout_dialog.py" />
+            <source>Layer below (orthoimage, web map)</source>
+            <translation>Layer darunter (Orthobild, Web-Karte)</translation>
+        </message>
+        <message>
             <location filename="../../desktop/manual.py" />
             <source>Lanewright manual</source>
             <translation>Lanewright-Handbuch</translation>
@@ -2704,6 +2739,16 @@
             <translation>Vorwärts</translation>
         </message>
         <message>
+            <location filename="../../desktop/map_layout.py" />
+            <source>page</source>
+            <translation>Seite</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/map_layout.py" />
+            <source>Pages of {title}</source>
+            <translation>Seiten von {title}</translation>
+        </message>
+        <message>
             <location filename="../../desktop/menu.py" />
             <source>Road map…</source>
             <translation>Straßenkarte…</translation>
@@ -2722,11 +2767,6 @@
             <location filename="../../desktop/menu.py" />
             <source>A made street through the whole chain, into this project</source>
             <translation>Eine erdachte Straße durch die ganze Kette, in dieses Projekt</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/menu.py" />
-            <source>Print layout of the road map</source>
-            <translation>Drucklayout der Straßenkarte</translation>
         </message>
         <message>
             <location filename="../../desktop/menu.py" />
