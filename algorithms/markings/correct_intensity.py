@@ -32,6 +32,7 @@ class CorrectIntensity(Algorithm):
 
     def work(self, call, progress):
         from ...core.intensity.correction import correct_intensity
+        from ...core.report.intensity import intensity_correction_report
         from ...core.survey.road_points_las import write_road_points
 
         road_points = bright_road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.2))
@@ -39,6 +40,6 @@ class CorrectIntensity(Algorithm):
         corrected, report = correct_intensity(road_points, frame, call.settings(INTENSITY_SETTINGS), progress.part(0.2, 0.8))
         write_road_points(corrected, call.new_file("OUTPUT"), progress.part(0.8, 1.0))
         for line in report.lines()[1:]:  # the first was said when it was found, as was a warning
-            if line != report.clipped:
+            if line != report.saturation_warning:
                 progress.info(line)
-        call.text("REPORT", report.to_html())
+        call.text("REPORT", intensity_correction_report(report))

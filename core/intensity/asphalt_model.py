@@ -1,142 +1,170 @@
-"""What asphalt returns at each distance from a scanner: counted in histograms, so that no order matters."""
+"""The intensity of asphalt at each distance from a scanner, from histograms, so that the order of the points does not matter."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from ..common.order_statistics import ascending, quantile_in_order
 from ..survey.store.records import COORDINATE_SCALE
-from .vehicle_relative import ACROSS, AWAY, UNKNOWN
+from .vehicle_relative import ACROSS_TRACK, FROM_VEHICLE, UNKNOWN_DISTANCE
 
-BIN = 0.5           # m of distance
-REACH = 30.0        # m; farther road counts with the last bin
-LEVELS = 1024       # of intensity, 64 to a doubling: 1.1 % each
-PER_DOUBLING = 64
-FEWEST = 200        # points that make a bin's asphalt known
-BINS = int(2 * REACH / BIN)
-MIXED = 1.5         # times the spread of its neighbours: a bin of paint and asphalt, left out
-PAINT_SIGMA = 3.0   # brighter than asphalt by this many of its lower spread is not asphalt
-SHIFT, PLACES = 4, 2**16   # corrections are looked up every 2**4 units of 0.1 mm, 52 m to either side; beyond REACH they are all alike
-HALF = PLACES << SHIFT >> 1
-LEVEL_OF = np.clip(np.rint(np.log2(np.arange(2**16) + 1.0) * PER_DOUBLING), 0, LEVELS - 1).astype(np.int32)  # of whole numbers
-LOWER = 0.5 - 0.3413  # quantile one standard deviation below the median of a normal distribution
+DISTANCE_BIN = 0.5      # m
+MAX_DISTANCE = 30.0     # m; farther road counts with the last bin
+DISTANCE_BINS = int(2 * MAX_DISTANCE / DISTANCE_BIN)   # both sides of the vehicle
+INTENSITY_LEVELS = 1024     # logarithmic, 64 to a doubling: 1.1 % each
+LEVELS_PER_DOUBLING = 64
+MIN_ASPHALT_POINTS = 200    # points of a bin, below which its asphalt is unknown
+MIXED_BIN_SPREAD = 1.5  # times the spread of its neighbours: a bin of paint and asphalt, left out
+MIXED_BIN_NEIGHBOURS = 4    # bins either side that a bin is compared with
+PAINT_SIGMAS = 3.0      # lower spreads above the median of asphalt: what is brighter is taken for paint
+LOWER_QUANTILE = 0.5 - 0.3413  # one standard deviation below the median of a normal distribution
+CLEANING_ROUNDS = 4     # of taking the median and leaving out paint
+POINTS_AT_ONCE = 1 << 15    # points corrected or counted at a time: what fits the processor's cache
+# corrections are looked up in steps of 2**4 units of 0.1 mm, 52 m to either side; beyond MAX_DISTANCE they are all alike
+LOOKUP_SHIFT, LOOKUP_STEPS = 4, 2**16
+LOOKUP_HALF = LOOKUP_STEPS << LOOKUP_SHIFT >> 1
+LEVEL_OF_COUNT = np.clip(np.rint(np.log2(np.arange(2**16) + 1.0) * LEVELS_PER_DOUBLING), 0, INTENSITY_LEVELS - 1).astype(np.int32)
 
 
-def asphalt(values):
-    """Median and lower spread of what is not paint.
+def asphalt_statistics(values: np.ndarray) -> tuple[float, float]:
+    """Median and lower spread of asphalt, among values of asphalt and paint.
 
-    Paint is at the bright end only, so it is cut off, and what is cut off an even
-    distribution does not matter to its lower half; three rounds settle it.
+    Paint is at the bright end only, so values brighter than three spreads above the median
+    are left out. The lower half of the distribution does not depend on where
+    it is cut; three rounds are enough.
+
+    Parameters
+    ----------
+    values : (N,) float, no NaN, at least one
 
     Returns
     -------
-    median, spread : spread is the distance from the median to the 15.9 % quantile
+    median, spread : the spread is the distance from the median to the 15.9 % quantile
     """
     values = ascending(values)
     count = len(values)
-    for _ in range(4):
-        low, median = quantile_in_order(values, count, LOWER), quantile_in_order(values, count, 0.5)
+    for _ in range(CLEANING_ROUNDS):
+        low, median = quantile_in_order(values, count, LOWER_QUANTILE), quantile_in_order(values, count, 0.5)
         spread = max(median - low, 1e-6 * max(abs(median), 1.0))
-        kept = int(np.searchsorted(values, median + 3.0 * spread, side="right"))
-        if kept == count:
+        remaining = int(np.searchsorted(values, median + PAINT_SIGMAS * spread, side="right"))
+        if remaining == count:
             break
-        count = kept
+        count = remaining
     return median, spread
 
 
+def distance_bin(distances: np.ndarray) -> np.ndarray:
+    """(N,) int32 bin of (N,) int32 signed distances, units of 0.1 mm."""
+    number = distances + np.int32(MAX_DISTANCE / COORDINATE_SCALE)
+    number //= np.int32(DISTANCE_BIN / COORDINATE_SCALE)
+    return np.clip(number, 0, DISTANCE_BINS - 1, out=number)
 
-def distance_bin(places):
-    """(N,) int32 bin of signed distances, units of 0.1 mm."""
-    number = places + np.int32(REACH / COORDINATE_SCALE)
-    number //= np.int32(BIN / COORDINATE_SCALE)
-    return np.clip(number, 0, BINS - 1, out=number)
 
-
-def to_level(intensity):
-    """(N,) int32 level of intensities."""
+def to_level(intensity: np.ndarray) -> np.ndarray:
+    """(N,) int32 level of (N,) intensities."""
     if intensity.dtype == np.uint16:
-        return LEVEL_OF.take(intensity)
-    return np.clip(np.rint(np.log2(np.maximum(intensity, 0) + 1.0) * PER_DOUBLING), 0, LEVELS - 1).astype(np.int32)
+        return LEVEL_OF_COUNT.take(intensity)
+    return np.clip(np.rint(np.log2(np.maximum(intensity, 0) + 1.0) * LEVELS_PER_DOUBLING), 0, INTENSITY_LEVELS - 1).astype(np.int32)
 
 
-def to_intensity(level):
-    return 2.0 ** (np.asarray(level, float) / PER_DOUBLING) - 1.0
+def to_intensity(level: np.ndarray) -> np.ndarray:
+    """Intensity of (fractional) levels, float64 of the same shape."""
+    return 2.0 ** (np.asarray(level, float) / LEVELS_PER_DOUBLING) - 1.0
 
 
-class LevelCounts:
-    """How many points have each level, by scanner and distance, by each way of telling the distance.
+class BinCounts(NamedTuple):
+    """Counts of some points for one kind of distance: (scanners, bins, INTENSITY_LEVELS) from bin `first` on."""
 
-    counts : (2, scanners, BINS, LEVELS) int64
+    kind: int
+    first: int
+    counts: np.ndarray
+
+
+class IntensityHistograms:
+    """How many points have each level, by kind of distance, scanner and distance.
+
+    counts : (2, scanners, DISTANCE_BINS, INTENSITY_LEVELS) int64
     """
 
-    def __init__(self, scanners):
-        self.counts = np.zeros((2, scanners, BINS, LEVELS), np.int64)
+    def __init__(self, scanners: int):
+        self.counts = np.zeros((2, scanners, DISTANCE_BINS, INTENSITY_LEVELS), np.int64)
 
-    def of(self, scanner, places, intensity, ways=(ACROSS, AWAY)):
-        """What some points count, to be added: (way, first bin, (scanners, bins, LEVELS)) for each way.
+    def count(self, scanner: np.ndarray, distances: Sequence[np.ndarray], intensity: np.ndarray,
+              kinds: Sequence[int] = (ACROSS_TRACK, FROM_VEHICLE)) -> list[BinCounts]:
+        """Counts of some points, to be added with `add`.
 
-        A point whose place or intensity is not known counts nowhere.
+        A point whose distance or intensity is not known counts nowhere.
 
         Parameters
         ----------
-        scanner : (N,)
+        scanner : (N,) int
+        distances : for each of `kinds` (N,) int32 of `VehicleDistances.of`
         intensity : (N,) NaN where it could not be corrected
-        places : for each of `ways` (N,) of `Tracks.places`
+        kinds : kinds of distance
         """
-        known = places[0] != UNKNOWN
+        known = distances[0] != UNKNOWN_DISTANCE
         if intensity.dtype.kind == "f":
             known &= ~np.isnan(intensity)
         if not known.all():
-            places, intensity, scanner = [row[known] for row in places], intensity[known], scanner[known]
+            distances, intensity, scanner = [row[known] for row in distances], intensity[known], scanner[known]
         if not len(intensity):
             return []
         level, scanners = to_level(intensity), self.counts.shape[1]
         found = []
-        for way, row in zip(ways, places):
+        for kind, row in zip(kinds, distances):
             number = distance_bin(row)
             first, bins = int(number.min()), int(np.ptp(number)) + 1
             number -= first
             if scanners > 1:
                 number += scanner.astype(np.int32) * bins
-            number *= LEVELS
+            number *= INTENSITY_LEVELS
             number += level
-            found.append((way, first, np.bincount(number, minlength=scanners * bins * LEVELS).reshape(scanners, bins, LEVELS)))
+            counts = np.bincount(number, minlength=scanners * bins * INTENSITY_LEVELS).reshape(scanners, bins, INTENSITY_LEVELS)
+            found.append(BinCounts(kind, first, counts))
         return found
 
-    def add(self, found, times=1):
-        """Add what `of` found, so many times."""
-        for way, first, counts in found:
-            self.counts[way, :, first:first + counts.shape[1]] += counts if times == 1 else times * counts
+    def add(self, found: Sequence[BinCounts], times: int = 1) -> None:
+        """Add the result of `count`, `times` times."""
+        for kind, first, counts in found:
+            self.counts[kind, :, first:first + counts.shape[1]] += counts if times == 1 else times * counts
 
 
-def asphalt_of(histograms):
+def asphalt_of_histograms(histograms: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Median and lower spread of asphalt in each histogram of levels.
 
-    What is brighter than the median by three lower spreads is taken for paint
-    and left out, and the median sought again: paint never raises it.
+    Levels brighter than three lower spreads above the median are taken for paint
+    and left out, and the median is taken again: paint never raises it.
+
+    Parameters
+    ----------
+    histograms : (..., INTENSITY_LEVELS) int
 
     Returns
     -------
-    median, lower sigma : (...) intensity; NaN where there are fewer than 200 points
+    median, sigma : (...) intensity; NaN where there are fewer than 200 points
     """
     total = histograms.sum(axis=-1)
-    known = total >= FEWEST
+    known = total >= MIN_ASPHALT_POINTS
     median, sigma = np.full(total.shape, np.nan), np.full(total.shape, np.nan)
     counts = histograms[known].astype(float)
     if not len(counts):
         return median, sigma
-    limit = np.full(len(counts), LEVELS)
-    for _ in range(4):
-        kept = np.where(np.arange(LEVELS) <= limit[..., None], counts, 0.0)
-        low, middle = _quantile(kept, 0.1587), _quantile(kept, 0.5)
-        # a level is 1.1 %: narrower than that no spread can be seen
-        limit = middle + PAINT_SIGMA * np.maximum(middle - low, 1.0)
+    limit = np.full(len(counts), INTENSITY_LEVELS)
+    for _ in range(CLEANING_ROUNDS):
+        remaining = np.where(np.arange(INTENSITY_LEVELS) <= limit[..., None], counts, 0.0)
+        low, middle = _histogram_quantile(remaining, LOWER_QUANTILE), _histogram_quantile(remaining, 0.5)
+        # a level is 1.1 %: no smaller spread can be resolved
+        limit = middle + PAINT_SIGMAS * np.maximum(middle - low, 1.0)
     median[known] = to_intensity(middle)
     sigma[known] = median[known] - to_intensity(low)
     return median, sigma
 
 
-def _quantile(counts, q):
+def _histogram_quantile(counts, q):
     """Level (fractional) below which a share q of the counts lies, along the last axis."""
     sums = np.cumsum(counts, axis=-1)
     wanted = q * sums[..., -1:]
@@ -150,116 +178,124 @@ def _quantile(counts, q):
 class AsphaltTable:
     """Asphalt's intensity by scanner and distance.
 
-    asphalt : (scanners, BINS) smoothed; NaN for a scanner whose asphalt is unknown
-    known : (scanners, BINS) where asphalt was seen and not interpolated
-    told_by : (scanners,) ACROSS or AWAY, the distance that explains the scanner's intensity better
-    reference : what the whole road's asphalt is brought to
+    asphalt : (scanners, DISTANCE_BINS) smoothed; NaN for a scanner whose asphalt is unknown
+    known : (scanners, DISTANCE_BINS) bool, where asphalt was measured and not interpolated
+    distance_kind : (scanners,) ACROSS_TRACK or FROM_VEHICLE, the distance that explains the scanner's intensity better
+    reference : intensity that the asphalt of the whole road is brought to
     logarithmic : a correction is added, not multiplied
     """
 
     asphalt: np.ndarray
     known: np.ndarray
-    told_by: np.ndarray
+    distance_kind: np.ndarray
     reference: float
     logarithmic: bool
 
     @classmethod
-    def of(cls, histograms):
-        """The table of `LevelCounts`; None where no scanner saw enough road."""
-        median, sigma = asphalt_of(histograms)
+    def from_counts(cls, histograms: np.ndarray) -> AsphaltTable | None:
+        """The table of the counts of IntensityHistograms; None where no scanner measured enough road."""
+        median, sigma = asphalt_of_histograms(histograms)
         weight = histograms.sum(axis=-1)
         if not np.isfinite(median).any():
             return None
         with np.errstate(invalid="ignore"):
             spread = np.where(np.isfinite(median), weight * (sigma / np.maximum(median, 1e-9)), 0.0).sum(axis=-1)
             spread /= np.maximum(np.where(np.isfinite(median), weight, 0).sum(axis=-1), 1)
-        told_by = np.where(spread[AWAY] < 0.9 * spread[ACROSS], AWAY, ACROSS)
-        rows = told_by, np.arange(len(told_by))
+        kind = np.where(spread[FROM_VEHICLE] < 0.9 * spread[ACROSS_TRACK], FROM_VEHICLE, ACROSS_TRACK)
+        rows = kind, np.arange(len(kind))
         median, sigma, weight = median[rows], sigma[rows], weight[rows]
         known = np.isfinite(median) & ~_mixed(sigma / np.maximum(median, 1e-9))
         reference = weighted_median(median[known], weight[known])
         median = np.where(known, median, np.nan)
-        asphalt = np.stack([_smooth(row, count) for row, count in zip(median, weight)])
-        return cls(asphalt, known, told_by, reference, is_logarithmic(median, sigma, weight))
+        asphalt = np.stack([_smoothed(row, count) for row, count in zip(median, weight)])
+        return cls(asphalt, known, kind, reference, is_logarithmic(median, sigma, weight))
 
-    def lookup(self):
-        """What corrects an intensity at each place: (scanners, PLACES + 1) float32 factors, or what is added.
+    def lookup(self) -> np.ndarray:
+        """Corrections at each distance: (scanners, LOOKUP_STEPS + 1) float32 factors, or summands where `logarithmic`.
 
-        Asphalt farther away than REACH is taken for that at REACH, on either side. NaN for a scanner whose asphalt
-        is unknown, and in the last column, which is that of points whose place is UNKNOWN.
+        Asphalt farther away than MAX_DISTANCE is taken for that at MAX_DISTANCE, on either side. NaN for a scanner whose
+        asphalt is unknown, and in the last column, which is that of UNKNOWN_DISTANCE.
         """
-        distance = (((np.arange(PLACES) << SHIFT) - HALF) + (1 << SHIFT) / 2) * COORDINATE_SCALE
-        position = np.clip((distance + REACH) / BIN - 0.5, 0, BINS - 1)
-        asphalt = np.stack([np.interp(position, np.arange(BINS), row) for row in self.asphalt])
+        distance = (((np.arange(LOOKUP_STEPS) << LOOKUP_SHIFT) - LOOKUP_HALF) + (1 << LOOKUP_SHIFT) / 2) * COORDINATE_SCALE
+        position = np.clip((distance + MAX_DISTANCE) / DISTANCE_BIN - 0.5, 0, DISTANCE_BINS - 1)
+        asphalt = np.stack([np.interp(position, np.arange(DISTANCE_BINS), row) for row in self.asphalt])
         found = self.reference - asphalt if self.logarithmic else self.reference / np.maximum(asphalt, 1e-6)
         return np.pad(found.astype(np.float32), ((0, 0), (0, 1)), constant_values=np.nan)
 
     @staticmethod
-    def looked_up(lookup, scanner, place):
-        """What corrects points: (N,) float32 of `lookup`.
+    def corrections(lookup: np.ndarray, scanner: np.ndarray, distance: np.ndarray) -> np.ndarray:
+        """Corrections of points.
 
         Parameters
         ----------
-        lookup : of the method of that name
-        scanner : (N,)
-        place : (N,) int32 of `Tracks.places`
+        lookup : (scanners, LOOKUP_STEPS + 1) of the method of that name
+        scanner : (N,) int
+        distance : (N,) int32 of `VehicleDistances.of`
+
+        Returns
+        -------
+        (N,) float32
         """
-        index = place + np.int32(HALF)
-        index >>= SHIFT
-        np.clip(index, 0, PLACES - 1, out=index)
-        index[place == UNKNOWN] = PLACES
+        index = distance + np.int32(LOOKUP_HALF)
+        index >>= LOOKUP_SHIFT
+        np.clip(index, 0, LOOKUP_STEPS - 1, out=index)
+        index[distance == UNKNOWN_DISTANCE] = LOOKUP_STEPS
         if len(lookup) > 1:
-            index += scanner.astype(np.int32) * np.int32(PLACES + 1)
+            index += scanner.astype(np.int32) * np.int32(LOOKUP_STEPS + 1)
         return lookup.ravel().take(index)
 
 
-def is_logarithmic(median, sigma, weight):
-    """Whether asphalt's spread stays while its level falls with distance.
+def is_logarithmic(median: np.ndarray, sigma: np.ndarray, weight: np.ndarray) -> bool:
+    """Whether intensities are on a logarithmic scale: asphalt's spread stays the same while its level falls with distance.
 
     On a linear scale the spread falls with the level, on a logarithmic one it
     does not: the slope of log(spread) over log(level) is 1 or 0. A scale whose
-    level hardly falls is taken as linear; either correction does the same there.
+    level hardly falls is taken as linear; there both corrections do the same. Our own rule.
+
+    Parameters
+    ----------
+    median, sigma, weight : arrays of one shape: asphalt and number of points by distance; NaN where unknown
     """
     use = np.isfinite(median) & np.isfinite(sigma) & (sigma > 0) & (median > 0)
     if not use.any():
         return False
     level, spread = np.log(median[use]), np.log(sigma[use])
-    w = np.minimum(weight[use], 10 * FEWEST).astype(float)
+    w = np.minimum(weight[use], 10 * MIN_ASPHALT_POINTS).astype(float)
     w /= w.sum()
     level = level - (w * level).sum()
     variance = (w * level * level).sum()
     return bool(variance > 0.03**2 and (w * level * spread).sum() < 0.5 * variance)
 
 
-def weighted_median(values, weights):
-    """The value below which half of the weight lies."""
+def weighted_median(values: np.ndarray, weights: np.ndarray) -> float:
+    """The value below which half of the weight lies, of (N,) values and weights."""
     order = np.argsort(values, kind="stable")
     sums = np.cumsum(weights[order])
     return float(values[order][np.searchsorted(sums, 0.5 * sums[-1])])
 
 
 def _mixed(spread):
-    """Bins whose relative spread stands out from those around: a line painted at one distance fills much of them."""
-    around = np.stack([np.roll(np.pad(spread, ((0, 0), (4, 4)), constant_values=np.nan), k, axis=1)[:, 4:-4]
-                       for k in range(-4, 5)])
-    known = np.isfinite(spread)  # so that each has something around it: itself
+    """Bins whose relative spread stands out from their neighbours': a line painted at one distance fills much of them."""
+    n = MIXED_BIN_NEIGHBOURS
+    around = np.stack([np.roll(np.pad(spread, ((0, 0), (n, n)), constant_values=np.nan), k, axis=1)[:, n:-n] for k in range(-n, n + 1)])
+    known = np.isfinite(spread)  # so that each has at least one neighbour: itself
     found = np.zeros(spread.shape, bool)
-    found[known] = spread[known] > MIXED * np.nanmedian(around[:, known], axis=0)
+    found[known] = spread[known] > MIXED_BIN_SPREAD * np.nanmedian(around[:, known], axis=0)
     return found
 
 
-def _smooth(values, weight, sigma=0.7):
-    """A row of the table, smoothed over its neighbours; between known bins interpolated, ends carried outward."""
+def _smoothed(values, weight, sigma=0.7):
+    """A row of the table, smoothed by a local line; between known bins interpolated, at the ends extended."""
     known = np.flatnonzero(np.isfinite(values))
     if not len(known):
         return values
-    # intensity falls by a share per metre: its logarithm is the straighter line
+    # intensity falls by a share per metre: its logarithm is closer to a line
     found = np.log(np.maximum(values[known], 1e-3))
     u = (known - known[:, None]).astype(float)
-    w = np.exp(-0.5 * (u / sigma) ** 2) * np.minimum(weight[known], 20 * FEWEST)
+    w = np.exp(-0.5 * (u / sigma) ** 2) * np.minimum(weight[known], 20 * MIN_ASPHALT_POINTS)
     s0, s1, s2 = w.sum(axis=1), (w * u).sum(axis=1), (w * u * u).sum(axis=1)
     t0, t1 = (w * found).sum(axis=1), (w * u * found).sum(axis=1)
-    spread = s0 * s2 - s1 * s1
+    determinant = s0 * s2 - s1 * s1
     with np.errstate(invalid="ignore", divide="ignore"):
-        fitted = np.where(spread > 1e-3 * s0 * s0, (s2 * t0 - s1 * t1) / spread, t0 / s0)
+        fitted = np.where(determinant > 1e-3 * s0 * s0, (s2 * t0 - s1 * t1) / determinant, t0 / s0)
     return np.exp(np.interp(np.arange(len(values)), known, fitted))

@@ -1,11 +1,14 @@
-"""The beams of a spinning scanner, told apart by their elevation, and brought to one brightness.
+"""The beams of a spinning scanner, separated by their elevation angle, and brought to one brightness.
 
-Each laser of such a scanner has a gain and a threshold of its own, so that asphalt
-looks like a pattern of bright and dark arcs. Seen from the scanner, a laser
-always points at the same elevation: points gather there in rings, and the asphalt of
-each ring tells what the laser makes of asphalt.
+Each laser of such a scanner has its own gain and threshold, so that asphalt
+looks like a pattern of bright and dark arcs. Relative to the scanner a laser
+always points at the same elevation: its points form a ring, and the asphalt of
+each ring shows how bright the laser makes asphalt.
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,24 +16,31 @@ from scipy.ndimage import gaussian_filter1d
 
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
+from ..survey.frame.passes import Pass
+from ..survey.frame.road_frame import RoadFrame
 from ..survey.store.columns import Columns
 from ..survey.store.records import Points
-from .asphalt_model import FEWEST, LEVELS, asphalt_of, is_logarithmic, to_level, weighted_median
+from ..survey.store.road_points import RoadPoints
+from .asphalt_model import INTENSITY_LEVELS, MIN_ASPHALT_POINTS, asphalt_of_histograms, is_logarithmic, to_level, weighted_median
+from .vehicle_relative import PASS_MARGIN
 
-LOWEST, STEP, STEPS = -45.0, 0.05, 900   # degrees: elevations of road from -45 to 0 in steps of 0.05
-RINGS = 1.5          # how much fuller than the mean of a degree about them rings must be to be beams
-UNEQUAL = 0.05       # of asphalt's level: beams that differ less from those beside them are alike
-BESIDE = 3           # beams either side
-WINDOWS, WINDOW = 12, 5.0   # how many windows of a road are looked at to tell whether there are beams; m
-MOST = 8_000         # points of a window that are looked at
-LONGEST_FRAME = 1.0  # s that a turn of a spinning scanner may last
-SIGHTED = "time", "x", "y", "z", "source", "pass_number"   # columns by which points are seen from the vehicle
-TILTS = ((0, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))  # signs in which roll and pitch are told
+LOWEST_ELEVATION = -45.0        # degrees; elevations of road reach from here to 0
+ELEVATION_BIN = 0.05            # degrees
+ELEVATION_BINS = 900
+MIN_SHARPNESS = 1.5     # times as full as the mean of a degree around them: bins that are rings of beams
+UNEQUAL_BEAMS = 0.05    # of asphalt's level: beams that differ less from their neighbours are alike
+NEIGHBOUR_BEAMS = 3     # beams either side
+SAMPLE_WINDOWS, SAMPLE_WINDOW = 12, 5.0     # windows of each road that are searched for beams; their length, m
+MAX_SAMPLE_POINTS = 8_000   # points of one scanner in a window that are looked at
+MAX_TURN = 1.0          # s, the longest turn of a spinning scanner
+SOURCE_IDS = 2**16      # numbers that point_source_id may have
+SAMPLE_COLUMNS = "time", "x", "y", "z", "source", "pass_number"   # needed for the elevation seen from the vehicle
+ANGLE_SIGNS = ((0, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))  # sign conventions of roll and pitch that are tried; 0 ignores them
 
 
 @dataclass
-class Frames:
-    """Turns of a spinning scanner, counted in point_source_id; a cloud without such a count has none.
+class ScannerTurns:
+    """Turns of a spinning scanner, numbered in point_source_id; a cloud without such numbers has none.
 
     middle : (65536,) s, the time in the middle of each turn; NaN where the number is no turn
     """
@@ -38,8 +48,9 @@ class Frames:
     middle: np.ndarray
 
     @classmethod
-    def of(cls, road_points):
-        first, last = np.full(65536, np.inf), np.full(65536, -np.inf)
+    def of(cls, road_points: RoadPoints) -> ScannerTurns:
+        """The turns by which points are numbered."""
+        first, last = np.full(SOURCE_IDS, np.inf), np.full(SOURCE_IDS, -np.inf)
         for key in road_points.all_sections():
             points = road_points.section(*key)
             source, time = points.source, points.time
@@ -53,219 +64,241 @@ class Frames:
         number = np.flatnonzero(np.isfinite(first))
         number = number[np.argsort(first[number], kind="stable")]
         begin, end = first[number], last[number]
-        # not every turn begins and ends over the road: where two follow on each other they share the time between
-        follows = begin[1:] - end[:-1] < LONGEST_FRAME / 2
+        # not every turn begins and ends over the road: two consecutive turns share the time between them
+        follows = begin[1:] - end[:-1] < MAX_TURN / 2
         between = (end[:-1] + begin[1:]) / 2
         begin[1:][follows], end[:-1][follows] = between[follows], between[follows]
-        # and one that none follows, or that follows none, is as long as the others
+        # a turn without a predecessor or a successor is as long as the others
         turn = np.r_[False, follows] & np.r_[follows, False]
         if turn.any():
             length = float(np.median((end - begin)[turn]))
             begin = np.where(np.r_[False, follows] | ~np.r_[follows, False], begin, end - length)
             end = np.where(np.r_[follows, False] | ~np.r_[False, follows], end, begin + length)
-        middle = np.full(65536, np.nan)
-        turn = (end - begin < LONGEST_FRAME) & (end > begin)
+        middle = np.full(SOURCE_IDS, np.nan)
+        turn = (end - begin < MAX_TURN) & (end > begin)
         middle[number[turn]] = (begin[turn] + end[turn]) / 2
         return cls(middle)
 
     @classmethod
-    def none(cls):
-        return cls(np.full(65536, np.nan))
+    def none(cls) -> ScannerTurns:
+        """No turns."""
+        return cls(np.full(SOURCE_IDS, np.nan))
 
     @property
-    def known(self):
+    def known(self) -> bool:
         return bool(np.isfinite(self.middle).any())
 
 
 def _may_be_turns(samples):
-    """Whether any point_source_id of some points from all over the road was there for no longer than a turn."""
+    """Whether any point_source_id of points from all over the road occurs for no longer than a turn."""
     source, time = (np.concatenate([getattr(points, name) for points in samples]) for name in ("source", "time"))
     order = np.argsort(source, kind="stable")
     source, time = source[order], time[order]
     begins = np.flatnonzero(np.r_[True, source[1:] != source[:-1]])
-    return bool((np.maximum.reduceat(time, begins) - np.minimum.reduceat(time, begins) < LONGEST_FRAME).any())
+    return bool((np.maximum.reduceat(time, begins) - np.minimum.reduceat(time, begins) < MAX_TURN).any())
 
 
 @dataclass
-class View:
-    """How the elevation of a point is seen: at the point's own time, or where its whole turn was brought to
-    the turn's middle; with the signs of roll and pitch."""
+class ElevationModel:
+    """How the elevation of a point seen from the scanner is computed.
 
-    passes: list
-    frames: Frames
-    by_frame: bool = False
-    tilt: tuple = (0, 0)
+    passes : of the road frame
+    turns : ScannerTurns
+    by_turn : at the middle of the point's turn, to which its whole turn was moved; else at the point's own time
+    signs : of roll and pitch
+    """
 
-    def elevation_bin(self, points):
+    passes: Sequence[Pass]
+    turns: ScannerTurns
+    by_turn: bool = False
+    signs: tuple[int, int] = (0, 0)
+
+    def elevation_bin(self, points: Points) -> np.ndarray:
         """(N,) int, the bin of elevation; -1 where no pass drove at the point's time."""
         found = np.full(len(points), -1)
-        for rows, sight in self.sights(points):
-            found[rows] = sight.elevation_bin(self.tilt)
+        for rows, geometry in self.geometries(points):
+            found[rows] = geometry.elevation_bin(self.signs)
         return found
 
-    def sights(self, points):
-        """(indices, Sight) of the points of each pass, the same for all tilts."""
+    def geometries(self, points: Points) -> Iterator[tuple[np.ndarray, BeamGeometry]]:
+        """Yield (indices, BeamGeometry) of the points of each pass, the same for all signs."""
         time, number = points.time, points.pass_number
-        if self.by_frame:
-            middle = self.frames.middle[points.source]
+        if self.by_turn:
+            middle = self.turns.middle[points.source]
             time = np.where(np.isfinite(middle), middle, time)
         for p in self.passes:
-            rows = np.flatnonzero((number == p.number) & (time >= p.time[0] - 1.0) & (time <= p.time[-1] + 1.0))
+            rows = np.flatnonzero((number == p.number) & (time >= p.time[0] - PASS_MARGIN) & (time <= p.time[-1] + PASS_MARGIN))
             if len(rows):
-                yield rows, Sight.of(p, points[rows], time[rows])
+                yield rows, BeamGeometry.of(p, points[rows], time[rows])
 
 
 @dataclass(frozen=True)
-class Sight:
-    """How points lie from the vehicle.
+class BeamGeometry:
+    """Where points lie relative to the vehicle.
 
-    reach, rise : (N,) m, horizontally and up; lean, nod : (N,) m that roll and pitch raise them by, 0 where neither is known
+    reach, rise : (N,) m, horizontally and up
+    by_roll, by_pitch : (N,) m that roll and pitch raise them by, 0 where the attitude is unknown
     """
 
     reach: np.ndarray
     rise: np.ndarray
-    lean: np.ndarray
-    nod: np.ndarray
+    by_roll: np.ndarray | float
+    by_pitch: np.ndarray | float
 
     @classmethod
-    def of(cls, p, points, time):
+    def of(cls, p: Pass, points: Points, time: np.ndarray) -> BeamGeometry:
+        """Geometry of (N) points of a pass, seen at (N,) times."""
         px, py, pz = p.position(time)
         dx, dy = points.x - px, points.y - py
-        if p.attitude is None:
-            lean = nod = 0.0
-        else:
+        by_roll: np.ndarray | float = 0.0
+        by_pitch: np.ndarray | float = 0.0
+        if p.attitude is not None:
             roll, pitch, heading = (np.interp(time, p.time, angle) for angle in p.attitude)
             c, n = np.cos(heading), np.sin(heading)
-            lean, nod = roll * (dx * c - dy * n), pitch * (dx * n + dy * c)
-        return cls(np.hypot(dx, dy), points.z - pz, lean, nod)
+            by_roll, by_pitch = roll * (dx * c - dy * n), pitch * (dx * n + dy * c)
+        return cls(np.hypot(dx, dy), points.z - pz, by_roll, by_pitch)
 
-    def elevation_bin(self, tilt):
-        """(N,) int; `tilt` are the signs of roll and pitch."""
-        elevation = np.degrees(np.arctan2(self.rise + tilt[0] * self.lean + tilt[1] * self.nod, self.reach))
-        return np.clip(np.floor((elevation - LOWEST) / STEP), -1, STEPS - 1).astype(int)
+    def elevation_bin(self, signs: tuple[int, int]) -> np.ndarray:
+        """(N,) int; `signs` are those of roll and pitch."""
+        elevation = np.degrees(np.arctan2(self.rise + signs[0] * self.by_roll + signs[1] * self.by_pitch, self.reach))
+        return np.clip(np.floor((elevation - LOWEST_ELEVATION) / ELEVATION_BIN), -1, ELEVATION_BINS - 1).astype(int)
 
 
 @dataclass
 class Beams:
     """Beams of the scanners that have several.
 
-    views : dict of scanner to View; beam : dict of scanner to (STEPS,) number of the beam by elevation
-    shift : dict of scanner to (beams,) what is added to a beam's intensities, or what they are multiplied by
-    added : dict of scanner to whether it is added
+    models : ElevationModel by scanner
+    beam : by scanner (ELEVATION_BINS,) number of the beam at each elevation
+    corrections : by scanner (beams,) summands or factors of a beam's intensities
+    added : by scanner, whether the correction is added
     """
 
-    views: dict
-    beam: dict
-    shift: dict
-    added: dict
+    models: dict[int, ElevationModel]
+    beam: dict[int, np.ndarray]
+    corrections: dict[int, np.ndarray]
+    added: dict[int, bool]
 
     @classmethod
-    def of(cls, road_points, frame, scanners, progress=Progress()):
-        """Beams of a survey's scanners; None where every scanner has one, or all of one brightness."""
+    def of(cls, road_points: RoadPoints, frame: RoadFrame, scanners: int, progress: Progress = Progress()) -> Beams | None:
+        """Beams of a survey's scanners; None where every scanner has one, or all of one brightness.
+
+        Parameters
+        ----------
+        road_points : RoadPoints
+        frame : RoadFrame with times
+        scanners : their numbers are below this
+        """
         samples = _samples(road_points, frame, scanners)
         if not samples:
             return None
-        frames = Frames.of(road_points) if _may_be_turns([points for found in samples.values() for points in found]) else Frames.none()
-        views = {scanner: view for scanner, found in samples.items() if (view := _sharpest(found, frame.passes, frames)) is not None}
-        if not views:
+        turns = ScannerTurns.of(road_points) if _may_be_turns([points for found in samples.values() for points in found]) \
+            else ScannerTurns.none()
+        models = {scanner: model for scanner, found in samples.items() if (model := _sharpest(found, frame.passes, turns)) is not None}
+        if not models:
             return None
-        found = cls(views, {}, {}, {})
-        counts = 0
+        found = cls(models, {}, {}, {})
+        counts = np.zeros((len(models), ELEVATION_BINS, INTENSITY_LEVELS), np.int64)
         for section in ordered_map(lambda key: found._count(road_points.section(*key)), road_points.all_sections(), progress):
-            counts = counts + section
-        for scanner, levels in zip(views, counts):
-            found._learn(scanner, levels)
-        return found if found.shift else None
+            counts += section
+        for scanner, levels in zip(models, counts):
+            found._estimate(scanner, levels)
+        return found if found.corrections else None
 
     def _count(self, points):
-        """(scanners with beams, STEPS, LEVELS) how many points have each level at each elevation."""
-        counts = np.zeros((len(self.views), STEPS, LEVELS), np.int64)
-        for k, (scanner, view) in enumerate(self.views.items()):
+        """(scanners with beams, ELEVATION_BINS, INTENSITY_LEVELS) how many points have each level at each elevation."""
+        counts = np.zeros((len(self.models), ELEVATION_BINS, INTENSITY_LEVELS), np.int64)
+        for k, (scanner, model) in enumerate(self.models.items()):
             rows = np.flatnonzero(points.scanner == scanner)
-            place = view.elevation_bin(points[rows])
+            place = model.elevation_bin(points[rows])
             known = place >= 0
-            flat = place[known] * LEVELS + to_level(points.intensity[rows][known])
-            counts[k] = np.bincount(flat, minlength=STEPS * LEVELS).reshape(STEPS, LEVELS)
+            flat = place[known] * INTENSITY_LEVELS + to_level(points.intensity[rows][known])
+            counts[k] = np.bincount(flat, minlength=ELEVATION_BINS * INTENSITY_LEVELS).reshape(ELEVATION_BINS, INTENSITY_LEVELS)
         return counts
 
-    def _learn(self, scanner, levels):
-        """What brings each beam's asphalt to the level of all, from (STEPS, LEVELS) counts."""
+    def _estimate(self, scanner, levels):
+        """Corrections that bring each beam's asphalt to the level of all, from (ELEVATION_BINS, INTENSITY_LEVELS) counts."""
         smooth = gaussian_filter1d(levels.sum(axis=1).astype(float), 1.0)
         valleys = np.flatnonzero((smooth[1:-1] <= smooth[:-2]) & (smooth[1:-1] < smooth[2:])) + 1
         starts = np.r_[0, valleys]
-        median, lower = asphalt_of(np.add.reduceat(levels, starts, axis=0))
+        median, lower = asphalt_of_histograms(np.add.reduceat(levels, starts, axis=0))
         weight = np.add.reduceat(levels.sum(axis=1), starts)
         known = np.flatnonzero(np.isfinite(median) & (median > 0))
-        if len(known) < 2 * BESIDE:
+        if len(known) < 2 * NEIGHBOUR_BEAMS:
             return
         reference = weighted_median(median[known], weight[known])
-        padded = np.pad(median[known], BESIDE, mode="edge")
-        beside = np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * BESIDE + 1), axis=1)
-        if weighted_median(np.abs(median[known] - beside), weight[known]) < UNEQUAL * reference:
+        padded = np.pad(median[known], NEIGHBOUR_BEAMS, mode="edge")
+        neighbours = np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * NEIGHBOUR_BEAMS + 1), axis=1)
+        if weighted_median(np.abs(median[known] - neighbours), weight[known]) < UNEQUAL_BEAMS * reference:
             return
-        # a beam that hardly met the road is taken for its neighbour
+        # a beam with few points on the road is interpolated between its neighbours
         median = np.interp(np.arange(len(median)), known, median[known])
-        self.beam[scanner] = np.searchsorted(starts, np.arange(STEPS), side="right") - 1
+        self.beam[scanner] = np.searchsorted(starts, np.arange(ELEVATION_BINS), side="right") - 1
         self.added[scanner] = is_logarithmic(median[known], lower[known], weight[known])
-        self.shift[scanner] = reference - median if self.added[scanner] else reference / median
+        self.corrections[scanner] = reference - median if self.added[scanner] else reference / median
 
-    def even(self, points):
+    def equalised(self, points: Points) -> np.ndarray:
         """(N,) float intensity as if all beams were alike."""
         value = points.intensity.astype(float)
-        for scanner, shift in self.shift.items():
+        for scanner, corrections in self.corrections.items():
             rows = np.flatnonzero(points.scanner == scanner)
-            place = self.views[scanner].elevation_bin(points[rows])
+            place = self.models[scanner].elevation_bin(points[rows])
             rows, place = rows[place >= 0], place[place >= 0]
-            by = shift[self.beam[scanner][place]]
+            by = corrections[self.beam[scanner][place]]
             value[rows] = np.maximum(value[rows] + by, 0.0) if self.added[scanner] else value[rows] * by
         return value
 
     @property
-    def count(self):
-        """How many beams were evened."""
-        return sum(len(shift) for shift in self.shift.values())
+    def count(self) -> int:
+        """How many beams were equalised."""
+        return sum(len(corrections) for corrections in self.corrections.values())
 
 
-def _samples(road_points, frame, scanners):
+def _samples(road_points: RoadPoints, frame: RoadFrame, scanners: int) -> dict[int, list[Points]]:
     """{scanner: [Points]} of a few windows of each road, at the same stations however the sections are cut; scanners without are left out."""
-    samples = {}
+    samples: dict[int, list[Points]] = {}
     for road in road_points.roads():
         start, end = frame.road(road).start, frame.road(road).end
-        for s in np.linspace(start, max(end - WINDOW, start), WINDOWS):
-            points = road_points.window(road, s, s + WINDOW)
+        for s in np.linspace(start, max(end - SAMPLE_WINDOW, start), SAMPLE_WINDOWS):
+            points = road_points.window(road, s, s + SAMPLE_WINDOW)
             of = points.scanner
             for scanner in range(scanners):
                 rows = np.flatnonzero(of == scanner)
-                if len(rows) >= FEWEST:
-                    some = points[rows[::-(-len(rows) // MOST)]].records
-                    # on their own, so that the sections they come from are let go
-                    alone = Columns({name: some[name] for name in SIGHTED}, np.dtype([(name, some.dtype[name]) for name in SIGHTED]))
-                    samples.setdefault(scanner, []).append(Points(alone))
+                if len(rows) >= MIN_ASPHALT_POINTS:
+                    some = points[rows[::-(-len(rows) // MAX_SAMPLE_POINTS)]].records
+                    # copies of the columns, so that the memory of the sections is freed
+                    own = Columns({name: some[name] for name in SAMPLE_COLUMNS}, np.dtype([(name, some.dtype[name]) for name in SAMPLE_COLUMNS]))
+                    samples.setdefault(scanner, []).append(Points(own))
     return {scanner: samples[scanner] for scanner in sorted(samples)}
 
 
-def _sharpest(samples, passes, frames):
-    """The view in which points gather most clearly in rings; None where they do in no view."""
-    tilts = TILTS if any(p.attitude is not None for p in passes) else TILTS[:1]
-    best, sharpest = RINGS, None
-    for by_frame in (False, True) if frames.known else (False,):
-        view = View(passes, frames, by_frame)
-        sights = [sight for points in samples for _, sight in view.sights(points)]
-        for tilt in tilts:
-            found = sharpness(sum((_histogram(sight.elevation_bin(tilt)) for sight in sights), np.zeros(STEPS)))
+def _sharpest(samples: list[Points], passes: Sequence[Pass], turns: ScannerTurns) -> ElevationModel | None:
+    """The ElevationModel in which points form the clearest rings; None where they do in none."""
+    all_signs = ANGLE_SIGNS if any(p.attitude is not None for p in passes) else ANGLE_SIGNS[:1]
+    best, sharpest = MIN_SHARPNESS, None
+    for by_turn in (False, True) if turns.known else (False,):
+        model = ElevationModel(passes, turns, by_turn)
+        geometries = [geometry for points in samples for _, geometry in model.geometries(points)]
+        for signs in all_signs:
+            found = sharpness(sum((_histogram(geometry.elevation_bin(signs)) for geometry in geometries), np.zeros(ELEVATION_BINS)))
             if found > best:
-                best, sharpest = found, replace(view, tilt=tilt)
+                best, sharpest = found, replace(model, signs=signs)
     return sharpest
 
 
 def _histogram(place):
-    return np.bincount(place[place >= 0], minlength=STEPS).astype(float)
+    return np.bincount(place[place >= 0], minlength=ELEVATION_BINS).astype(float)
 
 
-def sharpness(counts):
-    """How much fuller than the mean of a degree about it the elevation of a point is on average: 1 where they lie evenly."""
+def sharpness(counts: np.ndarray) -> float:
+    """How much fuller the elevation bin of a point is, on average, than the mean of a degree around it: 1 for an even distribution.
+
+    Parameters
+    ----------
+    counts : (ELEVATION_BINS,) float, points at each elevation
+    """
     total = counts.sum()
-    if total < STEPS:
+    if total < ELEVATION_BINS:
         return 0.0
-    # a point is no company for itself
-    return float((counts * (counts - 1)).sum() / max((counts * gaussian_filter1d(counts, 0.5 / STEP)).sum(), 1e-9))
+    # a point does not count as its own neighbour
+    return float((counts * (counts - 1)).sum() / max((counts * gaussian_filter1d(counts, 0.5 / ELEVATION_BIN)).sum(), 1e-9))

@@ -1,42 +1,46 @@
-"""Intensity freed of range and incidence, scanner by scanner, from the road's own asphalt."""
+"""Intensity without the effect of range and incidence, scanner by scanner, from the road's own asphalt."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
+from ..survey.frame.road_frame import RoadFrame
 from ..survey.store.records import Points
-from .asphalt_model import BIN, REACH, AsphaltTable, LevelCounts, asphalt_of
+from ..survey.store.road_points import RoadPoints
+from .asphalt_model import DISTANCE_BIN, MAX_DISTANCE, POINTS_AT_ONCE, AsphaltTable, IntensityHistograms, asphalt_of_histograms
 from .beams import Beams
-from .saturation import Clipping
-from .vehicle_relative import ACROSS, UNKNOWN, Tracks
+from .saturation import MAX_SCANNERS, Saturation
+from .vehicle_relative import ACROSS_TRACK, UNKNOWN_DISTANCE, VehicleDistances
 
-ENOUGH = 6_000   # points of a metre of road: more tell nothing new of asphalt
-STRIPE = 100    # units of 0.1 mm along the road: where there are more, stripes of it are looked at
-AT_ONCE = 1 << 15  # points corrected at a time: what fits the processor's cache
-WITHOUT_VEHICLE = 0.2   # share of points that may lack a vehicle's position before the correction is given up
+ENOUGH_POINTS_PER_METRE = 6_000   # of road: more do not improve the estimate of asphalt
+STRIPE_LENGTH = 100    # units of 0.1 mm along the road: of denser roads, stripes of this length are sampled
+MAX_SHARE_WITHOUT_VEHICLE = 0.2   # of the points, whose vehicle position is unknown: beyond it nothing is corrected
 
 
 @dataclass(frozen=True)
 class IntensitySettings:
     """How intensity is corrected.
 
-    scale : "automatic" tells linear from logarithmic intensities by the spread
+    scale : "automatic" decides between linear and logarithmic by the spread
         of asphalt; "linear" multiplies, "logarithmic" adds
     """
 
     scale: str = "automatic"
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.scale not in ("automatic", "linear", "logarithmic"):
             raise RoadExtractionError(f"The intensity scale is {self.scale!r}; it is one of automatic, linear, logarithmic.")
 
 
 @dataclass
 class IntensityReport:
-    """What the correction found and did.
+    """Result of a correction in numbers.
 
     scale : "linear", "logarithmic", or "" where nothing was corrected
     reference : the intensity that asphalt was brought to
@@ -44,152 +48,144 @@ class IntensityReport:
         asphalt_after (medians over the distances), fall_before, fall_after (highest
         over lowest asphalt), spread_before, spread_after (coefficient of variation of
         asphalt over the distances, %)
-    beams : how many beams of spinning scanners were evened, 0 where there are none
     between_before, between_after : highest over lowest scanner's asphalt
-    clipping : whether intensities were cut off at an end
+    spread_before, spread_after : coefficient of variation of asphalt over distances and scanners, %
+    beams : how many beams of spinning scanners were equalised, 0 where there are none
+    saturation : whether intensities were cut off at an end
     reason : why nothing was corrected, "" where it was
     """
 
     scale: str = ""
     reference: float = float("nan")
-    scanners: list = field(default_factory=list)
+    scanners: list[dict[str, Any]] = field(default_factory=list)
     between_before: float = float("nan")
     between_after: float = float("nan")
     spread_before: float = float("nan")
     spread_after: float = float("nan")
     beams: int = 0
-    clipping: Clipping = Clipping()
+    saturation: Saturation = Saturation()
     reason: str = ""
 
     @property
-    def clipped(self):
-        """What to say of intensities that were cut off, "" where they were not."""
-        return self.clipping.warning
+    def saturation_warning(self) -> str:
+        """A warning of intensities that were cut off, "" where they were not."""
+        return self.saturation.warning
 
-    def lines(self):
+    def lines(self) -> list[str]:
         """Sentences for a log."""
         if self.reason:
             return [self.reason]
-        texts = [f"Intensity looks {self.scale}; asphalt was brought to {self.reference:.0f}. Its level varies by "
+        texts = [f"The intensity scale is {self.scale}; asphalt was brought to {self.reference:.0f}. Its level varies by "
                  f"{self.spread_after:.1f} % over distances and scanners, {self.spread_before:.1f} % before."]
         if self.beams:
-            texts[0] += f" {self.beams} beams of unequal brightness were made alike."
-        texts += [self.clipped] if self.clipped else []
+            texts[0] += f" {self.beams} beams of unequal brightness were equalised."
+        texts += [self.saturation_warning] if self.saturation_warning else []
         for row in self.scanners:
             texts.append(f"Scanner {row['scanner']}: asphalt varies by {row['spread_after']:.1f} % from {row['nearest']:.0f} to "
                          f"{row['farthest']:.0f} m, {row['spread_before']:.1f} % before.")
         return texts
 
-    def to_html(self):
-        """The report as a page of its own."""
-        from ..report.page import Page
 
-        page = Page("Intensity correction", "Asphalt's intensity by scanner, before and after. Distances are from the track of the vehicle.")
-        for line in [*self.lines()[:1], self.clipped]:
-            if line:
-                page.text(line)
-        if self.scanners:
-            page.table(("Scanner", "Points", "From (m)", "To (m)", "Asphalt before", "Asphalt after", "Variation before (%)",
-                        "Variation after (%)", "Highest/lowest before", "Highest/lowest after"),
-                       [[row[name] for name in ("scanner", "points", "nearest", "farthest", "asphalt_before", "asphalt_after",
-                                                "spread_before", "spread_after", "fall_before", "fall_after")] for row in self.scanners])
-        return page.html()
-
-
-def correct_intensity(road_points, frame, settings=IntensitySettings(), progress=Progress()):
+def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: IntensitySettings = IntensitySettings(),
+                      progress: Progress = Progress()) -> tuple[RoadPoints, IntensityReport]:
     """Bring asphalt to one intensity at every distance and for every scanner.
 
-    The beams of a spinning scanner are made alike first, where they are not.
-    In a first round the levels of points are counted by scanner and distance from the
-    vehicle, left and right apart (where points crowd, of those in stripes across the
-    road); the asphalt I0 of each bin is the median of what is not paint. In the second every point becomes I * reference / I0, or
-    I + reference - I0 where the intensities are logarithmic: there asphalt
-    keeps its spread while its level falls.
+    The beams of a spinning scanner are equalised first, where they differ. In a first round the
+    intensities are counted by scanner and distance from the vehicle, left and right apart (of dense
+    roads in stripes across the road); the asphalt I0 of each bin is the median of what is not paint.
+    In the second round every intensity I becomes::
+
+        I * reference / I0      on a linear scale
+        I + reference - I0      on a logarithmic scale, where asphalt keeps its spread while its level falls
+
+    The correction is our own: it needs neither the range nor the angle of incidence of a point.
 
     Parameters
     ----------
     road_points : RoadPoints
     frame : RoadFrame of the same trajectory
+    settings : IntensitySettings
+    progress : Progress
 
     Returns
     -------
-    RoadPoints with `corrected` (the raw intensity stays, and all other columns are
-    shared with `road_points`; NaN for a point measured when the vehicle's place is not known,
-    or by a scanner with too few points to know its asphalt), IntensityReport. Where the vehicle's place at a
-    point's time is not known the points come back as they were, and the report
-    says why.
+    RoadPoints with `corrected`; the raw intensity stays, and all other columns are shared with
+        `road_points`. NaN for a point measured when the vehicle's position is not known, or by a scanner with too few points to
+        know its asphalt. Where nothing can be corrected, the points are returned as they were.
+    IntensityReport; its `reason` says why nothing was corrected
     """
-    reason = _why_not(road_points, frame)
+    reason = _reason_against(road_points, frame)
     if reason:
         progress.warn(reason)
         return road_points, IntensityReport(reason=reason)
     sections = road_points.all_sections()
-    by_scanner = sum(ordered_map(lambda key: _by_scanner(road_points.section(*key)), sections))
-    scanners = int(np.flatnonzero(by_scanner)[-1]) + 1
+    points_by_scanner = sum(ordered_map(lambda key: _points_by_scanner(road_points.section(*key)), sections))
+    scanners = int(np.flatnonzero(points_by_scanner)[-1]) + 1
     beams = Beams.of(road_points, frame, scanners, progress.part(0.0, 0.2))
-    even = beams.even if beams else (lambda points: points.intensity)
-    step = _step(road_points)
-    before, after = LevelCounts(scanners), LevelCounts(scanners)
-    evened = LevelCounts(scanners) if beams else before
+    equalised = beams.equalised if beams else (lambda points: points.intensity)
+    step = _sampling_step(road_points)
+    before, after = IntensityHistograms(scanners), IntensityHistograms(scanners)
+    modelled = IntensityHistograms(scanners) if beams else before
 
     def count(key):
         points = _stripes(road_points.section(*key), step)
-        places = Tracks(frame.passes, points.time).places(points)
-        raw = before.of(points.scanner, places, points.intensity)
-        even_ones = evened.of(points.scanner, places, even(points)) if beams else ()
-        return raw, even_ones, points.intensity.max(initial=0), np.count_nonzero(places[0] == UNKNOWN), len(points)
+        distances = VehicleDistances(frame.passes, points.time).of(points)
+        raw = before.count(points.scanner, distances, points.intensity)
+        equal = modelled.count(points.scanner, distances, equalised(points)) if beams else ()
+        return raw, equal, points.intensity.max(initial=0), np.count_nonzero(distances[0] == UNKNOWN_DISTANCE), len(points)
 
-    placeless, highest = np.zeros(2, np.int64), 0
-    for raw, even_ones, brightest, *lost in ordered_map(count, sections, progress.part(0.2, 0.5)):
+    # points without a position of the vehicle, and all points
+    without_vehicle, highest = np.zeros(2, np.int64), 0
+    for raw, equal, brightest, *lost in ordered_map(count, sections, progress.part(0.2, 0.5)):
         before.add(raw, step)
-        evened.add(even_ones, step)
-        placeless += lost
+        modelled.add(equal, step)
+        without_vehicle += lost
         highest = max(highest, brightest)
-    table = AsphaltTable.of(evened.counts)
-    if placeless[0] > WITHOUT_VEHICLE * placeless[1]:
-        reason = ("Intensity was left as it is: the trajectory does not say where the vehicle was when "
-                  f"{placeless[0]:,} of {placeless[1]:,} points were measured.")
+    table = AsphaltTable.from_counts(modelled.counts)
+    if without_vehicle[0] > MAX_SHARE_WITHOUT_VEHICLE * without_vehicle[1]:
+        reason = ("Intensity was not corrected: the trajectory does not say where the vehicle was when "
+                  f"{without_vehicle[0]:,} of {without_vehicle[1]:,} points were measured.")
     elif table is None:
-        reason = "Intensity was left as it is: there are too few road points to learn from how asphalt looks at each distance."
-    if reason:
+        reason = "Intensity was not corrected: there are too few road points to estimate the intensity of asphalt at each distance."
+    if reason or table is None:
         progress.warn(reason)
         return road_points, IntensityReport(reason=reason)
     if settings.scale != "automatic":
         table.logarithmic = settings.scale == "logarithmic"
 
-    ways, lookup = np.unique(table.told_by[by_scanner[:scanners] > 0]).tolist(), table.lookup()
+    kinds, lookup = np.unique(table.distance_kind[points_by_scanner[:scanners] > 0]).tolist(), table.lookup()
 
     def correct(key):
         points = road_points.section(*key)
-        corrected, tracks = np.empty(len(points), np.float32), Tracks(frame.passes, points.time)
-        for first in range(0, len(points), AT_ONCE):
-            here = points[first:first + AT_ONCE]
-            places = tracks.places(here, ways)
-            place = places[0] if len(places) == 1 else np.where(table.told_by[here.scanner] == ACROSS, *places)
-            found = table.looked_up(lookup, here.scanner, place)
-            np.add(even(here), found, out=found) if table.logarithmic else np.multiply(even(here), found, out=found)
-            corrected[first:first + AT_ONCE] = found
+        corrected, distances_of = np.empty(len(points), np.float32), VehicleDistances(frame.passes, points.time).of
+        for first in range(0, len(points), POINTS_AT_ONCE):
+            here = points[first:first + POINTS_AT_ONCE]
+            distances = distances_of(here, kinds)
+            distance = distances[0] if len(distances) == 1 else np.where(table.distance_kind[here.scanner] == ACROSS_TRACK, *distances)
+            found = table.corrections(lookup, here.scanner, distance)
+            np.add(equalised(here), found, out=found) if table.logarithmic else np.multiply(equalised(here), found, out=found)
+            corrected[first:first + POINTS_AT_ONCE] = found
         some = _stripes(Points(points.records.with_columns(corrected=corrected)), step)
-        return key, corrected, after.of(some.scanner, tracks.places(some, ways), some.corrected, ways)
+        return key, corrected, after.count(some.scanner, distances_of(some, kinds), some.corrected, kinds)
 
-    result = replace(road_points, store=road_points.store.with_column("corrected"), has_corrected=True)
-    for key, corrected, counts in ordered_map(correct, sections, progress.part(0.5, 1.0)):
-        result.store.put(*key, corrected)
+    store = road_points.store.with_column("corrected")
+    for (road, section), corrected, counts in ordered_map(correct, sections, progress.part(0.5, 1.0)):
+        store.put(road, section, corrected)
         after.add(counts, step)
-    report = _report(before.counts, after.counts, table, by_scanner)
+    report = _report(before.counts, after.counts, table, points_by_scanner)
     report.beams = beams.count if beams else 0
-    report.clipping = Clipping.of(before.counts[ACROSS].sum(axis=1), highest)
-    if report.clipped:
-        progress.warn(report.clipped)
+    report.saturation = Saturation.from_levels(before.counts[ACROSS_TRACK].sum(axis=1), highest)
+    if report.saturation_warning:
+        progress.warn(report.saturation_warning)
     for line in report.lines()[:1]:
         progress.info(line)
-    return result, report
+    return replace(road_points, store=store, has_corrected=True), report
 
 
-def _step(road_points):
-    """Of how many centimetres of road one is looked at for the level of asphalt; its points then stand for all of theirs."""
+def _sampling_step(road_points):
+    """n, where one of n centimetres of road is sampled for the level of asphalt; its points stand for those of all n."""
     length = sum(end - start for start, end in map(road_points.store.span, road_points.roads()))
-    return max(int(len(road_points) / max(length, 1.0) / ENOUGH), 1)
+    return max(int(len(road_points) / max(length, 1.0) / ENOUGH_POINTS_PER_METRE), 1)
 
 
 def _stripes(points, step):
@@ -197,37 +193,40 @@ def _stripes(points, step):
     s = points.records["s"]
     if step == 1 or not len(s):
         return points
-    first = np.arange(s[0] // (STRIPE * step), s[-1] // (STRIPE * step) + 1) * (STRIPE * step)
-    begins, ends = np.searchsorted(s, first), np.searchsorted(s, first + STRIPE)
+    first = np.arange(s[0] // (STRIPE_LENGTH * step), s[-1] // (STRIPE_LENGTH * step) + 1) * (STRIPE_LENGTH * step)
+    begins, ends = np.searchsorted(s, first), np.searchsorted(s, first + STRIPE_LENGTH)
     count = ends - begins
     return points[np.repeat(begins - (np.cumsum(count) - count), count) + np.arange(count.sum())]
 
 
-def _by_scanner(points):
+def _points_by_scanner(points):
     """(256,) how many points each scanner has."""
     scanner = points.scanner
-    return sum((np.bincount(scanner[k:k + AT_ONCE], minlength=256) for k in range(0, len(scanner), AT_ONCE)), np.zeros(256, np.int64))
+    return sum((np.bincount(scanner[k:k + POINTS_AT_ONCE], minlength=MAX_SCANNERS) for k in range(0, len(scanner), POINTS_AT_ONCE)),
+               np.zeros(MAX_SCANNERS, np.int64))
 
 
-def _why_not(road_points, frame):
+def _reason_against(road_points, frame):
+    """Why nothing can be corrected, "" where it can."""
     if not len(road_points):
         return "There are no road points whose intensity could be corrected."
     if not frame.has_time:
-        return ("Intensity was left as it is: without gps_time in the cloud and time in the trajectory the distance "
+        return ("Intensity was not corrected: without gps_time in the cloud and time in the trajectory the distance "
                 "from scanner to point is not known.")
     return ""
 
 
-def _report(before, after, table, by_scanner):
-    rows = table.told_by, np.arange(len(table.told_by))
-    medians = [asphalt_of(counts[rows])[0] for counts in (before, after)]
+def _report(before, after, table, points_by_scanner):
+    """IntensityReport of the counts before and after."""
+    rows = table.distance_kind, np.arange(len(table.distance_kind))
+    medians = [asphalt_of_histograms(counts[rows])[0] for counts in (before, after)]
     weight = before[rows].sum(axis=-1)
     known = table.known & np.isfinite(medians[0]) & np.isfinite(medians[1])
     report = IntensityReport("logarithmic" if table.logarithmic else "linear", table.reference)
-    distances = np.abs(np.arange(weight.shape[1]) * BIN + BIN / 2 - REACH)
+    distances = np.abs(np.arange(weight.shape[1]) * DISTANCE_BIN + DISTANCE_BIN / 2 - MAX_DISTANCE)
     for scanner in np.flatnonzero(known.any(axis=1)):
         use = known[scanner]
-        row = dict(scanner=int(scanner), points=int(by_scanner[scanner]),
+        row = dict(scanner=int(scanner), points=int(points_by_scanner[scanner]),
                    nearest=float(distances[use].min()), farthest=float(distances[use].max()))
         for name, levels in zip(("before", "after"), medians):
             mean, variation = _variation(levels[scanner, use], weight[scanner, use])

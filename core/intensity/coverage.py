@@ -1,20 +1,29 @@
-"""Whether an intensity image shows the road points it is given with."""
+"""Whether an intensity image shows the road points it is used with."""
+
+from __future__ import annotations
 
 import numpy as np
 
 from ..common.errors import RoadExtractionError
+from ..io.geotiff import IntensityImage
 from ..survey.consistency import sampled
+from ..survey.store.road_points import RoadPoints
 
-SHARE = 0.5  # of the points looked at that must lie on a pixel with a value
+MIN_COVERED_SHARE = 0.5  # of the sampled points: must lie on a pixel with a value
 
 
-def check_image_shows(image, road_points):
-    """Refuse an image of another road, and the picture for viewing.
+def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:
+    """Refuse an image of another road, and the 8-bit picture for viewing.
+
+    Parameters
+    ----------
+    image : IntensityImage
+    road_points : RoadPoints
 
     Raises
     ------
     RoadExtractionError
-        If fewer than half of the road points lie on pixels that carry a value, or the image is of 8 bits.
+        If fewer than half of the sampled road points lie on pixels with a value, or the image is of 8 bits.
     """
     if image.eight_bit:
         raise RoadExtractionError(
@@ -25,7 +34,7 @@ def check_image_shows(image, road_points):
     x, y = (np.concatenate(part) for part in zip(*places))
     left, size, _, top, _, _ = image.geotransform
     seen = np.isfinite(image.sample(x, y))
-    if seen.mean() < SHARE:
+    if seen.mean() < MIN_COVERED_SHARE:
         raise RoadExtractionError(
             f"{image.path} does not show these road points: it covers x {left:.1f} to {left + size * image.width:.1f}, "
             f"y {top - size * image.height:.1f} to {top:.1f}, the points lie over x {x.min():.1f} to {x.max():.1f}, "

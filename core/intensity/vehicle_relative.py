@@ -1,98 +1,107 @@
-"""Where points lie as seen from the vehicle at the time they were measured, looked up in small tables."""
+"""Where points lie relative to the vehicle at the time they were measured, looked up in small tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ..survey.store.records import COORDINATE_SCALE
+from ..survey.frame.passes import Pass
+from ..survey.store.records import COORDINATE_SCALE, Points
 
-TICK = 5e-4            # s between the times at which the vehicle is looked up: 1 cm of driving
-UNKNOWN = np.int32(2**30)
-BEYOND = 1.0           # s before and after a pass in which its points may still have been measured
-ACROSS, AWAY = 0, 1    # how distance is told
+VEHICLE_TICK = 5e-4    # s between the times at which the vehicle's position is tabulated: 1 cm of driving
+UNKNOWN_DISTANCE = np.int32(2**30)   # of a point during whose time no pass drove
+PASS_MARGIN = 1.0      # s before and after a pass in which its points may still have been measured
+ACROSS_TRACK, FROM_VEHICLE = 0, 1    # kinds of distance: across the vehicle's track, or horizontally from the vehicle
 
 
-class Tracks:
-    """The vehicle during the time in which some points were measured.
+class VehicleDistances:
+    """Distances of points from the vehicle during the time in which the points were measured.
 
     On a road the place relative to the vehicle stands for range and incidence
     together: the height of the sensor ties one to the other. A mirror scanner,
     even one yawed by 45 degrees, meets each distance across the road once per
-    turn, at one range; a spinning one with many beams meets it at many, but
-    there the distance away from it tells the range.
+    turn, at one range. A spinning scanner with many beams meets it at many ranges, but
+    there the horizontal distance from the scanner determines the range.
+
+    Parameters
+    ----------
+    passes : of the road frame
+    time : (N,) s, of all points that will be asked for; the ticks are those of a pass, whatever points are asked for
     """
 
-    def __init__(self, passes, time):
-        """`time` (N,) of all points that will be asked for; the ticks are those of a pass, whatever points are asked for."""
-        self._tracks = []
+    def __init__(self, passes: Sequence[Pass], time: np.ndarray):
+        self._tables: list[_PassTable] = []
         if len(time):
             first, last = float(time.min()), float(time.max())
-            self._tracks = [_Track(p, max(first, p.time[0] - BEYOND), min(last, p.time[-1] + BEYOND)) for p in passes
-                            if first <= p.time[-1] + BEYOND and last >= p.time[0] - BEYOND]
+            self._tables = [_PassTable(p, max(first, p.time[0] - PASS_MARGIN), min(last, p.time[-1] + PASS_MARGIN)) for p in passes
+                            if first <= p.time[-1] + PASS_MARGIN and last >= p.time[0] - PASS_MARGIN]
 
-    def places(self, points, ways=(ACROSS, AWAY)):
+    def of(self, points: Points, kinds: Sequence[int] = (ACROSS_TRACK, FROM_VEHICLE)) -> list[np.ndarray]:
         """Signed distances from the vehicle.
 
         Parameters
         ----------
         points : (N) road points
-        ways : which distances are asked for
+        kinds : which distances are asked for
 
         Returns
         -------
-        for each of `ways` (N,) int32, units of 0.1 mm, left of travel positive: across the track, or horizontally
-        away with the sign of the side; UNKNOWN where no pass drove at the point's time
+        for each of `kinds` (N,) int32, units of 0.1 mm, left of travel positive: across the track, or horizontally
+        from the vehicle with the sign of the side; UNKNOWN_DISTANCE where no pass drove at the point's time
         """
         time, number = points.time, points.pass_number
-        found = [np.full(len(points), UNKNOWN, np.int32) for _ in ways]
-        for track in self._tracks if len(points) else ():
-            rows = track.rows(time, number)
+        found = [np.full(len(points), UNKNOWN_DISTANCE, np.int32) for _ in kinds]
+        for table in self._tables if len(points) else ():
+            rows = table.rows(time, number)
             if rows is None:
-                for all_places, places in zip(found, track.places(points, time, ways)):
-                    all_places[:] = places
+                for whole, distances in zip(found, table.distances(points, time, kinds)):
+                    whole[:] = distances
             elif len(rows):
-                for all_places, places in zip(found, track.places(points[rows], time[rows], ways)):
-                    all_places[rows] = places
+                for whole, distances in zip(found, table.distances(points[rows], time[rows], kinds)):
+                    whole[rows] = distances
         return found
 
 
-class _Track:
-    """One pass during some seconds."""
+class _PassTable:
+    """Positions of the vehicle during a part of one pass, at every VEHICLE_TICK."""
 
-    def __init__(self, driven, first, last):
+    def __init__(self, driven: Pass, first: float, last: float):
         self.driven, self.begin = driven, driven.time[0]
-        self.first = int(np.floor((first - self.begin) / TICK))
-        self.ticks = self.begin + TICK * np.arange(self.first, int(np.floor((last - self.begin) / TICK)) + 2)
-        self._tables = {}
+        self.first = int(np.floor((first - self.begin) / VEHICLE_TICK))
+        self.ticks = self.begin + VEHICLE_TICK * np.arange(self.first, int(np.floor((last - self.begin) / VEHICLE_TICK)) + 2)
+        self._positions: dict[str, np.ndarray] = {}
 
-    def rows(self, time, number):
+    def rows(self, time: np.ndarray, number: np.ndarray) -> np.ndarray | None:
         """Indices of the points of this pass; None for all of them."""
         rows = number == self.driven.number
-        start, end = self.begin - BEYOND, self.driven.time[-1] + BEYOND
+        start, end = self.begin - PASS_MARGIN, self.driven.time[-1] + PASS_MARGIN
         if time.min() < start or time.max() > end:
             rows &= (time >= start) & (time <= end)
         return None if rows.all() else np.flatnonzero(rows)
 
-    def places(self, points, time, ways):
+    def distances(self, points: Points, time: np.ndarray, kinds: Sequence[int]) -> Iterator[np.ndarray]:
         tick = time - self.begin
-        tick *= 1.0 / TICK
+        tick *= 1.0 / VEHICLE_TICK
         tick += 0.5
         k = np.floor(tick, out=tick).astype(np.intp)
         k -= self.first
-        across = self._less(points.records["d"], "d", k)
+        across = self._relative(points.records["d"], "d", k)
         if self.driven.direction < 0:
             np.negative(across, out=across)
-        for way in ways:
-            yield across if way == ACROSS else self._away(points, k, across)
+        for kind in kinds:
+            yield across if kind == ACROSS_TRACK else self._horizontal(points, k, across)
 
-    def _away(self, points, k, across):
-        x, y = (self._less(points.records[name], name, k).astype(np.float32) for name in "xy")
+    def _horizontal(self, points, k, across):
+        x, y = (self._relative(points.records[name], name, k).astype(np.float32) for name in "xy")
         x *= x
         y *= y
         x += y
         return np.copysign(np.sqrt(x, out=x), across).astype(np.int32)
 
-    def _less(self, units, name, k):
-        """(N,) int32 units less where the vehicle was at ticks k: of places with 64 bits the lower 32 tell it, as what is near is."""
-        if name not in self._tables:
-            self._tables[name] = np.rint(self.driven.at(self.ticks, name)[0] / COORDINATE_SCALE).astype(np.int64).astype(np.int32)
-        there = self._tables[name].take(k, mode="clip")
-        return np.subtract(units.astype(np.int32, copy=False), there, out=there)
+    def _relative(self, units, name, k):
+        """(N,) int32 units minus the vehicle's at ticks k; of 64-bit coordinates the lower 32 bits suffice, as the difference is small."""
+        if name not in self._positions:
+            self._positions[name] = np.rint(self.driven.at(self.ticks, name)[0] / COORDINATE_SCALE).astype(np.int64).astype(np.int32)
+        vehicle = self._positions[name].take(k, mode="clip")
+        return np.subtract(units.astype(np.int32, copy=False), vehicle, out=vehicle)

@@ -15,7 +15,8 @@ from ..driving.driving_layers import curve_elements_to_features, driving_lines_t
 from ..driving.driving_lines import DrivingSettings, make_driving_lines
 from ..driving.road_edges import edges_from_features
 from ..intensity.correction import IntensitySettings, correct_intensity
-from ..intensity.image import ImageSettings, IntensityImage, check_fits, write_intensity_image
+from ..intensity.image import ImageSettings, check_fits, write_intensity_image
+from ..io.geotiff import IntensityImage
 from ..markings.lines.fit import MarkingLineSettings, fit_marking_lines
 from ..markings.lines.naming import named_by_lines
 from ..markings.lines.painted_lines import lines_to_features

@@ -9,7 +9,8 @@ from lanewright.core.driving.driving_layers import driving_lines_to_features
 from lanewright.core.driving.driving_lines import make_driving_lines
 from lanewright.core.driving.road_edges import edges_from_features
 from lanewright.core.intensity.correction import correct_intensity
-from lanewright.core.intensity.image import IntensityImage, write_intensity_image
+from lanewright.core.intensity.image import write_intensity_image
+from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.lines.fit import fit_marking_lines
 from lanewright.core.markings.objects.cluster import cluster_markings
 from lanewright.core.markings.objects.marking_objects import markings_to_features

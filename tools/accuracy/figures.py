@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.intensity.image import IntensityImage
+from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.paint.extract import METHODS, extract_markings
 from lanewright.core.pipeline.road_map import RoadMapSettings
 from lanewright.core.road.detect_boundaries import draw_boundaries

@@ -13,7 +13,7 @@ import numpy as np
 from scipy import ndimage
 
 from ...common.order_statistics import quantiles
-from ...intensity.asphalt_model import asphalt
+from ...intensity.asphalt_model import asphalt_statistics
 from ...survey.store.records import COORDINATE_SCALE
 from .gutters import gutter_cells
 
@@ -125,7 +125,7 @@ def patch_level(z, bright):
         piece = labels[box] == number
         values = z[box][piece & seen[box]]
         if len(values):
-            median, spread = asphalt(values)
+            median, spread = asphalt_statistics(values)
             level[box][piece] = median + TAIL * max(spread - 1.0, 0.0)
     return level
 
@@ -252,7 +252,7 @@ def asphalt_bins(values, d, edges):
     for first, last in _joined(np.diff(bounds)):
         rows = order[bounds[first]:bounds[last]]
         if len(rows):
-            bins.append(Bin(float(d[rows].mean()), len(rows), *asphalt(values[rows])))
+            bins.append(Bin(float(d[rows].mean()), len(rows), *asphalt_statistics(values[rows])))
     return bins
 
 
@@ -293,7 +293,7 @@ def split_bins(z, d, bins, separation):
 def _split(z, middle, separation):
     if len(z) < FEWEST:
         return Split(middle, 1.0, 0.0, 0.0, 0.0, 0.0, False)
-    median, spread = asphalt(z)
+    median, spread = asphalt_statistics(z)
     z = np.clip((z - median) / spread, -6.0, 60.0)
     threshold, below, above, share = otsu(z)
     accepted = above - below > separation and threshold > 1.0 and share <= 0.5

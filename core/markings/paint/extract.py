@@ -14,7 +14,7 @@ from ...common.errors import RoadExtractionError
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
-from ...intensity.saturation import clipping_of
+from ...intensity.saturation import saturation_of
 from ...survey.store.records import COORDINATE_SCALE, Points, join_columns, take_rows
 from ...survey.store.road_points import RoadPoints
 from ..objects.road_grid import CELL, RoadCells, RoadGrid, cell_numbers, in_cells
@@ -76,7 +76,7 @@ def extract_markings(road_points, image, frame, settings=MarkingSettings(), prog
     Parameters
     ----------
     road_points : RoadPoints, corrected or not
-    image : anything with sample(x, y) -> brightness in map coordinates, made from the same points
+    image : IntensityRaster of the same points, in memory or on disk; the methods on points need it for the mask alone
     frame : RoadFrame
     mask_path : where to write the mask of markings as GeoTIFF in the image's own pixels, or None
 
@@ -84,9 +84,9 @@ def extract_markings(road_points, image, frame, settings=MarkingSettings(), prog
     -------
     RoadPoints
     """
-    clipped = "" if road_points.has_corrected else clipping_of(road_points).warning
-    if clipped:
-        progress.warn(clipped)
+    saturated = "" if road_points.has_corrected else saturation_of(road_points).warning
+    if saturated:
+        progress.warn(saturated)
     with marking_mask(mask_path, image, frame.origin) if mask_path else nullcontext() as burn:
         if settings.method == "multi-threshold":
             kept = _extract(road_points, image, frame, settings, progress, burn)

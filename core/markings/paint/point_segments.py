@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from ...common.parallel import ordered_map
 from ...common.setting import check_limits, setting
-from ...intensity.asphalt_model import asphalt
+from ...intensity.asphalt_model import asphalt_statistics
 from ...survey.store.records import COORDINATE_SCALE, Points, take_rows
 from ..objects.connected_cells import occupied
 from .asphalt_level import otsu
@@ -99,7 +99,7 @@ def segment_thresholds(records, settings):
 def _threshold(values, separation):
     if len(values) < FEWEST:
         return np.inf
-    median, spread = asphalt(values)
+    median, spread = asphalt_statistics(values)
     # a few glints must not stretch the histogram
     limited = np.clip(values, median - 6.0 * spread, median + 60.0 * spread)
     threshold, below, above, share = otsu(limited)

@@ -12,7 +12,7 @@ import numpy as np
 from ...common.order_statistics import order_by
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from ...intensity.asphalt_model import LOWER
+from ...intensity.asphalt_model import LOWER_QUANTILE
 from ...survey.store.records import COORDINATE_SCALE
 
 NOISY = 0.40      # of asphalt's level: single points that scatter more are averaged (multi-beam scanners)
@@ -113,7 +113,7 @@ def squares_of(points):
     starts = np.flatnonzero(np.r_[True, np.diff(square[order]) != 0])
     count = np.diff(np.r_[starts, len(value)])
     starts, count = starts[count >= FEWEST_IN_SQUARE], count[count >= FEWEST_IN_SQUARE]
-    median, low = value[starts + count // 2], value[starts + (LOWER * count).astype(np.int64)]
+    median, low = value[starts + count // 2], value[starts + (LOWER_QUANTILE * count).astype(np.int64)]
     lit = median > 0
     return scanner[order][starts[lit]], count[lit], 1.0 - low[lit] / median[lit]
 

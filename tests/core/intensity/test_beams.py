@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from lanewright.core.intensity.beams import Beams
 from lanewright.core.intensity.correction import correct_intensity
-from lanewright.core.intensity.image import IntensityImage, write_intensity_image
+from lanewright.core.intensity.image import write_intensity_image
+from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.objects.cluster import cluster_markings
 from lanewright.core.markings.paint.extract import extract_markings
 from spun_streets import BEAMS, spun

@@ -8,7 +8,8 @@ from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.intensity import correction as intensity
 from lanewright.core.intensity.correction import IntensitySettings, correct_intensity
-from lanewright.core.intensity.vehicle_relative import UNKNOWN, Tracks
+from lanewright.core.intensity.vehicle_relative import UNKNOWN_DISTANCE, VehicleDistances
+from lanewright.core.report.intensity import intensity_correction_report
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.store.records import ROAD_POINT, Points, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
@@ -143,7 +144,7 @@ def test_the_correction_does_not_depend_on_the_length_of_sections(section_length
 def test_where_points_crowd_stripes_of_road_tell_the_same_asphalt(monkeypatch):
     """Of 2000 points a metre each ninth centimetre is looked at, whatever the length of sections."""
     usual, _ = corrected(street()[0])
-    monkeypatch.setattr(intensity, "ENOUGH", 220)
+    monkeypatch.setattr(intensity, "ENOUGH_POINTS_PER_METRE", 220)
     striped, report = corrected(street()[0])
     other, _ = corrected(street()[0], section_length=7.3)
     assert np.median(np.abs(striped.corrected / usual.corrected - 1)) < 0.01
@@ -156,7 +157,7 @@ def test_points_are_left_or_right_of_the_vehicle_as_it_drove_and_as_far_away_as_
     records, across, _ = street(count=5_000)
     frame = straight_drive(reverse=reverse)
     driven = frame.passes[0]
-    found, away = Tracks(frame.passes, records["time"]).places(Points(records))
+    found, away = VehicleDistances(frame.passes, records["time"]).of(Points(records))
     mine = records["d"] * 1e-4 - np.interp(records["time"], driven.time, driven.d)
     np.testing.assert_allclose(found * 1e-4, driven.direction * mine, atol=2e-4)
     there = [np.interp(records["time"], driven.time, row) for row in (driven.x, driven.y)]
@@ -164,13 +165,13 @@ def test_points_are_left_or_right_of_the_vehicle_as_it_drove_and_as_far_away_as_
     np.testing.assert_allclose(np.abs(away) * 1e-4, distance, atol=0.006)
     late = records.copy()
     late["time"] += 100.0
-    assert all((row == UNKNOWN).all() for row in Tracks(frame.passes, late["time"]).places(Points(late)))
+    assert all((row == UNKNOWN_DISTANCE).all() for row in VehicleDistances(frame.passes, late["time"]).of(Points(late)))
 
 
 def test_without_time_the_intensity_is_left_raw_and_the_report_says_why():
     points, report = corrected(street(count=5000)[0], straight_drive(time=False))
     assert np.isnan(points.corrected).all() and "gps_time" in report.reason
-    assert report.lines() == [report.reason] and "gps_time" in report.to_html()
+    assert report.lines() == [report.reason] and "gps_time" in intensity_correction_report(report)
 
 
 def test_a_trajectory_of_another_day_leaves_the_intensity_raw():
@@ -221,7 +222,7 @@ def test_an_export_that_cuts_off_the_brightest_sixth_of_the_road_is_warned_of(sc
     warnings, report = warned(records)
     assert len(warnings) == 1 and warnings[0].startswith("16 % of the road's points have the highest intensity, 255:")
     assert warnings[0] in report.lines()
-    assert warnings[0] in html.unescape(report.to_html())
+    assert warnings[0] in html.unescape(intensity_correction_report(report))
 
 
 def test_an_export_that_cuts_off_the_darkest_third_of_the_road_is_warned_of():

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.intensity.coverage import check_image_shows
-from lanewright.core.intensity.image import ImageSettings, IntensityImage, write_display_image, write_intensity_image
+from lanewright.core.intensity.image import ImageSettings, make_intensity_image, write_intensity_image
+from lanewright.core.io.geotiff import IntensityImage, write_display_image
 from lanewright.core.markings.paint.mask import marking_mask
 from lanewright.core.survey.store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
@@ -166,7 +167,7 @@ def test_where_points_crowd_almost_every_pixel_is_as_if_all_points_weighed_on_al
 
     crowded = painted_street(length=12.0, density=6300)
     share = all_pixels(image_of(crowded, tmp_path / "a.tif", ImageSettings(beta=0.0)))
-    monkeypatch.setattr(image, "MOST", 100)
+    monkeypatch.setattr(image, "FAR_POINTS_PER_CELL", 100)
     every = all_pixels(image_of(crowded, tmp_path / "b.tif", ImageSettings(beta=0.0)))
     assert share.shape == every.shape and (share != every).mean() > 0.5
     assert (np.abs(share - every) <= 0.02 * (PAINT - ASPHALT)).sum() > 0.97 * np.isfinite(every).sum()
@@ -180,7 +181,7 @@ def test_what_is_interpolated_again_for_a_later_tile_is_the_same(tmp_path, monke
     x, y = records["x"].copy(), records["y"].copy()
     records["x"], records["y"] = np.rint((x - y) * np.sqrt(0.5)), np.rint((x + y) * np.sqrt(0.5))
     usual = all_pixels(image_of(records, tmp_path / "a.tif"))
-    monkeypatch.setattr(image, "AHEAD", 0)
+    monkeypatch.setattr(image, "TILES_AHEAD", 0)
     np.testing.assert_array_equal(usual, all_pixels(image_of(records, tmp_path / "b.tif")))
 
 
@@ -194,6 +195,34 @@ def test_cells_are_multiples_of_the_cell_size_wherever_the_origin_is(tmp_path):
     np.testing.assert_allclose(usual.geotransform, other.geotransform)
     assert abs(usual.geotransform[0] / 0.04 - round(usual.geotransform[0] / 0.04)) < 1e-4
     np.testing.assert_allclose(all_pixels(usual), all_pixels(other), rtol=1e-5)
+
+
+@pytest.mark.parametrize("memory_limit", [2**27, 10**6, 0], ids=["in memory", "some tiles in a file", "all tiles in a file"])
+def test_an_image_that_is_not_read_from_its_file_has_the_same_pixels_and_samples(tmp_path, memory_limit):
+    """A diagonal street, so that tiles are filled in part."""
+    records = painted_street()
+    x, y = records["x"].copy(), records["y"].copy()
+    records["x"], records["y"] = np.rint((x - y) * np.sqrt(0.5)), np.rint((x + y) * np.sqrt(0.5))
+    usual = image_of(records, tmp_path / "a.tif")
+    image = make_intensity_image(road_points(records), path=tmp_path / "b.tif", memory_limit=memory_limit)
+    assert image.geotransform == usual.geotransform and (image.width, image.height) == (usual.width, usual.height)
+    np.testing.assert_array_equal(all_pixels(image), all_pixels(usual))
+    np.testing.assert_array_equal(all_pixels(IntensityImage.open(tmp_path / "b.tif")), all_pixels(usual))
+    assert set(image.tiles()) == {tile for tile in usual.tiles() if np.isfinite(usual.read_pixels(*tile, 512, 512)).any()}
+    for window in [(-20, -30, 100, 80), (500, 400, 700, 650), (511, 511, 2, 2), (10_000, 0, 5, 5)]:
+        np.testing.assert_array_equal(image.read_pixels(*window), usual.read_pixels(*window))
+    places = np.random.default_rng(5).uniform(-5.0, 40.0, (2, 3000))
+    for bilinear in (False, True):
+        np.testing.assert_array_equal(image.sample(*places, ORIGIN, bilinear), usual.sample(*places, ORIGIN, bilinear))
+
+
+def test_an_image_without_a_file_has_the_pixels_of_one_with_a_file(tmp_path):
+    records = painted_street(length=12.0)
+    image = make_intensity_image(road_points(records))
+    np.testing.assert_array_equal(all_pixels(image), all_pixels(image_of(records, tmp_path / "a.tif")))
+    assert [path.name for path in tmp_path.iterdir()] == ["a.tif"]
+    image.close()
+    assert np.isnan(all_pixels(image)).all() and not image.tiles()
 
 
 def test_where_no_point_lies_within_two_cells_there_is_no_data(tmp_path):

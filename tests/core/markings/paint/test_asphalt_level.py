@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.intensity.asphalt_model import asphalt
+from lanewright.core.intensity.asphalt_model import asphalt_statistics
 from lanewright.core.markings.paint.asphalt_level import asphalt_bins, background, bin_edges, otsu, split_bins
 from lanewright.core.survey.store.records import to_units
 
@@ -24,7 +24,7 @@ def test_otsu_of_one_value_has_nothing_above():
 def test_paint_does_not_change_what_asphalt_is(share):
     count = int(20000 * share)
     values = np.r_[RNG.normal(1000, 80, 20000 - count), RNG.normal(4000, 400, count)]
-    median, spread = asphalt(values)
+    median, spread = asphalt_statistics(values)
     assert median == pytest.approx(1000, rel=0.02)
     assert spread == pytest.approx(80, rel=0.15)
 

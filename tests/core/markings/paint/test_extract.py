@@ -5,7 +5,8 @@ import pytest
 from lanewright.core.common import parallel
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.progress import Progress
-from lanewright.core.intensity.image import IntensityImage, write_intensity_image
+from lanewright.core.intensity.image import make_intensity_image, write_intensity_image
+from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.paint import extract as extraction
 from lanewright.core.markings.paint.extract import MarkingSettings, extract_markings
 from lanewright.core.survey.frame.road_frame import build_frame
@@ -25,6 +26,17 @@ def found_on(records, folder, frame=FRAME, section_length=20.0, mask=None):
     path = folder / "image.tif"
     write_intensity_image(points, path)
     return extract_markings(points, IntensityImage.open(path), frame, mask_path=mask).all_points()
+
+
+def test_paint_and_mask_are_the_same_whether_the_image_is_read_from_its_file_or_not(tmp_path):
+    records = street(FRAME, [strip(10, 70, 1.0, 1.15), strip(20, 20.5, -3.0, 1.0)])
+    usual = found_on(records, tmp_path, mask=tmp_path / "a.tif")
+    image = make_intensity_image(road_points(records, FRAME), memory_limit=10**6)
+    found = extract_markings(road_points(records, FRAME), image, FRAME, mask_path=tmp_path / "b.tif").all_points()
+    assert len(found) > 1000
+    assert_same_points(found.records, usual.records)
+    masks = [IntensityImage.open(tmp_path / name) for name in ("a.tif", "b.tif")]
+    np.testing.assert_array_equal(*(mask.read_pixels(0, 0, mask.width, mask.height) for mask in masks))
 
 
 @pytest.mark.parametrize("radius", [np.inf, 80.0])

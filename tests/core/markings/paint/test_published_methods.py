@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.intensity.image import IntensityImage, write_intensity_image
+from lanewright.core.intensity.image import write_intensity_image
+from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.paint import point_segments
 from lanewright.core.markings.paint.extract import MarkingSettings, extract_markings
 from lanewright.core.markings.paint.peaks import PeakSettings, chained, peaks_of

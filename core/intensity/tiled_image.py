@@ -1,0 +1,135 @@
+"""An intensity image that lives in memory, and beyond a limit in a temporary file.
+
+The chain reads the image through this object; the GeoTIFF is written for the user alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple, Protocol, Union
+
+import numpy as np
+
+from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage
+from ..survey.store.spill_file import SpillFile, StoredColumn
+
+TILE_MEMORY = 128 * 2**20   # bytes of pixels kept in memory; the tiles that follow go to a temporary file
+
+
+Origin = Union[Sequence[float], np.ndarray]   # two or more map coordinates, m
+
+
+class IntensityRaster(Protocol):
+    """What the extraction of markings reads: an open GeoTIFF (IntensityImage) or a TiledImage.
+
+    Attributes
+    ----------
+    geotransform : six numbers as GDAL has them, map coordinates; north up, square pixels
+    cell_size : metres
+    width, height : pixels
+    crs : WKT, "" where it is unknown
+    """
+
+    geotransform: tuple[float, ...]
+    cell_size: float
+    width: int
+    height: int
+    crs: str
+
+    def pixel_of(self, x: np.ndarray, y: np.ndarray, origin: Origin = (0.0, 0.0)) -> tuple[np.ndarray, np.ndarray]:
+        """Column and row, (N,) float, of (N,) coordinates that leave out `origin`; pixel 0 reaches from 0 to 1."""
+
+    def sample(self, x: np.ndarray, y: np.ndarray, origin: Origin = (0.0, 0.0), bilinear: bool = False) -> np.ndarray:
+        """(N,) float32 values at (N,) coordinates that leave out `origin`, NaN where there is no data."""
+
+    def read_pixels(self, column: int, row: int, width: int, height: int) -> np.ndarray:
+        """(height, width) float32 from a pixel on, NaN where there is no data or no image."""
+
+
+class _StoredTile(NamedTuple):
+    """The part of a tile that has data: its first pixel in the image, its shape, and its values or their place in the file."""
+
+    column: int
+    row: int
+    shape: tuple[int, ...]
+    values: np.ndarray | StoredColumn
+
+
+class TiledImage(IntensityImage):
+    """An intensity image made of tiles that are put into it one by one and read in windows.
+
+    Its pixels, and what `sample` and `read_window` return, are those of the GeoTIFF of the same tiles.
+    Tiles are put by one thread; once all are there, several threads may read.
+
+    Parameters
+    ----------
+    geotransform : six numbers as GDAL has them, map coordinates
+    width, height : pixels
+    crs : WKT, "" where it is unknown
+    memory_limit : bytes of pixels kept in memory; the tiles that follow go to a temporary file
+    """
+
+    def __init__(self, geotransform: tuple[float, ...], width: int, height: int, crs: str, memory_limit: int = TILE_MEMORY):
+        super().__init__("", geotransform, width, height, crs)
+        self._tiles: dict[tuple[int, int], _StoredTile] = {}
+        self._free = memory_limit
+        self._file: SpillFile | None = None
+
+    def put(self, column: int, row: int, values: np.ndarray) -> None:
+        """Put a tile.
+
+        Parameters
+        ----------
+        column, row : first pixel of the tile, multiples of its side
+        values : (H, W) float32, NODATA or NaN where there is none
+        """
+        known = np.isfinite(values) & (values != np.float32(NODATA))
+        rows, columns = np.flatnonzero(known.any(axis=1)), np.flatnonzero(known.any(axis=0))
+        if not len(rows):
+            return
+        box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
+        pixels = np.where(known[box], values[box], np.float32(np.nan))
+        stored: np.ndarray | StoredColumn = pixels
+        if pixels.nbytes <= self._free:
+            self._free -= pixels.nbytes
+        else:
+            self._free = 0
+            self._file = self._file or SpillFile()
+            stored = self._file.put(pixels.ravel())
+        first = column + int(columns[0]), row + int(rows[0])
+        self._tiles[column // GEOTIFF_TILE, row // GEOTIFF_TILE] = _StoredTile(*first, pixels.shape, stored)
+
+    def read_pixels(self, column: int, row: int, width: int, height: int) -> np.ndarray:
+        """(height, width) float32 from a pixel on; NaN where there is no data or no image."""
+        values = np.full((height, width), np.nan, np.float32)
+        c0, c1 = max(column, 0), min(column + width, self.width)
+        r0, r1 = max(row, 0), min(row + height, self.height)
+        if c0 >= c1 or r0 >= r1:
+            return values
+        for tile_row in range(r0 // GEOTIFF_TILE, (r1 - 1) // GEOTIFF_TILE + 1):
+            for tile_column in range(c0 // GEOTIFF_TILE, (c1 - 1) // GEOTIFF_TILE + 1):
+                tile = self._tiles.get((tile_column, tile_row))
+                if tile is not None:
+                    self._copy(tile, column, row, values)
+        return values
+
+    def _copy(self, tile: _StoredTile, column: int, row: int, values: np.ndarray) -> None:
+        """Fill what a tile covers of a window whose first pixel is given."""
+        height, width = values.shape
+        c0, c1 = max(tile.column, column), min(tile.column + tile.shape[1], column + width)
+        r0, r1 = max(tile.row, row), min(tile.row + tile.shape[0], row + height)
+        if c0 < c1 and r0 < r1:
+            pixels = tile.values if self._file is None or isinstance(tile.values, np.ndarray) else self._file.get(tile.values)
+            pixels = np.asarray(pixels).reshape(tile.shape)
+            values[r0 - row:r1 - row, c0 - column:c1 - column] = pixels[r0 - tile.row:r1 - tile.row, c0 - tile.column:c1 - tile.column]
+
+    def tiles(self) -> list[tuple[int, int]]:
+        """[(column, row)] of the first pixels of all tiles that hold data, row by row."""
+        return [(column * GEOTIFF_TILE, row * GEOTIFF_TILE) for column, row in sorted(self._tiles, key=lambda tile: tile[::-1])]
+
+    def close(self) -> None:
+        """Forget the pixels, and give the disk space back."""
+        self._tiles = {}
+        if self._file is not None:
+            self._file.close()
+            self._file = None
