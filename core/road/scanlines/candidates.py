@@ -1,159 +1,55 @@
-"""Candidate places of a curb on normalized scanlines: where the height changes within a short way across.
+"""Candidates of curbs on normalized scanlines: rises of the height within a short distance across the road.
 
-From the vehicle outward every scanline is searched for a rise of at least
-MIN_HEIGHT within SEARCH_WIDTH that follows on road and stays up behind it. What shows
-on one scanline and not on its neighbours is no candidate.
+Every scanline is searched outward from the vehicle for a rise of at least `min_height` within `search_width` that begins
+on road and is followed by raised ground. A rise that is not on the neighbouring scanlines too is no candidate. The
+vertices around the candidates are then resampled for the planes of `corners`.
 
 References
 ----------
-The scanline paper (ISPRS Archives, 2020), section 3 and table 1, steps b and g.
+The paper on normalized scanlines (ISPRS Archives, 2020), section 3 and table 1, steps b and g.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
 
 from ..common.corners import FACE_MARGIN, MAX_ROAD_SLOPE, ROAD_SIDE_LENGTH
-from .grid import LINE_SEPARATION, MAX_GROUND_DEPTH, SCANLINE_RESOLUTION, row_of_lines
+from .grid import LINE_SEPARATION, MAX_GROUND_DEPTH, SCANLINE_RESOLUTION, HeightGrid, row_of_lines
+from .scanlines import Scanlines
 
-# Vertices at equal steps along normalized scanlines, about the places where a curb may be.
+if TYPE_CHECKING:
+    from .detect import ScanlineBoundarySettings
 
-HEIGHT_WEIGHT = 2.0       # m that a metre of height counts as, so that low faces keep vertices enough
-PLACE_CELL = 0.10         # m across: the grain in which places are marked
-
-
-@dataclass
-class ScanlineSamples:
-    """Vertices SCANLINE_RESOLUTION apart along scanlines, in the order of the lines or, of one side, by row and outward offset.
-
-    Attributes
-    ----------
-    first, interval : number of the first row, m between rows
-    rows : number of rows
-    row, u, h : (N,) row from 0, offset, height above the expected road
-    steep : (N,) m of height per m across between the neighbours of each
-    """
-
-    first: int
-    interval: float
-    rows: int
-    row: np.ndarray
-    u: np.ndarray
-    h: np.ndarray
-    steep: np.ndarray
-
-    def outward(self, sign):
-        """Those of one side, 1 left or -1 right, sorted by row and outward offset."""
-        u = sign * self.u[::sign]
-        row = self.row[::sign]
-        order = np.argsort(row * LINE_SEPARATION + u, kind="stable")
-        return ScanlineSamples(self.first, self.interval, self.rows, row[order], u[order], self.h[::sign][order], self.steep[::sign][order])
-
-
-def samples_near(lines, heights, rows, interval, places, across, along, clipping_height):
-    """Vertices along the scanlines near some places, those at the height of the road.
-
-    A vertex lies where it does whatever places are asked for: steps count from the beginning of its line.
-
-    Parameters
-    ----------
-    lines : Scanlines of one pass and scanner
-    heights : (V,) m of their vertices above the expected road
-    rows : (first, last + 1) numbers of the section planes
-    interval : metres
-    places : (row, d) arrays
-    across, along : m and rows about them
-    clipping_height : m above the expected road up to which ground is looked for
-
-    Returns
-    -------
-    ScanlineSamples: all that lie so near, and some that do not
-    """
-    row = row_of_lines(lines, rows, interval)
-    segments, line = _segments_near(lines, row, rows[1] - rows[0], *places, across, along)
-    line, d, h, steep = _at_equal_steps(lines, heights, segments, line)
-    kept = np.flatnonzero((h > -MAX_GROUND_DEPTH) & (h <= clipping_height))
-    return ScanlineSamples(rows[0], interval, rows[1] - rows[0], row[line[kept]], d[kept], h[kept], steep[kept])
-
-
-def _segments_near(lines, row, count, place_row, place_d, across, along):
-    """Vertices, and their lines, from which a line goes on past marked cells."""
-    low, high = lines.d.min(), lines.d.max()
-    cells = int((high - low) / PLACE_CELL) + 1
-    marked = np.zeros((count, cells), np.uint8)
-    marked[place_row, np.clip(((place_d - low) / PLACE_CELL).astype(np.int64), 0, cells - 1)] = 1
-    # a cell more than asked for, so that every vertex has the neighbours that tell its steepness
-    aside = int(np.ceil(across / PLACE_CELL)) + 2
-    marked = cv2.dilate(marked, np.ones((2 * along + 1, 2 * aside + 1), np.uint8))
-    before = np.zeros((count, cells + 1), np.int32)
-    np.cumsum(marked, axis=1, out=before[:, 1:])
-    cell = ((lines.d - low) * (1.0 / PLACE_CELL)).astype(np.int32)
-    inside = (row >= 0) & (row < count)
-    line = np.repeat(np.arange(len(lines), dtype=np.int32), np.diff(lines.first))
-    cell += (np.where(inside, row, 0) * (cells + 1)).astype(np.int32)[line]
-    flat = before.reshape(-1)
-    near = flat[cell[1:] + 1] > flat[cell[:-1]]
-    near &= (line[1:] == line[:-1]) & inside[line[:-1]]
-    segments = np.flatnonzero(near)
-    return segments, line[segments]
-
-
-def _at_equal_steps(lines, heights, segment, line):
-    """(line, d, h, steepness) at equal steps along lines on some of their segments; a metre of height counts as HEIGHT_WEIGHT metres."""
-    step = np.abs(np.diff(lines.d))
-    step += HEIGHT_WEIGHT * np.abs(np.diff(heights))
-    step[lines.first[1:-1] - 1] = 0.0
-    along = np.concatenate([[0.0], np.cumsum(step)])
-    begin, end = along[segment], along[segment + 1]
-    start = along[lines.first[:-1]][line]
-    begin, end = begin - start, end - start
-    first = np.ceil(begin / SCANLINE_RESOLUTION - 1e-9).astype(np.int64)
-    last = np.ceil(end / SCANLINE_RESOLUTION - 1e-9).astype(np.int64)
-    # the end of a line is a vertex too where a step falls on it
-    closing = (segment + 2 == lines.first[1:][line]) & (last * SCANLINE_RESOLUTION <= end)
-    number = last + closing - first
-    which = np.repeat(np.arange(len(segment), dtype=np.int32), number)
-    count = np.arange(len(which)) + (first - (np.cumsum(number) - number))[which]
-    share = np.clip((count * SCANLINE_RESOLUTION - begin[which]) / np.maximum(end - begin, 1e-9)[which], 0.0, 1.0)
-    d0, h0 = lines.d[segment], heights[segment]
-    d = d0[which] + share * (lines.d[segment + 1] - d0)[which]
-    h = h0[which] + share * (heights[segment + 1] - h0)[which]
-    line = line[which]
-    return line, d, h, _steepness(line, count, d, h)
-
-
-def _steepness(line, count, d, h):
-    """(N,) rise over run, without sign, from the vertex before to the one after on the same line."""
-    if len(line) < 2:
-        return np.zeros(len(line))
-    parted = (np.diff(line) != 0) | (np.diff(count) != 1)
-    before, after = np.arange(-1, len(line) - 1), np.arange(1, len(line) + 1)
-    before[0], after[-1] = 0, len(line) - 1
-    before[1:] += parted
-    after[:-1] -= parted
-    return np.abs(h[after] - h[before]) / np.maximum(np.abs(d[after] - d[before]), 1e-6)
-
-MIN_RISE_SHARE = 0.7         # share of MIN_HEIGHT that a rise must show before its planes measure it
-MAX_ROUGHNESS_SHARE = 0.4    # of a rise at most that the road before it scatters
-MIN_ROAD_CELLS = 6       # cells of road before a rise
-BEHIND_RISE = (0.06, 0.40)  # m beyond a rise where the ground must stay up
-MAX_SUNK_SHARE = 0.25     # share of it that may lie below half the rise
-MIN_CELLS_BEHIND = 4    # cells of it that must be seen
-GAP_FILL_REACH = 0.30        # m along the road to either side from which a scanline's gaps are closed
-MATCH_ACROSS, MATCH_UP = 0.08, 0.04  # m that candidates of neighbouring scanlines differ at most
-NEIGHBOUR_LINES, MIN_LINES_SHOWING = 2, 3      # scanlines either side; of those, itself included, that must show a candidate
-PLACES_PER_BATCH = 8192         # places looked at together, small enough for the processor's cache
+MIN_RISE_SHARE = 0.7      # of min_height: the planes measure the height of the curb more exactly later
+MAX_ROUGHNESS_SHARE = 0.4  # of a rise: standard deviation of the road before it
+MIN_ROAD_CELLS = 6        # cells of road before a rise
+BEHIND_RISE = (0.06, 0.40)  # m beyond a rise, where the ground must stay raised
+MAX_SUNK_SHARE = 0.25     # of the cells there that may lie below half the rise
+MIN_CELLS_BEHIND = 4      # cells there that must be occupied
+GAP_FILL_REACH = 0.30     # m along the road on either side, from which gaps of a scanline are filled
+MATCH_ACROSS, MATCH_UP = 0.08, 0.04  # m between candidates of one curb on neighbouring scanlines
+NEIGHBOUR_LINES, MIN_LINES_SHOWING = 2, 3  # scanlines on either side; scanlines that must show a candidate, itself included
+HEIGHT_WEIGHT = 2.0       # m across that a metre of height counts as, so that low faces have enough vertices
+PLACE_CELL = 0.10         # m across, cells in which the surroundings of candidates are marked
+PLACES_PER_BATCH = 8192   # places processed at a time; they fit into the cache of the processor
 
 
 @dataclass
 class CurbCandidates:
-    """Rises on the scanlines of one side, pass and scanner, sorted by row, then outward.
+    """M rises on the scanlines of one side, pass and scanner, sorted by row, then outward.
 
-    row, cell : (M,) where each crosses the middle of its height
-    u : (M,) m, that place's offset
-    base, slope : (M,) height of the road's line there, and its rise over run
-    step, rough : (M,) m of the rise, and of the road's scatter about its line
+    Attributes
+    ----------
+    row, cell : (M,) int, cell of the grid in which the middle of the rise is crossed
+    u : (M,) m, outward offset of that cell
+    base : (M,) m above the expected road, height there of the line through the road before the rise
+    slope : (M,) m per m, slope of that line
+    step : (M,) m, height of the rise
+    rough : (M,) m, standard deviation of the road about the line
     """
 
     row: np.ndarray
@@ -164,21 +60,21 @@ class CurbCandidates:
     step: np.ndarray
     rough: np.ndarray
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.row)
 
-    def __getitem__(self, which):
+    def __getitem__(self, which: np.ndarray) -> CurbCandidates:
         return CurbCandidates(*(getattr(self, name)[which] for name in self.__dataclass_fields__))
 
 
-def find_candidates(side, seen, nearest, settings):
-    """Rises of at least MIN_HEIGHT within SEARCH_WIDTH, and no higher than CLIPPING_HEIGHT.
+def find_candidates(side: HeightGrid, measured: np.ndarray, nearest: np.ndarray, settings: ScanlineBoundarySettings) -> CurbCandidates:
+    """Rises of at least `min_height` within `search_width`, and not higher than `clipping_height`.
 
     Parameters
     ----------
-    side : HeightGrid walked outward, its gaps closed
-    seen : (R, C) heights of the scanlines themselves
-    nearest : (R,) m, offset on each row from which outward is searched
+    side : HeightGrid of one side, counted outward, with gaps filled
+    measured : (R, C) m, heights before the gaps were filled
+    nearest : (R,) m, outward offset on each row from which rises are searched
     settings : ScanlineBoundarySettings
 
     Returns
@@ -193,21 +89,21 @@ def find_candidates(side, seen, nearest, settings):
     base, slope, rough, count = _road_before(low, row, cell)
     step = top - base
     middle = base + 0.5 * step
-    found = np.flatnonzero((count >= MIN_ROAD_CELLS) & (step >= MIN_RISE_SHARE * settings.min_height) & (step <= settings.clipping_height)
-                           & (rough <= MAX_ROUGHNESS_SHARE * step) & (low[row, cell] >= middle) & (before < middle))
-    best = found[_best_within((row * low.shape[1] + cell)[found], row[found], (step - 2 * rough)[found], span)]
+    rising = np.flatnonzero((count >= MIN_ROAD_CELLS) & (step >= MIN_RISE_SHARE * settings.min_height) & (step <= settings.clipping_height)
+                            & (rough <= MAX_ROUGHNESS_SHARE * step) & (low[row, cell] >= middle) & (before < middle))
+    best = rising[_best_within((row * low.shape[1] + cell)[rising], row[rising], (step - 2 * rough)[rising], span)]
     row, cell = row[best], cell[best]
-    chosen = CurbCandidates(row, cell, side.offset(cell), *(values[best].astype(float) for values in (base, slope, step, rough)))
-    chosen = chosen[_stays_up(low, chosen) & _measured_itself(seen, chosen, span)]
-    return chosen[_persistent(chosen)]
+    found = CurbCandidates(row, cell, side.offset(cell), *(values[best].astype(float) for values in (base, slope, step, rough)))
+    found = found[_stays_up(low, found) & _measured_itself(measured, found, span)]
+    return found[_persistent(found)]
 
 
 def _rising(low, span, least):
-    """(row, cell, height before, height reached ahead) of cells at which half of a rise of `least` may be crossed."""
+    """(row, cell, height before, height reached ahead) of cells in which half of a rise of `least` metres may be crossed."""
     there = np.isfinite(low)
     filled = np.where(there, low, np.float32(-LINE_SEPARATION))
     top = cv2.dilate(filled, np.ones((1, span + 1), np.uint8), anchor=(0, 0))
-    # the nearest occupied cell before each, as far as the span goes
+    # height of the nearest occupied cell before each, within the span
     before = np.empty_like(low)
     before[:, :1], before[:, 1:] = np.nan, low[:, :-1]
     empty = np.flatnonzero(np.isnan(before))
@@ -227,7 +123,7 @@ def _rising(low, span, least):
 
 
 def _road_before(low, row, cell):
-    """Line through the ground before some cells: its height there, slope, scatter, and count of cells."""
+    """Line through the ground before some cells: its height there, slope, standard deviation, and count of cells."""
     reach, skip = int(round(ROAD_SIDE_LENGTH / SCANLINE_RESOLUTION)), int(round(FACE_MARGIN / SCANLINE_RESOLUTION))
     back = np.arange(-reach - skip + 1, -skip + 1)
     padded = cv2.copyMakeBorder(low, 0, 0, reach + skip, 0, cv2.BORDER_CONSTANT, value=np.nan)
@@ -251,7 +147,7 @@ def _road_before(low, row, cell):
 
 
 def _best_within(place, row, score, span):
-    """(N,) whether the score of each place, ascending, is the greatest of those within `span` cells in its row."""
+    """(N,) whether each score is the greatest within `span` cells of its row; places are ascending."""
     best = np.ones(len(place), bool)
     for lag in range(1, min(span, len(place) - 1) + 1):
         near = (place[lag:] - place[:-lag] <= span) & (row[lag:] == row[:-lag])
@@ -260,37 +156,42 @@ def _best_within(place, row, score, span):
     return best
 
 
-def gap_fill_rows(interval):
-    """Scanlines either side that close a scanline's gaps."""
+def gap_fill_rows(interval: float) -> int:
+    """Scanlines on either side from which the gaps of a scanline are filled.
+
+    Parameters
+    ----------
+    interval : m between section planes
+    """
     return max(int(round(GAP_FILL_REACH / interval)), 1)
 
 
 def _measured_itself(low, candidates, span):
-    """Did the scanline itself see something about the rise? Its neighbours alone would draw it beyond their ends."""
+    """Whether a scanline has heights of its own about the rise; filled gaps alone would extend a curb beyond its end."""
     cells = np.clip(candidates.cell[:, None] + np.arange(-span, span + 1), 0, low.shape[1] - 1)
     return np.isfinite(low[candidates.row[:, None], cells]).any(1)
 
 
 def _stays_up(low, candidates):
-    """Does the ground behind stay above half the rise?"""
+    """Whether the ground behind stays above half the rise."""
     first, last = (int(round(reach / SCANLINE_RESOLUTION)) for reach in BEHIND_RISE)
     cells = candidates.cell[:, None] + np.arange(first, last + 1)
     heights = np.where(cells < low.shape[1], low[candidates.row[:, None], np.minimum(cells, low.shape[1] - 1)], np.nan)
-    seen = np.isfinite(heights).sum(1)
+    occupied = np.isfinite(heights).sum(1)
     with np.errstate(invalid="ignore"):
         sunk = (heights < (candidates.base + 0.5 * candidates.step)[:, None]).sum(1)
-    return (seen >= MIN_CELLS_BEHIND) & (sunk <= MAX_SUNK_SHARE * seen)
+    return (occupied >= MIN_CELLS_BEHIND) & (sunk <= MAX_SUNK_SHARE * occupied)
 
 
 def _persistent(candidates):
-    """Is there a candidate at the same place on enough of the neighbouring scanlines?"""
+    """Whether enough of the neighbouring scanlines have a candidate at the same place."""
     count = len(candidates)
     if not count:
         return np.zeros(0, bool)
     span = 1000.0
     order = np.lexsort((candidates.u, candidates.row))
     key = (candidates.row * span + candidates.u)[order]
-    seen = np.ones(count, np.int64)
+    showing = np.ones(count, np.int64)
     for ahead in range(-NEIGHBOUR_LINES, NEIGHBOUR_LINES + 1):
         if not ahead:
             continue
@@ -301,5 +202,119 @@ def _persistent(candidates):
             partner |= (candidates.row[other] == candidates.row + ahead) \
                 & (np.abs(candidates.u[other] - candidates.u) <= MATCH_ACROSS * max(abs(ahead), 1)) \
                 & (np.abs(candidates.base[other] - candidates.base) <= MATCH_UP)
-        seen += partner
-    return seen >= MIN_LINES_SHOWING
+        showing += partner
+    return showing >= MIN_LINES_SHOWING
+
+
+@dataclass
+class ScanlineSamples:
+    """N vertices of resampled scanlines, in the order of the lines or, of one side, by row and outward offset.
+
+    Attributes
+    ----------
+    first, interval, rows : number of the first section plane, m between planes, count of planes
+    row : (N,) int, from 0
+    u : (N,) m, offset; outward offset where they are of one side
+    h : (N,) m above the expected road
+    steep : (N,) m per m, slope between the neighbours of each vertex, without sign
+    """
+
+    first: int
+    interval: float
+    rows: int
+    row: np.ndarray
+    u: np.ndarray
+    h: np.ndarray
+    steep: np.ndarray
+
+    def outward(self, sign: int) -> ScanlineSamples:
+        """The samples of one side, 1 left or -1 right, sorted by row and outward offset."""
+        u = sign * self.u[::sign]
+        row = self.row[::sign]
+        order = np.argsort(row * LINE_SEPARATION + u, kind="stable")
+        return ScanlineSamples(self.first, self.interval, self.rows, row[order], u[order], self.h[::sign][order], self.steep[::sign][order])
+
+
+def samples_near(lines: Scanlines, heights: np.ndarray, rows: tuple[int, int], interval: float, places: tuple[np.ndarray, np.ndarray],
+                 across: float, along: int, clipping_height: float) -> ScanlineSamples:
+    """Scanlines resampled near some places, at the height of the road.
+
+    A line is sampled at equal steps from its first vertex, so the samples do not depend on the places.
+
+    Parameters
+    ----------
+    lines : Scanlines of one pass and scanner, V vertices
+    heights : (V,) m above the expected road
+    rows : (first, last + 1) numbers of the section planes
+    interval : m between planes
+    places : (row, d), (M,) int and (M,) m
+    across, along : m and rows around the places
+    clipping_height : m above the expected road, up to which vertices are used
+
+    Returns
+    -------
+    ScanlineSamples: all samples that near, and some farther away
+    """
+    row = row_of_lines(lines, rows, interval)
+    segments, line = _segments_near(lines, row, rows[1] - rows[0], *places, across, along)
+    line, d, h, steep = _at_equal_steps(lines, heights, segments, line)
+    kept = np.flatnonzero((h > -MAX_GROUND_DEPTH) & (h <= clipping_height))
+    return ScanlineSamples(rows[0], interval, rows[1] - rows[0], row[line[kept]], d[kept], h[kept], steep[kept])
+
+
+def _segments_near(lines, row, count, place_row, place_d, across, along):
+    """First vertices of the line segments that cross marked cells, and their lines."""
+    low, high = lines.d.min(), lines.d.max()
+    cells = int((high - low) / PLACE_CELL) + 1
+    marked = np.zeros((count, cells), np.uint8)
+    marked[place_row, np.clip(((place_d - low) / PLACE_CELL).astype(np.int64), 0, cells - 1)] = 1
+    # one cell more, so that every sample has both neighbours, from which its slope is computed
+    aside = int(np.ceil(across / PLACE_CELL)) + 2
+    marked = cv2.dilate(marked, np.ones((2 * along + 1, 2 * aside + 1), np.uint8))
+    before = np.zeros((count, cells + 1), np.int32)
+    np.cumsum(marked, axis=1, out=before[:, 1:])
+    cell = ((lines.d - low) * (1.0 / PLACE_CELL)).astype(np.int32)
+    inside = (row >= 0) & (row < count)
+    line = np.repeat(np.arange(len(lines), dtype=np.int32), np.diff(lines.first))
+    cell += (np.where(inside, row, 0) * (cells + 1)).astype(np.int32)[line]
+    flat = before.reshape(-1)
+    near = flat[cell[1:] + 1] > flat[cell[:-1]]
+    near &= (line[1:] == line[:-1]) & inside[line[:-1]]
+    segments = np.flatnonzero(near)
+    return segments, line[segments]
+
+
+def _at_equal_steps(lines, heights, segment, line):
+    """(line, d, h, slope) at equal steps along some segments of lines; a metre of height counts as HEIGHT_WEIGHT metres."""
+    step = np.abs(np.diff(lines.d))
+    step += HEIGHT_WEIGHT * np.abs(np.diff(heights))
+    step[lines.first[1:-1] - 1] = 0.0
+    along = np.concatenate([[0.0], np.cumsum(step)])
+    begin, end = along[segment], along[segment + 1]
+    start = along[lines.first[:-1]][line]
+    begin, end = begin - start, end - start
+    first = np.ceil(begin / SCANLINE_RESOLUTION - 1e-9).astype(np.int64)
+    last = np.ceil(end / SCANLINE_RESOLUTION - 1e-9).astype(np.int64)
+    # the end of a line is a sample where a step falls on it
+    closing = (segment + 2 == lines.first[1:][line]) & (last * SCANLINE_RESOLUTION <= end)
+    number = last + closing - first
+    which = np.repeat(np.arange(len(segment), dtype=np.int32), number)
+    count = np.arange(len(which)) + (first - (np.cumsum(number) - number))[which]
+    share = np.clip((count * SCANLINE_RESOLUTION - begin[which]) / np.maximum(end - begin, 1e-9)[which], 0.0, 1.0)
+    d0, h0 = lines.d[segment], heights[segment]
+    d = d0[which] + share * (lines.d[segment + 1] - d0)[which]
+    h = h0[which] + share * (heights[segment + 1] - h0)[which]
+    line = line[which]
+    return line, d, h, _steepness(line, count, d, h)
+
+
+def _steepness(line, count, d, h):
+    """(N,) slope without sign from the sample before to the one after on the same line."""
+    if len(line) < 2:
+        return np.zeros(len(line))
+    parted = (np.diff(line) != 0) | (np.diff(count) != 1)
+    before, after = np.arange(-1, len(line) - 1), np.arange(1, len(line) + 1)
+    before[0], after[-1] = 0, len(line) - 1
+    before[1:] += parted
+    after[:-1] -= parted
+    return np.abs(h[after] - h[before]) / np.maximum(np.abs(d[after] - d[before]), 1e-6)

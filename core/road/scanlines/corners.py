@@ -1,42 +1,63 @@
-"""Bottom and top corners of curbs: where section plane, curb face, and road or sidewalk meet.
+"""Bottom and top corners of curbs: intersections of section plane, curb face, and road or sidewalk.
 
-About every candidate the vertices of neighbouring scanlines are parted into road,
-face and raised ground by their height over the road's own line. Each part gives a
-plane by RANSAC; if the three planes are those of a curb, their meeting points with the
-section plane are its corners.
+The samples around every candidate are classified as road, face and raised ground by their height above the line of the
+road. A plane is fitted to each class by RANSAC and least squares. Where the three planes are those of a curb, the corners
+are the intersections of the face with the two others in the section plane.
 
 References
 ----------
-The scanline paper (ISPRS Archives, 2020), section 3 and table 1, steps c to f. Its
-angles from the vertical are the planes' own; here they are those of the normals.
+The paper on normalized scanlines (ISPRS Archives, 2020), section 3 and table 1, steps c to f. The angles of the
+paper are those between the planes and the vertical; here they are those between the normals and the vertical.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..common.corners import MAX_FACE_SKEW, CurbSteps
+from .candidates import CurbCandidates, ScanlineSamples
 
-# Planes about many candidates at once, by RANSAC and least squares.
+if TYPE_CHECKING:
+    from .detect import ScanlineBoundarySettings
 
-RANSAC_TRIALS = 32          # the points are parted by height before, so most of them are of the plane
+RANSAC_TRIALS = 32            # few are enough: most samples of a class belong to its plane
 RANSAC_SEED = 20
-SCORED_POINTS = 48          # points by which trials are compared
-INLIER_SIGMAS = 1.5         # inliers lie within so many sigmas of the plane, or the given distance
-TRUNCATED_SIGMA_FACTOR = 1.35   # a normal distribution's sigma over that of its part within INLIER_SIGMAS
-RANSAC_REFITS = 3
-SETS_PER_BATCH = 96           # sets of points worked on at once, few enough for the processor's cache
-MIN_PLANE_VARIANCE = 1e-6  # m², keeps the plane of points in one line from tilting
+SCORED_POINTS = 48            # samples on which the trials are compared
+INLIER_SIGMAS = 1.5           # times the standard deviation, or the RANSAC distance where that is more
+TRUNCATED_SIGMA_FACTOR = 1.35  # sigma of a normal distribution over that of its part within INLIER_SIGMAS
+RANSAC_REFITS = 3             # least-squares fits after the best trial
+SETS_PER_BATCH = 96           # planes fitted at a time; their samples fit into the cache of the processor
+MIN_PLANE_VARIANCE = 1e-6     # m², ridge: the plane of samples on one line stays level across that line
+
+MAX_LEVEL_VERTICES, MAX_FACE_VERTICES = 96, 64  # samples of the planes of road and raised ground, and of the face
+MAX_PLANE_ROWS = 9            # scanlines around a candidate; with narrower intervals some are left out
+MIN_PLANE_INLIERS = 15        # inliers of a plane
+MIN_INLIER_SHARE = 0.5        # inliers of a plane among its samples
+SIGMA_PER_MEAN_DEVIATION = 1.2533  # sqrt(pi / 2): sigma of a normal distribution over its mean absolute deviation
+MAX_ROAD_SHARE, MIN_RAISED_SHARE = 0.30, 0.70  # of the rise: road is lower, raised ground is higher
+FACE_SHARE = (0.12, 0.88)     # of the rise: the face lies between
+FACE_HALF_WIDTH = 0.12        # m across from the middle of the rise: the face is nearer
+FACE_SLOPE_TOLERANCE = 20.0   # degrees by which the slope of a scanline on a face may be below vertical_angle
+FACE_CLEARANCE = 0.02         # m across from the middle of the rise: road and raised ground are farther
+GUTTER_DEPTH, RAISED_MARGIN = 0.12, 0.10  # m below the line of the road, and above the rise: a gutter; a sloping sidewalk
+MAX_CORNER_DISTANCE = 0.10    # m from a corner to the nearest sample of each of its planes
+MIN_MEETING = 0.1             # 1 - product of the slopes: flatter intersections give no corner
 
 _RANSAC_DRAWS = np.random.default_rng(RANSAC_SEED).random((RANSAC_TRIALS, 3))
 
 
 @dataclass
 class Planes:
-    """Planes v = c0 + c1 p + c2 q, one for each set of points.
+    """M planes v = c0 + c1 p + c2 q, one through each set of points.
 
-    coefficients : (M, 3); sigma : (M,) m, scatter of the inliers about it
-    inliers, points : (M,) counts; plane rows with fewer than three points hold NaN
+    Attributes
+    ----------
+    coefficients : (M, 3); NaN where a set has fewer than three points
+    sigma : (M,) m, standard deviation of the inliers about the plane
+    inliers, points : (M,) int
     """
 
     coefficients: np.ndarray
@@ -44,24 +65,25 @@ class Planes:
     inliers: np.ndarray
     points: np.ndarray
 
-    def __getitem__(self, which):
+    def __getitem__(self, which: np.ndarray) -> Planes:
         return Planes(self.coefficients[which], self.sigma[which], self.inliers[which], self.points[which])
 
-    def steepness(self):
-        """(M,) rise over run of the plane against the coordinates it stands on."""
+    def steepness(self) -> np.ndarray:
+        """(M,) m per m, greatest slope of each plane over p and q."""
         return np.hypot(self.coefficients[:, 1], self.coefficients[:, 2])
 
 
-def fit_planes(v, p, q, count, distance, tolerance=0.0):
-    """A plane through each set of points.
+def fit_planes(v: np.ndarray, p: np.ndarray, q: np.ndarray, count: np.ndarray, distance: float,
+               tolerance: np.ndarray | float = 0.0) -> Planes:
+    """A plane through each of M sets of points, by RANSAC and least squares.
 
     Parameters
     ----------
-    v, p, q : (M, N) float32, metres about a place of each set's own; the first count[i]
-        of a row are points, the rest is padding
+    v, p, q : (M, N) float32 m, coordinates about an origin of each set; the first count[i] of a row are points,
+        the rest is padding
     count : (M,) int
-    distance : m from a plane within which points are inliers
-    tolerance : (M,) m or a number, the same where the points are noisier
+    distance : m, RANSAC distance: points nearer to the plane are inliers
+    tolerance : (M,) m or a number; it replaces `distance` where it is larger
 
     Returns
     -------
@@ -96,7 +118,7 @@ def _fit_batch(v, p, q, count, reach, distance):
 
 
 def _best_trial(v, p, q, count, reach):
-    """(B, 3) the plane through three points, of RANSAC_TRIALS, that has the most points near it."""
+    """(B, 3) the plane through three random points, of RANSAC_TRIALS, that has the lowest cost."""
     first = np.arange(0, v.size, v.shape[1])[:, None]
     drawn = (_RANSAC_DRAWS[None] * np.maximum(count, 1)[:, None, None]).astype(np.int64) + first[:, None]
     dv, dp, dq = (values.take(drawn) for values in (v, p, q))
@@ -108,7 +130,7 @@ def _best_trial(v, p, q, count, reach):
     det = np.where(good, det, 1)
     c1, c2 = (v1 * q2 - v2 * q1) / det, (p1 * v2 - p2 * v1) / det
     c0 = dv[..., 0] - c1 * dp[..., 0] - c2 * dq[..., 0]
-    # an even choice of the points tells the trials apart
+    # the trials are compared on an even subset of the points
     size = min(SCORED_POINTS, v.shape[1])
     scored = (np.arange(size) * np.maximum(count, 1)[:, None]) // size + first
     points = np.stack([np.ones(scored.shape, np.float32), p.take(scored), q.take(scored)], axis=1)
@@ -116,7 +138,7 @@ def _best_trial(v, p, q, count, reach):
     off -= v.take(scored)[:, None]
     np.abs(off, out=off)
     limit = reach[:, None] * np.sqrt(1 + c1 * c1 + c2 * c2)
-    # near points cost less, so that of two planes with the same points the one through their middle wins
+    # MSAC cost: of two planes with the same inliers the one through their middle is better
     off /= limit[..., None]
     cost = np.minimum(off, 1, out=off).sum(-1)
     best = np.argmin(np.where(good, cost, np.inf), axis=1)[:, None]
@@ -124,7 +146,7 @@ def _best_trial(v, p, q, count, reach):
 
 
 def _least_squares(v, p, q, weight):
-    """(B, 3) planes through weighted points, and their scatter."""
+    """(B, 3) planes through weighted points, and their standard deviation."""
     n = np.maximum(weight.sum(1), 1)
     mv, mp, mq = ((weight * values).sum(1) / n for values in (v, p, q))
     dv, dp, dq = v - mv[:, None], p - mp[:, None], q - mq[:, None]
@@ -138,27 +160,15 @@ def _least_squares(v, p, q, weight):
     sigma = sigma / np.sqrt(1 + c1 * c1 + c2 * c2)
     return np.stack([mv - c1 * mp - c2 * mq, c1, c2], axis=1), sigma
 
-MAX_LEVEL_VERTICES, MAX_FACE_VERTICES = 96, 64  # vertices of road, and of raised ground, that give a plane; and of the face
-MAX_PLANE_ROWS = 9         # scanlines of a neighbourhood; narrower intervals leave some out
-MIN_PLANE_INLIERS = 15           # inliers of a plane
-MIN_INLIER_SHARE = 0.5     # inliers of a plane among its vertices
-SIGMA_PER_MEAN_DEVIATION = 1.2533   # mean distances from the mean of a normal distribution that are its sigma
-MAX_ROAD_SHARE, MIN_RAISED_SHARE = 0.30, 0.70  # share of the rise up to which a vertex is road, and from which it is raised ground
-FACE_SHARE = (0.12, 0.88)   # share of the rise within which it may be face
-FACE_HALF_WIDTH = 0.12     # m across from the middle of the rise within which the face lies
-FACE_SLOPE_TOLERANCE = 20.0          # degrees that a scanline's own slope on a face may fall short of the face's
-FACE_CLEARANCE = 0.02          # m from the middle of the rise at which road ends and raised ground begins
-GUTTER_DEPTH, RAISED_MARGIN = 0.12, 0.10   # m below the road's line, and above the rise, that belong to it: gutters; slopes
-MAX_CORNER_DISTANCE = 0.10       # m from a corner to the nearest inlier
-MIN_MEETING = 0.1   # 1 - product of the slopes: planes that meet flatter give no corner
-
 
 @dataclass
 class CurbCorners(CurbSteps):
-    """Steps measured by planes: besides the bottom corners, the top ones and the scatter about the planes.
+    """M corners measured with planes: bottom corners as CurbSteps, and the top corners.
 
-    top_u, top_h : (M,) m, outward offset and height of the top corner above the expected road
-    residual : (M,) m, scatter of the inliers about their planes
+    Attributes
+    ----------
+    top_u, top_h : (M,) m, outward offset and height above the expected road of the top corner
+    residual : (M,) m, standard deviation of the inliers about the three planes
     """
 
     top_u: np.ndarray
@@ -166,26 +176,25 @@ class CurbCorners(CurbSteps):
     residual: np.ndarray
 
 
-def corners_of(side, candidates, settings):
-    """Corners at the candidates whose three planes are road, face and raised ground.
+def corners_of(side: ScanlineSamples, candidates: CurbCandidates, settings: ScanlineBoundarySettings) -> CurbCorners:
+    """Corners of the candidates whose three planes are those of road, face and raised ground.
 
     Parameters
     ----------
-    side : ScanlineSamples walked outward
+    side : ScanlineSamples of one side, sorted outward
     candidates : CurbCandidates
     settings : ScanlineBoundarySettings
 
     Returns
     -------
-    CurbCorners, at most one for each candidate, in their order; `scanner_noise` is the scatter
-    about the planes of each, and no better known here
+    CurbCorners, at most one per candidate, in the order of the candidates; `scanner_noise` equals `noise` here
     """
     owner, s, u, h, steep = _neighbourhood(side, candidates, settings)
-    # heights over the road's own line, so that its slope does not count as part of the rise
+    # heights above the line of the road, so that its slope is no part of the rise
     over = h - candidates.slope.astype(np.float32)[owner] * u
     share = over / candidates.step.astype(np.float32)[owner]
     road = (u < -FACE_CLEARANCE) & (share < MAX_ROAD_SHARE) & (over > -GUTTER_DEPTH)
-    # where points lie sparse a scanline slants from the last one on the road to the first on the face
+    # between sparse points a scanline is less steep than the face
     upright = steep > np.tan(np.radians(settings.vertical_angle - FACE_SLOPE_TOLERANCE))
     face = upright & (np.abs(u) < FACE_HALF_WIDTH) & (share > FACE_SHARE[0]) & (share < FACE_SHARE[1])
     raised = (u > FACE_CLEARANCE) & (share > MIN_RAISED_SHARE) & (over < (candidates.step + RAISED_MARGIN).astype(np.float32)[owner])
@@ -195,10 +204,10 @@ def corners_of(side, candidates, settings):
     scatter = np.maximum(candidates.rough, _scatter(owner, over, parts[2].vertices, count))
     alive = np.flatnonzero(np.all([part.number >= MIN_PLANE_INLIERS for part in parts], axis=0))
     lean = np.tan(np.radians(settings.horizontal_angle))
-    # the fewer points first, and of what they leave the next
+    # the face first: it has the fewest samples and rejects most candidates
     front, front_points, good = _planes(parts[1], alive, MAX_FACE_VERTICES, (u, h, s), candidates.rough, settings)
     with np.errstate(invalid="ignore"):
-        # the angle of the face's normal from the vertical: its slope against height makes it lean
+        # angle between the normal of the face and the vertical
         over_run = np.abs(front.coefficients[:, 1] / np.hypot(1.0, front.coefficients[:, 2]))
         good &= (np.degrees(np.arctan2(1.0, over_run)) >= settings.vertical_angle) & (np.abs(front.coefficients[:, 2]) <= MAX_FACE_SKEW)
     alive, front, front_points = alive[good], front[good], front_points[good]
@@ -227,7 +236,7 @@ def corners_of(side, candidates, settings):
 
 
 class _VertexSet:
-    """The vertices of one part, road, face or raised ground, about every candidate."""
+    """The samples of one class (road, face or raised ground) of every candidate."""
 
     def __init__(self, vertices, owner, count):
         self.vertices = vertices
@@ -235,7 +244,7 @@ class _VertexSet:
         self.first = np.cumsum(self.number) - self.number
 
     def evenly(self, which, most):
-        """(len(which), most) vertices of some candidates, evenly chosen where there are more; how many."""
+        """(len(which), most) samples of some candidates, an even subset where there are more, and the count of each."""
         number, first = self.number[which], self.first[which]
         size = np.minimum(number, most)
         column = np.arange(most)
@@ -244,27 +253,33 @@ class _VertexSet:
 
 
 def _planes(part, which, most, coordinates, scatter, settings):
-    """Planes of a part of some candidates, the vertices they were made of, and whether enough lie in them."""
+    """Planes of one class of some candidates, their samples, and whether enough of these are inliers."""
     index, number = part.evenly(which, most)
     planes = fit_planes(*(values[index] for values in coordinates), number, settings.ransac_distance, INLIER_SIGMAS * scatter[which])
     return planes, index, (planes.inliers >= MIN_PLANE_INLIERS) & (planes.inliers >= MIN_INLIER_SHARE * planes.points)
 
 
-def _scatter(owner, values, chosen, count):
-    """(count,) spread of the chosen values of each owner, from their mean distance to their mean."""
-    owner, values = owner[chosen], values[chosen]
+def _scatter(owner, values, selected, count):
+    """(count,) standard deviation of the selected values of each owner, from their mean absolute deviation."""
+    owner, values = owner[selected], values[selected]
     n = np.maximum(np.bincount(owner, minlength=count), 1)
     middle = np.bincount(owner, values, count) / n
     return SIGMA_PER_MEAN_DEVIATION * np.bincount(owner, np.abs(values - middle[owner]), count) / n
 
 
-def plane_fit_rows(interval, settings):
-    """Scanlines either side of a candidate from which its planes are made."""
+def plane_fit_rows(interval: float, settings: ScanlineBoundarySettings) -> int:
+    """Scanlines on either side of a candidate from which its planes are fitted.
+
+    Parameters
+    ----------
+    interval : m between section planes
+    settings : ScanlineBoundarySettings
+    """
     return max(int(np.floor(settings.distance_along / interval + 1e-9)), 1)
 
 
 def _neighbourhood(side, candidates, settings):
-    """(owner, s, u, h, steepness) of the vertices about every candidate, from its own place."""
+    """(owner, s, u, h, slope) of the samples around every candidate, relative to its place."""
     reach = plane_fit_rows(side.interval, settings)
     stride = max(int(np.ceil((2 * reach + 1) / MAX_PLANE_ROWS)), 1)
     key = side.row * 1000.0 + side.u
@@ -287,7 +302,7 @@ def _neighbourhood(side, candidates, settings):
 
 
 def _meeting(level, face):
-    """Offset and height where a level plane and a face meet in the section plane, and whether they do."""
+    """Offset and height of the intersection of a level plane and a face in the section plane, and whether it is reliable."""
     a, b = level.coefficients[:, 0].astype(float), level.coefficients[:, 1].astype(float)
     c, d = face.coefficients[:, 0].astype(float), face.coefficients[:, 1].astype(float)
     det = 1.0 - b * d
@@ -297,7 +312,7 @@ def _meeting(level, face):
 
 
 def _distance(u, h, points, count, at_u, at_h):
-    """(M,) m from a corner to the nearest of its points."""
+    """(M,) m from each corner to the nearest of its samples."""
     if not u.size:
         return np.full(len(at_u), np.inf)
     there = np.arange(points.shape[1]) < count[:, None]

@@ -1,15 +1,18 @@
-"""Road boundaries from normalized scanlines: corners of curbs, chained along the road.
+"""Corners of curbs on normalized scanlines, and boundary lines through them.
 
-Section by section the scanlines of each side, pass and scanner are searched by
-themselves; corners that agree are merged, those that do not stay apart until the
-choice along the road, which both ways of finding curbs share, takes the ones that go on.
+Every section of the road is searched for each side, pass and scanner alone. Corners that agree are merged. The others
+remain until corners are linked along the road, by the same rules as in the method of profiles.
 
 References
 ----------
-The scanline paper (ISPRS Archives, 2020), section 3 and table 1.
+The paper on normalized scanlines (ISPRS Archives, 2020), section 3 and table 1.
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
@@ -31,97 +34,31 @@ from .candidates import NEIGHBOUR_LINES, find_candidates, gap_fill_rows, samples
 from .corners import CurbCorners, corners_of, plane_fit_rows
 from .grid import height_grid
 
-# Boundary lines through the corners of curbs: bottom and top, left and right, cut by what was measured.
+if TYPE_CHECKING:
+    from ...survey.frame.road_frame import RoadFrame
+    from .source import LayerScanlines, SurveyScanlines
 
-MAX_MEASURED_GAP = 1.0   # m between corners that follow on each other; wider gaps are joined, but not measured
+MAX_USUAL_NOISE = 0.005  # m: a higher scatter about the planes is rough ground, such as a verge
+MAX_MEASURED_GAP = 1.0   # m between consecutive corners of a measured line; wider gaps are bridged
+CORNER_BLOCK = 0.5       # m of road per corner of the CORNERS output
 
 _POINT = [("s", float), ("d", float), ("x", float), ("y", float), ("z", float), ("height", float), ("chain", int)]
 
 
-def boundary_lines(corners, frame, max_gap, progress=Progress()):
-    """Smooth lines through corners, bottoms and tops apart.
-
-    Parameters
-    ----------
-    corners : Features CURB_POINTS with `part` bottom or top
-    frame : RoadFrame
-    max_gap : m between corners that are joined
-
-    Returns
-    -------
-    Features with the fields of ROAD_EDGES: LineStringZ along the road, one piece for each
-    stretch of one status: measured; bridged, a gap between corners; occluded, a gap that
-    something hides. Pieces of one line share their end vertices and `chain`.
-    """
-    lines = Features("LineStringZ", list(ROAD_EDGES), crs=corners.crs)
-    number = 0
-    for road in frame.roads:
-        for side in SIDE_SIGNS:
-            hidden = np.sort([row["station_m"] for row in corners.rows
-                              if row["road"] == road.number and row["side"] == side and row["status"] == "occluded"])
-            for part in ("bottom", "top"):
-                for points, status in _pieces(_points(corners, road.number, side, part), hidden, max_gap):
-                    _draw(lines, points, status, road=road.number, side=side, part=part, chain=number)
-                    number += 1
-    assign_nearest_pass(lines, frame)
-    length = {part: sum(row["length_m"] for row in lines.rows if row["part"] == part) for part in ("bottom", "top")}
-    progress.info(f"Boundaries: {length['bottom']:.0f} m of bottom lines and {length['top']:.0f} m of top lines.")
-    progress.report(1.0)
-    return lines
-
-
-def _points(corners, road, side, part):
-    """The measured corners of one kind, sorted by station."""
-    rows = [(row["station_m"], row["offset_m"], g.x, g.y, g.z, row.get("height_m") or 0.0, row["chain"]) for g, row in corners
-            if row["road"] == road and row["side"] == side and row["part"] == part and row["status"] == "measured"]
-    points = np.array(rows, dtype=_POINT)
-    return without_outliers(points[np.argsort(points["s"], kind="stable")])
-
-
-def _pieces(points, hidden, max_gap):
-    """Points parted where the line breaks: lists of (points, status of each gap to the next)."""
-    if len(points) < 2:
-        return []
-    gap, across = np.diff(points["s"]), np.abs(np.diff(points["d"]))
-    near = gap <= MAX_MEASURED_GAP
-    joined = (near | (gap <= max_gap)) & (across <= MAX_EDGE_JUMP + MAX_EDGE_SKEW * gap)
-    covered = HIDDEN_POINT_SPACING * (np.searchsorted(hidden, points["s"][1:]) - np.searchsorted(hidden, points["s"][:-1], side="right"))
-    status = np.where(near, "measured", np.where(covered >= MIN_HIDDEN_SHARE * gap, "occluded", "bridged"))
-    breaks = np.flatnonzero(~joined) + 1
-    parts = zip(np.split(points, breaks), np.split(np.append(status, ""), breaks))
-    return [(part, flags[:-1]) for part, flags in parts if len(part) >= 2 and part["s"][-1] - part["s"][0] >= MIN_EDGE_LENGTH]
-
-
-def _draw(lines, points, status, **fields):
-    """Add the pieces of one line."""
-    curve = EdgeCurve(points)
-    bounds = np.r_[0, np.flatnonzero(status[1:] != status[:-1]) + 1, len(points) - 1]
-    for i, j in zip(bounds[:-1], bounds[1:]):
-        a, b = curve.t[i], curve.t[j]
-        vertices = curve.at(np.linspace(a, b, max(int(np.ceil((b - a) / EDGE_VERTEX_SPACING)), 1) + 1))
-        rows = points[i:j + 1]
-        lines.add(shapely.linestrings(np.round(vertices, 4)), status=str(status[i]), kind="main",
-                  station_m=round(float(rows["s"][0]), 3), end_m=round(float(rows["s"][-1]), 3),
-                  height_m=round(float(np.median(rows["height"])), 3),
-                  length_m=round(float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), 3),
-                  rmse_m=round(float(np.sqrt(np.mean(curve.residual[i:j + 1] ** 2))), 4), **fields)
-
-MAX_USUAL_NOISE = 0.005   # m: where planes scatter more, it is the ground that is rough, as verges are
-CORNER_BLOCK = 0.5   # m of road per corner where corners are asked for
-
-
 @dataclass(frozen=True)
 class ScanlineBoundarySettings:
-    """The paper's table 1.
+    """The parameters of table 1 of the paper.
 
+    Attributes
+    ----------
     search_width : m across within which the height must change
     sensor_height : m from the trajectory down to the road; 0 = from the data
-    clipping_height : m above the road up to which anything is looked at
+    clipping_height : m above the road; higher points are not used
     min_height : m of height change
-    distance_across, distance_along : m to either side of a candidate from which its planes are made
-    ransac_distance : m, inliers of a plane
-    vertical_angle, horizontal_angle : degrees of a plane's normal from Z: at least that of a face, at most that of
-        road and sidewalk
+    distance_across, distance_along : m on either side of a candidate from which its planes are fitted
+    ransac_distance : m from a plane to its inliers
+    vertical_angle, horizontal_angle : degrees between the normal of a plane and Z: at least that of a face, at most
+        that of road and sidewalk
     max_gap : m between corners that are connected
     """
 
@@ -137,6 +74,7 @@ class ScanlineBoundarySettings:
     max_gap: float = setting(2.5, 0.0, 100.0, "The longest connected gap", "m")
 
     def __post_init__(self):
+        """Check the limits of all settings, and that pairs of settings are in order."""
         check_limits(self)
         if self.clipping_height <= self.min_height:
             raise RoadExtractionError(f"The clipping height is {self.clipping_height} m and the minimum height {self.min_height} m; "
@@ -146,19 +84,21 @@ class ScanlineBoundarySettings:
                                       "the vertical angle must be above the horizontal one.")
 
 
-def curbs_from_scanlines(source, settings=ScanlineBoundarySettings(), block_length=0.0, progress=Progress()):
+def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: ScanlineBoundarySettings = ScanlineBoundarySettings(),
+                         block_length: float = 0.0, progress: Progress = Progress()) -> Features:
     """Bottom and top corners of the curb on each side of every road, one of each per block.
 
     Parameters
     ----------
-    source : gives `frame`, `crs`, `interval`, `corridor`, `roads()`, `span(road)`, `road_height(road, s)`,
-        `runs(road, start, end)` and `level`; see SurveyScanlines
+    source : SurveyScanlines or LayerScanlines
+    settings : ScanlineBoundarySettings
     block_length : m of road per corner; 0 = 0.5 to 2.0, shorter in sharp bends
+    progress : Progress
 
     Returns
     -------
-    Features CURB_POINTS: PointZ in map coordinates, `part` bottom or top. Rows of status
-    `occluded` say where something hides the curb.
+    Features CURB_POINTS: PointZ in map coordinates, `part` bottom or top. Rows of status `occluded` mark
+    places where an object hides the curb.
     """
     found = Features("PointZ", list(CURB_POINTS), crs=source.crs)
     roads = source.roads()
@@ -171,12 +111,12 @@ def curbs_from_scanlines(source, settings=ScanlineBoundarySettings(), block_leng
     assign_nearest_pass(found, source.frame)
     bottoms = [row["status"] for row in found.rows if row["part"] == "bottom"]
     progress.info(f"Corners of curbs: {bottoms.count('measured'):,} measured on scanlines, "
-                 f"{bottoms.count('occluded'):,} hidden by something in front.")
+                 f"{bottoms.count('occluded'):,} hidden by objects.")
     return found
 
 
 def _corners_of_road(source, road, settings, progress):
-    """Corners of each side, passes and scanners merged where they agree, and what was seen beside the road."""
+    """Corners of each side, merged over passes and scanners where they agree, and what was measured beside the road."""
     interval = source.interval
     sections = _sections(*source.span(road), interval)
     first, last = sections[0][0], sections[-1][1]
@@ -216,7 +156,7 @@ def _corners_of_road(source, road, settings, progress):
 
 
 def _sections(start, end, interval):
-    """The section planes of a road parted for work: list of (first, last + 1) numbers, about 20 m each."""
+    """The section planes of a road in parts of about 20 m: list of (first, last + 1) numbers."""
     first, last = int(np.floor(start / interval)), int(np.ceil(end / interval)) + 1
     count = max(int(np.ceil((end - start) / BLOCK_SECTION_LENGTH)), 1)
     bounds = np.unique(np.rint(np.linspace(first, last, count + 1)).astype(int))
@@ -224,7 +164,7 @@ def _sections(start, end, interval):
 
 
 def _level_beside(source, road, number, stations):
-    """{sign of the side: (nearest, farthest, height)} of the ground that scanlines leave out beside the track of a pass, (R,) each."""
+    """{sign of the side: (nearest, farthest, height)} of the ground left out beside the track of a pass, (R,) m each."""
     if source.level is None:
         return None
     low, high, height = source.level(road, number, stations[0], stations[-1] + source.interval).at(stations)
@@ -233,14 +173,14 @@ def _level_beside(source, road, number, stations):
 
 
 def _tall(lines, heights, interval):
-    """(d, s, h) of the vertices of things that hide what lies behind."""
+    """(d, s, h) of the vertices of objects that can hide a curb."""
     vertex = np.flatnonzero(heights > MIN_OCCLUDER_HEIGHT)
     line = np.searchsorted(lines.first, vertex, side="right") - 1
     return lines.d[vertex], lines.station[line] + 0.5 * interval, heights[vertex]
 
 
 def _corners(lines, heights, rows, interval, candidates, settings):
-    """Yield (side, corners at its candidates) of one pass and scanner."""
+    """Yield (side, corners of its candidates) of one pass and scanner."""
     if not any(map(len, candidates.values())):
         return
     places = (np.concatenate([c.row for c in candidates.values()]), np.concatenate([SIDE_SIGNS[side] * c.u for side, c in candidates.items()]))
@@ -251,8 +191,17 @@ def _corners(lines, heights, rows, interval, candidates, settings):
             yield side, corners_of(samples.outward(SIDE_SIGNS[side]), of_side, settings)
 
 
-def merged_corners(found):
-    """One corner where several passes or scanners saw the same one: the mean, weighted by support."""
+def merged_corners(found: Sequence[CurbCorners]) -> CurbCorners:
+    """One corner where several passes or scanners measured the same one: their mean, weighted by support.
+
+    Parameters
+    ----------
+    found : CurbCorners of each pass and scanner
+
+    Returns
+    -------
+    CurbCorners
+    """
     corners = CurbCorners.join(found)
     if len(found) < 2 or not len(corners):
         return corners
@@ -269,22 +218,22 @@ def merged_corners(found):
 
 
 def _with_scanner_noise(corners):
-    """The corners, each with the median scatter about the planes of this road."""
+    """The corners with `scanner_noise` set to the median noise of this road."""
     if len(corners):
         corners.scanner_noise = np.full(len(corners), np.clip(np.median(corners.noise), MIN_SCANNER_NOISE, MAX_USUAL_NOISE))
     return corners
 
 
 def _report_side(found, source, road, side, corners, occlusion, settings, block_length):
-    """Bottom and top corners of one side of one road, measured and hidden, in order of station."""
+    """Add the bottom and top corners of one side of one road, measured and hidden, sorted by station."""
     frame, sign = source.frame, SIDE_SIGNS[side]
     track = OutermostTrack(frame, road, sign)
     label = link_steps(corners, source.interval)
     chains = curb_chains(corners, label, source.interval, settings.min_height, np.radians(settings.vertical_angle))
-    chosen = drop_short_curbs(select_along_road(chains, corners, track), chains, corners)
+    stretches = drop_short_curbs(select_along_road(chains, corners, track), chains, corners)
     edges = block_bounds(frame.road(road), *source.span(road), block_length)
     rows = []
-    for number, (chain, a, b) in enumerate(chosen):
+    for number, (chain, a, b) in enumerate(stretches):
         members = chains[chain].steps
         members = members[(corners.s[members] >= a) & (corners.s[members] <= b)]
         rows += _block_points(corners[members], edges, number)
@@ -301,14 +250,14 @@ def _report_side(found, source, road, side, corners, occlusion, settings, block_
 
 
 def _block_points(corners, edges, chain):
-    """A bottom and a top corner per block from those of a chain: their means."""
+    """A bottom and a top corner per block: the means of the corners of one line."""
     if not len(corners):
         return []
     names, member = np.unique(block_numbers(corners, edges), return_inverse=True)
     n = np.bincount(member)
     mean = {name: np.bincount(member, getattr(corners, name)) / n for name in ("s", "u", "h", "top_u", "top_h", "height")}
-    off = corners.u - np.interp(corners.s, mean["s"], mean["u"])
-    residual, support = np.sqrt(np.bincount(member, off**2) / n), np.bincount(member, corners.support)
+    deviation = corners.u - np.interp(corners.s, mean["s"], mean["u"])
+    residual, support = np.sqrt(np.bincount(member, deviation**2) / n), np.bincount(member, corners.support)
     rows = []
     for k in range(len(names)):
         fields = dict(status="measured", height_m=round(float(mean["height"][k]), 4), chain=chain,
@@ -316,3 +265,73 @@ def _block_points(corners, edges, chain):
         for part, u, h in (("bottom", "u", "h"), ("top", "top_u", "top_h")):
             rows.append(dict(s=float(mean["s"][k]), u=float(mean[u][k]), h=float(mean[h][k]), fields=dict(fields, part=part)))
     return rows
+
+
+def boundary_lines(corners: Features, frame: RoadFrame, max_gap: float, progress: Progress = Progress()) -> Features:
+    """Smooth lines through corners, separately for bottoms and tops.
+
+    Parameters
+    ----------
+    corners : Features CURB_POINTS with `part` bottom or top
+    frame : RoadFrame
+    max_gap : m between corners that are connected
+    progress : Progress
+
+    Returns
+    -------
+    Features with the fields of ROAD_EDGES: LineStringZ along the road, one piece for each stretch of one status:
+    measured, bridged (a gap between corners), or occluded (a gap where an object hides the curb). The pieces of one
+    line share their end vertices and `chain`.
+    """
+    lines = Features("LineStringZ", list(ROAD_EDGES), crs=corners.crs)
+    number = 0
+    for road in frame.roads:
+        for side in SIDE_SIGNS:
+            hidden = np.sort([row["station_m"] for row in corners.rows
+                              if row["road"] == road.number and row["side"] == side and row["status"] == "occluded"])
+            for part in ("bottom", "top"):
+                for points, status in _pieces(_points(corners, road.number, side, part), hidden, max_gap):
+                    _draw(lines, points, status, road=road.number, side=side, part=part, chain=number)
+                    number += 1
+    assign_nearest_pass(lines, frame)
+    length = {part: sum(row["length_m"] for row in lines.rows if row["part"] == part) for part in ("bottom", "top")}
+    progress.say(f"Boundaries: {length['bottom']:.0f} m of bottom lines and {length['top']:.0f} m of top lines.")
+    progress.at(1.0)
+    return lines
+
+
+def _points(corners, road, side, part):
+    """The measured corners of one kind, sorted by station."""
+    rows = [(row["station_m"], row["offset_m"], g.x, g.y, g.z, row.get("height_m") or 0.0, row["chain"]) for g, row in corners
+            if row["road"] == road and row["side"] == side and row["part"] == part and row["status"] == "measured"]
+    points = np.array(rows, dtype=_POINT)
+    return without_outliers(points[np.argsort(points["s"], kind="stable")])
+
+
+def _pieces(points, hidden, max_gap):
+    """Points of connected lines: list of (points, status of the gap between each point and the next)."""
+    if len(points) < 2:
+        return []
+    gap, across = np.diff(points["s"]), np.abs(np.diff(points["d"]))
+    near = gap <= MAX_MEASURED_GAP
+    joined = (near | (gap <= max_gap)) & (across <= MAX_EDGE_JUMP + MAX_EDGE_SKEW * gap)
+    covered = HIDDEN_POINT_SPACING * (np.searchsorted(hidden, points["s"][1:]) - np.searchsorted(hidden, points["s"][:-1], side="right"))
+    status = np.where(near, "measured", np.where(covered >= MIN_HIDDEN_SHARE * gap, "occluded", "bridged"))
+    breaks = np.flatnonzero(~joined) + 1
+    parts = zip(np.split(points, breaks), np.split(np.append(status, ""), breaks))
+    return [(part, flags[:-1]) for part, flags in parts if len(part) >= 2 and part["s"][-1] - part["s"][0] >= MIN_EDGE_LENGTH]
+
+
+def _draw(lines, points, status, **fields):
+    """Add the pieces of one line to the layer."""
+    curve = EdgeCurve(points)
+    bounds = np.r_[0, np.flatnonzero(status[1:] != status[:-1]) + 1, len(points) - 1]
+    for i, j in zip(bounds[:-1], bounds[1:]):
+        a, b = curve.t[i], curve.t[j]
+        vertices = curve.at(np.linspace(a, b, max(int(np.ceil((b - a) / EDGE_VERTEX_SPACING)), 1) + 1))
+        rows = points[i:j + 1]
+        lines.add(shapely.linestrings(np.round(vertices, 4)), status=str(status[i]), kind="main",
+                  station_m=round(float(rows["s"][0]), 3), end_m=round(float(rows["s"][-1]), 3),
+                  height_m=round(float(np.median(rows["height"])), 3),
+                  length_m=round(float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), 3),
+                  rmse_m=round(float(np.sqrt(np.mean(curve.residual[i:j + 1] ** 2))), 4), **fields)

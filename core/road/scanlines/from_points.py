@@ -1,10 +1,13 @@
-"""Scanlines straight from the points, where a cloud has no scan lattice to mesh.
+"""Scanlines from points near the section planes, where a cloud has no scan lattice to mesh.
 
-Spinning multi-beam scanners, thinned clouds and clouds without times have no rows
-and columns of neighbours. There the points near a section plane stand for its cut
-through the surface: binned across the road, in every bin the lowest layer. What
-stands above the ground is kept as lines of its own, for it tells what hides a curb.
+Spinning multi-beam scanners, thinned clouds and clouds without times have no scan lines. The points within a thin slice
+around each plane are binned across the road instead, and the lowest layer of every bin is the ground. Points above the
+ground are kept as separate lines: they show what hides a curb. The method is our own.
 """
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,28 +18,34 @@ from .grid import SCANLINE_RESOLUTION
 from .mesh import increasing
 from .scanlines import Scanlines
 
-SLICE_LAYER_JUMP = 0.05   # m of height that parts ground from what is above it
+if TYPE_CHECKING:
+    from ...survey.open_survey import Survey
+
+SLICE_LAYER_JUMP = 0.05   # m of height between the ground and the layer above it
 MIN_STEEP_RISE, STEEP_NOISE_SIGMAS = 0.02, 6.0  # m of height within one cell, and times the noise: more is a face,
 FACE_VERTEX_STEP = 0.01       # m of height between the vertices of a face
-MAX_VERTEX_GAP = 0.30   # m between neighbouring vertices of one line
-MIN_SLICE_LINE_VERTICES = 3          # vertices of a line
-SLICE_MARGIN = 0.01        # m more than the slices need are read: which points belong to a slice the slice decides
-MIN_SLICE_LENGTH = 0.20  # m along the road: thinner slices fall between two turns of a scanner
+MAX_VERTEX_GAP = 0.30     # m between neighbouring vertices of one line
+MIN_SLICE_LINE_VERTICES = 3  # vertices of a line
+SLICE_MARGIN = 0.01       # m read beyond the slices; the slices then select their points exactly
+MIN_SLICE_LENGTH = 0.20   # m along the road: thinner slices may lie between two turns of a scanner
 
 
-def point_scanlines(survey, road, start, end, interval, corridor):
-    """Scanlines of the points near section planes at k * interval, start <= k * interval < end.
+def point_scanlines(survey: Survey, road: int, start: float, end: float, interval: float, corridor: float) -> Scanlines:
+    """Scanlines of the points near the section planes at k * interval, start <= k * interval < end.
+
+    A slice holds the points within interval / 2 of its plane, or within MIN_SLICE_LENGTH / 2 where that is more.
 
     Parameters
     ----------
     survey : Survey
-    road : number
-    start, end, interval, corridor : metres
+    road : number of the road
+    start, end : m, stations
+    interval : m between planes
+    corridor : m either side of the reference line
 
     Returns
     -------
-    Scanlines; a slice takes the points within interval / 2 of its plane, or within
-    MIN_SLICE_LENGTH / 2 where that is more
+    Scanlines
     """
     first, last = int(np.ceil(start / interval - 1e-9)), int(np.ceil(end / interval - 1e-9))
     half = 0.5 * max(MIN_SLICE_LENGTH, interval)
@@ -52,11 +61,12 @@ def point_scanlines(survey, road, start, end, interval, corridor):
         own = np.flatnonzero(key == value)
         rows, index = _slices(s[own], first, last, interval, half)
         index = own[index]
-        # the row stands in the station's place, so that slices may overlap
+        # the row replaces the station, so that slices may overlap
         cells = pseudo_scan_lines(d[index], rows + 0.5, h[index], points.intensity[index].astype(float), (first, last), 1.0,
                                   SCANLINE_RESOLUTION, SLICE_LAYER_JUMP, -corridor, corridor)
-        for chosen, at in ((cells.ground, 0.5), (~cells.ground & (cells.h > MIN_OCCLUDER_HEIGHT), 1.0)):
-            parts.append(_joined(*_vertices(cells, np.flatnonzero(chosen), at), first, interval, int(value) // 256, int(value) % 256))
+        for selected, quantile in ((cells.ground, 0.5), (~cells.ground & (cells.h > MIN_OCCLUDER_HEIGHT), 1.0)):
+            row, across, height, intensity = _vertices(cells, np.flatnonzero(selected), quantile)
+            parts.append(_joined(row, across, height, intensity, first, interval, int(value) // 256, int(value) % 256))
     lines = Scanlines.join(parts)
     if not len(lines):
         return lines
@@ -65,7 +75,7 @@ def point_scanlines(survey, road, start, end, interval, corridor):
 
 
 def _slices(s, first, last, interval, half):
-    """(row, index) of every point within `half` of a section plane, once for each such plane."""
+    """(row, index) of every point within `half` metres of a section plane, once for each such plane."""
     low = np.maximum(np.ceil((s - half) / interval).astype(np.int64), first)
     high = np.minimum(np.floor((s + half) / interval).astype(np.int64), last - 1)
     count = np.maximum(high - low + 1, 0)
@@ -73,15 +83,15 @@ def _slices(s, first, last, interval, half):
     return np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count) + low[index], index
 
 
-def _vertices(cells, chosen, quantile):
-    """Row, offset, height and intensity of a vertex for every occupied cell, several where it is steep.
+def _vertices(cells, selected, quantile):
+    """Row, offset, height and intensity of the vertices: one per occupied cell, several per cell on a face.
 
-    Heights of level cells are a quantile of theirs: the median of ground, the top of what is tall.
+    The height of a level cell is a quantile of its heights: the median of ground, the maximum of tall objects.
     """
     count = cells.shape[1]
-    place = np.repeat(np.arange(len(cells.starts) - 1), np.diff(cells.starts))[chosen]
-    d, h, intensity = cells.u[chosen], cells.h[chosen], cells.along[chosen]
-    if not len(chosen):
+    place = np.repeat(np.arange(len(cells.starts) - 1), np.diff(cells.starts))[selected]
+    d, h, intensity = cells.u[selected], cells.h[selected], cells.along[selected]
+    if not len(selected):
         return (np.empty(0, np.int64),) + (np.empty(0),) * 3
     begins = np.r_[True, np.diff(place) > 0]
     first = np.flatnonzero(begins)
@@ -96,20 +106,20 @@ def _vertices(cells, chosen, quantile):
     middle = start + np.floor(quantile * (number - 1) + 0.5).astype(np.int64)
     across, bright = np.add.reduceat(d, start) / number, np.add.reduceat(intensity, start) / number
     row, column = place[start] // count, place[start] % count
-    # a face is followed up on the left of the road and down on its right
+    # offsets increase to the left: upward on a face left of the road, downward on the right
     rise = np.where(column < count // 2, -1, 1) * level[start]
     order = np.lexsort((rise, column, row))
     return row[order], across[order], h[middle][order], bright[order]
 
 
 def _joined(row, d, h, intensity, first, interval, pass_number, scanner):
-    """Vertices in order made lines, parted where they lie far apart."""
+    """Lines of consecutive vertices, split where these are far apart."""
     if not len(row):
         return Scanlines.none()
     new = np.r_[True, (np.diff(row) != 0) | (np.diff(d) > MAX_VERTEX_GAP) | (np.abs(np.diff(h)) > 2 * MAX_VERTEX_GAP)]
     begins = np.flatnonzero(new)
     count = len(begins)
-    # noise brings points of a face out of order
+    # noise disorders the offsets on a face
     d = increasing(d, np.r_[begins, len(row)])
     lines = Scanlines((row[begins] + first) * interval, np.full(count, pass_number), np.full(count, scanner),
                       np.r_[begins, len(row)], d, h, intensity.astype(np.float32))

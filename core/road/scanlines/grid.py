@@ -1,25 +1,30 @@
-"""Normalized scanlines of one pass and scanner on a grid of section planes and cells across, for the search of steps."""
+"""Heights of normalized scanlines on a grid of section planes and cells across the road."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
 
-SCANLINE_RESOLUTION = 0.02      # m across between cells, and along a scanline between resampled vertices
-MAX_GROUND_DEPTH = 1.0         # m below the road to which ground is sought
-LINE_SEPARATION = 1e3           # m: parts lines that follow on each other in one array
+from .scanlines import Scanlines
+
+SCANLINE_RESOLUTION = 0.02  # m across between cells, and along a scanline between resampled vertices
+MAX_GROUND_DEPTH = 1.0  # m below the expected road, down to which points are ground
+LINE_SEPARATION = 1e3   # m between the offsets of consecutive lines in one sorted array
 
 
 @dataclass
 class HeightGrid:
-    """Heights of scanlines where they pass the middles of cells.
+    """Heights of scanlines at the middles of cells: R section planes, C cells.
 
-    Rows are section planes, row r at station (first + r) * interval; cells count from `origin`,
-    heights from the expected road.
+    Row r is the plane at station (first + r) * interval. Heights are above the expected road.
 
     Attributes
     ----------
-    first, interval, origin : number of the first row, m between rows, least offset
-    low : (R, C) float32, the lowest of several lines; NaN where there is none
+    first : number of the first plane
+    interval : m between planes
+    origin : m, offset at which the first cell begins
+    low : (R, C) float32 m, height of the lowest line; NaN where there is none
     """
 
     first: int
@@ -28,27 +33,50 @@ class HeightGrid:
     low: np.ndarray
 
     @property
-    def shape(self):
-        return self.low.shape
+    def shape(self) -> tuple[int, int]:
+        """(R, C)."""
+        rows, cells = self.low.shape
+        return rows, cells
 
-    def part(self, first, last):
+    def part(self, first: int, last: int) -> HeightGrid:
         """The rows from index `first` to before `last`."""
         return HeightGrid(self.first + first, self.interval, self.origin, self.low[first:last])
 
-    def offset(self, cell):
-        """Offset of the middle of cells, metres."""
+    def offset(self, cell: np.ndarray | int) -> np.ndarray:
+        """Offsets of the middles of cells, m."""
         return self.origin + (np.asarray(cell) + 0.5) * SCANLINE_RESOLUTION
 
-    def outward(self, sign, origin):
-        """The grid of one side, 1 left or -1 right: from `origin` (whole cells from the reference line) outward."""
+    def outward(self, sign: int, origin: float) -> HeightGrid:
+        """The grid of one side, with cells counted outward.
+
+        Parameters
+        ----------
+        sign : 1 for the left side, -1 for the right
+        origin : m, outward offset at which it begins, a whole number of cells from the reference line
+
+        Returns
+        -------
+        HeightGrid
+        """
         low = self.low[:, ::sign]
         skipped = int(round((origin - self.origin) / SCANLINE_RESOLUTION))
         if skipped < 0:
             low = np.concatenate([np.full((len(low), -skipped), np.nan, np.float32), low], axis=1)
         return HeightGrid(self.first, self.interval, origin, np.ascontiguousarray(low[:, max(skipped, 0):]))
 
-    def closed(self, reach):
-        """The gaps of every scanline closed by its neighbours, up to `reach` rows away: lost pulses and shadows leave different ones."""
+    def closed(self, reach: int) -> HeightGrid:
+        """The grid with empty cells filled from the nearest of the neighbouring rows.
+
+        Lost pulses and shadows leave different gaps on neighbouring scanlines.
+
+        Parameters
+        ----------
+        reach : rows on either side from which a gap is filled
+
+        Returns
+        -------
+        HeightGrid
+        """
         closed = self.low.copy()
         for ahead in range(1, min(reach, len(closed) - 1) + 1):
             for shifted, own in ((self.low[ahead:], closed[:-ahead]), (self.low[:-ahead], closed[ahead:])):
@@ -56,21 +84,22 @@ class HeightGrid:
         return HeightGrid(self.first, self.interval, self.origin, closed)
 
 
-def height_grid(lines, heights, rows, interval, reach, clipping_height):
+def height_grid(lines: Scanlines, heights: np.ndarray, rows: tuple[int, int], interval: float, reach: float,
+                clipping_height: float) -> HeightGrid:
     """Heights of scanlines across the whole road.
 
     Parameters
     ----------
-    lines : Scanlines of one pass and scanner
-    heights : (V,) m of their vertices above the expected road
+    lines : Scanlines of one pass and scanner, V vertices
+    heights : (V,) m above the expected road
     rows : (first, last + 1) numbers of the section planes
-    interval : metres
-    reach : m to either side of the reference line
-    clipping_height : m above the expected road up to which ground is looked for
+    interval : m between planes
+    reach : m either side of the reference line
+    clipping_height : m above the expected road, up to which points are ground
 
     Returns
     -------
-    HeightGrid, its origin -reach or up to a cell less
+    HeightGrid with origin -reach, or up to a cell less
     """
     half = int(np.ceil(reach / SCANLINE_RESOLUTION))
     low = np.full((rows[1] - rows[0], 2 * half), np.nan, np.float32)
@@ -90,7 +119,7 @@ def height_grid(lines, heights, rows, interval, reach, clipping_height):
     slope = (heights[segment + 1] - heights[segment]) / (column[segment + 1] - column[segment])
     start = np.cumsum(number) - number
     line = np.searchsorted(lines.first, segment, side="right") - 1
-    # the cell that the first height of a segment comes to lie in, in the order of the grid, less its own number among the heights
+    # index in the grid of the first height of a segment, less the index of that height
     ahead = row[line] * (2 * half) + cell[segment] + 1 - start
     which = np.repeat(np.arange(len(segment), dtype=np.int32), number)
     place = ahead.take(which)
@@ -102,7 +131,7 @@ def height_grid(lines, heights, rows, interval, reach, clipping_height):
     height = height.astype(np.float32)
     flat = low.reshape(-1)
     flat[place] = height
-    # of several heights for one place the lowest shall stay
+    # the lowest of several heights in one cell
     if (np.diff(place) <= 0).any():
         while len(lower := np.flatnonzero(height < flat[place])):
             place, height = place[lower], height[lower]
@@ -112,6 +141,17 @@ def height_grid(lines, heights, rows, interval, reach, clipping_height):
     return found
 
 
-def row_of_lines(lines, rows, interval):
-    """(L,) row of every scanline on a grid of section planes (first, last + 1)."""
+def row_of_lines(lines: Scanlines, rows: tuple[int, int], interval: float) -> np.ndarray:
+    """Rows of scanlines on a grid of section planes.
+
+    Parameters
+    ----------
+    lines : L Scanlines
+    rows : (first, last + 1) numbers of the section planes of the grid
+    interval : m between planes
+
+    Returns
+    -------
+    (L,) int, negative or too large outside the grid
+    """
     return np.rint(lines.station / interval).astype(np.int64) - rows[0]

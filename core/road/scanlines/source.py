@@ -1,60 +1,90 @@
-"""Where normalized scanlines come from: cut from a survey section by section, or read from a layer."""
+"""Sources of normalized scanlines: sections of a survey, computed on demand, or a layer."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
-from ...survey.lattice.scan_lattice import find_lattice
+from ...survey.lattice.scan_lattice import ScanLattice, find_lattice
 from ...survey.sensor_height import DEFAULT_HEIGHT, height_above
 from .grid import LINE_SEPARATION
+from .scanlines import Scanlines
 from .section_planes import ScanlineSettings, scanline_runs
+
+if TYPE_CHECKING:
+    from ...survey.frame.road_frame import RoadFrame
+    from ...survey.open_survey import Survey
+    from ..common.decimation import LevelStrip
 
 
 class SurveyScanlines:
-    """The scanlines of a survey, made when they are asked for.
+    """The scanlines of a survey, computed on demand.
 
+    Parameters
+    ----------
+    survey : Survey
     settings : ScanlineSettings
     sensor_height : m from the trajectory down to the road, 0 = from the data
-    lattice : ScanLattice; found here where it is not given
-    level : function of road, pass number, start and end (metres): the LevelStrip that is left out; None leaves nothing out
+    lattice : ScanLattice, or None to find it here
+    progress : Progress of finding it
+    level : function of road, pass number, start and end (m) that returns the LevelStrip to be left out; None uses all points
+
+    Attributes
+    ----------
+    frame : RoadFrame
+    crs : WKT
+    interval, corridor : m, of the settings
     """
 
-    def __init__(self, survey, settings=ScanlineSettings(), sensor_height=0.0, lattice=None, progress=Progress(), level=None):
+    def __init__(self, survey: Survey, settings: ScanlineSettings = ScanlineSettings(), sensor_height: float = 0.0,
+                 lattice: ScanLattice | None = None, progress: Progress = Progress(), level: Callable[[int, int,
+                 float, float], LevelStrip | None] | None = None):
         self.settings, self.sensor_height, self.level = settings, sensor_height, level
         self.survey, self.interval, self.corridor = survey, self.settings.interval, self.settings.corridor
         self.lattice = find_lattice(survey, self.settings.rotation_frequency, progress) if lattice is None else lattice
         self.frame, self.crs = survey.frame, survey.crs
 
-    def roads(self):
+    def roads(self) -> list[int]:
+        """Numbers of the roads."""
         return self.survey.store.roads()
 
-    def span(self, road):
+    def span(self, road: int) -> tuple[float, float]:
+        """Stations at which a road begins and ends, m."""
         return self.survey.store.span(road)
 
-    def road_height(self, road, s):
-        """(N,) local z at which the road is expected."""
+    def road_height(self, road: int, s: np.ndarray) -> np.ndarray:
+        """Expected local z of the road at (N,) stations, (N,) m."""
         if self.sensor_height:
             return self.frame.track_height(road, s) - self.sensor_height
         return self.survey.road_height(road, s)
 
-    def runs(self, road, start, end):
-        """List of Scanlines with start <= station < end, each of one pass and scanner; intensity is left out."""
+    def runs(self, road: int, start: float, end: float) -> list[Scanlines]:
+        """The scanlines with start <= station < end, apart for each pass and scanner; their intensity is 0."""
         level = None if self.level is None else partial(self.level, road)
         return scanline_runs(self.survey, road, start, end, self.settings, self.lattice, intensity=False, level=level)
 
 
 class LayerScanlines:
-    """The scanlines of a layer, with the frame of the trajectory they were made along.
+    """The scanlines of a layer, in the road frame of the trajectory they were made with.
 
     Parameters
     ----------
-    lines : dict of road number to Scanlines, each ordered by station
+    lines : dict of road number to Scanlines, each sorted by station
     frame : RoadFrame
-    interval : m between their section planes
+    interval : m between section planes
     crs : WKT
     sensor_height : m from the trajectory down to the road, 0 = from the data
+
+    Attributes
+    ----------
+    frame, interval, crs : as given
+    corridor : m, greatest offset of a vertex
+    level : None; all points are used
 
     Raises
     ------
@@ -62,17 +92,18 @@ class LayerScanlines:
         If no road has scanlines on two planes.
     """
 
-    def __init__(self, lines, frame, interval, crs, sensor_height=0.0):
-        self.lines, self.level = {road: found for road, found in sorted(lines.items()) if len(found)}, None
+    def __init__(self, lines: dict[int, Scanlines], frame: RoadFrame, interval: float, crs: str, sensor_height: float = 0.0):
+        self.lines = {road: found for road, found in sorted(lines.items()) if len(found)}
+        self.level: Callable[[int, int, float, float], LevelStrip | None] | None = None
         self.frame, self.interval, self.crs = frame, interval, crs
         if not any(len(np.unique(found.station)) > 1 for found in self.lines.values()):
-            raise RoadExtractionError("The scanlines lie on fewer than two section planes of one road, so no curb can be followed from one "
-                                      "to the next. Make them with Normalized scanlines along the whole trajectory.")
+            raise RoadExtractionError("The scanlines of every road lie on fewer than two section planes, so no curb can be followed along "
+                                      "the road. Make them with Normalized scanlines along the whole trajectory.")
         self.corridor = max(float(np.abs(found.d).max()) for found in self.lines.values())
         self.heights = {p.number: sensor_height for p in frame.passes} if sensor_height else self._sensor_heights()
 
     def _sensor_heights(self):
-        """m from the trajectory down to the road, by pass, where its scanlines cross its own track."""
+        """m from the trajectory down to the road by pass, where its scanlines cross its own track."""
         known = {}
         for p in self.frame.passes:
             drops = []
@@ -83,28 +114,30 @@ class LayerScanlines:
             height = height_above(drops)
             if height is not None:
                 known[p.number] = height
-        usual = float(np.median(list(known.values()))) if known else DEFAULT_HEIGHT
-        return {p.number: known.get(p.number, usual) for p in self.frame.passes}
+        typical = float(np.median(list(known.values()))) if known else DEFAULT_HEIGHT
+        return {p.number: known.get(p.number, typical) for p in self.frame.passes}
 
-    def roads(self):
+    def roads(self) -> list[int]:
+        """Numbers of the roads."""
         return list(self.lines)
 
-    def span(self, road):
+    def span(self, road: int) -> tuple[float, float]:
+        """Stations at which a road begins and ends, m."""
         stations = self.lines[road].station
         return float(stations[0]), float(stations[-1])
 
-    def road_height(self, road, s):
-        """(N,) local z at which the road is expected."""
+    def road_height(self, road: int, s: np.ndarray) -> np.ndarray:
+        """Expected local z of the road at (N,) stations, (N,) m."""
         return self.frame.track_height(road, s, self.heights)
 
-    def runs(self, road, start, end):
-        """List of Scanlines with start <= station < end, each of one pass and scanner."""
+    def runs(self, road: int, start: float, end: float) -> list[Scanlines]:
+        """The scanlines with start <= station < end, apart for each pass and scanner."""
         first, last = np.searchsorted(self.lines[road].station, (start, end))
         return self.lines[road][first:last].runs()
 
 
 def _drops(lines, track_d, track_z):
-    """Metres from the track down to every line that passes under it."""
+    """m from the track down to every line that it crosses."""
     if not len(lines):
         return np.empty(0)
     under = (lines.d[lines.first[:-1]] <= track_d) & (lines.d[lines.first[1:] - 1] >= track_d)
