@@ -295,8 +295,8 @@ def boundary_lines(corners: Features, frame: RoadFrame, max_gap: float, progress
                     number += 1
     assign_nearest_pass(lines, frame)
     length = {part: sum(row["length_m"] for row in lines.rows if row["part"] == part) for part in ("bottom", "top")}
-    progress.say(f"Boundaries: {length['bottom']:.0f} m of bottom lines and {length['top']:.0f} m of top lines.")
-    progress.at(1.0)
+    progress.info(f"Boundaries: {length['bottom']:.0f} m of bottom lines and {length['top']:.0f} m of top lines.")
+    progress.report(1.0)
     return lines
 
 
