@@ -141,13 +141,13 @@ class Call:
             return None
         from osgeo import gdal
 
-        from ..core.io.crs import parse_crs, same_place
+        from ..core.io.crs import parse_crs, same_crs
         from ..core.io.gdal_errors import gdal_exceptions
 
         path = self.raster(name)
         with gdal_exceptions():
             own = gdal.Open(path).GetProjection()
-        if not own or not crs or same_place(parse_crs(own), parse_crs(crs)):
+        if not own or not crs or same_crs(parse_crs(own), parse_crs(crs)):
             return path
         target = self.scratch_file(f"{name.lower()}.vrt")
         with gdal_exceptions():

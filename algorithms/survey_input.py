@@ -39,8 +39,8 @@ SURVEY_SETTINGS = (
 
 def survey_inputs(call, progress):
     """Paths of POINT_CLOUDS, and TRAJECTORY brought to the clouds' CRS."""
-    from ..core.io.crs import reproject_trajectory
     from ..core.survey.las.reader import read_headers
+    from ..core.survey.trajectory.reprojection import reproject_trajectory
 
     paths = call.point_clouds()
     clouds = next((header.crs for header in read_headers(paths) if header.crs), "") or call.crs()
@@ -60,9 +60,9 @@ def frame_of(call, crs, progress, road_points=None, layers=None):
 
     `layers` (parameter name to Features) and the road points must have been made with this trajectory.
     """
-    from ..core.io.crs import reproject_trajectory
     from ..core.survey.consistency import check_features_on_roads, check_road_points_on_roads
     from ..core.survey.frame.road_frame import build_frame
+    from ..core.survey.trajectory.reprojection import reproject_trajectory
 
     trajectory = reproject_trajectory(call.trajectory(), crs)
     has_time = trajectory.has_time
@@ -134,9 +134,9 @@ def paint_of(call, name, progress):
 
 def imported_trajectory(call, progress):
     """INPUT in TARGET_CRS (or the clouds' CRS) and, with POINT_CLOUDS given, on the clouds' clock."""
-    from ..core.io.crs import reproject_trajectory
     from ..core.survey.las.reader import read_headers
     from ..core.survey.open_survey import match_clocks
+    from ..core.survey.trajectory.reprojection import reproject_trajectory
 
     trajectory = call.trajectory("INPUT", call.crs("INPUT_CRS"))
     headers = read_headers(call.point_clouds()) if call.given("POINT_CLOUDS") else []

@@ -117,7 +117,7 @@ class GeoreferenceImage(Algorithm):
 
 def _control_points(call, image, progress):
     """From the layer or the file, whichever was given."""
-    from ...core.io.crs import horizontal, parse_crs, same_place
+    from ...core.io.crs import horizontal_part, parse_crs, same_crs
     from ...core.overlay.control_points import read_control_points
 
     given = call.crs()
@@ -131,9 +131,9 @@ def _control_points(call, image, progress):
         points = read_control_points(path, image, given)
     else:
         points = read_control_point_layer(source, image, given)
-    if given and not same_place(parse_crs(given), parse_crs(points.crs)):
+    if given and not same_crs(parse_crs(given), parse_crs(points.crs)):
         progress.warn(tr("The control points say that they are in {own}; the CRS given is for points that name none and was not used.").format(
-            own=horizontal(parse_crs(points.crs)).name))
+            own=horizontal_part(parse_crs(points.crs)).name))
     return points
 
 

@@ -7,7 +7,7 @@ import shapely
 
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
-from ..io.crs import check_metric, horizontal, parse_crs, same_place
+from ..io.crs import check_metric, horizontal_part, parse_crs, same_crs
 from ..io.gdal_errors import gdal_exceptions
 from .matching import AlongTrajectory, places_along, single_lines
 
@@ -223,20 +223,20 @@ def in_crs(layer, wkt, warn=lambda text: None):
     if source is None:
         if _looks_like_degrees(layer.geometries):
             raise RoadExtractionError(
-                f"{layer.label} has no CRS and coordinates that look like degrees, while the others are in {horizontal(target).name}. "
+                f"{layer.label} has no CRS and coordinates that look like degrees, while the others are in {horizontal_part(target).name}. "
                 "Set the layer's CRS and run again.")
-        warn(f"{layer.label} has no CRS; its coordinates are taken to be in {horizontal(target).name}.")
+        warn(f"{layer.label} has no CRS; its coordinates are taken to be in {horizontal_part(target).name}.")
         return AssessedLayer(layer.label, layer.geometries, layer.rows, wkt)
-    if same_place(source, target):
+    if same_crs(source, target):
         return AssessedLayer(layer.label, layer.geometries, layer.rows, wkt)
     from pyproj import Transformer
 
-    move = Transformer.from_crs(horizontal(source), horizontal(target), always_xy=True)
+    move = Transformer.from_crs(horizontal_part(source), horizontal_part(target), always_xy=True)
     moved = shapely.transform(np.asarray(layer.geometries, object), lambda xy: np.column_stack(move.transform(*xy.T)))
     moved = [_with_heights_of(old, new) for old, new in zip(layer.geometries, moved)]
     if not np.isfinite(shapely.get_coordinates(moved)).all():
         raise RoadExtractionError(
-            f"{layer.label} is in {horizontal(source).name} and cannot be brought to {horizontal(target).name}. Check its CRS.")
+            f"{layer.label} is in {horizontal_part(source).name} and cannot be brought to {horizontal_part(target).name}. Check its CRS.")
     return AssessedLayer(layer.label, moved, layer.rows, wkt)
 
 

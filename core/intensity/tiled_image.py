@@ -58,7 +58,7 @@ class _StoredTile(NamedTuple):
 class TiledImage(IntensityImage):
     """An intensity image made of tiles that are put into it one by one and read in windows.
 
-    Its pixels, and what `sample` and `read_window` return, are those of the GeoTIFF of the same tiles.
+    Its pixels, and what `sample` returns, are those of the GeoTIFF of the same tiles.
     Tiles are put by one thread; once all are there, several threads may read.
 
     Parameters

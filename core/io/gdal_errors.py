@@ -1,19 +1,23 @@
-"""GDAL's errors as Python exceptions, for our own calls alone."""
+"""GDAL's errors as Python exceptions, for Lanewright's own calls alone."""
+
+from __future__ import annotations
 
 import threading
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
+from typing import Any
 
 _lock = threading.Lock()
-_inside = 0       # blocks of all threads that run at present, before GDAL 3.7
-_switched = []    # GDAL's modules that the first of them switched on
+_active = 0       # blocks of all threads that run at present, before GDAL 3.7
+_enabled: list[Any] = []    # GDAL's modules whose exceptions the first of them enabled
 
 
 @contextmanager
-def gdal_exceptions():
-    """While this lasts, or in a function decorated with it, GDAL raises RuntimeError; afterwards it is as it was before.
+def gdal_exceptions() -> Iterator[None]:
+    """A context, or a decorator of a function, in which GDAL raises RuntimeError; afterwards GDAL is as it was before.
 
-    Whether GDAL raises is a state of the whole process, which every plugin of QGIS shares. Since GDAL 3.7 a
-    thread may have a state of its own, and only that is touched; before, the state is restored
+    Whether GDAL raises is a state of the whole process, which all plugins of QGIS share. Since GDAL 3.7 a
+    thread may have a state of its own, and only that is changed; with older versions, the state is restored
     when the last thread leaves.
     """
     from osgeo import gdal, ogr
@@ -23,7 +27,7 @@ def gdal_exceptions():
         if hasattr(gdal, "ExceptionMgr"):
             for module in modules:
                 stack.enter_context(module.ExceptionMgr(useExceptions=True))
-            # GDAL raises an error that was met before once more when the state is restored
+            # otherwise GDAL raises an earlier error once more when the state is restored
             stack.callback(gdal.ErrorReset)
         else:
             stack.enter_context(_for_all_threads(modules))
@@ -32,21 +36,21 @@ def gdal_exceptions():
 
 @contextmanager
 def _for_all_threads(modules):
-    global _inside
+    global _active
     with _lock:
-        if not _inside:
-            _switched[:] = [module for module in modules if not module.GetUseExceptions()]
-            for module in _switched:
+        if not _active:
+            _enabled[:] = [module for module in modules if not module.GetUseExceptions()]
+            for module in _enabled:
                 module.UseExceptions()
-        _inside += 1
+        _active += 1
     try:
         yield
     finally:
         with _lock:
-            _inside -= 1
-            if not _inside:
-                # each module keeps the error handler that was there before it: the last is taken off first
-                with suppress(RuntimeError):  # somebody else switched another module on meanwhile, and it must stay
-                    for module in reversed(_switched):
+            _active -= 1
+            if not _active:
+                # each module keeps the error handler that was there before it: the last is removed first
+                with suppress(RuntimeError):  # another plugin enabled a further module meanwhile, which must stay so
+                    for module in reversed(_enabled):
                         module.DontUseExceptions()
-                _switched.clear()
+                _enabled.clear()

@@ -1,9 +1,13 @@
-"""The intensity image as a file: a tiled GeoTIFF that is written whole or not at all, and read in windows."""
+"""Tiled GeoTIFFs: written whole or not at all, and read in windows; above all the intensity image."""
+
+from __future__ import annotations
 
 import os
 import threading
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -11,67 +15,77 @@ from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from .gdal_errors import gdal_exceptions
 
-GEOTIFF_TILE = 512          # px, side of a tile of the file and of the work
-NODATA = -9999.0
-AT_ONCE = 4 * GEOTIFF_TILE**2   # px that are read in one piece to be sampled
-KEPT = 32 * GEOTIFF_TILE**2     # px that GDAL may keep of what a thread has read
-COMPRESSING = 2     # threads
-DISPLAY_LONGEST = 2000  # px of the reduced image from which the stretch is taken
-SPARSE_STEP = 16        # px from one of them to the next at the most, where few tiles of a large image hold data
+GEOTIFF_TILE = 512          # px, side of a tile of the file, and of the parts that are processed at a time
+NODATA = -9999.0            # value of pixels without data
+MAX_SAMPLED_WINDOW = 4 * GEOTIFF_TILE**2   # px that are read as one window to be sampled
+MAX_CACHED_PIXELS = 32 * GEOTIFF_TILE**2   # px that GDAL may cache of what a thread has read
+COMPRESSION_THREADS = 2
+DISPLAY_SIZE = 2000         # px, longer side of the reduced image from which the stretch is computed
+MAX_DISPLAY_STEP = 16       # px between its pixels at the most, where few tiles of a large image hold data
 
 
 class IntensityImage:
-    """An intensity image opened for reading, by several threads if need be.
+    """An intensity image that several threads may read.
 
     Attributes
     ----------
     path : of the file
-    geotransform : as GDAL has it, map coordinates
+    geotransform : (6,) of GDAL, map coordinates
     cell_size : metres
     width, height : pixels
     crs : WKT, "" where the file carries none
-    eight_bit : whether it is the picture for viewing
+    eight_bit : whether it is the display image, with values 1 to 255
     """
 
-    def __init__(self, path, geotransform, width, height, crs, eight_bit=False):
+    def __init__(self, path: str | os.PathLike[str], geotransform: tuple[float, ...], width: int, height: int, crs: str, eight_bit: bool = False):
         self.path = str(path)
         self.geotransform = geotransform
         self.cell_size = geotransform[1]
         self.width, self.height = width, height
         self.crs = crs
         self.eight_bit = eight_bit
-        self._own = threading.local()  # GDAL's datasets serve one thread each
+        self._own = threading.local()  # a GDAL dataset serves one thread only
 
     @classmethod
     @gdal_exceptions()
-    def open(cls, path):
+    def open(cls, path: str | os.PathLike[str]) -> IntensityImage:
         """Open an image.
 
         Raises
         ------
         RoadExtractionError
-            If the file is missing, no raster, rotated, without square pixels, or in degrees.
+            If the file is missing, not a raster, rotated, has no square pixels, or is in degrees.
         """
         dataset = _open_raster(path)
         transform = dataset.GetGeoTransform(can_return_null=True)
         if transform is None:
-            raise RoadExtractionError(f"{path} is a picture without a place on the map. Give the intensity image written by “Intensity image”.")
+            raise RoadExtractionError(f"{path} is an image without georeferencing. Give the intensity image written by “Intensity image”.")
         if transform[2] or transform[4] or abs(transform[1] + transform[5]) > 1e-6 * abs(transform[1]) or transform[1] <= 0:
             raise RoadExtractionError(
                 f"{path} has pixels of {transform[1]:g} by {-transform[5]:g} map units or is rotated. "
-                "An intensity image has square pixels and north up: make it anew with “Intensity image”.")
+                "An intensity image has square pixels and north up: make it again with “Intensity image”.")
         crs = dataset.GetProjection() or ""
         reference = dataset.GetSpatialRef()
         if reference is not None and reference.IsGeographic():
             raise RoadExtractionError(
-                f"{path} is in {reference.GetName()} (degrees). Markings are measured in metres: make the image anew "
+                f"{path} is in {reference.GetName()} (degrees). Markings are measured in metres: make the image again "
                 "from road points in a projected CRS.")
         eight_bit = dataset.GetRasterBand(1).DataType == 1  # GDT_Byte
         return cls(path, transform, dataset.RasterXSize, dataset.RasterYSize, crs, eight_bit)
 
     @gdal_exceptions()
-    def read_pixels(self, column, row, width, height):
-        """(height, width) float32 from a pixel on; NaN where there is no data or no image."""
+    def read_pixels(self, column: int, row: int, width: int, height: int) -> np.ndarray:
+        """A window of pixels.
+
+        Parameters
+        ----------
+        column, row : of the first pixel; the window may reach beyond the image
+        width, height : pixels
+
+        Returns
+        -------
+        (height, width) float32; NaN where there is no data or no image
+        """
         values = np.full((height, width), np.nan, np.float32)
         c0, c1 = max(column, 0), min(column + width, self.width)
         r0, r1 = max(row, 0), min(row + height, self.height)
@@ -85,50 +99,37 @@ class IntensityImage:
         return values
 
     @gdal_exceptions()
-    def tiles(self):
-        """[(column, row)] of the first pixels of all tiles that may hold data, row by row."""
+    def tiles(self) -> list[tuple[int, int]]:
+        """(column, row) of the first pixel of each tile that may hold data, row by row."""
         return filled_tiles(self._dataset(0))
 
-    def read_window(self, bounds):
-        """The pixels that a box of the map touches.
+    def pixel_of(self, x: Any, y: Any, origin: Any = (0.0, 0.0)) -> tuple[np.ndarray, np.ndarray]:
+        """The pixels of places.
 
         Parameters
         ----------
-        bounds : (min x, min y, max x, max y), map coordinates
+        x, y : (N,) metres
+        origin : map coordinates that were subtracted from x and y, such as RoadFrame.origin
 
         Returns
         -------
-        (H, W) float32, row 0 in the north, NaN where there is no data; and the map
-        coordinates x, y of the outer (north-west) corner of pixel 0, 0.
-        """
-        left, _, _, top, _, _ = self.geotransform
-        x0, y0, x1, y1 = bounds
-        column, row = int(np.floor((x0 - left) / self.cell_size)), int(np.floor((top - y1) / self.cell_size))
-        width = max(int(np.ceil((x1 - left) / self.cell_size)) - column, 1)
-        height = max(int(np.ceil((top - y0) / self.cell_size)) - row, 1)
-        corner = left + column * self.cell_size, top - row * self.cell_size
-        return self.read_pixels(column, row, width, height), corner
-
-    def pixel_of(self, x, y, origin=(0.0, 0.0)):
-        """Column and row, (N,) float, of places; pixel 0 reaches from 0 to 1.
-
-        `origin` is what was subtracted from the map coordinates (frame.origin), nothing by default.
+        column, row : (N,) float64; pixel 0 extends from 0 to 1
         """
         left, _, _, top, _, _ = self.geotransform
         return (np.asarray(x, float) + (origin[0] - left)) / self.cell_size, \
             ((top - origin[1]) - np.asarray(y, float)) / self.cell_size
 
-    def sample(self, x, y, origin=(0.0, 0.0), bilinear=False):
+    def sample(self, x: Any, y: Any, origin: Any = (0.0, 0.0), bilinear: bool = False) -> np.ndarray:
         """Image values at places.
 
         Parameters
         ----------
-        x, y : (N,) map coordinates, or local ones with their `origin`
-        bilinear : between the centres of four pixels, else the pixel that a place lies in
+        x, y, origin : as of `pixel_of`
+        bilinear : interpolate between the centres of four pixels; otherwise the value of the pixel that contains the place
 
         Returns
         -------
-        (N,) float32, NaN where there is no data; bilinear needs all four pixels.
+        (N,) float32, NaN where there is no data (for bilinear: in any of the four pixels)
         """
         column, row = self.pixel_of(x, y, origin)
         if bilinear:
@@ -138,7 +139,7 @@ class IntensityImage:
             return values
         floor_column, floor_row = np.floor(column), np.floor(row)
         box = [int(end) for whole in (floor_column, floor_row) for end in (whole.min(), whole.max())]
-        if not bilinear and (box[1] - box[0] + 1) * (box[3] - box[2] + 1) <= AT_ONCE:
+        if not bilinear and (box[1] - box[0] + 1) * (box[3] - box[2] + 1) <= MAX_SAMPLED_WINDOW:
             pixels = self.read_pixels(box[0], box[2], box[1] - box[0] + 1, box[3] - box[2] + 1)
             floor_row -= box[2]
             floor_row *= pixels.shape[1]
@@ -164,10 +165,10 @@ class IntensityImage:
         return values
 
     def _dataset(self, pixels):
-        """This thread's dataset, of which so many pixels are to be read; opened anew now and then, as GDAL keeps what was read."""
+        """This thread's dataset, of which so many pixels are to be read; it is reopened now and then to empty GDAL's cache."""
         self._own.read = getattr(self._own, "read", 0) + pixels
-        if self._own.read > KEPT or not hasattr(self._own, "dataset"):
-            self._own.dataset = None  # or the old one's tiles would still be there while the new one is opened
+        if self._own.read > MAX_CACHED_PIXELS or not hasattr(self._own, "dataset"):
+            self._own.dataset = None  # frees the cache of the old dataset before the new one is opened
             self._own.dataset, self._own.read = _open_raster(self.path), pixels
         return self._own.dataset
 
@@ -190,10 +191,18 @@ def _open_raster(path):
             f"{path} cannot be read as an image ({problem}). Give the GeoTIFF written by “Intensity image”.") from problem
 
 
-def filled_tiles(dataset):
-    """[(column, row)] of the first pixels of all tiles of a GDAL dataset that may hold data, row by row.
+def filled_tiles(dataset: Any) -> list[tuple[int, int]]:
+    """The tiles of a raster that may hold data.
 
-    What lies between two towns is left out of the file: it is halved until the rest is empty or a tile, not read.
+    Empty tiles are missing from the file. They are found by bisection, without reading pixels.
+
+    Parameters
+    ----------
+    dataset : gdal.Dataset, in tiles of GEOTIFF_TILE pixels
+
+    Returns
+    -------
+    (column, row) of the first pixel of each tile, row by row
     """
     from osgeo import gdal
 
@@ -217,17 +226,28 @@ def filled_tiles(dataset):
 
 
 class NewGeoTiff:
-    """The one band of a GeoTIFF that is being written; nobody else holds its dataset, so that `close` ends it."""
+    """The single band of a GeoTIFF that is being written.
+
+    Parameters
+    ----------
+    path : of the file
+    width, height : pixels
+    geotransform : (6,) of GDAL
+    crs : WKT, "" for none
+    byte : uint8, otherwise float32
+    nodata : value of pixels without data
+    """
 
     @gdal_exceptions()
-    def __init__(self, path, width, height, geotransform, crs, byte, nodata):
+    def __init__(self, path: str | os.PathLike[str], width: int, height: int, geotransform: Any, crs: str, byte: bool, nodata: float):
         from osgeo import gdal
 
         options = [f"BLOCKXSIZE={GEOTIFF_TILE}", f"BLOCKYSIZE={GEOTIFF_TILE}", "TILED=YES", "COMPRESS=DEFLATE", "SPARSE_OK=TRUE",
-                   "BIGTIFF=IF_SAFER", f"NUM_THREADS={COMPRESSING}"]
-        # intensities are too noisy to be told from those beside them: a predictor costs twice what it saves, and more to undo
+                   "BIGTIFF=IF_SAFER", f"NUM_THREADS={COMPRESSION_THREADS}"]
+        # Intensities are too noisy to be predicted from their neighbours: a predictor costs more time than it saves.
         options += ["PREDICTOR=2"] if byte else ["ZLEVEL=1"]
-        self._type, self._numbers = (gdal.GDT_Byte, np.uint8) if byte else (gdal.GDT_Float32, np.float32)
+        self._type = gdal.GDT_Byte if byte else gdal.GDT_Float32
+        self._dtype = np.dtype(np.uint8 if byte else np.float32)
         self._dataset = gdal.GetDriverByName("GTiff").Create(str(path), width, height, 1, self._type, options)
         self._dataset.SetGeoTransform(geotransform)
         if crs:
@@ -235,67 +255,83 @@ class NewGeoTiff:
         self._dataset.GetRasterBand(1).SetNoDataValue(nodata)
 
     @gdal_exceptions()
-    def write(self, column, row, values):
-        """Write (H, W) pixels from one on; they are compressed by other threads once `flush` is called."""
+    def write(self, column: int, row: int, values: np.ndarray) -> None:
+        """Write (H, W) pixels, the first at (column, row); other threads compress them once `flush` is called."""
         height, width = values.shape
-        data = np.ascontiguousarray(values, self._numbers).tobytes()
+        data = np.ascontiguousarray(values, self._dtype).tobytes()
         self._dataset.GetRasterBand(1).WriteRaster(column, row, width, height, data, buf_type=self._type)
 
     @gdal_exceptions()
-    def read(self, column, row, width, height):
+    def read(self, column: int, row: int, width: int, height: int) -> np.ndarray:
         """(height, width) pixels as written so far, a copy."""
         data = self._dataset.GetRasterBand(1).ReadRaster(column, row, width, height, buf_type=self._type)
-        return np.frombuffer(data, self._numbers).reshape(height, width).copy()
+        return np.frombuffer(data, self._dtype).reshape(height, width).copy()
 
     @gdal_exceptions()
-    def flush(self):
-        """Hand what was written to the file, which compresses it beside the work that follows."""
+    def flush(self) -> None:
+        """Pass what was written to the file, which compresses it while the work goes on."""
         self._dataset.GetRasterBand(1).FlushCache()
 
     @gdal_exceptions()
-    def close(self):
-        """End the file; a file that is still open cannot be renamed on Windows."""
+    def close(self) -> None:
+        """Complete and close the file; an open file cannot be renamed on Windows."""
         try:
             self._dataset.FlushCache()
         finally:
             self.drop()
 
-    def drop(self):
-        """Let go of the file, finished or not."""
+    def drop(self) -> None:
+        """Close the file, complete or not."""
         self._dataset = None
 
 
 @contextmanager
-def new_geotiff(path, width, height, geotransform, crs, byte=False, nodata=NODATA):
-    """A NewGeoTiff: tiled, DEFLATE, empty tiles left out; it takes its name when all went well.
+def new_geotiff(path: str | os.PathLike[str], width: int, height: int, geotransform: Any, crs: str, byte: bool = False,
+                nodata: float = NODATA) -> Iterator[NewGeoTiff]:
+    """A new GeoTIFF with one band: tiled, DEFLATE, without empty tiles. It appears at its path only when all is written.
+
+    Parameters
+    ----------
+    path, width, height, geotransform, crs, byte, nodata : as of NewGeoTiff
 
     Raises
     ------
     RoadExtractionError
         If the file cannot be written.
     """
-    path = Path(path)
-    unfinished = path.with_name(path.name + ".unfinished.tif")
+    target = Path(path)
+    unfinished = target.with_name(target.name + ".unfinished.tif")
     image = None
     try:
         image = NewGeoTiff(unfinished, width, height, geotransform, crs, byte, nodata)
         yield image
         image.close()
-        os.replace(unfinished, path)
-        # statistics that a viewer kept beside yesterday's image are not those of this one
-        path.with_name(path.name + ".aux.xml").unlink(missing_ok=True)
-    except RuntimeError as problem:  # GDAL's own: the folder refuses, or the disk is full
-        raise RoadExtractionError(f"{path} cannot be written ({problem}). Choose another folder or free its space.") from problem
+        os.replace(unfinished, target)
+        # statistics that a viewer stored beside the previous image do not hold for this one
+        target.with_name(target.name + ".aux.xml").unlink(missing_ok=True)
+    except RuntimeError as problem:  # of GDAL: the folder is not writable, or the disk is full
+        raise RoadExtractionError(f"{path} cannot be written ({problem}). Choose another folder or free some disk space.") from problem
     finally:
         if image is not None:
             image.drop()
         unfinished.unlink(missing_ok=True)
 
 
-def write_display_image(image_path, path, progress=Progress()):
+def write_display_image(image_path: str | os.PathLike[str], path: str | os.PathLike[str], progress: Progress = Progress()) -> None:
     """Write an intensity image stretched to bytes 1 to 255, for viewers; 0 is no data.
 
     The stretch runs from the 1st to the 99.5th percentile of the image.
+
+    Parameters
+    ----------
+    image_path : of the intensity image
+    path : of the display image, a GeoTIFF
+    progress : receives progress
+
+    Raises
+    ------
+    RoadExtractionError
+        If the image cannot be read, or the display image cannot be written.
     """
     image = IntensityImage.open(image_path)
     low, high = _stretch(image)
@@ -312,11 +348,11 @@ def write_display_image(image_path, path, progress=Progress()):
 
 
 def _stretch(image):
-    """1st and 99.5th percentile of an image, taken from every n-th pixel."""
+    """1st and 99.5th percentile of an image, computed from every n-th pixel."""
     tiles = image.tiles()
-    # where most of a large image is empty, as many pixels as of a small one that is full
-    filled = int(np.sqrt(len(tiles))) * GEOTIFF_TILE // DISPLAY_LONGEST
-    step = max(1, min(max(image.width, image.height) // DISPLAY_LONGEST, max(filled, SPARSE_STEP)))
+    # a large image that is mostly empty gives as many pixels as a small one that is full
+    filled = int(np.sqrt(len(tiles))) * GEOTIFF_TILE // DISPLAY_SIZE
+    step = max(1, min(max(image.width, image.height) // DISPLAY_SIZE, max(filled, MAX_DISPLAY_STEP)))
     parts = [np.empty(0, np.float32)]
     for column, row in tiles:
         values = image.read_pixels(column, row, GEOTIFF_TILE, GEOTIFF_TILE)[::step, ::step]

@@ -1,10 +1,13 @@
-"""Tables of numbers in text files: whatever stands above them and between their columns.
+"""Tables of numbers in text files, with any header and delimiter.
 
-Half a million rows take about a second: lines are counted and cut as bytes, and
+Half a million rows take about a second: lines are counted and split as bytes, and
 the numbers are parsed in one call.
 """
 
+from __future__ import annotations
+
 import io
+import os
 import re
 from collections import Counter
 from dataclasses import dataclass
@@ -13,9 +16,11 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 
-SAMPLE = 200_000   # bytes looked at to learn how the table is written
-FEWEST = 3         # columns of numbers that make a table
-LARGEST = 1e20     # beyond time in nanoseconds; larger numbers count as none, like infinity
+SAMPLE_BYTES = 200_000     # from which the format of the table is recognised
+SAMPLE_LINES = 400         # lines of these that are split
+MIN_NUMBER_COLUMNS = 3     # columns of numbers that make a table
+MAX_NUMBER = 1e20          # beyond time in nanoseconds; larger numbers count as missing, like infinity
+FIELDS_PER_CHUNK = 200_000  # fields parsed at a time where some are words
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?$|[+-]?(nan|inf)$", re.IGNORECASE)
 COMMA_NUMBER = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?$|[+-]?\d+$")
 DELIMITERS = (";", "\t", "|", ",", " ")
@@ -23,22 +28,32 @@ DELIMITERS = (";", "\t", "|", ",", " ")
 
 @dataclass(frozen=True)
 class NumberTable:
-    """A table as read.
+    """A table of numbers.
 
-    values : (N, K) float64, NaN where a field is no number
+    Attributes
+    ----------
+    values : (N, K) float64, NaN where a field is not a number
     preamble : the lines above the numbers, header included, top down
     first_row : the fields of the first row as they are written
     dropped : rows left out because they had another number of fields
     """
 
     values: np.ndarray
-    preamble: list
-    first_row: list
+    preamble: list[str]
+    first_row: list[str]
     dropped: int = 0
 
 
-def read_number_table(path):
-    """NumberTable of a text file with any delimiter, header or none.
+def read_number_table(path: str | os.PathLike[str]) -> NumberTable:
+    """The table of numbers in a text file with any delimiter, with or without a header.
+
+    Parameters
+    ----------
+    path : of the file, in UTF-8, UTF-16 or an encoding that shares the characters of ASCII
+
+    Returns
+    -------
+    NumberTable
 
     Raises
     ------
@@ -48,11 +63,11 @@ def read_number_table(path):
     """
     data = _text_bytes(path)
     lines = _sample_lines(data)
-    delimiter, columns, decimal_comma = _how_written(lines, path)
+    delimiter, columns, decimal_comma = _recognise_format(lines, path)
     first = next(k for k, line in enumerate(lines) if _is_row(_fields(line, delimiter), columns, decimal_comma))
     first_row = _fields(lines[first], delimiter)
     if delimiter == ",":
-        _refuse_comma_twice(first_row, lines[:first], path)
+        _refuse_ambiguous_commas(first_row, lines[:first], path)
     body = data.split(b"\n", first)[-1] if first else data
     values, dropped = _parse(body, delimiter, columns, decimal_comma)
     if not len(values):
@@ -69,19 +84,19 @@ def _text_bytes(path):
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         data = data.decode("utf-16", "replace").encode()
     data = data[3:] if data.startswith(b"\xef\xbb\xbf") else data
-    if b"\0" in data[:SAMPLE]:
+    if b"\0" in data[:SAMPLE_BYTES]:
         raise RoadExtractionError(
             f"{path} is a binary file. A trajectory is read from text (CSV, TXT) or from Applanix SBET (.out, records of 136 bytes).")
     return data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").rstrip(b"\x1a\0 \t\n") + b"\n"
 
 
 def _sample_lines(data):
-    lines = data[:SAMPLE].decode("utf-8", "replace").split("\n")
+    lines = data[:SAMPLE_BYTES].decode("utf-8", "replace").split("\n")
     return lines[:-1]
 
 
 def _fields(line, delimiter):
-    """The fields of one line; a delimiter at its end opens no further field."""
+    """The fields of one line; a delimiter at its end is ignored."""
     line = line.strip().replace('"', "") if delimiter == " " else line.strip(" ").replace('"', "")
     if delimiter == " ":
         return line.split()
@@ -95,18 +110,18 @@ def _is_number(field, decimal_comma):
 
 def _is_row(fields, columns, decimal_comma):
     numbers = sum(_is_number(field, decimal_comma) for field in fields)
-    return len(fields) == columns and numbers >= FEWEST and 2 * numbers >= len(fields)
+    return len(fields) == columns and numbers >= MIN_NUMBER_COLUMNS and 2 * numbers >= len(fields)
 
 
-def _how_written(lines, path):
+def _recognise_format(lines, path):
     """(delimiter, number of columns, decimal comma) that explain the most lines."""
     best = (0, 0, None)
     for rank, delimiter in enumerate(DELIMITERS):
         for decimal_comma in (False, True) if delimiter != "," else (False,):
             rows = []
-            for line in lines[:400]:
+            for line in lines[:SAMPLE_LINES]:
                 fields = _fields(line, delimiter)
-                if FEWEST <= len(fields) and _is_row(fields, len(fields), decimal_comma):
+                if MIN_NUMBER_COLUMNS <= len(fields) and _is_row(fields, len(fields), decimal_comma):
                     rows.append(len(fields))
             if not rows:
                 continue
@@ -121,14 +136,14 @@ def _how_written(lines, path):
     return best[2][1:]
 
 
-def _refuse_comma_twice(first_row, above, path):
-    """1,5,2,5 may be two numbers or four: nobody can tell."""
+def _refuse_ambiguous_commas(first_row, above, path):
+    """1,5,2,5 may be two numbers or four."""
     whole = all(re.match(r"[+-]?\d+$", field) for field in first_row)
     padded = any(re.match(r"0\d+$", field) for field in first_row)
     header = next((line.split(",") for line in reversed(above) if line.strip()), [])
     if whole and len(first_row) >= 6 and (padded or 2 * len(header) == len(first_row)):
         raise RoadExtractionError(
-            f"{path} uses the comma between columns and as the decimal sign, so its numbers cannot be told apart. "
+            f"{path} uses the comma between columns and as the decimal sign, so its columns cannot be separated. "
             "Export it with a decimal point, or with semicolons between the columns.")
 
 
@@ -156,19 +171,19 @@ def _parse(body, delimiter, columns, decimal_comma):
         try:
             values = np.loadtxt(io.BytesIO(body), comments=None, ndmin=2, encoding="latin1")
         except ValueError:
-            pass  # a field is no number: fields are read one by one
+            pass  # a field is not a number: fields are parsed one by one
     if values is None or values.shape != (rows, columns):
         values = _parse_mixed(body, columns)
-    return only_numbers(values).reshape(-1, columns), dropped
+    return finite_or_nan(values).reshape(-1, columns), dropped
 
 
-def only_numbers(values):
-    """The values with NaN for what is infinite or absurdly large, which no sum survives."""
-    return np.where(np.abs(values) < LARGEST, values, np.nan)
+def finite_or_nan(values: np.ndarray) -> np.ndarray:
+    """The values, of any shape, with NaN for those that are infinite or beyond MAX_NUMBER, with which sums overflow."""
+    return np.where(np.abs(values) < MAX_NUMBER, values, np.nan)
 
 
 def _fill_empty(body, mark):
-    """Write nan into fields that are empty, drop a delimiter at the end of the line."""
+    """Write nan into empty fields, and remove a delimiter at the end of a line."""
     body = re.sub(rb"[ ]*" + re.escape(mark) + rb"[ ]*", mark, body) if b" " in body else body
     body = body.replace(mark + b"\n", b"\n")
     for _ in range(2):
@@ -178,12 +193,12 @@ def _fill_empty(body, mark):
     return body.replace(b" ", b"_")
 
 
-def _parse_mixed(body, columns, chunk=200_000):
+def _parse_mixed(body, columns):
     """Values of a table in which some fields are words; those become NaN."""
-    # bytes.split() would part at vertical tabs and form feeds too, which the rows were not counted by
+    # bytes.split() would also split at vertical tabs and form feeds, which did not separate the fields above
     fields = re.split(rb"[ \t\n]+", body.strip(b" \t\n"))
     parts = []
-    step = chunk // columns * columns or columns
+    step = FIELDS_PER_CHUNK // columns * columns or columns
     for start in range(0, len(fields), step):
         rows = np.array(fields[start:start + step], dtype=bytes).reshape(-1, columns)
         values = np.empty(rows.shape)

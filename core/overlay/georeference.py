@@ -180,13 +180,13 @@ def _enough(count, rows, order):
 
 def _rough_position(image, points, settings):
     """Where the image is taken to lie before it is shifted."""
-    from ..io.crs import horizontal, parse_crs, same_place
+    from ..io.crs import horizontal_part, parse_crs, same_crs
 
     if image.geotransform is not None:
         own, wanted = parse_crs(image.crs), parse_crs(points.crs)
-        if own is not None and wanted is not None and not same_place(own, wanted):
+        if own is not None and wanted is not None and not same_crs(own, wanted):
             raise RoadExtractionError(
-                f"The image lies in {horizontal(own).name}, the control points in {horizontal(wanted).name}. A shift (order 0) "
+                f"The image lies in {horizontal_part(own).name}, the control points in {horizontal_part(wanted).name}. A shift (order 0) "
                 "needs both in one CRS: reproject the image or the points, or choose order 1.")
         return image.geotransform
     if settings.pixel_size <= 0:
@@ -279,9 +279,9 @@ def _notes(found):
 
 def _map_metres(points):
     """A word where a metre on the map is none on the ground, as in web maps."""
-    from ..io.crs import horizontal, parse_crs
+    from ..io.crs import horizontal_part, parse_crs
 
-    crs = horizontal(parse_crs(points.crs))
+    crs = horizontal_part(parse_crs(points.crs))
     if crs is None or not crs.is_projected:
         return
     scale = _scale_of_map(crs, points)

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..common.memory import trim_heap
-from ..io.crs import check_projected, reproject_trajectory
+from ..io.crs import check_projected
 from ..survey.frame.road_frame import CORRIDOR
 from ..survey.las.reader import read_headers
+from ..survey.trajectory.reprojection import reproject_trajectory
 
 # How long each stage takes, in proportions, by points and by length of road: of a million points, of a kilometre (`make bench`).
 # What is read packed is decoded; boundaries by both methods take what either does.

@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from ..io.crs import horizontal, parse_crs
+from ..io.crs import horizontal_part, parse_crs
 from ..io.gdal_errors import gdal_exceptions
 from ..overlay.control_points import CHECK, CONTROL, DISABLED
 from ..overlay.warp import drawn_area, output_grid
@@ -34,7 +34,7 @@ def georeferencing_report(found, drawn, departure):
     page.heading("Image")
     page.facts((
         ("Image", image.path), ("Pixels and lines", f"{image.width} × {image.height}"), ("Placed by", KINDS[found.settings.order]),
-        ("CRS", horizontal(parse_crs(crs)).name if crs else "none"), ("Result", f"{width} × {height} pixels of {found.pixel_size:g} m"),
+        ("CRS", horizontal_part(parse_crs(crs)).name if crs else "none"), ("Result", f"{width} × {height} pixels of {found.pixel_size:g} m"),
         ("Drawn within", f"{departure:.2f} pixels of the polynomial, everywhere"),
         ("Outside the hull of the control points", f"{100 * found.outside:.0f} % of the image" + (", left out" if found.cut else ""))))
     _errors(page, found)

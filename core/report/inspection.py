@@ -5,7 +5,7 @@ from datetime import datetime, timedelta
 import cv2
 import numpy as np
 
-from ..io.crs import horizontal, parse_crs
+from ..io.crs import horizontal_part, parse_crs
 from .map_figure import png
 from .page import Page
 
@@ -160,7 +160,7 @@ def histogram_picture(counts, low, high, width=900, height=220):
 
 
 def _crs_name(wkt):
-    return horizontal(parse_crs(wkt)).name if wkt else "none"
+    return horizontal_part(parse_crs(wkt)).name if wkt else "none"
 
 
 def _shares(counts, total):

@@ -8,12 +8,13 @@ from scipy.spatial import cKDTree
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from ..io.crs import check_metric, horizontal, parse_crs, reproject_trajectory
+from ..io.crs import check_metric, horizontal_part, parse_crs
 from .frame.road_frame import build_frame
 from .las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
 from .open_survey import SurveySettings, match_clocks
 from .scanners import ScannerCensus
 from .sensor_height import AROUND, NEAR_TRACK, height_above
+from .trajectory.reprojection import reproject_trajectory
 from .trajectory.trajectory import clean_trajectory
 
 NEAR = 25.0        # m from the trajectory that counts as measured from it
@@ -242,7 +243,7 @@ def _judge_crs(found):
         check_metric(crs, "The point cloud")
     except RoadExtractionError as problem:
         found.notes.append(str(problem))
-    names = {horizontal(parse_crs(file.crs)).name for file in found.files if file.crs}
+    names = {horizontal_part(parse_crs(file.crs)).name for file in found.files if file.crs}
     if len(names) > 1:
         found.notes.append(f"The files use different CRSs ({', '.join(sorted(names))}): reproject them to one first.")
 

@@ -7,7 +7,7 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from ..io.crs import check_projected, crs_note, parse_crs, reproject_trajectory
+from ..io.crs import check_projected, crs_note, parse_crs
 from .adjustment.adjust import fit_passes
 from .clock_check import check_clock
 from .frame.road_frame import CORRIDOR, build_frame
@@ -17,6 +17,7 @@ from .las.reader import POINTS_PER_BLOCK, read_headers
 from .scanners import numbers_by_value
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, Points, point_dtype
 from .store.section_store import MEMORY_LIMIT, SECTION_LENGTH, SectionStore
+from .trajectory.reprojection import reproject_trajectory
 from .trajectory.time_systems import align_time, wrapped_week
 
 HEIGHT_STEP = 0.25     # m between the stations at which the height of the road is taken to choose points by

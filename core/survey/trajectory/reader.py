@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 
 from ...common.errors import RoadExtractionError
-from ...io.crs import horizontal, parse_crs, reproject_trajectory
-from ...io.text_table import SAMPLE, only_numbers, read_number_table
+from ...io.crs import horizontal_part, parse_crs
+from ...io.text_table import SAMPLE_BYTES, finite_or_nan, read_number_table
 from .columns import AGREES, ROLES, angle_between, angle_unit_said, columns_by_role, columns_from_numbers, driven_course, find_header, geographic_unit
+from .reprojection import reproject_trajectory
 from .trajectory import Trajectory
 
 SBET_DOUBLES = 17  # time, lat, lon, height, 3 velocities, roll, pitch, heading, wander angle, 6 more
@@ -63,7 +64,7 @@ def trajectory_from_columns(columns, crs="", angle_unit="", label="The trajector
     RoadExtractionError
         If x, y or z is missing, or coordinates and CRS contradict each other.
     """
-    columns = {role: only_numbers(np.asarray(values, float)) for role, values in columns.items()}
+    columns = {role: finite_or_nan(np.asarray(values, float)) for role, values in columns.items()}
     notes = list(notes)
     time = columns.get("time")
     has_time = time is not None and np.isfinite(time).any()
@@ -112,7 +113,7 @@ def _with_crs_said(columns, crs, unit, path, preamble, notes):
     said = re.search(r"EPSG\s*[:=]?\s*(\d{4,6})", " ".join(preamble), re.IGNORECASE)
     if said and not crs:
         found = parse_crs(f"EPSG:{said.group(1)}")
-        if horizontal(found).is_projected == ("x" in columns):
+        if horizontal_part(found).is_projected == ("x" in columns):
             crs = found.to_wkt()
             notes.append(f"{path.name} says that it is in {found.name} (EPSG:{said.group(1)}).")
     return trajectory_from_columns(columns, crs, unit, path.name, notes)
@@ -147,17 +148,17 @@ def _seconds(columns, unit):
 def _plane_coordinates(columns, time, crs, label, notes):
     """x, y and their CRS; longitude and latitude in degrees where they are geographic."""
     known = parse_crs(crs)
-    geographic = known is not None and horizontal(known).is_geographic
+    geographic = known is not None and horizontal_part(known).is_geographic
     if "x" in columns and "y" in columns and ("lon" not in columns or (known is not None and not geographic)):
         x, y = columns["x"], columns["y"]
         unit = geographic_unit(x, y, time)
         if geographic and not unit and max(np.nanmax(np.abs(x)), np.nanmax(np.abs(y))) > 360:
             raise RoadExtractionError(
-                f"{label} is said to be in {horizontal(known).name} (degrees), but its coordinates reach "
+                f"{label} is said to be in {horizontal_part(known).name} (degrees), but its coordinates reach "
                 f"{np.nanmax(np.abs(x)):.0f}, {np.nanmax(np.abs(y)):.0f}. Give the CRS that its x and y are in.")
         if not geographic and known is not None and unit:
             raise RoadExtractionError(
-                f"{label} is said to be in {horizontal(known).name}, but its coordinates look like longitude and latitude "
+                f"{label} is said to be in {horizontal_part(known).name}, but its coordinates look like longitude and latitude "
                 f"(about {np.nanmedian(x):.4f}, {np.nanmedian(y):.4f}). Set its CRS to EPSG:4326.")
         if not geographic and not unit:
             return x, y, "" if known is None else known.to_wkt()
@@ -184,7 +185,7 @@ def _angles(columns, x, y, crs, unit, notes):
     found = {role: columns.get(role) for role in ("roll", "pitch", "heading")}
     if all(values is None for values in found.values()):
         return [None, None, None]
-    if crs and horizontal(parse_crs(crs)).is_geographic:
+    if crs and horizontal_part(parse_crs(crs)).is_geographic:
         x = x * np.cos(np.radians(np.nanmedian(y))) * 1.11e5
         y = y * 1.11e5
     heading = found["heading"]
@@ -232,7 +233,7 @@ def _is_sbet(path):
     """Binary records of 17 doubles whose latitude, longitude and time can be such."""
     size = path.stat().st_size
     with open(path, "rb") as file:
-        head = file.read(SAMPLE)
+        head = file.read(SAMPLE_BYTES)
     if b"\0" not in head or head[:2] in (b"\xff\xfe", b"\xfe\xff") or size < 2 * SBET_DOUBLES * 8:
         return False
     usable = len(head) // (SBET_DOUBLES * 8) * SBET_DOUBLES
@@ -251,9 +252,9 @@ def _read_sbet(path, crs):
     if path.stat().st_size % (SBET_DOUBLES * 8):
         notes.append(f"{path.name} ends within a record; the last, incomplete one was left out.")
     known = parse_crs(crs)
-    if known is not None and not horizontal(known).is_geographic:
+    if known is not None and not horizontal_part(known).is_geographic:
         raise RoadExtractionError(
-            f"{path} is an Applanix SBET file: its positions are geographic, but {horizontal(known).name} was given as their CRS. "
+            f"{path} is an Applanix SBET file: its positions are geographic, but {horizontal_part(known).name} was given as their CRS. "
             "Leave the CRS of the input empty or geographic, and give the projected CRS as the target.")
     true_heading = rows[:, 9] - rows[:, 10]
     columns = dict(time=rows[:, 0], x=np.degrees(rows[:, 2]), y=np.degrees(rows[:, 1]), z=rows[:, 3],

@@ -121,10 +121,10 @@ def _stray_rows(trajectory):
 
 
 def _refuse_degrees(trajectory):
-    from ...io.crs import horizontal, parse_crs
+    from ...io.crs import horizontal_part, parse_crs
 
     crs = parse_crs(trajectory.crs)
-    if crs is not None and horizontal(crs).is_geographic:
+    if crs is not None and horizontal_part(crs).is_geographic:
         raise RoadExtractionError(
-            f"The trajectory is in {horizontal(crs).name} (degrees) and it is not known what to bring it to: the point cloud "
+            f"The trajectory is in {horizontal_part(crs).name} (degrees) and it is not known what to bring it to: the point cloud "
             "carries no CRS. Give the projected CRS of the survey, or run Import trajectory with it as the target.")

@@ -241,8 +241,10 @@ def test_the_corrected_intensity_is_what_the_image_shows(tmp_path):
 
 def test_a_place_is_sampled_from_the_pixel_it_lies_in_or_between_four(tmp_path):
     image = image_of(painted_street(length=5.0), tmp_path / "i.tif")
-    pixels, (left, top) = image.read_window((ORIGIN[0] + 1, ORIGIN[1] - 1, ORIGIN[0] + 2, ORIGIN[1] + 1))
     cell = image.cell_size
+    column, row = (int(np.floor(pixel[0])) for pixel in image.pixel_of([1.0], [1.0], ORIGIN))
+    left, top = image.geotransform[0] + column * cell, image.geotransform[3] - row * cell
+    pixels = image.read_pixels(column, row, 25, 50)
     x, y = left + (3 + 0.5) * cell, top - (7 + 0.5) * cell
     assert image.sample([x + 0.4 * cell], [y - 0.4 * cell])[0] == pixels[7, 3]
     np.testing.assert_allclose(image.sample([x], [y], bilinear=True)[0], pixels[7, 3], rtol=1e-4)
@@ -346,7 +348,7 @@ def test_what_is_no_intensity_image_is_refused_in_words(tmp_path):
         IntensityImage.open(tmp_path / "degrees.tif")
     raster = gdal.GetDriverByName("GTiff").Create(str(tmp_path / "photo.tif"), 4, 4, 1, gdal.GDT_Float32)
     raster = None
-    with pytest.raises(RoadExtractionError, match="without a place on the map"):
+    with pytest.raises(RoadExtractionError, match="without georeferencing"):
         IntensityImage.open(tmp_path / "photo.tif")
 
 

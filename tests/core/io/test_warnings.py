@@ -8,7 +8,7 @@ import pytest
 import shapely
 from lanewright.core.assess.inputs import AssessedLayer, in_crs
 from lanewright.core.intensity.asphalt_model import _mixed
-from lanewright.core.io.crs import parse_crs, same_place
+from lanewright.core.io.crs import parse_crs, same_crs
 from lanewright.core.io.text_table import _parse
 
 
@@ -43,7 +43,7 @@ def test_two_spellings_of_one_crs_are_one_place():
     a = parse_crs("EPSG:32632")
     b = parse_crs(a.to_wkt("WKT1_ESRI").replace("WGS_1984_UTM_Zone_32N", "as the scanner has it"))
     with filters_untouched():
-        assert same_place(a, b) and not same_place(a, parse_crs("EPSG:32633"))
+        assert same_crs(a, b) and not same_crs(a, parse_crs("EPSG:32633"))
 
 
 def test_a_layer_is_brought_to_another_zone():

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from drives import EAST, NORTH, ahead, bend, chain, drive
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.io.crs import reproject_trajectory
 from lanewright.core.survey.trajectory.columns import columns_by_role
 from lanewright.core.survey.trajectory.reader import read_trajectory, trajectory_from_columns
+from lanewright.core.survey.trajectory.reprojection import reproject_trajectory
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 
 COLUMNS = ("time", "x", "y", "z", "roll", "pitch", "heading")
