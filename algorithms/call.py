@@ -7,7 +7,7 @@ which knows how values are given there and how layers are read and written.
 import tempfile
 from pathlib import Path
 
-from ..core.common.errors import Cancelled, RoadExtractionError
+from ..core.common.errors import RoadExtractionError
 from ..core.common.parallel import cancellation_scope
 from .destinations import UnfinishedFiles, check_suffix, check_writable, destination_path
 from .parameters import settings_class
@@ -238,27 +238,28 @@ class Call:
 
 
 def run(call, progress):
-    """Run the algorithm of a call.
+    """Run the algorithm of a call; its results by name.
 
-    Returns
-    -------
-    (results by name, "") or ({}, one sentence on why there are none)
+    Raises
+    ------
+    RoadExtractionError
+        If there are none, in one sentence on why.
+    Cancelled
+        If the user stopped it.
     """
     try:
         call.check_destinations()
         with cancellation_scope(progress):
             results = call.algorithm.work(call, progress)
-        return call.finish(results or {}), ""
+        return call.finish(results or {})
     except RoadExtractionError as error:
-        return {}, call.in_users_names(str(error))
-    except Cancelled:
-        return {}, tr("Cancelled")
+        raise RoadExtractionError(call.in_users_names(str(error))) from error
     except OSError as error:
         if error.strerror is None:
             raise
-        return {}, f"{error.strerror}: {error.filename or tr('while writing')}"
-    except MemoryError:
-        return {}, tr("Not enough memory for this step; close other programs or process fewer files at once.")
+        raise RoadExtractionError(call.in_users_names(f"{error.strerror}: {error.filename or tr('while writing')}")) from error
+    except MemoryError as error:
+        raise RoadExtractionError(tr("Not enough memory for this step; close other programs or process fewer files at once.")) from error
     finally:
         call.discard_unfinished()
 

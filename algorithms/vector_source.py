@@ -161,3 +161,10 @@ def _type_of(wkb, at):
 
 def _uint(wkb, at):
     return int.from_bytes(wkb[at:at + 4], "little")
+
+
+def plain_value(value):
+    """A Python value that a file can store: numpy scalars unpacked, NaN as NULL."""
+    if hasattr(value, "item"):
+        value = value.item()
+    return None if value != value else value

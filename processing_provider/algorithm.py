@@ -5,10 +5,12 @@ from qgis.core import QgsProcessingAlgorithm, QgsProcessingException, QgsProcess
 from ..algorithms.call import run
 from ..algorithms.parameters import TrajectorySpec, choice_refused, number_refused
 from ..algorithms.trajectory_source import trajectory_path
+from ..core.common.errors import Cancelled, RoadExtractionError
 from .call import QgisCall
 from .dependencies import missing_packages
 from .parameters import qgis_parameter
 from .progress import FeedbackProgress
+from .texts import tr
 
 
 class LanewrightAlgorithm(QgsProcessingAlgorithm):
@@ -70,11 +72,14 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         missing = missing_packages()
         if missing:
             raise QgsProcessingException(missing)
-        results, failure = run(QgisCall(self, parameters, context, feedback), FeedbackProgress(feedback))
-        if failure:
-            # QGIS never lets go of an exception: raised where the work was, it would keep all of the survey in memory
-            raise QgsProcessingException(failure)
-        return results
+        try:
+            return run(QgisCall(self, parameters, context, feedback), FeedbackProgress(feedback))
+        except RoadExtractionError as error:
+            failure = str(error)
+        except Cancelled:
+            failure = tr("Cancelled")
+        # QGIS never lets go of an exception: raised where the work was, it would keep all of the survey in memory
+        raise QgsProcessingException(failure)
 
 
 def out_of_range(definitions, parameters):

@@ -17,7 +17,7 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import QMetaType
 
-from ..algorithms.vector_source import LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource
+from ..algorithms.vector_source import LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource, plain_value
 from ..core.common.errors import Cancelled, RoadExtractionError
 from .texts import tr
 
@@ -67,7 +67,7 @@ def qgis_features(features, fields):
             geometry = QgsGeometry()
             geometry.fromWkb(binary)
             feature.setGeometry(geometry)
-        feature.setAttributes([_plain(row.get(name)) for name in names])
+        feature.setAttributes([plain_value(row.get(name)) for name in names])
         yield feature
 
 
@@ -80,13 +80,6 @@ def _as_wkb(features):
     if features.geometry_type == "None" or not len(features):
         return ((None, row) for row in features.rows)
     return zip(shapely.to_wkb(features.geometries, output_dimension=3, flavor="iso"), features.rows)
-
-
-def _plain(value):
-    """A Python value QGIS can store: numpy scalars unpacked, NaN as NULL."""
-    if hasattr(value, "item"):
-        value = value.item()
-    return None if value != value else value
 
 
 class QgisSource(VectorSource):

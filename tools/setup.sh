@@ -8,8 +8,8 @@ cd "$LANEWRIGHT_ROOT"
 
 OLDEST=3.40
 NEWER="Debian 12 has 3.40 in bookworm-backports, Debian 13 has it itself, and https://qgis.org/download serves other systems"
-PACKAGES=(ca-certificates fonts-dejavu-core gdal-bin make python3-numpy python3-opencv python3-pip
-  python3-pyproj python3-pytest python3-scipy python3-venv)
+PACKAGES=(ca-certificates fonts-dejavu-core gdal-bin make python3-fiona python3-numpy python3-opencv python3-pip
+  python3-pyproj python3-pytest python3-scipy python3-setuptools python3-venv python3-wheel)
 TESTED_WITH=(postgresql postgresql-postgis) # the tests start a server of their own, in a folder that goes afterwards
 
 qgis_version() { qgis_process --version 2>/dev/null | sed -nE 's/^QGIS ([0-9]+\.[0-9]+).*/\1/p' | head -n 1; }
@@ -27,7 +27,7 @@ if [ -f "$stamp" ] && command -v qgis_process >/dev/null && [ -x "$LANEWRIGHT_BU
 fi
 
 have_python_packages() {
-  [ -x "$PY" ] && "$PY" -c 'import cv2, ensurepip, numpy, osgeo.gdal, pip, pyproj, pytest, scipy, venv, qgis.core' 2>/dev/null
+  [ -x "$PY" ] && "$PY" -c 'import cv2, ensurepip, fiona, numpy, osgeo.gdal, pip, pyproj, pytest, scipy, setuptools, venv, wheel, qgis.core' 2>/dev/null
 }
 
 # As root, through sudo, or not at all: then the exact command is printed for whoever may run it.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The tests, in three parts: the core where qgis cannot be imported, then the plugin inside QGIS, then
+# The tests, in three parts: the core and the library where qgis cannot be imported, then the plugin inside QGIS, then
 # calls of the real qgis_process. Each part is spread over the processor's cores, one file of tests at a
 # time, those with slow tests first. Arguments go to pytest, for example: tools/test.sh -k curbs, or
 # tools/test.sh -m 'not slow'. LANEWRIGHT_TEST_WORKERS=0 runs everything in one process, for a debugger.
@@ -22,9 +22,9 @@ LANEWRIGHT_MADE_ONCE="$(mktemp -d)"
 export LANEWRIGHT_MADE_ONCE
 trap 'rm -rf "$LANEWRIGHT_MADE_ONCE"' EXIT
 
-echo "== core, where qgis cannot be imported"
-LANEWRIGHT_WITHOUT_QGIS=1 run "${part[@]}" -p no:pytest_qgis -o addopts='--import-mode=importlib -p no:cacheprovider' tests/core "$@"
+echo "== core and library, where qgis cannot be imported"
+LANEWRIGHT_WITHOUT_QGIS=1 run "${part[@]}" -p no:pytest_qgis -o addopts='--import-mode=importlib -p no:cacheprovider' tests/core tests/library "$@"
 echo "== the plugin inside QGIS"
-run "${part[@]}" tests --ignore tests/core --ignore tests/cli "$@"
+run "${part[@]}" tests --ignore tests/core --ignore tests/library --ignore tests/cli "$@"
 echo "== real qgis_process"
 run "${part[@]}" tests/cli "$@"

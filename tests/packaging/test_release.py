@@ -60,7 +60,8 @@ def test_the_zip_has_one_folder_with_what_qgis_needs(archive):
 
 def test_the_zip_has_nothing_a_user_has_no_use_for(archive):
     names = [name.removeprefix("lanewright/") for name in archive.namelist()]
-    assert not [name for name in names if name.startswith(("tests", "tools", ".", "build", "Makefile")) or "__pycache__" in name]
+    useless = ("tests", "tools", ".", "build", "library", "setup.py", "Makefile")
+    assert not [name for name in names if name.startswith(useless) or "__pycache__" in name]
     assert sum(entry.compress_size for entry in archive.infolist()) < 5e6
 
 
@@ -102,8 +103,8 @@ def test_the_code_is_written_for_qt_5_and_qt_6_alike():
     assert not found
 
 
-def test_the_core_and_the_declarations_never_import_qgis():
-    files = [path for folder in ("core", "algorithms") for path in (ROOT / folder).rglob("*.py")]
+def test_the_core_the_declarations_and_the_library_never_import_qgis():
+    files = [path for folder in ("core", "algorithms", "library") for path in (ROOT / folder).rglob("*.py")]
     found = [path for path in files if re.search(r"^\s*(import|from) qgis", path.read_text(encoding="utf-8"), re.M)]
     assert not found
 
@@ -128,7 +129,7 @@ def test_libraries_are_looked_for_after_those_of_qgis(monkeypatch, tmp_path):
 
 def shipped():
     """The code users get."""
-    folders = [ROOT / folder for folder in ("core", "algorithms", "processing_provider", "desktop")]
+    folders = [ROOT / folder for folder in ("core", "algorithms", "library", "processing_provider", "desktop")]
     return [ROOT / "__init__.py", ROOT / "plugin.py", *(file for folder in folders for file in folder.rglob("*.py"))]
 
 

@@ -1,0 +1,134 @@
+"""The program `lanewright`: every algorithm with the names and values of QGIS Processing, on files."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import signal
+import sys
+from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
+from pathlib import Path
+
+from ..algorithms import parameters as specs
+from ..algorithms.algorithm import GROUPS
+from ..algorithms.call import run
+from ..core.common.errors import Cancelled, RoadExtractionError
+from .call import FileCall
+from .progress import TextProgress, cancelled_by_signals
+from .run import algorithms
+
+# What a value looks like in the help
+METAVARS = (
+    (specs.TrajectorySpec, "FILE"), (specs.LayerSpec, "LAYER"), (specs.LayerOutput, "LAYER"), (specs.PointCloudsSpec, "FILE"),
+    (specs.CloudSpec, "FILE"), (specs.FileSpec, "FILE"), (specs.RasterSpec, "FILE"), (specs.PaintedSpec, "FILE"), (specs.OutputSpec, "FILE"),
+    (specs.CrsSpec, "EPSG:NUMBER"), (specs.FlagSpec, "true|false"), (specs.ExpressionSpec, "CONDITION"), (specs.TextSpec, "TEXT"),
+)
+LAYERS = ("A layer is a file (.gpkg, .fgb, .shp, .geojson), or one layer of a GeoPackage: map.gpkg|layername=lanes. "
+          "A result that is not named is not made.")
+
+
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        raise RoadExtractionError(f"{message[0].upper()}{message[1:]}. Try: {self.prog} --help")
+
+
+def main(arguments=None):
+    """Run the program; its exit code: 0, 1 after one sentence on stderr, 130 after Ctrl-C."""
+    arguments = sys.argv[1:] if arguments is None else list(arguments)
+    try:
+        missing = [name for name in ("numpy", "scipy", "laspy", "lazrs", "shapely", "pyproj", "fiona", "cv2") if find_spec(name) is None]
+        if missing:
+            raise RoadExtractionError(f"These Python packages are missing: {', '.join(missing)}. pip install lanewright brings them.")
+        return _main(arguments)
+    except RoadExtractionError as error:
+        print(error, file=sys.stderr)
+    except (Cancelled, KeyboardInterrupt):
+        print("Cancelled", file=sys.stderr)
+        return 128 + signal.SIGINT
+    except BrokenPipeError:  # whoever read the output has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return 1
+
+
+def _main(arguments):
+    known = algorithms()
+    first = arguments[0] if arguments else "--help"
+    if first in ("-h", "--help", "help"):
+        print(overview(known))
+        return 0
+    if first == "--version":
+        print(f"lanewright {own_version()}")
+        return 0
+    if first == "list":
+        for algorithm in known.values():
+            print(f"{algorithm.ID:24}{algorithm.summary()}")
+        return 0
+    algorithm = known.get(first.partition("lanewright:")[2] or first)
+    if algorithm is None:
+        raise RoadExtractionError(f"There is no algorithm {first}. There are: {', '.join(known)}.")
+    given = {name: value for name, value in vars(parser_of(algorithm).parse_args(arguments[1:])).items() if value is not None}
+    progress = TextProgress()
+    with cancelled_by_signals(progress):
+        results = run(FileCall(algorithm, given, progress), progress)
+    for name, value in results.items():
+        print(f"{name}: {value}")
+    return 0
+
+
+def overview(known):
+    """What `lanewright --help` prints."""
+    lines = ["usage: lanewright ALGORITHM --PARAMETER=VALUE ...", "       lanewright ALGORITHM --help", "       lanewright list | --version", "",
+             "Road maps from mobile laser scanning: the algorithms of Lanewright in QGIS, on files.", LAYERS]
+    for group in GROUPS:
+        lines += ["", group] + [f"  {algorithm.ID:24}{algorithm.TITLE}" for algorithm in known.values() if algorithm.GROUP == group]
+    return "\n".join(lines)
+
+
+def parser_of(algorithm):
+    """The options of an algorithm."""
+    parser = Parser(prog=f"lanewright {algorithm.ID}", usage=f"lanewright {algorithm.ID} --PARAMETER=VALUE ...", allow_abbrev=False,
+                    description=" ".join([algorithm.summary(), *algorithm.help_paragraphs()]).replace("%", "%%"), epilog=LAYERS)
+    groups = {title: parser.add_argument_group(title) for title in ("inputs", "advanced parameters", "results")}
+    for spec in algorithm.parameters:
+        title = "results" if spec.is_output else "advanced parameters" if spec.advanced else "inputs"
+        several = dict(action="extend", nargs="+") if isinstance(spec, specs.PointCloudsSpec) else {}
+        groups[title].add_argument(f"--{spec.name}", dest=spec.name, metavar=metavar(spec), help=explained(spec).replace("%", "%%"), **several)
+    return parser
+
+
+def metavar(spec):
+    if isinstance(spec, specs.SettingSpec):
+        kind = spec.kind()
+        return "|".join(spec.choices) if kind == "choice" else {"flag": "true|false", "text": "TEXT"}.get(kind, "NUMBER")
+    if isinstance(spec, specs.ChoiceSpec):
+        return "|".join(spec.choices)
+    return next(word for type_, word in METAVARS if isinstance(spec, type_))
+
+
+def explained(spec):
+    """Label, help, default and limits of a parameter in one paragraph."""
+    notes = []
+    if not spec.is_output:
+        if spec.default not in (None, ""):
+            notes.append(f"default {str(spec.default).lower() if isinstance(spec.default, bool) else spec.default}")
+        elif not spec.optional:
+            notes.append("necessary")
+        if isinstance(spec, specs.SettingSpec) and spec.kind() in ("whole", "number"):
+            notes.append("{:g} to {:g}".format(*spec.limits()))
+    elif not spec.optional:
+        notes.append("necessary")
+    return f"{spec.label}. {spec.help}" + (f" [{', '.join(notes)}]" if notes else "")
+
+
+def own_version():
+    """The version of the installed package, or of the checkout that this file lies in."""
+    try:
+        return version("lanewright")
+    except PackageNotFoundError:
+        text = (Path(__file__).resolve().parents[1] / "metadata.txt").read_text(encoding="utf-8")
+        return next(line.partition("=")[2] for line in text.splitlines() if line.startswith("version="))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

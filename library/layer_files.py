@@ -1,0 +1,165 @@
+"""Vector files without QGIS: layers read and written by fiona."""
+
+from __future__ import annotations
+
+import logging
+import re
+from contextlib import contextmanager
+from pathlib import Path
+
+from ..algorithms.vector_source import LINE, POINT, POLYGON, TABLE, UNKNOWN, VectorSource, plain_value
+from ..core.common.errors import RoadExtractionError
+from . import measured_lines
+
+DRIVERS = {"gpkg": "GPKG", "fgb": "FlatGeobuf", "shp": "ESRI Shapefile", "geojson": "GeoJSON"}
+GEOMETRIES = {"PointZ": "3D Point", "LineStringZ": "3D LineString", "PolygonZ": "3D Polygon", "MultiLineStringZ": "3D MultiLineString",
+              "MultiPolygonZ": "3D MultiPolygon", "None": "None"}
+KINDS = {"Point": POINT, "LineString": LINE, "Polygon": POLYGON, "None": TABLE}
+COLUMN_TYPES = {int: "int64", float: "float", str: "str"}
+# QGIS's way to name one layer of a GeoPackage as a destination
+DATABASE = re.compile(r"ogr:dbname='(?P<path>[^']+)' *table=\"(?P<table>[^\"]+)\"")
+
+
+def file_and_table(value):
+    """(path, table or "") of `map.gpkg`, `map.gpkg|layername=lanes` or `ogr:dbname='map.gpkg' table="lanes" (geom)`."""
+    database = DATABASE.match(value)
+    if database:
+        return database["path"], database["table"]
+    path, *options = value.split("|")
+    names = [option.partition("=")[2] for option in options if option.startswith("layername=")]
+    return path, names[0] if names else ""
+
+
+def first_table(path):
+    """The table that is read where a file is named alone."""
+    import fiona
+
+    return (fiona.listlayers(str(path)) or [""])[0]
+
+
+class LayerFile(VectorSource):
+    """A layer of a file; `value` names it, `label` is the parameter's."""
+
+    def __init__(self, value, label):
+        import fiona
+        from fiona.errors import FionaError, FionaValueError
+
+        self.label, self.value = label, value
+        self.path, table = file_and_table(value)
+        if not Path(self.path).exists():
+            raise RoadExtractionError(f"{label}: there is no file {self.path}. Check the name and the folder.")
+        self.table = table or None
+        try:
+            with fiona.open(self.path, layer=self.table) as layer:
+                self.table = layer.name
+                self.names = list(layer.schema["properties"])
+                geometry = layer.schema["geometry"]
+                self.crs = _crs_text(layer.crs_wkt)
+        except (FionaError, FionaValueError, ValueError, OSError) as problem:
+            raise RoadExtractionError(f"{label}: {value} cannot be read as a vector layer ({problem}).") from problem
+        plain = geometry.replace("3D ", "").replace("Multi", "")
+        self.kind = KINDS.get(plain, UNKNOWN)
+        self.has_z = geometry.startswith("3D")
+        # fiona leaves measures out
+        self.has_m = self.kind == LINE and measured_lines.has_measures(self.path, self.table)
+
+    def rows(self, measures=False, check_validity=True):
+        import shapely
+        from shapely.geometry import shape
+
+        if measures and self.kind == LINE and (self.has_m or self.has_z and not measured_lines.available()):
+            yield from measured_lines.rows(self.path, self.table, self.names, self.label)
+            return
+        for record in self._records():
+            geometry = record["geometry"]
+            geometry = None if geometry is None else shape(geometry)
+            # 2D parts of a layer with heights stay flat, as they are
+            wkb = None if geometry is None or geometry.is_empty else shapely.to_wkb(geometry, output_dimension=3, flavor="iso")
+            yield wkb, [record["properties"][name] for name in self.names]
+
+    def rows_where(self, condition):
+        """Whether a condition of OGR's SQL holds, for every row."""
+        import fiona
+        from fiona.errors import AttributeFilterError
+
+        with fiona.open(self.path, layer=self.table) as layer, _reported_errors() as problems:
+            try:
+                found = {record["id"] for record in layer.filter(where=condition)}
+            except AttributeFilterError as problem:
+                problems.append(str(problem))
+        if problems:
+            raise RoadExtractionError(f"{condition!r} is no condition on the fields {', '.join(self.names)} of {self.label} ({problems[0]}). "
+                                      "Outside QGIS it is one of SQL, such as \"type\" = 'driveway'.")
+        return [record["id"] in found for record in self._records()]
+
+    def _records(self):
+        import fiona
+
+        with fiona.open(self.path, layer=self.table) as layer:
+            yield from layer
+
+
+@contextmanager
+def _reported_errors():
+    """A list of what GDAL's drivers report as errors meanwhile: of a faulty condition on a GeoPackage fiona only writes a log."""
+    problems = []
+    handler = logging.Handler(logging.ERROR)
+    handler.emit = lambda record: problems.append(record.getMessage())
+    logger = logging.getLogger("fiona._env")
+    before = logger.propagate
+    logger.addHandler(handler)
+    logger.propagate = False
+    try:
+        yield problems
+    finally:
+        logger.removeHandler(handler)
+        logger.propagate = before
+
+
+def _crs_text(wkt):
+    """WKT, "" for the entries that GeoPackage has for layers without a CRS."""
+    from ..core.io.crs import parse_crs
+
+    if not wkt or parse_crs(wkt).name.lower().startswith("undefined "):
+        return ""
+    return wkt
+
+
+def write_layer(path, table, features, check_cancelled):
+    """Write a layer into a file that is new, or add it to a GeoPackage.
+
+    Parameters
+    ----------
+    path : str, its ending chooses the format
+    table : name of the layer in a GeoPackage; "" for that of the file
+    features : Features
+    check_cancelled : called now and then; may raise Cancelled
+    """
+    if features.geometry_type.endswith("ZM"):
+        measured_lines.write(path, table, features, check_cancelled)
+        return
+    import fiona
+    from fiona.errors import FionaError, FionaValueError
+
+    driver = DRIVERS[Path(path).suffix.lower().lstrip(".")]
+    schema = {"geometry": GEOMETRIES[features.geometry_type],
+              "properties": {field.name: COLUMN_TYPES[field.type] for field in features.schema}}
+    options = {"layer": table or Path(path).stem} if driver == "GPKG" else {}
+    if features.crs:
+        options["crs_wkt"] = features.crs
+    try:
+        with fiona.open(path, "w", driver=driver, schema=schema, encoding="utf-8", **options) as layer:
+            layer.writerecords(_records_of(features, check_cancelled))
+    except (FionaError, FionaValueError) as problem:
+        raise RoadExtractionError(f"The result could not be written: {problem}. Is the disk full or the file open elsewhere?") from problem
+
+
+def _records_of(features, check_cancelled):
+    from shapely.geometry import mapping
+
+    names = [field.name for field in features.schema]
+    for number, (geometry, row) in enumerate(features):
+        if number % 5000 == 0:
+            check_cancelled()
+        yield {"geometry": None if geometry is None else mapping(geometry),
+               "properties": {name: plain_value(row.get(name)) for name in names}}

@@ -1,0 +1,49 @@
+"""Run an algorithm on files."""
+
+from __future__ import annotations
+
+from ..algorithms.call import run as run_call
+from ..algorithms.catalogue import ALGORITHMS
+from ..core.common.errors import RoadExtractionError
+from ..core.common.progress import Progress
+from .call import FileCall
+
+
+def algorithms():
+    """Every algorithm in the order of the work.
+
+    Returns
+    -------
+    dict, id to Algorithm: its `parameters` and `numbers` say what it takes and gives
+    """
+    return {declared.ID: declared() for declared in ALGORITHMS}
+
+
+def run(name, progress=None, **parameters):
+    """Run an algorithm on files, as QGIS Processing would.
+
+    Parameters
+    ----------
+    name : the algorithm's id, such as "roadmap"; with or without "lanewright:" before it
+    progress : Progress that listens, and may raise Cancelled
+    parameters : by the names of the algorithm's parameters. Files and layers are paths, one layer of a GeoPackage is
+        `map.gpkg|layername=lanes`; POINT_CLOUDS is a list. Outputs that are not named are not made; what is not
+        given keeps its default.
+
+    Returns
+    -------
+    dict, name of each result to its path or number
+
+    Raises
+    ------
+    RoadExtractionError
+        If a parameter is wrong or the data cannot be worked with; no result is written then.
+    Cancelled
+        If `progress` said so; no result is written then.
+    """
+    known = algorithms()
+    algorithm = known.get(name.partition("lanewright:")[2] or name)
+    if algorithm is None:
+        raise RoadExtractionError(f"There is no algorithm {name}. There are: {', '.join(known)}.")
+    progress = progress or Progress()
+    return run_call(FileCall(algorithm, parameters, progress), progress)

@@ -1,0 +1,31 @@
+"""The library as a package: the checkout is itself the package `lanewright`, of which what needs QGIS is left out."""
+
+from pathlib import Path
+
+from setuptools import find_packages, setup
+from setuptools.command.build_py import build_py
+
+FOLDERS = ("core", "algorithms", "library")
+
+
+class BuildWithoutPlugin(build_py):
+    def find_package_modules(self, package, package_dir):
+        """Of the checkout's own files `__init__.py` alone: the others are for QGIS or for the build."""
+        return [module for module in super().find_package_modules(package, package_dir) if package != "lanewright" or module[1] == "__init__"]
+
+
+def version():
+    """The one version there is."""
+    lines = (Path(__file__).parent / "metadata.txt").read_text(encoding="utf-8").splitlines()
+    return next(line.partition("=")[2].strip() for line in lines if line.startswith("version="))
+
+
+setup(
+    version=version(),
+    package_dir={"lanewright": "."},
+    packages=["lanewright"] + [f"lanewright.{name}" for name in find_packages(".", include=[pattern for name in FOLDERS
+                                                                                         for pattern in (name, f"{name}.*")])],
+    # build/ is that of the checkout
+    options={"build": {"build_base": "build/package"}},
+    cmdclass={"build_py": BuildWithoutPlugin},
+)

@@ -1,0 +1,107 @@
+"""Layers in files, without QGIS."""
+
+import numpy as np
+import pytest
+import shapely
+from lanewright.algorithms.vector_source import read_features, vertices_of
+from lanewright.core.common.errors import RoadExtractionError
+from lanewright.core.common.features import Features
+from lanewright.core.common.schemas import CURVE_ELEMENTS, MARKINGS, ROAD_EDGES, SCANLINES, TRAJECTORY
+from lanewright.core.road.scanlines.layer import LineSpool
+from lanewright.library.layer_files import LayerFile, file_and_table, write_layer
+from pyproj import CRS
+
+UTM = CRS.from_epsg(32650).to_wkt()
+EDGE = {"road": 1, "side": "left", "status": "measured", "station_m": 12.25, "end_m": 1 / 3, "rmse_m": float("nan"), "chain": np.int64(4)}
+
+
+def nothing():
+    pass
+
+
+def written(path, features, table=""):
+    write_layer(str(path), table, features, nothing)
+    return str(path)
+
+
+def edges(count=2):
+    lines = [shapely.linestrings([(610400.1 + k, 2710200.7, 24.123456789), (610410.0, 2710210.0, 25.0)]) for k in range(count)]
+    return Features("LineStringZ", ROAD_EDGES, lines, [dict(EDGE) for _ in lines], UTM)
+
+
+@pytest.mark.parametrize("value, file, table", [
+    ("map.gpkg", "map.gpkg", ""), ("map.gpkg|layername=lanes", "map.gpkg", "lanes"),
+    ("ogr:dbname='/data/the map.gpkg' table=\"lanes\" (geom)", "/data/the map.gpkg", "lanes"),
+])
+def test_a_layer_is_named_as_in_qgis(value, file, table):
+    assert file_and_table(value) == (file, table)
+
+
+@pytest.mark.parametrize("suffix", ["gpkg", "fgb", "shp", "geojson"])
+def test_edges_come_back_as_they_were_written(tmp_path, suffix):
+    path = written(tmp_path / f"edges.{suffix}", edges())
+    found = read_features(LayerFile(path, "Road edges"), ROAD_EDGES, "LineStringZ")
+    tolerance = 0.0 if suffix in ("gpkg", "fgb") else 1e-6
+    geometries = sorted(found.geometries, key=lambda line: line.coords[0])  # a FlatGeobuf sorts its rows by place
+    assert shapely.equals_exact(geometries, edges().geometries, tolerance).all() and shapely.has_z(geometries).all()
+    row = found.rows[0]
+    assert (row["road"], row["side"], row["station_m"], row["chain"]) == (1, "left", 12.25, 4)
+    assert row["rmse_m"] is None and row["pass"] is None and row["end_m"] == pytest.approx(1 / 3, abs=1e-9)
+    assert CRS.from_wkt(found.crs).to_epsg() == 32650 or suffix == "geojson"
+
+
+def test_points_polygons_and_tables(tmp_path):
+    square = shapely.polygons([(0.0, 0, 1), (1, 0, 1), (1, 1, 2), (0, 0, 1)])
+    for kind, schema, geometry in (("PointZ", TRAJECTORY, shapely.points(1.0, 2.0, 3.0)), ("PolygonZ", MARKINGS, square),
+                                   ("MultiPolygonZ", MARKINGS, shapely.multipolygons([square]))):
+        path = written(tmp_path / f"{kind}.gpkg", Features(kind, schema, [geometry], [{}], UTM))
+        found = read_features(LayerFile(path, "Layer"), schema, kind)
+        assert [shapely.to_wkt(one) for one in found.geometries] == [shapely.to_wkt(shapely.get_parts(geometry)[0])]
+    table = Features("None", CURVE_ELEMENTS, [None], [{"road": 1, "turn": "left", "radius_m": 140.0}])
+    found = read_features(LayerFile(written(tmp_path / "table.gpkg", table), "Curve elements"), CURVE_ELEMENTS, "None")
+    assert found.rows[0]["turn"] == "left" and found.rows[0]["radius_m"] == 140.0 and found.rows[0]["lane"] is None and found.crs == ""
+
+
+def test_tables_of_one_geopackage_leave_each_other_alone(tmp_path):
+    package = tmp_path / "map.gpkg"
+    written(package, edges(2), "first")
+    written(package, edges(3), "second")
+    written(package, edges(1), "first")
+    assert [len(list(LayerFile(f"{package}|layername={name}", "Edges").rows())) for name in ("first", "second")] == [1, 3]
+
+
+def test_scanlines_keep_their_intensity(tmp_path):
+    pytest.importorskip("osgeo")
+    spool = LineSpool("LineStringZM", SCANLINES, UTM)
+    vertices = np.array([(610400.0, 2710200.0, 24.0, 100.0), (610401.0, 2710200.0, 24.1, 200.0), (610402.0, 2710201.0, 24.2, 300.0)])
+    spool.add(vertices, [0, 3], road=0, station_m=1.5, length_m=2.4, interval_m=0.1, scanner=1, **{"pass": 0})
+    source = LayerFile(written(tmp_path / "scanlines.gpkg", spool), "Scanlines")
+    found = read_features(source, SCANLINES, "LineStringZM")
+    assert source.has_m and found.rows[0]["scanner"] == 1
+    np.testing.assert_array_equal(vertices_of(found.geometries[0]), vertices)
+
+
+def test_a_condition_holds_for_some_rows(tmp_path):
+    layer = edges(3)
+    layer.rows[1]["side"] = "right"
+    source = LayerFile(written(tmp_path / "edges.gpkg", layer), "Reference")
+    assert source.rows_where("\"side\" = 'right'") == [False, True, False]
+    with pytest.raises(RoadExtractionError, match="no condition on the fields road, pass"):
+        source.rows_where("nowhere = 1")
+
+
+@pytest.mark.parametrize("value, says", [("nothing.gpkg", "there is no file"), ("text.gpkg", "cannot be read as a vector layer"),
+                                         ("edges.gpkg|layername=lanes", "cannot be read as a vector layer")])
+def test_what_is_no_layer_is_refused(tmp_path, value, says):
+    written(tmp_path / "edges.gpkg", edges())
+    (tmp_path / "text.gpkg").write_text("no database")
+    with pytest.raises(RoadExtractionError, match=f"^Road edges: .*{says}"):
+        LayerFile(str(tmp_path / value), "Road edges")
+
+
+def test_a_layer_of_another_stage_is_refused_by_its_fields_and_its_geometry(tmp_path):
+    path = written(tmp_path / "edges.gpkg", edges())
+    with pytest.raises(RoadExtractionError, match="Markings lacks the field"):
+        read_features(LayerFile(path, "Markings"), MARKINGS, "PolygonZ")
+    with pytest.raises(RoadExtractionError, match="of the kind Line; Point is needed"):
+        read_features(LayerFile(path, "Curb points"), ROAD_EDGES, "PointZ")

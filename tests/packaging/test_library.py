@@ -1,0 +1,100 @@
+"""The package that pip installs: it gives what Processing gives, without QGIS."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+LAYERS = ("ROAD_EDGES", "ROAD_SURFACE", "MARKINGS", "MARKING_LINES", "DRIVING_LINES", "CURVE_ELEMENTS", "CURB_POINTS")
+SAMPLE = {"LENGTH": 40, "PULSE_RATE": 40000, "SEED": 2}
+
+
+@pytest.fixture(scope="module")
+def lanewright(tmp_path_factory):
+    """`lanewright(arguments, folder)` runs the program of a fresh installation; its stdout."""
+    folder = tmp_path_factory.mktemp("installed")
+    source = folder / "source"  # building leaves files where it builds
+    for name in ("core", "algorithms", "library"):
+        shutil.copytree(ROOT / name, source / name, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("__init__.py", "plugin.py", "setup.py", "pyproject.toml", "metadata.txt", "README.md", "LICENSE"):
+        shutil.copy(ROOT / name, source / name)
+    subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", str(folder / "venv")], check=True)
+    subprocess.run([str(folder / "venv/bin/pip"), "install", "--quiet", "--no-deps", "--no-build-isolation", str(source)], check=True)
+    # laspy and shapely as these tests have them
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path.endswith("site-packages"))}
+
+    def call(*arguments, cwd):
+        done = subprocess.run([str(folder / "venv/bin/lanewright"), *arguments], cwd=cwd, env=environment, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    call.folder = folder
+    return call
+
+
+@pytest.mark.slow
+def test_the_package_holds_what_works_without_qgis(lanewright, tmp_path):
+    packages = list((lanewright.folder / "venv/lib").glob("python*/site-packages/lanewright"))
+    assert len(packages) == 1
+    assert {path.name for path in packages[0].iterdir()} - {"__pycache__"} == {"__init__.py", "core", "algorithms", "library"}
+    version = next(line.partition("=")[2] for line in (ROOT / "metadata.txt").read_text().splitlines() if line.startswith("version="))
+    assert lanewright("--version", cwd=tmp_path) == f"lanewright {version}\n"
+
+
+@pytest.mark.slow
+def test_a_road_map_is_that_of_processing(provider, lanewright, tmp_path):
+    import processing
+
+    def outputs(name):
+        return {**{layer: f"ogr:dbname='{tmp_path}/{name}.gpkg' table=\"{layer.lower()}\" (geom)" for layer in LAYERS},
+                "ROAD_POINTS": str(tmp_path / f"{name}.laz"), "INTENSITY_IMAGE": str(tmp_path / f"{name}.tif")}
+
+    def program(algorithm, **values):
+        return lanewright(algorithm, *(f"--{name}={value}" for name, value in values.items()), cwd=tmp_path)
+
+    processing.run("lanewright:samplesurvey", {**SAMPLE, "POINT_CLOUD": str(tmp_path / "q_s.laz"), "TRAJECTORY": str(tmp_path / "q_drive.gpkg")})
+    said = program("samplesurvey", **SAMPLE, POINT_CLOUD="l_s.laz", TRAJECTORY="l_drive.gpkg")
+    assert "TRAJECTORY: l_drive.gpkg\n" in said and (tmp_path / "l_s.laz").read_bytes() == (tmp_path / "q_s.laz").read_bytes()
+    assert rows(tmp_path / "l_drive.gpkg", "l_drive") == rows(tmp_path / "q_drive.gpkg", "q_drive")
+
+    survey = {"POINT_CLOUDS": str(tmp_path / "q_s.laz"), "TRAJECTORY": str(tmp_path / "q_drive.gpkg")}
+    processing.run("lanewright:roadmap", {**survey, "POINT_CLOUDS": [survey["POINT_CLOUDS"]], **outputs("q")})
+    program("roadmap", **survey, **outputs("l"))
+    for layer in LAYERS:
+        found, expected = (rows(tmp_path / f"{name}.gpkg", layer.lower()) for name in "lq")
+        assert found == expected, layer
+        assert layer == "CURVE_ELEMENTS" or len(found[2]) > 0, layer
+    for suffix in ("laz", "tif"):
+        assert (tmp_path / f"l.{suffix}").read_bytes() == (tmp_path / f"q.{suffix}").read_bytes()
+
+
+@pytest.mark.slow
+def test_scanlines_keep_their_intensity_between_two_steps(provider, lanewright, tmp_path):
+    import processing
+
+    processing.run("lanewright:samplesurvey", {**SAMPLE, "POINT_CLOUD": str(tmp_path / "s.laz"), "TRAJECTORY": str(tmp_path / "d.gpkg")})
+    processing.run("lanewright:normalizedscanlines", {"POINT_CLOUDS": [str(tmp_path / "s.laz")], "TRAJECTORY": str(tmp_path / "d.gpkg"),
+                                                      "SCANLINES": str(tmp_path / "q.gpkg")})
+    lanewright("normalizedscanlines", "--POINT_CLOUDS", "s.laz", "--TRAJECTORY=d.gpkg", "--SCANLINES=l.gpkg", cwd=tmp_path)
+    assert rows(tmp_path / "l.gpkg", "l") == rows(tmp_path / "q.gpkg", "q")
+    lanewright("boundariesfromscanlines", "--SCANLINES=l.gpkg", "--TRAJECTORY=d.gpkg", "--BOUNDARIES=b.gpkg", cwd=tmp_path)
+    assert rows(tmp_path / "b.gpkg", "b")[2]
+
+
+def rows(path, table):
+    """(fields with their types, CRS, [(WKB, values)]) of a layer."""
+    from osgeo import gdal, ogr
+
+    dataset = gdal.OpenEx(str(path), gdal.OF_VECTOR)
+    layer = dataset.GetLayerByName(table)
+    definition, crs = layer.GetLayerDefn(), layer.GetSpatialRef()
+    fields = [(definition.GetFieldDefn(k).GetName(), definition.GetFieldDefn(k).GetType()) for k in range(definition.GetFieldCount())]
+    found = []
+    for feature in layer:
+        geometry = feature.GetGeometryRef()
+        found.append((None if geometry is None else bytes(geometry.ExportToIsoWkb(ogr.wkbNDR)), [feature.GetField(name) for name, _ in fields]))
+    return fields, "" if crs is None else f"{crs.GetAuthorityName(None)}:{crs.GetAuthorityCode(None)}", found
