@@ -22,7 +22,7 @@ class Menu(QObject):
         super().__init__()
         self.iface = iface
         self.actions = []
-        self.dialog = None  # kept, or Python would collect the open window
+        self.dialog = self.layout_dialog = None  # kept, or Python would collect the open windows
         self.sample = SampleRun(iface)
         self.manual = ManualWindow(iface.mainWindow())
         theme = QgsApplication.getThemeIcon
@@ -67,9 +67,9 @@ class Menu(QObject):
                 "Lanewright", tr("There is no road map in this project yet: run Road map first."), level=Qgis.MessageLevel.Info
             )
             return
-        dialog = LayoutDialog(project, groups, self.iface.mainWindow())
-        if dialog.exec():
-            self.print_layout(project, **dialog.choice)
+        self.layout_dialog = LayoutDialog(project, groups, self.iface.mainWindow())
+        self.layout_dialog.accepted.connect(lambda: self.print_layout(project, **self.layout_dialog.choice))
+        self.layout_dialog.open()
 
     def print_layout(self, project, group, **chosen):
         """The layout of one group's layers that are switched on (of all where none is), added to the project and shown."""

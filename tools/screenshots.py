@@ -121,7 +121,11 @@ def sample():
 
 
 def layout():
-    plugins["lanewright"].menu.actions[2].trigger()
+    ours = plugins["lanewright"].menu
+    ours.actions[2].trigger()
+    wait(1)
+    keep(ours.layout_dialog, "window_layout_dialog")
+    ours.layout_dialog.accept()
     wait(3)
     designers = iface.openLayoutDesigners()
     needed(designers, "no layout was opened")
