@@ -17,7 +17,7 @@ from .inputs import (
     tolerances,
 )
 
-BOUNDARY = "assess.boundaries:BoundarySettings"
+BOUNDARY = "assess.boundaries:BoundaryAccuracySettings"
 
 BOUNDARY_SETTINGS = (
     SettingSpec(
@@ -97,11 +97,11 @@ class AssessBoundaries(Algorithm):
             result, _ = choose(result, warn)
             reference, kept = choose(reference, warn)
             excluded, kinds = ([values[k] for k in kept] for values in (excluded, kinds))
-        judged = reference.only([not x for x in excluded])
+        judged = reference.subset([not x for x in excluded])
         check_reference(judged, result, frame, area, settings.corridor, warn)
         progress.report(0.4)
         accuracy = assess_boundaries(
-            result.geometries, judged.geometries, settings, frame, reference.only(excluded).geometries,
+            result.geometries, judged.geometries, settings, frame, reference.subset(excluded).geometries,
             [kind for kind, out in zip(kinds, excluded) if out], area, judged.column("side"), progress.part(0.4, 0.8))
         progress.report(0.8)
         layer = boundary_layer(accuracy, crs, progress.part(0.8, 0.95))

@@ -8,7 +8,7 @@ from ..parameters import ChoiceSpec, SettingSpec, settings_class
 from ..texts import tr
 from .inputs import add_area, add_tolerances, area_of, found_numbers, frame_of_drive, layer_of, shares_of, tolerances
 
-LINES = "assess.driving_lines:LineSettings"
+LINES = "assess.driving_lines:LineAccuracySettings"
 WIDTHS = ("half-width", "total-width")
 
 LINE_SETTINGS = (

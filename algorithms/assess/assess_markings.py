@@ -73,7 +73,7 @@ class AssessMarkings(Algorithm):
 
     def work(self, call, progress):
         from ...core.assess.burn import OutcomeRaster
-        from ...core.assess.inputs import check_overlap, check_paint, classes_of, common_crs, in_crs, painted_polygons
+        from ...core.assess.inputs import check_marking_reference, check_overlap, classes_of, common_crs, in_crs, marking_polygons
         from ...core.assess.layers import marking_layer
         from ...core.assess.markings import assess_markings
 
@@ -87,10 +87,10 @@ class AssessMarkings(Algorithm):
         layers = [painted_of(call, name, progress.part(*part))[0] for name, part in (("INPUT", (0.0, 0.15)), ("REFERENCE", (0.15, 0.3)))]
         crs = common_crs(layers[::-1])
         field = call.string("CLASS_FIELD")
-        result, reference = (painted_polygons(in_crs(layer, crs, warn), settings.line_width) for layer in layers)
+        result, reference = (marking_polygons(in_crs(layer, crs, warn), settings.line_width) for layer in layers)
         check_overlap(result, reference)
         frame, area = frame_of_drive(call, crs), area_of(call, crs, warn)
-        check_paint(reference, result, area, warn)
+        check_marking_reference(reference, result, area, warn)
         classes = [classes_of(layer, field) for layer in (result, reference)]
         image = call.raster_in("IMAGE", crs)
         cells = None

@@ -84,7 +84,8 @@ def _read(source):
 
 def painted_of(call, name, progress):
     """(AssessedLayer of polygons and lines, whether it was a raster) of a vector or raster layer."""
-    from ...core.assess.inputs import AssessedLayer, polygons_of_raster
+    from ...core.assess.inputs import AssessedLayer
+    from ...core.assess.raster_polygons import polygons_of_raster
 
     source, path, crs = call.painted(name)
     if source is not None:

@@ -1,18 +1,23 @@
-"""Polygons burned into tiles of small cells, all on one grid through the origin of the map."""
+"""Polygons rasterised in tiles of small cells, on one grid through the map's origin, and the raster of outcomes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 import shapely
 
 from ..io.gdal_errors import gdal_exceptions
 
-TILE = 2048  # cells a side
+BURN_TILE = 2048  # cells, side of a tile
 
 
-class Burner:
-    """Rasterises numbered polygons tile by tile: a cell belongs to a polygon when its centre does."""
+class PolygonRasteriser:
+    """Rasterises numbered polygons tile by tile: a cell belongs to a polygon if its centre does."""
 
     @gdal_exceptions()
-    def __init__(self, polygons):
+    def __init__(self, polygons: Sequence[Any]) -> None:
         from osgeo import ogr
 
         self._source = ogr.GetDriverByName("Memory").CreateDataSource("polygons")
@@ -26,8 +31,18 @@ class Burner:
             self._layer.CreateFeature(feature)
 
     @gdal_exceptions()
-    def burn(self, bounds, shape):
-        """(rows, columns) int32 of polygon numbers from 1 on, 0 elsewhere; the later of two that overlap wins."""
+    def burn(self, bounds: tuple[float, float, float, float], shape: tuple[int, int]) -> np.ndarray:
+        """Rasterise the polygons.
+
+        Parameters
+        ----------
+        bounds : (min x, min y, max x, max y), metres
+        shape : (rows, columns)
+
+        Returns
+        -------
+        (rows, columns) int32 numbers of polygons, from 1 on; 0 elsewhere. The later of two overlapping polygons wins.
+        """
         from osgeo import gdal
 
         rows, columns = shape
@@ -44,19 +59,19 @@ class Burner:
         return np.frombuffer(raster.ReadRaster(), np.int32).reshape(shape)
 
 
-class Seen:
-    """Where a raster has data: what was never scanned can be judged neither right nor wrong."""
+class DataMask:
+    """The cells in which a raster has data: where nothing was scanned, nothing can be judged."""
 
     @gdal_exceptions()
-    def __init__(self, path):
+    def __init__(self, path: str) -> None:
         from osgeo import gdal
 
         self._raster = gdal.Open(str(path))
         self._inverse = gdal.InvGeoTransform(self._raster.GetGeoTransform())
 
     @gdal_exceptions()
-    def burn(self, bounds, shape):
-        """(rows, columns) bool: whether the raster's cell at each centre has a value."""
+    def burn(self, bounds: tuple[float, float, float, float], shape: tuple[int, int]) -> np.ndarray:
+        """(rows, columns) bool: whether the raster has a value at the centre of each cell. Parameters as of `PolygonRasteriser.burn`."""
         from osgeo import gdal
 
         size = (bounds[2] - bounds[0]) / shape[1]
@@ -64,12 +79,12 @@ class Seen:
         y = bounds[3] - (np.arange(shape[0]) + 0.5) * size
         column = np.floor(self._inverse[0] + self._inverse[1] * x).astype(int)
         row = np.floor(self._inverse[3] + self._inverse[5] * y).astype(int)
-        inside_c = (column >= 0) & (column < self._raster.RasterXSize)
-        inside_r = (row >= 0) & (row < self._raster.RasterYSize)
+        column_inside = (column >= 0) & (column < self._raster.RasterXSize)
+        row_inside = (row >= 0) & (row < self._raster.RasterYSize)
         found = np.zeros(shape, bool)
-        if not inside_c.any() or not inside_r.any():
+        if not column_inside.any() or not row_inside.any():
             return found
-        column, row = column[inside_c], row[inside_r]
+        column, row = column[column_inside], row[row_inside]
         first, above = int(column.min()), int(row.min())
         wide, high = int(column.max()) - first + 1, int(row.max()) - above + 1
         band = self._raster.GetRasterBand(1)
@@ -77,47 +92,48 @@ class Seen:
         known = np.isfinite(data)
         if band.GetNoDataValue() is not None:
             known &= data != band.GetNoDataValue()
-        found[np.ix_(inside_r, inside_c)] = known[np.ix_(row - above, column - first)]
+        found[np.ix_(row_inside, column_inside)] = known[np.ix_(row - above, column - first)]
         return found
 
 
-def tiles_of(polygons, cell_size, margin):
-    """(column, row) of the tiles, counted from the map's origin, that polygons widened by `margin` cells touch, in order."""
-    side = TILE * cell_size
+def covering_tiles(polygons: Sequence[Any], cell_size: float, margin: int) -> list[tuple[int, int]]:
+    """Sorted (column, row) of the tiles, counted from the map's origin, that polygons widened by `margin` cells touch."""
+    side = BURN_TILE * cell_size
     low, high = np.full((0, 2), 0), np.full((0, 2), 0)
     if len(polygons):
         bounds = shapely.bounds(np.asarray(polygons, object)) + margin * cell_size * np.array([-1, -1, 1, 1])
         low, high = np.floor(bounds[:, :2] / side).astype(int), np.floor(bounds[:, 2:] / side).astype(int)
-    found = set()
+    found: set[tuple[int, int]] = set()
     for (a, b), (c, d) in zip(low.tolist(), high.tolist()):
         found.update((column, row) for column in range(a, c + 1) for row in range(b, d + 1))
     return sorted(found)
 
 
-def tile_bounds(tile, cell_size, margin=0):
+def tile_bounds(tile: tuple[int, int], cell_size: float, margin: int = 0) -> tuple[float, float, float, float]:
     """(min x, min y, max x, max y) of a tile with `margin` cells around it."""
-    side, more = TILE * cell_size, margin * cell_size
+    side, more = BURN_TILE * cell_size, margin * cell_size
     return tile[0] * side - more, tile[1] * side - more, (tile[0] + 1) * side + more, (tile[1] + 1) * side + more
 
 
-# Hits, misses and false alarms as a GeoTIFF.
-
 class OutcomeRaster:
-    """Takes the tiles that `assess_markings` gives and writes them; values are those of `markings`, 0 is no paint in either.
+    """A GeoTIFF of the outcomes of `assess_markings`: HIT and so on, 0 where neither side is painted.
 
     Parameters
     ----------
     path : of the .tif
-    polygons : result and reference together, whose extent the raster covers
+    polygons : of result and reference together; the raster covers their extent
+    cell_size : metres
+    crs : WKT, "" if unknown
+    margin : cells by which polygons are widened
     """
 
     @gdal_exceptions()
-    def __init__(self, path, polygons, cell_size, crs, margin=0):
+    def __init__(self, path: str, polygons: Iterable[Any], cell_size: float, crs: str, margin: int = 0) -> None:
         from osgeo import gdal, osr
 
-        tiles = np.array(tiles_of(list(polygons), cell_size, margin) or [(0, 0)])
+        tiles = np.array(covering_tiles(list(polygons), cell_size, margin) or [(0, 0)])
         (self._west, south), (east, self._north) = tiles.min(axis=0), tiles.max(axis=0)
-        columns, rows = (east - self._west + 1) * TILE, (self._north - south + 1) * TILE
+        columns, rows = (east - self._west + 1) * BURN_TILE, (self._north - south + 1) * BURN_TILE
         self._raster = gdal.GetDriverByName("GTiff").Create(
             str(path), int(columns), int(rows), 1, gdal.GDT_Byte, ["TILED=YES", "COMPRESS=DEFLATE", "SPARSE_OK=TRUE", "BIGTIFF=IF_SAFER"])
         x0, _, _, y1 = tile_bounds((self._west, self._north), cell_size)
@@ -131,10 +147,12 @@ class OutcomeRaster:
         band.SetDescription("1 hit, 2 missed, 3 false, 4 missed beside a hit, 5 false beside paint")
 
     @gdal_exceptions()
-    def write(self, tile, values):
-        column, row = (tile[0] - self._west) * TILE, (self._north - tile[1]) * TILE
-        self._raster.GetRasterBand(1).WriteRaster(int(column), int(row), TILE, TILE, np.ascontiguousarray(values, np.uint8).tobytes())
+    def write(self, tile: tuple[int, int], values: np.ndarray) -> None:
+        """Write one tile of (BURN_TILE, BURN_TILE) values."""
+        column, row = (tile[0] - self._west) * BURN_TILE, (self._north - tile[1]) * BURN_TILE
+        self._raster.GetRasterBand(1).WriteRaster(int(column), int(row), BURN_TILE, BURN_TILE, np.ascontiguousarray(values, np.uint8).tobytes())
 
     @gdal_exceptions()
-    def close(self):
+    def close(self) -> None:
+        """Finish the file."""
         self._raster = None

@@ -1,53 +1,61 @@
 """Mean curvature of marking points before and after lines were fitted, and curvature along driving lines."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
 from ..common.parallel import check_cancelled
-from .matching import Segments, single_lines
+from .matching import SegmentIndex, single_lines
 
-KERNEL = 0.2         # m, radius of the neighbourhood, as the driving-line thesis has it
-TRIED = 1800         # marking points, spread evenly, that are looked at for being beside a line,
-SAMPLE = 600         # and how many of these have their curvature taken
-LEAST = 12           # neighbours that a quadric of six coefficients needs to mean something
-FLAT = 0.03          # least share of the second principal direction: below, the neighbours lie in a line
-STEADY = 1e3         # largest condition of the equations for the quadric
-BESIDE = 0.25        # m from a fitted line within which a point is its paint
-BLOCK = 100          # neighbourhoods solved at a time
-CELLS = 2**20        # numbers of cells of the kernel's size
-DIAGRAM_STEP = 1.0   # m between the values of a curvature diagram
-DIAGRAM_BASE = 5.0   # m to either side over which a heading changes
+CURVATURE_KERNEL = 0.2       # m, radius of the neighbourhood, as in the driving-line thesis
+MAX_CANDIDATES = 1800        # marking points, evenly spread, that are tested for being beside a line,
+MAX_CURVATURE_POINTS = 600   # and of which so many have their curvature computed
+MIN_KERNEL_POINTS = 12       # neighbours, twice the coefficients of a quadric
+MIN_WIDTH_RATIO = 0.03       # of the variances along the second and the first principal direction: below, the neighbours lie in a line
+MAX_QUADRIC_CONDITION = 1e3  # condition number of the normal equations of the quadric
+MAX_PAINT_DISTANCE = 0.25    # m from a fitted line within which a point is its paint
+KERNELS_PER_BATCH = 100      # neighbourhoods solved at a time
+HASHED_CELLS = 2**20         # hash values of cells of the kernel's size
+CURVATURE_STEP = 1.0         # m between the values of a curvature diagram
+CURVATURE_BASE = 5.0         # m to either side over which the change of heading is measured
 
 
 @dataclass(frozen=True)
 class MarkingCurvature:
-    """Mean of the absolute mean curvature (1/m) at marking points in a kernel of 0.2 m: of the points as measured,
-    and of the same points brought to the height of the line fitted to them. `points`: how many were looked at."""
+    """Mean absolute mean curvature of marking points in a kernel of 0.2 m.
+
+    before : of the points as measured, 1/m
+    after : of the same points at the height of the line fitted to them, 1/m
+    points : number of points
+    """
 
     before: float
     after: float
     points: int
 
 
-def marking_curvature(points, lines, origin):
-    """Curvature of line markings.
+def marking_curvature(points: Any, lines: Sequence[Any], origin: Sequence[float]) -> MarkingCurvature | None:
+    """Roughness of line markings before and after fitting.
 
     The mean curvature of the quadric z = f(x, y) through the neighbours of each point, in the frame of their own
-    plane, as point cloud software takes it; the thesis shows it in its figure of fitted markings. It tells how
-    rough the markings are, not how the road bends.
+    plane, as point cloud software computes it and the thesis shows it for its fitted markings. It measures how
+    rough the markings are, not how the road curves.
 
     Parameters
     ----------
-    points : object with x, y, z (local metres), the paint
+    points : object with x, y, z (N,), local metres: the marking points
     lines : fitted lines with Z in map coordinates
-    origin : what local coordinates leave out
+    origin : (3,) map coordinates of the local origin
 
     Returns
     -------
-    MarkingCurvature, or None where there is no line or too little paint beside one
+    MarkingCurvature, or None without a line or with too few points beside one
     """
     lines, _ = single_lines(lines)
     if not lines or not len(points):
@@ -55,16 +63,16 @@ def marking_curvature(points, lines, origin):
     shift = np.asarray(origin, float)
     local = shapely.transform(np.asarray(lines, object), lambda xyz: xyz - shift, include_z=True)
     x, y, z = points.x, points.y, points.z
-    segments = Segments(local)
-    which = _spread(len(x), TRIED)
-    feet = segments.nearest(np.c_[x[which], y[which]])
-    beside = np.flatnonzero((feet.distance <= BESIDE) & np.isfinite(feet.z))
-    if len(beside) < LEAST:
+    segments = SegmentIndex(local)
+    which = _spread(len(x), MAX_CANDIDATES)
+    nearest = segments.nearest(np.c_[x[which], y[which]])
+    beside = np.flatnonzero((nearest.distance <= MAX_PAINT_DISTANCE) & np.isfinite(nearest.z))
+    if len(beside) < MIN_KERNEL_POINTS:
         return None
-    beside = beside[_spread(len(beside), SAMPLE)]
+    beside = beside[_spread(len(beside), MAX_CURVATURE_POINTS)]
     near = _near(x, y, which[beside])
     xyz = np.c_[x[near], y[near], z[near]]
-    before, after = _before_and_after(xyz, np.searchsorted(near, which[beside]), feet.only(beside), segments)
+    before, after = _before_and_after(xyz, np.searchsorted(near, which[beside]), nearest.subset(beside), segments)
     known = np.isfinite(before) & np.isfinite(after)
     if not known.any():
         return None
@@ -77,9 +85,9 @@ def _spread(count, most):
 
 
 def _near(x, y, which):
-    """Rows of all points within the kernel of those at the rows `which`, and of some more, ascending."""
-    column, row = (np.floor(axis * (1.0 / KERNEL)).astype(np.int32) for axis in (x, y))
-    marked = np.zeros(CELLS, bool)
+    """Ascending rows of all points within the kernel of those at the rows `which`, and of some more."""
+    column, row = (np.floor(axis * (1.0 / CURVATURE_KERNEL)).astype(np.int32) for axis in (x, y))
+    marked = np.zeros(HASHED_CELLS, bool)
     for right in (-1, 0, 1):
         for up in (-1, 0, 1):
             marked[_cell(column[which] + np.int32(right), row[which] + np.int32(up))] = True
@@ -87,49 +95,59 @@ def _near(x, y, which):
 
 
 def _cell(column, row):
-    """Number of a cell of the map, the same for some that are far apart."""
-    return (column * np.int32(1031) + row) & np.int32(CELLS - 1)
+    """Hash of a cell of the map; some cells that are far apart share it."""
+    return (column * np.int32(1031) + row) & np.int32(HASHED_CELLS - 1)
 
 
-def _before_and_after(xyz, which, feet, segments):
+def _before_and_after(xyz, which, nearest, segments):
     """Mean curvature at the rows `which`, (K,) each: of the points, and of these at the height of the line beside them.
 
     Points in the kernel are brought to the line that is nearest to the middle of the kernel, which on
     0.2 m is as good as the line nearest to each.
     """
     tree, found = _tree(xyz), np.full((2, len(which)), np.nan)
-    heading = segments.heading_at(feet.line, feet.station)
+    heading = segments.heading_at(nearest.line, nearest.station)
     ahead = np.stack([np.cos(heading), np.sin(heading)], axis=1)
-    for first in range(0, len(which), BLOCK):
+    for first in range(0, len(which), KERNELS_PER_BATCH):
         check_cancelled()
-        rows = np.arange(first, min(first + BLOCK, len(which)))
-        owner, member = _around(tree, xyz, which[rows], KERNEL)
+        rows = np.arange(first, min(first + KERNELS_PER_BATCH, len(which)))
+        owner, member = _around(tree, xyz, which[rows], CURVATURE_KERNEL)
         own = rows[owner]
-        step = xyz[member, :2] - feet.xy[own]
-        beside = np.abs(step[:, 1] * ahead[own, 0] - step[:, 0] * ahead[own, 1]) <= BESIDE
+        step = xyz[member, :2] - nearest.xy[own]
+        beside = np.abs(step[:, 1] * ahead[own, 0] - step[:, 0] * ahead[own, 1]) <= MAX_PAINT_DISTANCE
         owner, member, own, step = owner[beside], member[beside], own[beside], step[beside]
         count = np.bincount(owner, minlength=len(rows))
         off = xyz[member] - xyz[which[own]]
-        found[0, rows] = _quadrics(off, count, KERNEL)
-        _, height = segments.at(feet.line[own], feet.station[own] + (step * ahead[own]).sum(axis=1))
-        found[1, rows] = _quadrics(np.c_[off[:, :2], height - feet.z[own]], count, KERNEL)
+        found[0, rows] = _quadrics(off, count, CURVATURE_KERNEL)
+        _, height = segments.at(nearest.line[own], nearest.station[own] + (step * ahead[own]).sum(axis=1))
+        found[1, rows] = _quadrics(np.c_[off[:, :2], height - nearest.z[own]], count, CURVATURE_KERNEL)
     return found
 
 
-def mean_curvature(xyz, which, radius=KERNEL):
-    """(K,) mean curvature, 1/m, of points at the rows `which`; NaN with fewer than 12 neighbours, or where these lie in a line or two.
+def mean_curvature(xyz: np.ndarray, which: np.ndarray, radius: float = CURVATURE_KERNEL) -> np.ndarray:
+    """Mean curvature of a surface of points.
 
     ::
 
         H = ((1 + fx²) fyy - 2 fx fy fxy + (1 + fy²) fxx) / (2 (1 + fx² + fy²)^1.5)
 
     of f(x, y) = a + b x + c y + d x² + e xy + g y², fitted in the frame of the neighbours' principal directions.
+
+    Parameters
+    ----------
+    xyz : (N, 3) metres
+    which : (K,) rows whose curvature is computed
+    radius : of the neighbourhood, metres
+
+    Returns
+    -------
+    (K,) 1/m; NaN with fewer than 12 neighbours, or if these lie in one or two lines
     """
     tree, found = _tree(xyz), np.full(len(which), np.nan)
-    for first in range(0, len(which), BLOCK):
-        some = which[first:first + BLOCK]
+    for first in range(0, len(which), KERNELS_PER_BATCH):
+        some = which[first:first + KERNELS_PER_BATCH]
         owner, member = _around(tree, xyz, some, radius)
-        found[first:first + BLOCK] = _quadrics(xyz[member] - xyz[some][owner], np.bincount(owner, minlength=len(some)), radius)
+        found[first:first + KERNELS_PER_BATCH] = _quadrics(xyz[member] - xyz[some][owner], np.bincount(owner, minlength=len(some)), radius)
     return found
 
 
@@ -144,7 +162,7 @@ def _around(tree, xyz, which, radius):
 
 
 def _quadrics(off, count, radius):
-    """Mean curvature of neighbourhoods: (N, 3) places about each one's point, `count` (K,) of them after each other, none empty."""
+    """Mean curvature of neighbourhoods: (N, 3) points about each one's point, `count` (K,) of them after each other, none empty."""
     values, normal, right = np.empty((len(count), 3)), np.empty((len(count), 6, 6)), np.empty((len(count), 6))
     terms, scale = np.ones((7, int(count.max()))), np.array([[radius], [radius], [1.0]])
     # hundreds of neighbours each: a matrix product of a neighbourhood is faster than sums over all of them
@@ -165,12 +183,19 @@ def _quadrics(off, count, radius):
     _, b, c, d, e, g = np.linalg.solve(normal, right[:, :, None])[:, :, 0].T
     fx, fy, fxx, fxy, fyy = b / radius, c / radius, 2 * d / radius**2, e / radius**2, 2 * g / radius**2
     bend = ((1 + fx**2) * fyy - 2 * fx * fy * fxy + (1 + fy**2) * fxx) / (2 * (1 + fx**2 + fy**2)**1.5)
-    enough = (count >= LEAST) & (values[:, 1] > FLAT * np.maximum(values[:, 2], 1e-12)) & (np.linalg.cond(normal) < STEADY)
+    wide = values[:, 1] > MIN_WIDTH_RATIO * np.maximum(values[:, 2], 1e-12)
+    enough = (count >= MIN_KERNEL_POINTS) & wide & (np.linalg.cond(normal) < MAX_QUADRIC_CONDITION)
     return np.where(enough, bend, np.nan)
 
 
-def curvature_along(line, step=DIAGRAM_STEP, base=DIAGRAM_BASE):
+def curvature_along(line: shapely.LineString, step: float = CURVATURE_STEP, base: float = CURVATURE_BASE) -> tuple[np.ndarray, np.ndarray]:
     """Curvature along a line, in the direction it is drawn.
+
+    Parameters
+    ----------
+    line : shapely LineString
+    step : metres between the values
+    base : metres, length of the chords
 
     Returns
     -------

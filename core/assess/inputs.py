@@ -1,173 +1,60 @@
-"""Layers of any origin brought together: one CRS in metres, the right kind of geometry, a place in common."""
+"""Input layers of an assessment: one metric CRS, the right kind of geometry, a common area, a reference to judge by."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import shapely
 
 from ..common.errors import RoadExtractionError
-from ..common.progress import Progress
 from ..io.crs import check_metric, horizontal_part, parse_crs, same_crs
-from ..io.gdal_errors import gdal_exceptions
-from .matching import AlongTrajectory, places_along, single_lines
+from .matching import MAX_ROAD_DISTANCE, TrajectoryStationing, sample_lines, single_lines
 
-# Polygons of whatever paint is given as: lines with a width, or a raster of cells.
-
-BLOCK = 2048  # pixels
+MAX_LAYER_DISTANCE = 100.0  # m between the extents of two layers of one road
+TRANSVERSE_KINDS = ("corner", "side_street", "island")  # values of the field `kind` of curbs that do not run along the road
 
 
-def strips(lines, widths):
-    """Lines widened to polygons: (N,) metres from side to side, square ends that do not stick out."""
-    return list(shapely.buffer(np.asarray(lines, object), np.asarray(widths, float) / 2, cap_style="flat", join_style="mitre"))
-
-
-@gdal_exceptions()
-def polygons_of_raster(path, progress=Progress()):
-    """The painted patches of a raster: cells that touch, corners included, and have the same value other than 0 and no-data.
-
-    Parameters
-    ----------
-    path : a raster file; values beyond 1 to 65534 and broken ones count as 1
-
-    Returns
-    -------
-    polygons : list in the raster's CRS
-    values : (N,) int
-    crs : WKT, "" where it says none
-    """
-    from osgeo import gdal, ogr
-
-    try:
-        raster = gdal.Open(str(path))
-    except RuntimeError as problem:
-        raise RoadExtractionError(f"{path} cannot be read as a raster ({problem}).") from problem
-    copy = f"/vsimem/lanewright_{id(raster)}.tif"
-    try:
-        values = _values(raster, copy, progress.part(0.0, 0.7))
-        source = ogr.GetDriverByName("Memory").CreateDataSource("painted")
-        layer = source.CreateLayer("painted", None, ogr.wkbPolygon)
-        layer.CreateField(ogr.FieldDefn("value", ogr.OFTInteger))
-        band = values.GetRasterBand(1)
-        _polygonize(band, layer, progress.part(0.7, 1.0))
-        found, kinds = [], []
-        for feature in layer:
-            found.append(shapely.from_wkb(bytes(feature.GetGeometryRef().ExportToWkb())))
-            kinds.append(feature.GetField(0))
-        values = band = None
-    finally:
-        gdal.Unlink(copy)
-    crs = raster.GetProjection()
-    # patches that touch themselves at a corner are no valid polygons
-    return list(shapely.make_valid(np.asarray(found, object))) if found else [], np.array(kinds, int), crs
-
-
-def _polygonize(band, layer, progress):
-    """GDAL cannot pass an exception through its own code: what Cancel raises is kept and raised again."""
-    from osgeo import gdal
-
-    stopped = []
-
-    def tell(share, *_):
-        try:
-            progress.report(share)
-        except Exception as reason:
-            stopped.append(reason)
-            return 0
-        return 1
-
-    try:
-        gdal.Polygonize(band, band, layer, 0, ["8CONNECTED=8"], callback=tell)
-    except RuntimeError:
-        if not stopped:
-            raise
-    if stopped:
-        raise stopped[0]
-
-
-def _values(raster, path, progress):
-    """A copy with whole numbers: 0 where nothing is painted."""
-    from osgeo import gdal
-
-    width, height = raster.RasterXSize, raster.RasterYSize
-    copy = gdal.GetDriverByName("GTiff").Create(path, width, height, 1, gdal.GDT_UInt16, ["TILED=YES", "COMPRESS=LZW", "SPARSE_OK=TRUE"])
-    copy.SetGeoTransform(raster.GetGeoTransform())
-    band, target = raster.GetRasterBand(1), copy.GetRasterBand(1)
-    nodata = band.GetNoDataValue()
-    for row in range(0, height, BLOCK):
-        progress.report(row / height)
-        for column in range(0, width, BLOCK):
-            wide, high = min(BLOCK, width - column), min(BLOCK, height - row)
-            data = np.frombuffer(band.ReadRaster(column, row, wide, high, buf_type=gdal.GDT_Float64), np.float64)
-            painted = np.isfinite(data) & (data != 0)
-            if nodata is not None:
-                painted &= data != nodata
-            if painted.any():
-                value = np.where(painted & (data >= 1) & (data < 65535), np.nan_to_num(data), painted).astype(np.uint16)
-                target.WriteRaster(column, row, wide, high, value.tobytes())
-    return copy
-
-
-def painted_polygons(layer, line_width):
-    """The AssessedLayer with its lines widened to `width_m` or `width` of their row, or to `line_width` metres.
-
-    Raises
-    ------
-    RoadExtractionError
-        If it holds points.
-    """
-    check_kind(layer, ("LineString", "Polygon", "GeometryCollection"), "polygons, lines or a mask")
-    shapes = list(layer.geometries)
-    lines = [k for k, shape in enumerate(shapes) if "LineString" in shape.geom_type]
-    named, plain = layer.column("width_m"), layer.column("width")
-    widths = [_width(named[k], plain[k], line_width) for k in lines]
-    for k, strip in zip(lines, strips([shapes[k] for k in lines], widths)):
-        shapes[k] = strip
-    valid = shapely.make_valid(shapely.force_2d(np.asarray(shapes, object))) if shapes else []
-    return AssessedLayer(layer.label, list(valid), layer.rows, layer.crs)
-
-
-def _width(*candidates):
-    for value in candidates:
-        try:
-            if value is not None and 0.01 <= float(value) <= 10:
-                return float(value)
-        except (TypeError, ValueError):
-            continue
-    return candidates[-1]
-
-
-def classes_of(layer, name):
-    """The class of every row by the field of this name, or mark_class, or kind; None where the layer has none."""
-    for candidate in (name, "mark_class", "kind"):
-        found = layer.column(candidate) if candidate else []
-        if any(value is not None for value in found):
-            return found
-    return None
-
-APART = 100.0  # m between the extents of two layers of one road
+def _ignore(text: str) -> None:
+    """A warning that nobody reads."""
 
 
 @dataclass
 class AssessedLayer:
-    """Geometries of a layer with its attributes; `label` is how messages call it, `crs` WKT or ""."""
+    """A layer with its attributes.
+
+    label : its name in messages
+    geometries : list of shapely geometries
+    rows : list of dict, field name to value, one per geometry
+    crs : WKT, "" if unknown
+    """
 
     label: str
-    geometries: list
-    rows: list = field(default_factory=list)
+    geometries: list[Any]
+    rows: list[dict[str, Any]] = field(default_factory=list)
     crs: str = ""
 
-    def column(self, name):
-        """Values of a field whatever the case of its name, None where the layer or the row has none."""
+    def column(self, name: str) -> list[Any]:
+        """Values of a field, None where the layer or the row has none; the case of the name is ignored."""
         found = next((key for row in self.rows[:1] for key in row if key.lower() == name.lower()), None)
         return [None if found is None else row.get(found) for row in self.rows]
 
-    def only(self, mask):
-        kept = np.flatnonzero(mask)
-        return AssessedLayer(self.label, [self.geometries[k] for k in kept], [self.rows[k] for k in kept] if self.rows else [], self.crs)
+    def subset(self, mask: np.ndarray) -> AssessedLayer:
+        """The rows of a (N,) bool mask."""
+        rows = np.flatnonzero(mask)
+        return AssessedLayer(self.label, [self.geometries[k] for k in rows], [self.rows[k] for k in rows] if self.rows else [], self.crs)
 
 
-def check_kind(layer, kinds, needed):
-    """Refuse a layer that holds none of the wanted geometries, and one that holds others.
+def check_kind(layer: AssessedLayer, kinds: Sequence[str], needed: str) -> None:
+    """Refuse a layer with geometries of another kind.
+
+    Parameters
+    ----------
+    layer : AssessedLayer
+    kinds : names of the single geometries that are allowed, such as "LineString"
+    needed : what is needed, for the message
 
     Raises
     ------
@@ -181,8 +68,8 @@ def check_kind(layer, kinds, needed):
         raise RoadExtractionError(f"{layer.label} holds {', '.join(wrong)}; {needed} are needed. Choose another layer.")
 
 
-def common_crs(layers):
-    """WKT of the CRS to work in: of the first layer that has one in metres; "" where no layer tells any.
+def common_crs(layers: Sequence[AssessedLayer]) -> str:
+    """WKT of the CRS to work in: that of the first layer with one in metres; "" if no layer has a CRS.
 
     Raises
     ------
@@ -209,13 +96,23 @@ def common_crs(layers):
     return ""
 
 
-def in_crs(layer, wkt, warn=lambda text: None):
-    """The layer in the CRS; one that tells none is taken to lie in it already, and that is said.
+def in_crs(layer: AssessedLayer, wkt: str, warn: Callable[[str], None] = _ignore) -> AssessedLayer:
+    """The layer in a CRS.
+
+    Parameters
+    ----------
+    layer : AssessedLayer; without a CRS it is assumed to be in this one, with a warning
+    wkt : the CRS; "" leaves the layer as it is
+    warn : called with a sentence
+
+    Returns
+    -------
+    AssessedLayer
 
     Raises
     ------
     RoadExtractionError
-        If it has no CRS but coordinates in degrees, or cannot be brought there.
+        If it has no CRS but coordinates in degrees, or cannot be transformed.
     """
     source, target = parse_crs(layer.crs), parse_crs(wkt)
     if target is None or not len(layer.geometries):
@@ -240,8 +137,8 @@ def in_crs(layer, wkt, warn=lambda text: None):
     return AssessedLayer(layer.label, moved, layer.rows, wkt)
 
 
-def check_overlap(result, reference):
-    """Refuse a result that lies nowhere near the reference.
+def check_overlap(result: AssessedLayer, reference: AssessedLayer) -> None:
+    """Refuse a result far from the reference.
 
     Raises
     ------
@@ -252,12 +149,12 @@ def check_overlap(result, reference):
         return
     a, b = (shapely.total_bounds(np.asarray(layer.geometries, object)) for layer in (result, reference))
     gap = np.maximum(np.maximum(a[:2] - b[2:], b[:2] - a[2:]), 0.0)
-    if np.hypot(*gap) > APART:
-        def place(box):
+    if np.hypot(*gap) > MAX_LAYER_DISTANCE:
+        def extent(box):
             return f"x {box[0]:.0f} to {box[2]:.0f}, y {box[1]:.0f} to {box[3]:.0f}"
 
         raise RoadExtractionError(
-            f"{result.label} and {reference.label} lie {np.hypot(*gap):.0f} m apart ({place(a)} against {place(b)}), so nothing can be "
+            f"{result.label} and {reference.label} lie {np.hypot(*gap):.0f} m apart ({extent(a)} against {extent(b)}), so nothing can be "
             "compared. Check that both show the same road and that their CRSs are right.")
 
 
@@ -274,35 +171,39 @@ def _looks_like_degrees(geometries):
     return bool(max(abs(x0), abs(x1)) <= 180 and max(abs(y0), abs(y1)) <= 90 and max(x1 - x0, y1 - y0) < 1.0)
 
 
-# What a reference must have to be judged against.
-
-TURNED = ("corner", "side_street", "island")  # values of the field `kind` of curbs that do not run along the road
-
-
-def bottoms_only(layer, warn=lambda text: None):
-    """(the layer without the tops of curbs where it has bottoms too, rows kept)."""
+def bottoms_only(layer: AssessedLayer, warn: Callable[[str], None] = _ignore) -> tuple[AssessedLayer, list[int]]:
+    """(the layer without the tops of curbs if it has bottoms too, the rows that remain)."""
     parts = [str(part).lower() if part is not None else "" for part in layer.column("part")]
     if "bottom" not in parts or "top" not in parts:
         return layer, list(range(len(layer.geometries)))
-    kept = [k for k, part in enumerate(parts) if part != "top"]
+    rows = [k for k, part in enumerate(parts) if part != "top"]
     warn(f"{layer.label} holds tops and bottoms of curbs; the bottoms are assessed.")
     mask = np.zeros(len(parts), bool)
-    mask[kept] = True
-    return layer.only(mask), kept
+    mask[rows] = True
+    return layer.subset(mask), rows
 
 
-def along_the_road_only(layer, warn=lambda text: None):
-    """(the layer without corners, side streets and islands, rows kept): intervals along a road do not tell of them."""
-    turned = np.array([str(kind).lower() in TURNED for kind in layer.column("kind")], bool)
-    if not turned.any() or turned.all():
+def along_the_road_only(layer: AssessedLayer, warn: Callable[[str], None] = _ignore) -> tuple[AssessedLayer, list[int]]:
+    """(the layer without corners, side streets and islands, which intervals along a road cannot judge; the rows that remain)."""
+    transverse = np.array([str(kind).lower() in TRANSVERSE_KINDS for kind in layer.column("kind")], bool)
+    if not transverse.any() or transverse.all():
         return layer, list(range(len(layer.geometries)))
-    length = sum(layer.geometries[k].length for k in np.flatnonzero(turned))
+    length = sum(layer.geometries[k].length for k in np.flatnonzero(transverse))
     warn(f"{layer.label} holds {length:.0f} m of corners, side streets and islands; they are not judged.")
-    return layer.only(~turned), list(np.flatnonzero(~turned))
+    return layer.subset(~transverse), np.flatnonzero(~transverse).tolist()
 
 
-def check_reference(reference, result, frame=None, area=None, corridor=30.0, warn=lambda text: None):
-    """Refuse a reference with nothing to judge; say where the result has nothing.
+def check_reference(reference: AssessedLayer, result: AssessedLayer, frame: Any = None, area: Any = None, corridor: float = MAX_ROAD_DISTANCE,
+                    warn: Callable[[str], None] = _ignore) -> None:
+    """Refuse reference lines with nothing to judge; warn if the result has no line.
+
+    Parameters
+    ----------
+    reference, result : AssessedLayer
+    frame : RoadFrame, or None
+    area : shapely polygon outside of which nothing is judged, or None
+    corridor : metres to either side of the trajectory
+    warn : called with a sentence
 
     Raises
     ------
@@ -313,11 +214,11 @@ def check_reference(reference, result, frame=None, area=None, corridor=30.0, war
     if not lines:
         raise RoadExtractionError(
             f"{reference.label} has no lines to judge by. Choose the layer of reference lines, and see that not all of its rows are excluded.")
-    places = places_along(lines, 1.0)
-    inside = places.inside(area)
+    points = sample_lines(lines, 1.0)
+    inside = points.inside(area)
     if not len(inside):
         raise RoadExtractionError(f"{reference.label} has no lines inside the area. Check that the area covers the road, or leave it empty.")
-    if frame is not None and (AlongTrajectory(frame, corridor).of_reference(inside).unit < 0).all():
+    if frame is not None and (TrajectoryStationing(frame, corridor).of_reference(inside).unit < 0).all():
         raise RoadExtractionError(
             f"The trajectory does not pass {reference.label}: none of it lies within {corridor:g} m. Check that both show the same road, and their "
             "CRSs, or leave the trajectory empty to measure along the reference.")
@@ -325,8 +226,8 @@ def check_reference(reference, result, frame=None, area=None, corridor=30.0, war
         warn(f"{result.label} has no lines: everything is missed.")
 
 
-def check_paint(reference, result, area=None, warn=lambda text: None):
-    """The same for polygons.
+def check_marking_reference(reference: AssessedLayer, result: AssessedLayer, area: Any = None, warn: Callable[[str], None] = _ignore) -> None:
+    """Refuse reference polygons with nothing to judge; warn if the result has no polygon. Parameters as of `check_reference`.
 
     Raises
     ------
@@ -341,3 +242,55 @@ def check_paint(reference, result, area=None, warn=lambda text: None):
         raise RoadExtractionError(f"{reference.label} has nothing inside the area. Check that the area covers the road, or leave it empty.")
     if not len(result.geometries):
         warn(f"{result.label} shows no paint: everything is missed.")
+
+
+def widened_lines(lines: Sequence[Any], widths: Sequence[float] | np.ndarray) -> list[Any]:
+    """Polygons of lines with a width, (N,) metres from side to side, cut square at the ends of the lines."""
+    return list(shapely.buffer(np.asarray(lines, object), np.asarray(widths, float) / 2, cap_style="flat", join_style="mitre"))
+
+
+def marking_polygons(layer: AssessedLayer, line_width: float) -> AssessedLayer:
+    """The layer with its lines widened to polygons.
+
+    Parameters
+    ----------
+    layer : AssessedLayer of lines and polygons
+    line_width : metres, for lines without a field `width_m` or `width`
+
+    Returns
+    -------
+    AssessedLayer of polygons
+
+    Raises
+    ------
+    RoadExtractionError
+        If it holds points.
+    """
+    check_kind(layer, ("LineString", "Polygon", "GeometryCollection"), "polygons, lines or a mask")
+    shapes = list(layer.geometries)
+    lines = [k for k, shape in enumerate(shapes) if "LineString" in shape.geom_type]
+    named, plain = layer.column("width_m"), layer.column("width")
+    widths = [_width(named[k], plain[k], line_width) for k in lines]
+    for k, strip in zip(lines, widened_lines([shapes[k] for k in lines], widths)):
+        shapes[k] = strip
+    valid = shapely.make_valid(shapely.force_2d(np.asarray(shapes, object))) if shapes else []
+    return AssessedLayer(layer.label, list(valid), layer.rows, layer.crs)
+
+
+def _width(*candidates):
+    for value in candidates:
+        try:
+            if value is not None and 0.01 <= float(value) <= 10:
+                return float(value)
+        except (TypeError, ValueError):
+            continue
+    return candidates[-1]
+
+
+def classes_of(layer: AssessedLayer, name: str) -> list[Any] | None:
+    """The class of every row, from the field of this name, or mark_class, or kind; None without any."""
+    for candidate in (name, "mark_class", "kind"):
+        found = layer.column(candidate) if candidate else []
+        if any(value is not None for value in found):
+            return found
+    return None

@@ -1,4 +1,9 @@
-"""What an assessment found, as layers coloured by outcome."""
+"""The results of an assessment as layers with the outcome of every object."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import shapely
@@ -6,24 +11,25 @@ import shapely
 from ..common.features import Features
 from ..common.progress import Progress
 from ..common.schemas import ASSESSED_BOUNDARIES, ASSESSED_DRIVING_LINES, ASSESSED_MARKINGS
-from .boundaries import SIDES, interval_lines
-from .driving_lines import ASSOCIATED
+from .boundaries import SIDE_NAMES, BoundaryAccuracy, interval_lines
+from .driving_lines import MAX_MATCH_DISTANCE, LineAccuracySettings, LineMatch
+from .markings import MarkingAccuracy
 
-TOLD = 100  # rows between two looks at Cancel
+ROWS_PER_REPORT = 100  # rows between two reports of progress
 
 
-def boundary_layer(accuracy, crs, progress=Progress()):
-    """One row an interval and outcome: as many correct, missed and false ones as the table of the report counts."""
+def boundary_layer(accuracy: BoundaryAccuracy, crs: str, progress: Progress = Progress()) -> Features:
+    """Features with one row per interval and outcome, as many as the report's table counts. `crs`: WKT."""
     settings, table = accuracy.settings, accuracy.intervals
     layer = Features("MultiLineStringZ", ASSESSED_BOUNDARIES, crs=crs)
     step, k = settings.interval, settings.tolerances.index(settings.tolerance)
     for number, (outcome, row, geometry) in enumerate(interval_lines(accuracy, settings.tolerance)):
-        if number % TOLD == 0:
+        if number % ROWS_PER_REPORT == 0:
             progress.report(row / len(table.unit))
         largest, lateral = table.largest[row], table.lateral[row]
         measured = outcome in ("correct", "false") and table.judged[row]
         layer.add(
-            geometry, outcome=outcome, why=_why_interval(table, row, outcome, k, settings), side=SIDES[int(table.side[row])] or None,
+            geometry, outcome=outcome, why=_why_interval(table, row, outcome, k, settings), side=SIDE_NAMES[int(table.side[row])] or None,
             road=int(table.unit[row]), station_m=float(table.station[row]), end_m=float(table.station[row] + step),
             covered_m=float(table.covered[row]), lateral_m=float(lateral) if measured else None,
             max_m=float(largest) if measured else None, height_m=float(table.height[row]) if measured else None,
@@ -47,19 +53,20 @@ def _why_interval(table, row, outcome, k, settings):
     return f"a line up to {100 * table.largest[row]:.0f} cm beside the reference"
 
 
-def driving_line_layer(match, settings, crs, progress=Progress()):
-    """The result's lines cut into correct and false pieces, and the pieces of the reference that were missed."""
+def driving_line_layer(match: LineMatch, settings: LineAccuracySettings, crs: str, progress: Progress = Progress()) -> Features:
+    """Features of the correct and false pieces of the result, and of the missed pieces of the reference. `crs`: WKT."""
     layer = Features("MultiLineStringZ", ASSESSED_DRIVING_LINES, crs=crs)
     for number, (outcome, owner, geometry, first, last) in enumerate(match.pieces(settings.tolerance)):
-        if number % TOLD == 0:
-            progress.report(0.5 * (first / max(len(match.theirs), 1) + 1) if outcome == "missed" else 0.5 * first / len(match.mine))
+        if number % ROWS_PER_REPORT == 0:
+            share = first / max(len(match.reference_points), 1) + 1 if outcome == "missed" else first / len(match.result_points)
+            progress.report(0.5 * share)
         rows = slice(first, last + 1)
-        places = match.theirs if outcome == "missed" else match.mine
+        points = match.reference_points if outcome == "missed" else match.result_points
         distance = (match.to_result if outcome == "missed" else match.to_reference)[rows]
-        near = distance[distance <= ASSOCIATED]
+        near = distance[distance <= MAX_MATCH_DISTANCE]
         layer.add(
             geometry, outcome=outcome, why=_why_piece(outcome, distance, settings), line=int(owner),
-            station_m=float(places.station[first] - places.length[first] / 2), end_m=float(places.station[last] + places.length[last] / 2),
+            station_m=float(points.station[first] - points.length[first] / 2), end_m=float(points.station[last] + points.length[last] / 2),
             length_m=float(geometry.length), lateral_m=float(near.mean()) if len(near) else None, max_m=float(near.max()) if len(near) else None)
     layer.geometries = _multi(layer.geometries)
     return layer
@@ -70,13 +77,26 @@ def _why_piece(outcome, distance, settings):
     if outcome == "correct":
         return f"within {limit} of the reference"
     other = "result" if outcome == "missed" else "reference"
-    if not (distance <= ASSOCIATED).any():
-        return f"no line of the {other} within {100 * ASSOCIATED:.0f} cm that runs the same way"
-    return f"the {other} is up to {100 * distance[distance <= ASSOCIATED].max():.0f} cm away"
+    if not (distance <= MAX_MATCH_DISTANCE).any():
+        return f"no line of the {other} within {100 * MAX_MATCH_DISTANCE:.0f} cm that runs the same way"
+    return f"the {other} is up to {100 * distance[distance <= MAX_MATCH_DISTANCE].max():.0f} cm away"
 
 
-def marking_layer(accuracy, result, reference, result_classes, reference_classes, crs):
-    """Every object of the reference (correct or missed) and every object of the result that is false."""
+def marking_layer(accuracy: MarkingAccuracy, result: Sequence[Any], reference: Sequence[Any], result_classes: Sequence[Any] | None,
+                  reference_classes: Sequence[Any] | None, crs: str) -> Features:
+    """All objects of the reference (correct or missed) and the false objects of the result.
+
+    Parameters
+    ----------
+    accuracy : MarkingAccuracy of these polygons
+    result, reference : polygons as given to `assess_markings`
+    result_classes, reference_classes : class of every polygon, or None
+    crs : WKT
+
+    Returns
+    -------
+    Features
+    """
     layer = Features("MultiPolygonZ", ASSESSED_MARKINGS, crs=crs)
     of_reference, of_result = accuracy.outcomes()
     size = accuracy.settings.cell_size**2

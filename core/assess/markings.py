@@ -1,6 +1,10 @@
 """Markings against a reference, cell by cell and object by object."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import cv2
 import numpy as np
@@ -8,11 +12,11 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from .burn import TILE, Burner, Seen, tile_bounds, tiles_of
+from .burn import BURN_TILE, DataMask, PolygonRasteriser, covering_tiles, tile_bounds
 from .metrics import Rates
 
 HIT, MISSED, FALSE, MISSED_BESIDE, FALSE_BESIDE = 1, 2, 3, 4, 5  # values of the outcome raster
-BLOCK = 16  # cells a side: what is summed up for the chart along the road
+CHART_BLOCK = 16  # cells, side of the blocks summed up for the chart along the road
 
 
 @dataclass(frozen=True)
@@ -20,12 +24,12 @@ class MarkingAccuracySettings:
     """How markings are judged."""
 
     cell_size: float = setting(0.04, 0.005, 1.0, "The cell size", "m")
-    tolerances: tuple = (0, 1)  # cells by which the other side is widened
+    tolerances: tuple[int, ...] = (0, 1)  # cells by which the other side is widened
     tolerance: int = setting(1, 0, 10, "The tolerance", "cells")  # the one that objects are judged and drawn with
     found_share: float = setting(0.5, 0.01, 1.0, "The share that makes an object found")  # share of an object's cells that makes it found, or right
-    line_width: float = setting(0.15, 0.01, 10.0, "The width of lines", "m")  # of lines that tell no width of their own
+    line_width: float = setting(0.15, 0.01, 10.0, "The width of lines", "m")  # of lines without a width of their own
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_limits(self)
         tolerances = tuple(sorted({0, self.tolerance, *self.tolerances}))
         if any(t != int(t) or not 0 <= t <= 10 for t in tolerances):
@@ -36,8 +40,16 @@ class MarkingAccuracySettings:
 
 @dataclass(frozen=True)
 class ClassAccuracy:
-    """Cells of one class. found: of the reference's cells, painted in the result whatever its class; right: of the
-    result's cells, painted in the reference whatever its class; same: cells of this class in both."""
+    """Counts of cells of one class.
+
+    reference : cells of the reference,
+    found : of which the result has paint of any class,
+    found_beside : or has some within the tolerance
+    result : cells of the result,
+    right : of which the reference has paint of any class,
+    right_beside : or has some within the tolerance
+    same : cells of this class in both
+    """
 
     reference: int
     found: int
@@ -48,23 +60,25 @@ class ClassAccuracy:
     same: int
 
     @property
-    def rates(self):
+    def rates(self) -> Rates:
         """Rates of the class itself: a cell of another class is wrong."""
         return Rates(self.same, self.result - self.same, self.reference - self.same)
 
 
 @dataclass(frozen=True)
 class MarkingAccuracy:
-    """rates: tolerance to Rates in cells; objects: Rates in objects, with the tolerance of the settings.
+    """The accuracy of markings.
 
-    by_class : class to ClassAccuracy, of all classes that reference or result name
+    rates : tolerance (cells) to Rates in cells
+    objects : Rates in objects, with the tolerance of the settings
+    by_class : class to ClassAccuracy, of all classes in the reference or the result
     reference_cells, reference_found, result_cells, result_right : (N,) judged cells of every object
-    blocks : (N, 5) x, y and cells hit, missed and false of every block that has any, with the tolerance
+    blocks : (N, 5) x, y (metres) and numbers of cells hit, missed and false of every block with any, with the tolerance
     """
 
-    rates: dict
+    rates: dict[int, Rates]
     objects: Rates
-    by_class: dict
+    by_class: dict[str, ClassAccuracy]
     reference_cells: np.ndarray = field(repr=False)
     reference_found: np.ndarray = field(repr=False)
     result_cells: np.ndarray = field(repr=False)
@@ -73,60 +87,65 @@ class MarkingAccuracy:
     settings: MarkingAccuracySettings = MarkingAccuracySettings()
 
     @property
-    def strict(self):
+    def strict(self) -> Rates:
+        """Rates without tolerance."""
         return self.rates[0]
 
     @property
-    def tolerant(self):
+    def tolerant(self) -> Rates:
+        """Rates with the tolerance of the settings."""
         return self.rates[self.settings.tolerance]
 
-    def outcomes(self):
+    def outcomes(self) -> tuple[np.ndarray, np.ndarray]:
         """("correct" | "missed" | "excluded" of every reference object, "correct" | "false" | "excluded" of every result object)."""
         share = self.settings.found_share
         return (_outcome(self.reference_cells, self.reference_found, share, "missed"),
                 _outcome(self.result_cells, self.result_right, share, "false"))
 
 
-def assess_markings(result, reference, settings=MarkingAccuracySettings(), result_classes=None, reference_classes=None,
-                    area=None, seen=None, outcome_raster=None, progress=Progress()):
-    """Judge painted polygons.
+def assess_markings(result: Sequence[Any], reference: Sequence[Any], settings: MarkingAccuracySettings = MarkingAccuracySettings(),
+                    result_classes: Sequence[Any] | None = None, reference_classes: Sequence[Any] | None = None, area: Any = None,
+                    seen: str | None = None, outcome_raster: Any = None, progress: Progress = Progress()) -> MarkingAccuracy:
+    """Assess painted polygons cell by cell and object by object.
 
     Parameters
     ----------
-    result, reference : lists of shapely polygons in one metric CRS (`painted` makes them of lines and rasters)
+    result, reference : lists of shapely polygons in one metric CRS (`inputs` makes them from lines and rasters)
+    settings : MarkingAccuracySettings
     result_classes, reference_classes : class of every polygon, or None
     area : shapely polygon; what lies outside is not judged, or None
     seen : path of a raster in the same CRS whose empty cells are not judged, or None
-    outcome_raster : object with `write(tile, values)`, given (TILE, TILE) uint8 of HIT … of every tile, or None
+    outcome_raster : object with `write(tile, values)`, called with (BURN_TILE, BURN_TILE) uint8 of HIT and so on, or None
+    progress : Progress
 
     Returns
     -------
     MarkingAccuracy
     """
     classes = sorted({str(name) for name in (*(result_classes or ()), *(reference_classes or ())) if name is not None})
-    tally = _Tally(len(result), len(reference), _numbers(result_classes, len(result), classes),
-                   _numbers(reference_classes, len(reference), classes), len(classes), settings)
+    counts = _CellCounts(len(result), len(reference), _numbers(result_classes, len(result), classes),
+                         _numbers(reference_classes, len(reference), classes), len(classes), settings)
     margin = max(settings.tolerances)
-    burners = Burner(result), Burner(reference)
-    valid = [Burner([area])] if area is not None else []
-    valid += [Seen(seen)] if seen else []
-    tiles = tiles_of([*result, *reference], settings.cell_size, margin)
-    shape = (TILE + 2 * margin,) * 2
-    inner = slice(margin, margin + TILE)
+    burners = PolygonRasteriser(result), PolygonRasteriser(reference)
+    valid: list[PolygonRasteriser | DataMask] = [PolygonRasteriser([area])] if area is not None else []
+    valid += [DataMask(seen)] if seen else []
+    tiles = covering_tiles([*result, *reference], settings.cell_size, margin)
+    shape = (BURN_TILE + 2 * margin,) * 2
+    inner = slice(margin, margin + BURN_TILE)
     for number, tile in enumerate(tiles):
         progress.report(number / len(tiles))
         bounds = tile_bounds(tile, settings.cell_size, margin)
-        mine, theirs = (burner.burn(bounds, shape) for burner in burners)
+        result_ids, reference_ids = (burner.burn(bounds, shape) for burner in burners)
         judged = np.logical_and.reduce([raster.burn(bounds, shape)[inner, inner] > 0 for raster in valid]) if valid else True
-        beside = {t: [_widened(ids > 0, t)[inner, inner] for ids in (mine, theirs)] for t in settings.tolerances}
-        values = tally.add(mine[inner, inner], theirs[inner, inner], beside, judged)
-        tally.add_blocks(values, tile, settings.cell_size)
+        beside = {t: [_dilated(ids > 0, t)[inner, inner] for ids in (result_ids, reference_ids)] for t in settings.tolerances}
+        values = counts.add(result_ids[inner, inner], reference_ids[inner, inner], beside, judged)
+        counts.add_blocks(values, tile, settings.cell_size)
         if outcome_raster is not None and values.any():
             outcome_raster.write(tile, values)
-    return tally.accuracy(classes, settings)
+    return counts.accuracy(classes, settings)
 
 
-class _Tally:
+class _CellCounts:
     """Counts over the tiles."""
 
     def __init__(self, results, references, result_class, reference_class, classes, settings):
@@ -138,42 +157,42 @@ class _Tally:
         self.by_class = np.zeros((7, classes + 1), np.int64)
         self.blocks = []
 
-    def add(self, mine, theirs, beside, judged):
-        """Count one tile; its outcome values. `beside`: tolerance to the masks of result and reference widened by it."""
-        r, t = np.nonzero((mine > 0) & judged), np.nonzero((theirs > 0) & judged)
-        m, k = mine[r], theirs[t]
+    def add(self, result_ids, reference_ids, beside, judged):
+        """Count one tile and return its outcomes. `beside`: tolerance to the masks of result and reference widened by it."""
+        r, t = np.nonzero((result_ids > 0) & judged), np.nonzero((reference_ids > 0) & judged)
+        m, k = result_ids[r], reference_ids[t]
         self.totals += len(m), len(k)
-        for tolerance, (near_mine, near_theirs) in beside.items():
-            self.cells[tolerance] += near_theirs[r].sum(), near_mine[t].sum()
-        near_mine, near_theirs = beside[self.tolerance]
-        right, right_beside = theirs[r] > 0, near_theirs[r]
-        found, found_beside = mine[t] > 0, near_mine[t]
+        for tolerance, (near_result, near_reference) in beside.items():
+            self.cells[tolerance] += near_reference[r].sum(), near_result[t].sum()
+        near_result, near_reference = beside[self.tolerance]
+        right, right_beside = reference_ids[r] > 0, near_reference[r]
+        found, found_beside = result_ids[t] > 0, near_result[t]
         _add(self.result_cells, m), _add(self.result_right, m[right_beside])
         _add(self.reference_cells, k), _add(self.reference_found, k[found_beside])
         rc, tc = self.result_class[m], self.reference_class[k]
         for row, values in enumerate((tc, tc[found], tc[found_beside], rc, rc[right], rc[right_beside],
-                                      rc[right][rc[right] == self.reference_class[theirs[r][right]]])):
+                                      rc[right][rc[right] == self.reference_class[reference_ids[r][right]]])):
             _add(self.by_class[row], values)
-        values = np.zeros(mine.shape, np.uint8)
+        values = np.zeros(result_ids.shape, np.uint8)
         values[r] = np.where(right, HIT, np.where(right_beside, FALSE_BESIDE, FALSE))
         lost = ~found
         values[t[0][lost], t[1][lost]] = np.where(found_beside[lost], MISSED_BESIDE, MISSED)
         return values
 
     def add_blocks(self, values, tile, cell_size):
-        n = TILE // BLOCK
-        cut = values.reshape(n, BLOCK, n, BLOCK)
+        n = BURN_TILE // CHART_BLOCK
+        cut = values.reshape(n, CHART_BLOCK, n, CHART_BLOCK)
         hit, missed, false = (sum((cut == value).sum(axis=(1, 3)) for value in group)
                               for group in ((HIT, MISSED_BESIDE, FALSE_BESIDE), (MISSED,), (FALSE,)))
         row, column = np.nonzero(hit + missed + false)
         x0, _, _, y1 = tile_bounds(tile, cell_size)
-        size = BLOCK * cell_size
+        size = CHART_BLOCK * cell_size
         self.blocks.append(np.c_[x0 + (column + 0.5) * size, y1 - (row + 0.5) * size,
                                  hit[row, column], missed[row, column], false[row, column]])
 
     def accuracy(self, classes, settings):
-        mine, theirs = self.totals.tolist()
-        rates = {t: Rates(int(right), mine - int(right), theirs - int(found), int(found)) for t, (right, found) in self.cells.items()}
+        result_ids, reference_ids = self.totals.tolist()
+        rates = {t: Rates(int(right), result_ids - int(right), reference_ids - int(found), int(found)) for t, (right, found) in self.cells.items()}
         by_class = {name: ClassAccuracy(*self.by_class[:, number].tolist()) for number, name in enumerate(classes, start=1)}
         objects = [self.reference_cells[1:], self.reference_found[1:], self.result_cells[1:], self.result_right[1:]]
         was_found, was_right = (_outcome(objects[k], objects[k + 1], settings.found_share, "wrong") for k in (0, 2))
@@ -187,11 +206,11 @@ def _numbers(names, count, classes):
     """Class number by polygon number; 0 for none."""
     if names is None:
         return np.zeros(count + 1, int)
-    place = {name: number for number, name in enumerate(classes, start=1)}
-    return np.array([0, *(0 if name is None else place[str(name)] for name in names)])
+    number_of = {name: number for number, name in enumerate(classes, start=1)}
+    return np.array([0, *(0 if name is None else number_of[str(name)] for name in names)])
 
 
-def _widened(mask, cells):
+def _dilated(mask, cells):
     """The mask and what lies within so many cells of it, corners included."""
     side = 2 * cells + 1
     return cv2.dilate(mask.astype(np.uint8), np.ones((side, side), np.uint8)).astype(bool) if cells else mask

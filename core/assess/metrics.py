@@ -1,8 +1,10 @@
-"""Precision, recall and their kin from counts.
+"""Precision, recall, F1 and IoU from counts, and statistics of deviations.
 
-The thesis prints tp / (tp + fn) for precision and 2 tp / (fp + fn) + 1 for F1; its tables
-obey the usual formulas, which are the ones here.
+The driving-line thesis prints tp / (tp + fn) for precision and 2 tp / (fp + fn) + 1 for F1; its tables
+follow the usual formulas, which are used here.
 """
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 
@@ -11,21 +13,21 @@ import numpy as np
 NAN = float("nan")
 
 
-def f1_of(precision, recall):
+def f1_of(precision: float, recall: float) -> float:
     """Harmonic mean of precision and recall (both shares or both per cent); 0 where both are 0, NaN where one is unknown."""
-    together = precision + recall
-    return 2.0 * precision * recall / together if together else 0.0 * together
+    total = precision + recall
+    return 2.0 * precision * recall / total if total else 0.0 * total
 
 
 @dataclass(frozen=True)
 class Rates:
-    """Counts (cells, intervals, objects or metres) and the shares they make, 0 to 1.
+    """Counts (cells, intervals, objects or metres) and their shares, 0 to 1.
 
-    right : of the result, what agrees with the reference
-    false : of the result, what does not
-    missed : of the reference, what the result does not have
-    found : of the reference, what the result has; equals `right` unless a tolerance
-        lets one place of the one answer for several of the other
+    right : part of the result that agrees with the reference
+    false : part of the result that does not
+    missed : part of the reference that is not in the result
+    found : part of the reference that is in the result; None: equal to `right`. It differs where a
+        tolerance matches one point of the result with several of the reference
 
     A share of nothing is NaN; without any result recall and F1 are still 0.
     """
@@ -33,41 +35,47 @@ class Rates:
     right: float
     false: float
     missed: float
-    found: float = None
+    found: float | None = None
 
     @property
-    def _found(self):
+    def _found(self) -> float:
         return self.right if self.found is None else self.found
 
     @property
-    def precision(self):
+    def precision(self) -> float:
         """right / (right + false)"""
         return _share(self.right, self.right + self.false)
 
     @property
-    def recall(self):
+    def recall(self) -> float:
         """found / (found + missed)"""
         return _share(self._found, self._found + self.missed)
 
     @property
-    def f1(self):
+    def f1(self) -> float:
         """2 tp / (2 tp + fp + fn) where right = found, else the harmonic mean of precision and recall."""
         if not self.right + self.false + self._found + self.missed:
             return NAN
         return f1_of(np.nan_to_num(self.precision), np.nan_to_num(self.recall))
 
     @property
-    def iou(self):
+    def iou(self) -> float:
         """Intersection over union: tp / (tp + fp + fn) = F1 / (2 - F1)."""
         return self.f1 / (2.0 - self.f1)
 
-    def __add__(self, other):
+    def __add__(self, other: Rates) -> Rates:
         return Rates(self.right + other.right, self.false + other.false, self.missed + other.missed, self._found + other._found)
 
 
 @dataclass(frozen=True)
 class Errors:
-    """Deviations in metres over `count` places: signed mean, root mean square, 95th percentile and maximum of the size."""
+    """Statistics of deviations, metres.
+
+    count : number of points
+    mean : signed
+    rmse : root mean square
+    p95, maximum : 95th percentile and maximum of the absolute deviations
+    """
 
     count: int
     mean: float
@@ -76,8 +84,8 @@ class Errors:
     maximum: float
 
     @classmethod
-    def of(cls, values, weights=None):
-        """Of (N,) signed deviations, non-finite ones left out, each counting with its weight (length)."""
+    def of(cls, values: np.ndarray, weights: np.ndarray | None = None) -> Errors:
+        """Errors of (N,) signed deviations with (N,) weights (lengths); non-finite deviations are ignored."""
         values = np.asarray(values, float)
         known = np.isfinite(values)
         if not known.any():

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import shapely
 
-from ..assess.driving_lines import ASSOCIATED, LEAST_GAP
+from ..assess.driving_lines import MAX_MATCH_DISTANCE, MIN_REFERENCE_GAP
 from .figures import Chart
 from .map_figure import draw_map, grey_background, png
 from .page import Page
@@ -172,20 +172,20 @@ def boundary_report(accuracy, layer, names, notes=()):
     outcome_map(page, layer, "Intervals by outcome; north is up. Correct, missed and excluded ones are drawn along the reference, "
                              "false ones along the result.")
     page.heading("Along the road")
-    mine = accuracy.mine
-    hit = np.append(table.hit[:, settings.tolerances.index(settings.tolerance)], False)[mine.interval]
+    judged = accuracy.result_group
+    hit = np.append(table.hit[:, settings.tolerances.index(settings.tolerance)], False)[judged.interval]
     lateral = np.where(hit, accuracy.lateral, np.nan)
-    error_along_road(page, mine.stations.station, lateral, mine.places.length, accuracy.along.title)
+    error_along_road(page, judged.stations.station, lateral, judged.points.length, accuracy.along.title)
     stations = {name: np.array([row["station_m"] for row in layer.rows if row["outcome"] == name]) for name in COLOURS}
     outcomes_along_road(page, stations, {name: np.ones(len(s)) for name, s in stations.items()}, accuracy.along.title, "intervals")
     page.heading("Distribution")
-    error_spread(page, lateral, mine.places.length, accuracy.along.signed)
+    error_spread(page, lateral, judged.points.length, accuracy.along.signed)
     return page.html()
 
 
 def _rows(accuracy):
-    for side, found in (*((name or "untold", figures) for name, figures in accuracy.by_side.items()), ("together", accuracy.total)):
-        if side == "untold" and len(accuracy.by_side) == 1:
+    for side, found in (*((name or "unknown", figures) for name, figures in accuracy.by_side.items()), ("together", accuracy.total)):
+        if side == "unknown" and len(accuracy.by_side) == 1:
             continue
         for tolerance in accuracy.settings.tolerances:
             yield side, tolerance, found[tolerance]
@@ -226,23 +226,25 @@ def driving_report(match, accuracy, settings, layer, names, station, along, tota
         [(plain(100 * t), plain(200 * t), percent(accuracy.completeness[t]), percent(accuracy.correctness[t]), percent(accuracy.miscoding[t]),
           percent(accuracy.quality[t]), accuracy.gaps_per_km[t], accuracy.mean_gap[t]) for t in settings.tolerances],
         (None, None, 2, 2, 2, 2, 2, 2))
-    page.note(f"{accuracy.result_length:.1f} m of result, {accuracy.reference_length:.1f} m of reference. A gap is at least {LEAST_GAP:g} m of "
-              "reference without a result within the tolerance.")
+    page.note(f"{accuracy.result_length:.1f} m of result, {accuracy.reference_length:.1f} m of reference. A gap is at least "
+              f"{MIN_REFERENCE_GAP:g} m of reference without a result within the tolerance.")
     page.heading("Errors")
     page.table(("", "Mean (cm)", "RMSE (cm)", "95 % (cm)", "Maximum (cm)"),
                [("Across", *errors_row(accuracy.lateral)), ("Height", *errors_row(accuracy.height))], (None, 2, 2, 2, 2))
-    page.note(f"Of the result within {100 * ASSOCIATED:.0f} cm of a reference line. The mean across is positive left of the reference as drawn.")
+    page.note(f"Of the result within {100 * MAX_MATCH_DISTANCE:.0f} cm of a reference line. "
+              "The mean across is positive left of the reference as drawn.")
     _per_line(page, match, settings)
     page.heading(f"Map, within {100 * settings.tolerance:g} cm")
     outcome_map(page, layer, "The result's lines, correct and false, and the reference where it was missed; north is up.")
     page.heading("Along the road")
-    error_along_road(page, station[0], match.lateral, match.mine.length, along)
+    error_along_road(page, station[0], match.lateral, match.result_points.length, along)
     wrong, missed = match.to_reference > settings.tolerance, match.to_result > settings.tolerance
     outcomes_along_road(
         page, {"correct": station[0][~wrong], "false": station[0][wrong], "missed": station[1][missed]},
-        {"correct": match.mine.length[~wrong], "false": match.mine.length[wrong], "missed": match.theirs.length[missed]}, along, "m")
+        {"correct": match.result_points.length[~wrong], "false": match.result_points.length[wrong],
+         "missed": match.reference_points.length[missed]}, along, "m")
     page.heading("Distribution")
-    error_spread(page, match.lateral, match.mine.length, "positive left of the reference as drawn")
+    error_spread(page, match.lateral, match.result_points.length, "positive left of the reference as drawn")
     return page.html()
 
 
@@ -257,8 +259,8 @@ def _per_line(page, match, settings):
         [(str(k + 1), found.reference_length, *(percent(found.completeness[t]) for t in widths), *(percent(found.miscoding[t]) for t in widths),
           None if np.isnan(found.rmse) else 100 * found.rmse) for k, found in enumerate(match.per_reference_line(widths))],
         (None,) + (2,) * (2 * len(widths) + 2))
-    page.note(f"Half-widths. Each reference line with the result that lies nearest to it; result farther than {100 * ASSOCIATED:.0f} cm from every "
-              "reference line belongs to none and shows in the table above only.")
+    page.note(f"Half-widths. Each reference line with the result that lies nearest to it; result farther than "
+              f"{100 * MAX_MATCH_DISTANCE:.0f} cm from every reference line belongs to none and shows in the table above only.")
 
 
 # The report on markings set against a reference.

@@ -5,7 +5,7 @@ from collections import defaultdict
 import numpy as np
 import shapely
 
-from ..assess.curvature import DIAGRAM_BASE, curvature_along
+from ..assess.curvature import CURVATURE_BASE, curvature_along
 from ..common.progress import Progress
 from ..driving.curve_elements import DESIGN_CODE
 from .figures import Chart
@@ -59,7 +59,7 @@ def curvature_diagrams(page, road_map):
             page.drawing(chart, f"Road {road}, lane {lane}." if len({key[0] for key in lanes}) > 1 else f"Lane {lane}.")
     page.colour_key(((LINE, "the line as drawn"), (ELEMENT, "arcs of the table of curve elements"),
                      (CODE, "least radius for the speed, CJJ 37-2012")))
-    page.note(f"In 1/m, in the direction of travel, positive to the left; from the headings of the {DIAGRAM_BASE:g} m behind and ahead. "
+    page.note(f"In 1/m, in the direction of travel, positive to the left; from the headings of the {CURVATURE_BASE:g} m behind and ahead. "
               "Stations are the road's.")
     if len(lanes) > MOST_DIAGRAMS:
         page.note(f"{len(lanes) - MOST_DIAGRAMS} further driving lines are not drawn.")

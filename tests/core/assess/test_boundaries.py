@@ -4,7 +4,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from lanewright.core.assess.boundaries import BoundarySettings, assess_boundaries, interval_lines
+from lanewright.core.assess.boundaries import BoundaryAccuracySettings, assess_boundaries, interval_lines
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
@@ -115,4 +115,4 @@ def test_the_layer_shows_what_the_table_counts(frame, result):
 
 def test_tolerances_that_cannot_be_meant_are_refused():
     with pytest.raises(RoadExtractionError, match="tolerances are 0.1, 5, 10; give .* from 0.001 to 2, such as 0.05"):
-        BoundarySettings(tolerances=(5, 10))
+        BoundaryAccuracySettings(tolerances=(5, 10))

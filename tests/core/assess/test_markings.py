@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from lanewright.core.assess.inputs import polygons_of_raster, strips
+from lanewright.core.assess.inputs import widened_lines
 from lanewright.core.assess.markings import FALSE, FALSE_BESIDE, HIT, MISSED, MarkingAccuracySettings, assess_markings
+from lanewright.core.assess.raster_polygons import polygons_of_raster
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
 from osgeo import gdal
@@ -127,7 +128,7 @@ def test_masks_of_other_software_mark_paint_in_many_ways(tmp_path, kind, paint, 
 
 
 def test_a_line_with_a_width_is_paint():
-    assert strips([LineString([(0, 0.08), (10, 0.08)])], [0.16])[0].symmetric_difference(LINE).area == pytest.approx(0.0, abs=1e-9)
+    assert widened_lines([LineString([(0, 0.08), (10, 0.08)])], [0.16])[0].symmetric_difference(LINE).area == pytest.approx(0.0, abs=1e-9)
 
 
 def test_cells_that_cannot_be_meant_are_refused():
