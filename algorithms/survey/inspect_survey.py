@@ -46,7 +46,7 @@ class InspectSurvey(Algorithm):
 
     def work(self, call, progress):
         from ...core.report.inspection import inspection_report
-        from ...core.survey.inspection import NEAR, inspect_survey
+        from ...core.survey.inspection import NEAR_TRAJECTORY, inspect_survey
         from ...core.survey.point_density import write_density
 
         found = inspect_survey(
@@ -60,7 +60,7 @@ class InspectSurvey(Algorithm):
             darkest=found.intensity.nonzero()[0].min(), brightest=found.intensity.nonzero()[0].max()))
         if found.near_share is not None:
             progress.info(tr("Trajectory: {near:.0f} % of the points lie within {metres:.0f} m of it.").format(
-                near=100 * found.near_share, metres=NEAR))
+                near=100 * found.near_share, metres=NEAR_TRAJECTORY))
         call.text("REPORT", inspection_report(found))
         if call.wants("DENSITY"):
             write_density(found, call.new_file("DENSITY"))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-BITS = 16  # numpy sorts integers of so many bits in linear time
+RADIX_BITS = 16  # numpy sorts integers of so many bits in linear time
 
 
 def order_by(*keys):
@@ -15,7 +15,7 @@ def order_by(*keys):
         if not len(key):
             return np.empty(0, np.intp)
         key = above_least(np.asarray(key, np.int32))
-        for shift in range(0, max(int(key.max()).bit_length(), 1), BITS):
+        for shift in range(0, max(int(key.max()).bit_length(), 1), RADIX_BITS):
             digit = (key >> shift).astype(np.uint16)
             order = np.argsort(digit, kind="stable") if order is None else order.take(np.argsort(digit.take(order), kind="stable"))
     return order
@@ -48,7 +48,7 @@ def above_least(values):
     return (values - values.min()).view(np.uint32)
 
 
-def thinned(cell, most):
+def decimate_cells(cell, most):
     """Indices of at most about `most` members of every cell, evenly spread over their order; sorted by cell.
 
     Parameters
@@ -78,7 +78,7 @@ def ranked(values, ranks):
     (R,) of the dtype of values
     """
     key = above_least(_ascending(values))
-    digit = key >> max(int(key.max()).bit_length() - BITS, 0)
+    digit = key >> max(int(key.max()).bit_length() - RADIX_BITS, 0)
     below = np.cumsum(np.bincount(digit))
     found = np.empty(len(ranks), values.dtype)
     places = np.searchsorted(below, ranks, side="right")

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from .errors import Cancelled
 from .progress import Progress
 
-PATIENCE = 0.2   # s between two questions whether to go on, while a result is waited for
+POLL_INTERVAL = 0.2   # s between two questions whether to go on, while a result is waited for
 
 _thread = threading.local()
 
@@ -40,7 +40,7 @@ def ordered_map(function, items, progress=Progress(), threads=None):
             for done in range(len(items)):
                 while len(waiting) <= threads and done + len(waiting) < len(items):
                     waiting.append(pool.submit(work, items[done + len(waiting)]))
-                while not wait(list(waiting)[:1], PATIENCE).done:
+                while not wait(list(waiting)[:1], POLL_INTERVAL).done:
                     progress.report(done / len(items))
                 yield waiting.popleft().result()
                 progress.report((done + 1) / len(items))

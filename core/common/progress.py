@@ -36,11 +36,11 @@ class _Part(Progress):
     def report(self, fraction):
         self.whole.report(self.start + self.span * min(max(fraction, 0.0), 1.0))
 
-STEPS = (10, 20, 40, 60, 120, 180, 300, 600, 900, 1200, 1800, 2700, 3600, 7200, 10800, 18000, 28800, 43200, 86400)  # s, what is told
-EARLIEST = 5.0      # s of work before anything is told,
-LEAST = 0.08        # and share of the work
-LONGER = 1.5        # times what was told last, from which on it was wrong and is told anew,
-PATIENCE = 20.0     # s after it was told at the earliest
+REMAINING_STEPS = (10, 20, 40, 60, 120, 180, 300, 600, 900, 1200, 1800, 2700, 3600, 7200, 10800, 18000, 28800, 43200, 86400)  # s, what is told
+MIN_ELAPSED = 5.0      # s of work before anything is told,
+MIN_FRACTION = 0.08        # and share of the work
+LONGER_FACTOR = 1.5        # times what was told last, from which on it was wrong and is told anew,
+MIN_REPEAT = 20.0     # s after it was told at the earliest
 
 
 class RemainingTime:
@@ -56,19 +56,19 @@ class RemainingTime:
         self._told, self._told_at = math.inf, 0.0
 
     def after(self, fraction):
-        """Seconds left, of `STEPS`, where that is new; None where there is nothing to tell.
+        """Seconds left, of `REMAINING_STEPS`, where that is new; None where there is nothing to tell.
 
         Parameters
         ----------
         fraction : done, 0 to 1
         """
         passed = self._clock() - self._began
-        if passed < EARLIEST or not LEAST <= fraction < 1.0:
+        if passed < MIN_ELAPSED or not MIN_FRACTION <= fraction < 1.0:
             return None
         left = passed * (1.0 - fraction) / fraction
-        step = min(STEPS, key=lambda seconds: abs(math.log(seconds / max(left, 1e-3))))
-        longer = step > self._told and left > LONGER * self._told and passed - self._told_at > PATIENCE
-        if left < STEPS[0] / 2 or not (step < self._told or longer):
+        step = min(REMAINING_STEPS, key=lambda seconds: abs(math.log(seconds / max(left, 1e-3))))
+        longer = step > self._told and left > LONGER_FACTOR * self._told and passed - self._told_at > MIN_REPEAT
+        if left < REMAINING_STEPS[0] / 2 or not (step < self._told or longer):
             return None
         self._told, self._told_at = step, passed
         return step

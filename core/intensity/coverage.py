@@ -6,10 +6,10 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..io.geotiff import IntensityImage
-from ..survey.consistency import sampled
+from ..survey.consistency import sample_road_points
 from ..survey.store.road_points import RoadPoints
 
-MIN_COVERED_SHARE = 0.5  # of the sampled points: must lie on a pixel with a value
+MIN_COVERED_SHARE = 0.5  # of the sample_road_points points: must lie on a pixel with a value
 
 
 def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:
@@ -23,12 +23,12 @@ def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:
     Raises
     ------
     RoadExtractionError
-        If fewer than half of the sampled road points lie on pixels with a value, or the image is of 8 bits.
+        If fewer than half of the sample_road_points road points lie on pixels with a value, or the image is of 8 bits.
     """
     if image.eight_bit:
         raise RoadExtractionError(
             f"{image.path} is the 8-bit picture for viewing; its grey values are stretched and cut off. Give the intensity image itself.")
-    places = [(x, y) for _, x, y, _ in sampled(road_points)]
+    places = [(x, y) for _, x, y, _ in sample_road_points(road_points)]
     if not places:
         return
     x, y = (np.concatenate(part) for part in zip(*places))

@@ -33,7 +33,7 @@ from ..road.surface.extract import SurfaceSettings, extract_road_surface
 from ..survey.open_survey import SurveySettings, open_survey
 from ..survey.point_density import cube_density
 from ..survey.store.records import Points, join_columns
-from .stages import PAINT, Extent, Stages
+from .stages import INTENSITY_STAGES, Extent, Stages
 
 
 @dataclass(frozen=True)
@@ -126,7 +126,7 @@ def make_road_map(paths, trajectory, image_path, settings=RoadMapSettings(), pro
 def _map_of(survey, image_path, settings, stages):
     """The map of an open survey, whose store the road points keep."""
     extent = Extent(survey.store.count / 1e6, sum(road.length for road in survey.frame.roads) / 1e3)
-    stages.know(extent, () if survey.has_intensity else PAINT)
+    stages.know(extent, () if survey.has_intensity else INTENSITY_STAGES)
     if survey.has_intensity:
         # before hours of work, not after
         check_fits(*_span(survey), settings.image)

@@ -13,10 +13,10 @@ from ..survey.trajectory.reprojection import reproject_trajectory
 
 # How long each stage takes, in proportions, by points and by length of road: of a million points, of a kilometre (`make bench`).
 # What is read packed is decoded; boundaries by both methods take what either does.
-COSTS = dict(survey=(0.31, 0.1), profiles=(0.105, 4.6), scanlines=(0.2, 8.0), edges=(0.0, 0.04), surface=(0.05, 1.5), intensity=(0.037, 0.7),
+STAGE_COSTS = dict(survey=(0.31, 0.1), profiles=(0.105, 4.6), scanlines=(0.2, 8.0), edges=(0.0, 0.04), surface=(0.05, 1.5), intensity=(0.037, 0.7),
              image=(0.047, 1.1), markings=(0.017, 2.4), outliers=(0.018, 0.26), clusters=(0.019, 1.1), lines=(0.007, 0.6), driving=(0.005, 0.85))
-START = 0.01                # the same, of a stage that has nothing to do
-PACKED, PLAIN = 1.0, 0.42  # of what the stage of the survey takes for a point of a LAZ and of a LAS file
+MIN_STAGE_COST = 0.01                # the same, of a stage that has nothing to do
+LAZ_READ_COST, LAS_READ_COST = 1.0, 0.42  # of what the stage of the survey takes for a point of a LAZ and of a LAS file
 
 
 @dataclass(frozen=True)
@@ -44,14 +44,14 @@ class Extent:
         """How long a stage takes, in proportion to others."""
         if name == "curbs":
             return sum(self.cost(one, method) for one in ("profiles", "scanlines") if method in (one, "both"))
-        of_points, of_length = COSTS[name]
+        of_points, of_length = STAGE_COSTS[name]
         if name == "survey":
-            of_points *= PACKED + self.plain * (PLAIN - PACKED)
-        return START + of_points * self.points + of_length * self.length
+            of_points *= LAZ_READ_COST + self.plain * (LAS_READ_COST - LAZ_READ_COST)
+        return MIN_STAGE_COST + of_points * self.points + of_length * self.length
 
 
-PAINT = ("intensity", "image", "markings", "outliers", "clusters", "lines", "driving")   # stages that look at intensity
-NAMES = ("survey", "curbs", "edges", "surface", *PAINT)
+INTENSITY_STAGES = ("intensity", "image", "markings", "outliers", "clusters", "lines", "driving")   # stages that look at intensity
+STAGE_NAMES = ("survey", "curbs", "edges", "surface", *INTENSITY_STAGES)
 
 
 class Stages:
@@ -66,7 +66,7 @@ class Stages:
 
     def __init__(self, progress, extent, method, left_out=()):
         self.progress, self.done, self.seconds, self.method = progress, 0.0, {}, method
-        self.waiting = list(NAMES)
+        self.waiting = list(STAGE_NAMES)
         self.know(extent, left_out)
 
     def know(self, extent, left_out=()):

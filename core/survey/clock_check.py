@@ -4,11 +4,11 @@ import numpy as np
 
 from ..common.progress import Progress
 
-NEAR_TRACK = 2.0     # m either side of the vehicle's own track
-NEAREST = 6.5        # m along the road: mirrors and spinning scanners see road nearer than this in each of their turns
-SHARE = 10           # % of the points on the way that are nearer
-SECTIONS, POINTS = 20, 5000  # that are looked at, spread over the survey
-FEWEST = 500         # points that tell
+CLOCK_TRACK_HALF_WIDTH = 2.0     # m either side of the vehicle's own track
+MAX_LOOK_AHEAD = 6.5        # m along the road: mirrors and spinning scanners see road nearer than this in each of their turns
+NEAREST_PERCENTILE = 10           # % of the points on the way that are nearer
+CLOCK_SECTIONS, CLOCK_POINTS_PER_SECTION = 20, 5000  # that are looked at, spread over the survey
+MIN_CLOCK_POINTS = 500         # points that tell
 
 
 def check_clock(survey, progress=Progress()):
@@ -18,8 +18,8 @@ def check_clock(survey, progress=Progress()):
     ----------
     survey : Survey with times
     """
-    ahead, speed = _looked_at(survey)
-    if len(ahead) < FEWEST or np.percentile(np.abs(ahead), SHARE) < NEAREST:
+    ahead, speed = _look_ahead(survey)
+    if len(ahead) < MIN_CLOCK_POINTS or np.percentile(np.abs(ahead), NEAREST_PERCENTILE) < MAX_LOOK_AHEAD:
         return
     away, fast = float(np.median(ahead)), float(np.median(speed))
     seconds = f", about {abs(away) / fast:.1f} s at its speed" if fast > 1.0 else ""
@@ -29,17 +29,19 @@ def check_clock(survey, progress=Progress()):
                   "(leap seconds, a lag of the recorder).")
 
 
-def _looked_at(survey):
+def _look_ahead(survey):
     """Metres from the vehicle ahead to points on its own track when they were measured, and its speed then (m/s), of a sample."""
     keys = [(road, number) for road in survey.store.roads() for number in survey.store.sections(road)]
     ahead, speed = [np.empty(0)], [np.empty(0)]
-    for k in np.unique(np.linspace(0, len(keys) - 1, SECTIONS).astype(int)) if keys else ():
+    for k in np.unique(np.linspace(0, len(keys) - 1, CLOCK_SECTIONS).astype(int)) if keys else ():
         points = survey.section(*keys[k])
-        points = points[np.unique(np.linspace(0, len(points) - 1, POINTS).astype(int))] if len(points) > POINTS else points
+        if len(points) > CLOCK_POINTS_PER_SECTION:
+            points = points[np.unique(np.linspace(0, len(points) - 1, CLOCK_POINTS_PER_SECTION).astype(int))]
         s, d, time, owner = points.s, points.d, points.time, points.pass_number
         for number in np.unique(owner).tolist():
             p = survey.frame.passes[number]
-            own = np.flatnonzero((owner == number) & (np.abs(d - p.at_station(s)[0]) < NEAR_TRACK) & (time >= p.time[0]) & (time <= p.time[-1]))
+            on_track = np.abs(d - p.at_station(s)[0]) < CLOCK_TRACK_HALF_WIDTH
+            own = np.flatnonzero((owner == number) & on_track & (time >= p.time[0]) & (time <= p.time[-1]))
             here, soon = (p.station_at(time[own] + wait) for wait in (0.0, 0.5))
             ahead.append(p.direction * (s[own] - here))
             speed.append(2.0 * np.abs(soon - here))

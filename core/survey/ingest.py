@@ -8,23 +8,23 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..common.memory import ScratchBuffers
-from ..common.parallel import PATIENCE
-from .frame.projection import AT_ONCE, Placing
+from ..common.parallel import POLL_INTERVAL
+from .frame.projection import POINTS_PER_PROJECTION, RoadProjection
 from .las.parallel_reader import ParallelCloudReader
 from .las.scale import LasAxis
 from .scanners import ScannerCensus, times_by_value
-from .sensor_height import DEFAULT_HEIGHT, HeightTally, Tracks, first_estimate
+from .sensor_height import DEFAULT_SENSOR_HEIGHT, HeightHistogram, VehicleTracks, estimate_sensor_height
 from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, fill_units, point_dtype, to_units
 from .trajectory.time_systems import WEEK
 
 # Point cloud files into the section store, block by block in several threads.
 
-LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags")  # what is decoded of a LAZ file
-WAITING = 4_000_000    # points kept back at most until the height of the road is known
-SAMPLES = 5_000        # points on the track that tell it
-THREADS = 4            # at most: each has blocks decoded, by all cores (lazrs keeps the others waiting), and places their points
-QUEUE = 3              # blocks for each of them that are begun or wait: what keeps them busy while sections are put into the temporary file
+DECODED_LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags")  # what is decoded of a LAZ file
+MAX_WAITING_POINTS = 4_000_000  # points held back at most until the height of the road is known
+HEIGHT_SAMPLES = 5_000     # points on the own track from which the rough height is estimated
+MAX_INGEST_THREADS = 4     # each decodes blocks with all cores (lazrs keeps the others waiting) and projects their points
+BLOCKS_PER_THREAD = 3      # begun or queued per thread: keeps the threads busy while sections are written to the temporary file
 
 
 class SurveyReader:
@@ -41,8 +41,8 @@ class SurveyReader:
     def __init__(self, frame, store, corridor, has_time, week_ends=False):
         self.frame, self.store = frame, store
         self.census, self.darkest, self.brightest, self.unplaced_time = ScannerCensus(), 65535, 0, 0
-        self.tracks = Tracks(frame)
-        self._blocks = BlockReading(frame, corridor, has_time, week_ends)
+        self.tracks = VehicleTracks(frame)
+        self._blocks = BlockProjector(frame, corridor, has_time, week_ends)
         self._ground = None        # made, as the tally of heights, when the rough height of the road is known
         self._tally = None
         self._waiting, self._samples = [], []  # parts of blocks until it is known
@@ -50,13 +50,13 @@ class SurveyReader:
     def read(self, files, block, progress):
         """Read all files, `block` points at a time."""
         total, done = sum(file.count for file in files), 0
-        threads = min(THREADS, os.cpu_count() or 1)
-        with ParallelCloudReader(LAYERS) as readers, ThreadPoolExecutor(threads) as pool:
+        threads = min(MAX_INGEST_THREADS, os.cpu_count() or 1)
+        with ParallelCloudReader(DECODED_LAYERS) as readers, ThreadPoolExecutor(threads) as pool:
             waiting = deque()
 
             def take():
                 nonlocal done
-                while not wait([waiting[0]], PATIENCE).done:
+                while not wait([waiting[0]], POLL_INTERVAL).done:
                     progress.report(done / total)
                 done += self._take(*waiting.popleft().result())
                 progress.report(done / total)
@@ -65,7 +65,7 @@ class SurveyReader:
                 for load in readers.blocks(files, block):
                     waiting.append(pool.submit(self._read_block, load))
                     # the first blocks tell the road's height, which the others are chosen by
-                    while len(waiting) > (QUEUE * threads if self._ground else 0):
+                    while len(waiting) > (BLOCKS_PER_THREAD * threads if self._ground else 0):
                         take()
                 while waiting:
                     take()
@@ -77,7 +77,7 @@ class SurveyReader:
 
     def _read_block(self, load):
         """What the block says of the whole cloud, its points, whether these were chosen by height and parted, and their number in the block."""
-        block, ground, found, parts = load(), self._ground, BlockPoints(), []
+        block, ground, found, parts = load(), self._ground, BlockSummary(), []
         for road, points, own in self._blocks.read(block, found, ground):
             parts.append((road, _copied(points, own)) if ground is None else self._parted(road, points, own))
         return found, parts, ground is not None, len(block)
@@ -102,7 +102,7 @@ class SurveyReader:
         else:
             self._waiting += parts
             self._samples += [drops[::7] for road, points in parts for _, drops in self.tracks.drops(road, points)]
-            if sum(map(len, self._samples)) > SAMPLES or sum(len(points) for _, points in self._waiting) > WAITING:
+            if sum(map(len, self._samples)) > HEIGHT_SAMPLES or sum(len(points) for _, points in self._waiting) > MAX_WAITING_POINTS:
                 self._settle()
         return count
 
@@ -110,10 +110,10 @@ class SurveyReader:
         """Settle the rough height of the road and store what waited for it."""
         if self._ground is not None:
             return
-        drop = first_estimate(np.concatenate(self._samples)) if self._samples else None
-        drop = DEFAULT_HEIGHT if drop is None else drop
-        self._tally = HeightTally([p.number for p in self.frame.passes], drop)
-        self._ground = Ground(self.frame, drop)
+        drop = estimate_sensor_height(np.concatenate(self._samples)) if self._samples else None
+        drop = DEFAULT_SENSOR_HEIGHT if drop is None else drop
+        self._tally = HeightHistogram([p.number for p in self.frame.passes], drop)
+        self._ground = HeightFilter(self.frame, drop)
         waiting, self._waiting, self._samples = self._waiting, [], []
         self._choose(waiting)
 
@@ -130,16 +130,16 @@ def _copied(points, own):
     """Points that are meant (None for all) as Columns that stay."""
     return points.copy() if own is None else points.take(own).load_all()
 
-ABOVE, BELOW = 3.5, 4.0  # m about the road kept: vehicles that hide a curb above, ditches below
+KEPT_ABOVE_ROAD, KEPT_BELOW_ROAD = 3.5, 4.0  # m about the road kept: vehicles that hide a curb above, ditches below
 # m more that are stored: the height of the road is rough while reading, and exact when points are handed out,
 # so that what is handed out does not depend on which file came first
-MARGIN = 1.5
-GROUND_BITS = 12       # of a station in units of 0.1 mm: the height of the road is looked up every 0.41 m
+INGEST_HEIGHT_MARGIN = 1.5
+HEIGHT_CELL_BITS = 12       # of a station in units of 0.1 mm: the height of the road is looked up every 0.41 m
 SCANNER_FIELDS = ("point_source_id", "scanner_channel")
 
 
 @dataclass
-class BlockPoints:
+class BlockSummary:
     """What a block says of the whole cloud.
 
     scanners : {LAS field: {value: (first time, last time, count)}}
@@ -164,7 +164,7 @@ class BlockPoints:
                     seen[value] = min(first, start), max(last, end), count + number
 
 
-class Ground:
+class HeightFilter:
     """The rough height of the roads, for choosing points by height.
 
     Parameters
@@ -175,22 +175,22 @@ class Ground:
     def __init__(self, frame, drop):
         self._roads = {}
         for road in frame.roads:
-            first, last = (int(station / COORDINATE_SCALE) >> GROUND_BITS for station in (road.start, road.end))
-            stations = ((np.arange(first, last + 1) << GROUND_BITS) + (1 << GROUND_BITS) // 2) * COORDINATE_SCALE
-            lowest = frame.track_height(road.number, stations) - drop - BELOW - MARGIN
+            first, last = (int(station / COORDINATE_SCALE) >> HEIGHT_CELL_BITS for station in (road.start, road.end))
+            stations = ((np.arange(first, last + 1) << HEIGHT_CELL_BITS) + (1 << HEIGHT_CELL_BITS) // 2) * COORDINATE_SCALE
+            lowest = frame.track_height(road.number, stations) - drop - KEPT_BELOW_ROAD - INGEST_HEIGHT_MARGIN
             self._roads[road.number] = first, to_units(lowest)
 
     def near(self, road, s, z, kept):
         """(N,) bool: which places of a road, int32 units of 0.1 mm, are near its height. `kept` as of ScratchBuffers."""
         first, lowest = self._roads[int(road)]
-        cell, k = np.right_shift(s, GROUND_BITS, out=kept("cell", np.int32)), kept("k", np.intp)
+        cell, k = np.right_shift(s, HEIGHT_CELL_BITS, out=kept("cell", np.int32)), kept("k", np.intp)
         np.copyto(k, np.subtract(cell, first, out=cell))
         above = np.subtract(z, lowest.take(k, out=cell, mode="clip"), out=cell)
         # what is below becomes a large number
-        return above.view(np.uint32) < np.uint32((ABOVE + BELOW + 2 * MARGIN) / COORDINATE_SCALE)
+        return above.view(np.uint32) < np.uint32((KEPT_ABOVE_ROAD + KEPT_BELOW_ROAD + 2 * INGEST_HEIGHT_MARGIN) / COORDINATE_SCALE)
 
 
-class BlockReading:
+class BlockProjector:
     """Turns blocks into compact records; may be called by several threads.
 
     Parameters
@@ -204,21 +204,21 @@ class BlockReading:
     def __init__(self, frame, corridor, has_time, week_ends=False):
         self.frame, self.corridor, self.has_time, self.week_ends = frame, corridor, has_time, week_ends
         self.dtype = point_dtype(SURVEY_POINT, frame.farthest)
-        self.placing = Placing(frame, corridor) if has_time else None
+        self.placing = RoadProjection(frame, corridor) if has_time else None
         self.roads = np.array([p.road for p in frame.passes] + [-1])
         self._kept = ScratchBuffers()
 
     def read(self, block, found, ground=None):
-        """Yield the points of a laspy point record near a road, those near its height where a Ground is given.
+        """Yield the points of a laspy point record near a road, those near its height where a HeightFilter is given.
 
         Each time a road's number, the Columns of a piece of the block, and (N,) bool which of them are meant, None for
-        all. The next piece is written over these Columns; what is said of the whole cloud is added to `found`, BlockPoints.
+        all. The next piece is written over these Columns; what is said of the whole cloud is added to `found`, BlockSummary.
         """
         names = set(block.point_format.dimension_names)
         axes = [LasAxis(*axis, self.dtype[axis[0].lower()]) for axis in zip("XYZ", block.scales, block.offsets, self.frame.origin)]
         # piece by piece, so that what is worked on stays in the processor's cache
-        for first in range(0, len(block), AT_ONCE):
-            yield from self._piece(block[first:first + AT_ONCE], names, axes, found, ground)
+        for first in range(0, len(block), POINTS_PER_PROJECTION):
+            yield from self._piece(block[first:first + POINTS_PER_PROJECTION], names, axes, found, ground)
 
     def _piece(self, piece, names, axes, found, ground):
         kept = self._kept.of(len(piece))
@@ -261,7 +261,7 @@ class BlockReading:
         columns = {name: kept(name, SURVEY_POINT[name]) for name in ("time", "intensity", "source", "returns")}
         columns["time"][:] = raw["gps_time"] if "gps_time" in raw.dtype.names else 0.0
         if self.week_ends:
-            columns["time"][:] = carried_on(columns["time"])
+            columns["time"][:] = unwrap_week(columns["time"])
         columns["intensity"][:] = raw["intensity"]
         columns["source"][:] = raw["point_source_id"]
         columns["scanner"] = np.broadcast_to(np.uint8(0), len(raw))
@@ -292,7 +292,7 @@ class BlockReading:
         return int(np.count_nonzero(passes < 0))
 
     def _located(self, x, y, time, s, d):
-        """The same of points that may all be used, as `Placing.put` has it."""
+        """The same of points that may all be used, as `RoadProjection.put` has it."""
         if self.has_time:
             return self.placing.put(x, y, time, s, d)
         road, along, across = self.frame.locate_nearest(x * COORDINATE_SCALE, y * COORDINATE_SCALE, self.corridor)
@@ -304,7 +304,7 @@ class BlockReading:
         return passes, road >= 0
 
 
-def carried_on(time):
+def unwrap_week(time):
     """Seconds of the week, those after the week's end carried on."""
     return np.where(time < WEEK / 2, time + WEEK, time)
 

@@ -13,14 +13,14 @@ from .frame.road_frame import build_frame
 from .las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
 from .open_survey import SurveySettings, match_clocks
 from .scanners import ScannerCensus
-from .sensor_height import AROUND, NEAR_TRACK, height_above
+from .sensor_height import HEIGHT_PEAK_REACH, OWN_TRACK_HALF_WIDTH, sensor_height_of
 from .trajectory.reprojection import reproject_trajectory
 from .trajectory.trajectory import clean_trajectory
 
-NEAR = 25.0        # m from the trajectory that counts as measured from it
-SAMPLED = 50       # every how manyth point the distance to the trajectory is taken of
+NEAR_TRAJECTORY = 25.0        # m from the trajectory that counts as measured from it
+SAMPLING_INTERVAL = 50       # every how manyth point the distance to the trajectory is taken of
 INTENSITY_VALUES = 65536
-MOST_CELLS = 40_000_000  # of the density raster
+MAX_DENSITY_CELLS = 40_000_000  # of the density raster
 
 
 @dataclass(frozen=True)
@@ -146,9 +146,9 @@ class _Counter:
             if name in names:
                 self.census.add(name, np.asarray(block[name]), time)
         if self.tree is not None:
-            distance, row = self.tree.query(np.c_[x, y][::SAMPLED], distance_upper_bound=NEAR)
-            below = distance < NEAR_TRACK
-            self.on_track.append((row[below], z[::SAMPLED][below]))
+            distance, row = self.tree.query(np.c_[x, y][::SAMPLING_INTERVAL], distance_upper_bound=NEAR_TRAJECTORY)
+            below = distance < OWN_TRACK_HALF_WIDTH
+            self.on_track.append((row[below], z[::SAMPLING_INTERVAL][below]))
             self.sampled += len(distance)
             self.near += int(np.isfinite(distance).sum())
 
@@ -179,7 +179,7 @@ class _Counter:
         cell = self.settings.cell_size
         width, height = (int(np.floor((self.maximum[k] - self.corner[k]) / cell)) + 1 for k in (0, 1))
         corner = (self.corner[0], self.corner[1] + height * cell)
-        if width * height > MOST_CELLS:
+        if width * height > MAX_DENSITY_CELLS:
             raise RoadExtractionError(
                 f"A density raster of {width:,} x {height:,} cells of {cell} m would be too large. Choose a larger cell, or "
                 "inspect fewer files at once.")
@@ -266,7 +266,7 @@ def _judge_trajectory(found, wkt, has_time, progress):
         found.in_time_share = float(np.clip(shared / (last - first), 0.0, 1.0))
     if not found.near_share:
         found.notes.append(
-            f"No point lies within {NEAR:.0f} m of the trajectory. Check that both belong to one survey and use one CRS.")
+            f"No point lies within {NEAR_TRAJECTORY:.0f} m of the trajectory. Check that both belong to one survey and use one CRS.")
 
 
 # What the drive was: roads, passes, speed, and how high the sensor rode above the road.
@@ -305,7 +305,7 @@ def inspect_drive(trajectory, rows, heights):
               for p in frame.passes]
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(trajectory.x), np.diff(trajectory.y)))]
     drops = trajectory.z[rows] - heights
-    height = height_above(drops)
+    height = sensor_height_of(drops)
     profile = _profile(driven, trajectory.z, driven[rows], heights, drops, height)
     return InspectedDrive([road.length for road in frame.roads], passes,
                           float(sum(abs(last - first) for *_, first, last, _, _ in passes)), height, profile)
@@ -316,7 +316,7 @@ def _profile(driven, track_z, at, heights, drops, height):
     places = np.arange(0.0, driven[-1] + PROFILE_STEP, PROFILE_STEP)
     road = np.full(len(places), np.nan)
     if height is not None:
-        near = np.abs(drops - height) < AROUND
+        near = np.abs(drops - height) < HEIGHT_PEAK_REACH
         cell = np.rint(at[near] / PROFILE_STEP).astype(np.int64)
         order = np.lexsort((heights[near], cell))
         cell, z = cell[order], heights[near][order]

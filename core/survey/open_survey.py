@@ -8,10 +8,10 @@ from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from ..io.crs import check_projected, crs_note, parse_crs
-from .adjustment.adjust import fit_passes
+from .adjustment.adjust import adjust_passes
 from .clock_check import check_clock
 from .frame.road_frame import CORRIDOR, build_frame
-from .ingest import ABOVE, BELOW, SurveyReader, carried_on
+from .ingest import KEPT_ABOVE_ROAD, KEPT_BELOW_ROAD, SurveyReader, unwrap_week
 from .las.parallel_reader import ParallelCloudReader
 from .las.reader import POINTS_PER_BLOCK, read_headers
 from .scanners import numbers_by_value
@@ -20,9 +20,9 @@ from .store.section_store import MEMORY_LIMIT, SECTION_LENGTH, SectionStore
 from .trajectory.reprojection import reproject_trajectory
 from .trajectory.time_systems import align_time, wrapped_week
 
-HEIGHT_STEP = 0.25     # m between the stations at which the height of the road is taken to choose points by
-READING = 0.7          # of the work where passes are laid on each other afterwards
-TALL = 5.0, 15.0       # m above the road: higher than survey vehicles carry a sensor, and what 1.5 to 4.5 m are in feet
+ROAD_HEIGHT_STEP = 0.25     # m between the stations at which the height of the road is taken to choose points by
+INGEST_PROGRESS = 0.7          # of the work where passes are laid on each other afterwards
+SUSPICIOUS_SENSOR_HEIGHT = 5.0, 15.0       # m above the road: higher than survey vehicles carry a sensor, and what 1.5 to 4.5 m are in feet
 
 
 @dataclass(frozen=True)
@@ -90,18 +90,19 @@ class Survey:
         # most are near beyond doubt: the others are looked at one by one
         z = records["z"]
         first, nodes = self._heights(road, records["s"].min() * COORDINATE_SCALE, records["s"].max() * COORDINATE_SCALE)
-        doubtful = np.flatnonzero((z < (nodes.max() - BELOW) / COORDINATE_SCALE + 1) | (z > (nodes.min() + ABOVE) / COORDINATE_SCALE - 1))
-        at = records["s"][doubtful] * COORDINATE_SCALE / HEIGHT_STEP - first
+        doubtful = np.flatnonzero((z < (nodes.max() - KEPT_BELOW_ROAD) / COORDINATE_SCALE + 1)
+                                  | (z > (nodes.min() + KEPT_ABOVE_ROAD) / COORDINATE_SCALE - 1))
+        at = records["s"][doubtful] * COORDINATE_SCALE / ROAD_HEIGHT_STEP - first
         k = at.astype(np.int64)
         h = z[doubtful] * COORDINATE_SCALE - (nodes[k] + (at - k) * (nodes[k + 1] - nodes[k]))
         near = np.ones(len(records), bool)
-        near[doubtful] = (h > -BELOW) & (h < ABOVE)
+        near[doubtful] = (h > -KEPT_BELOW_ROAD) & (h < KEPT_ABOVE_ROAD)
         return None if near[doubtful].all() else near
 
     def _heights(self, road, start, end):
         """`road_height` at fixed stations about a stretch, so that many points cost little: number of the first, heights."""
-        first = int(np.floor(start / HEIGHT_STEP))
-        return first, self.road_height(road, np.arange(first, int(np.floor(end / HEIGHT_STEP)) + 2) * HEIGHT_STEP)
+        first = int(np.floor(start / ROAD_HEIGHT_STEP))
+        return first, self.road_height(road, np.arange(first, int(np.floor(end / ROAD_HEIGHT_STEP)) + 2) * ROAD_HEIGHT_STEP)
 
     def road_height(self, road, s):
         """(N,) local z of the road under the vehicle's track at stations of a road: a prior, good to decimetres."""
@@ -143,7 +144,7 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
     store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length, settings.memory_limit)
     reader = SurveyReader(frame, store, settings.corridor, has_time, week_ends)
     again = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
-    reader.read(files, settings.block, progress.part(0.0, READING) if again else progress)
+    reader.read(files, settings.block, progress.part(0.0, INGEST_PROGRESS) if again else progress)
     total = sum(file.count for file in files)
     if not store.count:
         raise RoadExtractionError(_no_overlap(files, frame, reader, settings.corridor))
@@ -155,7 +156,7 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
                       f"{reader.uneven[0]:.2f} m off {reader.uneven[1]:.2f} m below it, and curbs are missed for that. Its heights may be in feet "
                       "where the cloud's are in metres, or not be those that the cloud was made with: export both anew from one solution.")
     height = float(np.mean(list(reader.heights.values())))
-    if not crs and TALL[0] < height < TALL[1]:
+    if not crs and SUSPICIOUS_SENSOR_HEIGHT[0] < height < SUSPICIOUS_SENSOR_HEIGHT[1]:
         progress.warn(f"The sensor seems to ride {height:.1f} m above the road, as if cloud and trajectory were in feet, and no CRS tells their "
                       "unit: everything is measured in metres, so curbs and markings would be missed. If they are in feet, convert both to metres "
                       "(in a metric CRS); if they are not, set CRS.")
@@ -169,7 +170,7 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
     if has_time:
         check_clock(survey, progress)
     if again:
-        fit_passes(survey, progress.part(READING, 1.0))
+        adjust_passes(survey, progress.part(INGEST_PROGRESS, 1.0))
     return survey
 
 
@@ -199,7 +200,7 @@ def _time_span(files):
     if not len(times) or times.max() <= times.min():
         return None
     week_ends = wrapped_week((times.min(), times.max()))
-    times = carried_on(times) if week_ends else times
+    times = unwrap_week(times) if week_ends else times
     return (float(times.min()), float(times.max())), week_ends
 
 

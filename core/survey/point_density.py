@@ -8,8 +8,8 @@ from ..common.parallel import ordered_map
 from ..common.progress import Progress
 from ..io.gdal_errors import gdal_exceptions
 
-SIDE = 10_000       # units of 0.1 mm: 1 m
-AT_ONCE = 1 << 15   # points counted at a time: what fits the processor's cache
+CUBE_SIDE = 10_000       # units of 0.1 mm: 1 m
+POINTS_PER_CHUNK = 1 << 15   # points counted at a time: what fits the processor's cache
 
 
 @dataclass(frozen=True)
@@ -53,11 +53,11 @@ def _counted(points):
         return None
     low, size = [], []
     for axis in (points.records[name] for name in "xyz"):
-        low.append(int(axis.min()) // SIDE)
-        size.append(int(axis.max()) // SIDE - low[-1] + 1)
+        low.append(int(axis.min()) // CUBE_SIDE)
+        size.append(int(axis.max()) // CUBE_SIDE - low[-1] + 1)
     count = np.zeros(size[0] * size[1] * size[2], np.int64)
-    for first in range(0, len(points), AT_ONCE):
-        x, y, z = (points.records[name][first:first + AT_ONCE] // np.int32(SIDE) - np.int32(least) for name, least in zip("xyz", low))
+    for first in range(0, len(points), POINTS_PER_CHUNK):
+        x, y, z = (points.records[name][first:first + POINTS_PER_CHUNK] // np.int32(CUBE_SIDE) - np.int32(least) for name, least in zip("xyz", low))
         z *= np.int32(size[1])
         z += y
         z *= np.int32(size[0])

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
-from .adjustment.corrections import PassMoves
+from .adjustment.corrections import PassCorrections
 from .las.reader import POINTS_PER_BLOCK, open_cloud, read_blocks
 from .las.writer import new_laz, scale_for
 from .store.records import COORDINATE_SCALE, ROAD_POINT, point_dtype
@@ -12,17 +12,16 @@ from .store.road_points import RoadPoints
 from .store.section_store import SectionStore
 
 ROAD_CLASS = 11  # ASPRS: road surface
-SCALE = COORDINATE_SCALE
-FARTHEST_MOVE = 10.0  # m: no pass is moved so far
+MAX_CORRECTION = 10.0  # m: no pass is moved so far
 
 # Stations and offsets are stored as integers of 0.1 mm, so that what is read
 # back is to the bit what was passed on in memory.
-EXTRA = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", None), ("scanner", "uint8", "Scanner", None),
+EXTRA_FIELDS = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", None), ("scanner", "uint8", "Scanner", None),
          ("station_m", "int32", "Station along the road", COORDINATE_SCALE), ("offset_m", "int32", "Offset, left positive", COORDINATE_SCALE),
          ("half_width", "uint16", "Half width of the road", 1e-3), ("covered", "uint8", "Beneath something on the road", None)]
-CORRECTED = ("intensity_corrected", "float32", "Intensity, range corrected", None)
-CLUSTER = ("cluster", "int32", "Cluster of paint", None)
-NEEDED = ("road", "pass", "station_m", "offset_m", "half_width")
+CORRECTED_FIELD = ("intensity_corrected", "float32", "Intensity, range corrected", None)
+CLUSTER_FIELD = ("cluster", "int32", "Cluster of paint", None)
+REQUIRED_FIELDS = ("road", "pass", "station_m", "offset_m", "half_width")
 
 
 def write_road_points(road_points, path, progress=Progress()):
@@ -49,7 +48,7 @@ def _header(road_points):
     # The time values are handed on as they came
     header.global_encoding.gps_time_type = laspy.header.GpsTimeType.STANDARD
     header.generating_software = "Lanewright"
-    extra = EXTRA + ([CORRECTED] if road_points.has_corrected else []) + ([CLUSTER] if road_points.has_cluster else [])
+    extra = EXTRA_FIELDS + ([CORRECTED_FIELD] if road_points.has_corrected else []) + ([CLUSTER_FIELD] if road_points.has_cluster else [])
     header.add_extra_dims([
         laspy.ExtraBytesParams(name=name, type=kind, description=text,
                                **({} if scale is None else dict(scales=np.array([scale]), offsets=np.array([0.0]))))
@@ -69,7 +68,7 @@ def _farthest(road_points):
         return 0.0
     ends = [int(np.abs(road_points.store.section(road, number)[name]).max(initial=0))
             for road, number in road_points.all_sections() for name in "xy"]
-    return max(ends, default=0) * COORDINATE_SCALE + FARTHEST_MOVE
+    return max(ends, default=0) * COORDINATE_SCALE + MAX_CORRECTION
 
 
 def _whole(units, share):
@@ -84,7 +83,7 @@ def _record(road_points, road, number, header):
     out = laspy.ScaleAwarePointRecord.zeros(len(records), header=header)
     off = (0, 0, 0) if road_points.moves is None else road_points.moves.units(records)
     for name, moved in zip("xyz", off):
-        out.array[name.upper()] = _whole(records[name] - moved, SCALE / header.scales[0])
+        out.array[name.upper()] = _whole(records[name] - moved, COORDINATE_SCALE / header.scales[0])
     out["gps_time"] = records["time"]
     out["intensity"] = records["intensity"]
     out["point_source_id"] = records["source"]
@@ -112,7 +111,7 @@ def read_road_points(path, progress=Progress()):
     with open_cloud(path) as reader:
         header = reader.header
         names = set(header.point_format.dimension_names)
-        missing = [name for name in NEEDED if name not in names]
+        missing = [name for name in REQUIRED_FIELDS if name not in names]
         if missing:
             raise RoadExtractionError(
                 f"{path} lacks the extra field(s) {', '.join(missing)} that tell where on the road a point lies. "
@@ -121,7 +120,7 @@ def read_road_points(path, progress=Progress()):
         # where the file says its points lie; 32 bits of x and y reach beyond where they change to 64
         farthest = max((np.abs(np.r_[header.mins, header.maxs][[0, 1, 3, 4]] - origin[[0, 1, 0, 1]])).max(), 0.0) if total else 0.0
         dtype = point_dtype(ROAD_POINT, farthest)
-        crs, moves = header.parse_crs(), PassMoves.of_records(header.vlrs)
+        crs, moves = header.parse_crs(), PassCorrections.of_records(header.vlrs)
     has_corrected, has_cluster = "intensity_corrected" in names, "cluster" in names
     store = SectionStore(dtype)
     done = 0
@@ -130,7 +129,7 @@ def read_road_points(path, progress=Progress()):
         # another program may have rewritten the file with its own scale
         for _axis, (name, scale) in enumerate(zip("xyz", scales)):
             raw = np.asarray(block[name.upper()])
-            records[name] = raw if abs(scale - SCALE) < 1e-12 else np.rint(raw * (scale / SCALE))
+            records[name] = raw if abs(scale - COORDINATE_SCALE) < 1e-12 else np.rint(raw * (scale / COORDINATE_SCALE))
         records["time"] = block["gps_time"]
         records["intensity"], records["source"] = block["intensity"], block["point_source_id"]
         records["returns"] = np.asarray(block["return_number"]) | (np.asarray(block["number_of_returns"]) << 4)

@@ -6,8 +6,8 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 
-MOST_SCANNERS = 8
-MOST_POINTS = 0.8   # share of the points whose numbers interleave where numbers tell scanners
+MAX_SCANNERS = 8
+MIN_INTERLEAVED_SHARE = 0.8   # share of the points whose numbers interleave where numbers tell scanners
 
 
 @dataclass
@@ -23,7 +23,7 @@ class ScannerCensus:
     def take(self, name, times):
         """Take note of what `times_by_value` found in a block."""
         seen = self.spans[name]
-        if len(seen) > 4 * MOST_SCANNERS:
+        if len(seen) > 4 * MAX_SCANNERS:
             return
         for value, (start, end, number) in times.items():
             first, last, count = seen.get(value, (np.inf, -np.inf, 0))
@@ -47,18 +47,18 @@ class ScannerCensus:
                 raise RoadExtractionError(
                     f"Scanner field {wanted!r} is not known; choose automatic, scanner_channel or point_source_id.")
             values = sorted(self.spans[wanted])
-            if len(values) > 4 * MOST_SCANNERS:
+            if len(values) > 4 * MAX_SCANNERS:
                 raise RoadExtractionError(
-                    f"{wanted} has more than {4 * MOST_SCANNERS} different values, too many to be scanners. "
+                    f"{wanted} has more than {4 * MAX_SCANNERS} different values, too many to be scanners. "
                     "Set the scanner field to automatic.")
-            return wanted, values if len(values) <= MOST_SCANNERS else _heads(self.spans[wanted])
+            return wanted, values if len(values) <= MAX_SCANNERS else _heads(self.spans[wanted])
         channels = self.spans["scanner_channel"]
-        if 1 < len(channels) <= MOST_SCANNERS:
+        if 1 < len(channels) <= MAX_SCANNERS:
             return "scanner_channel", sorted(channels)
         sources = self.spans["point_source_id"]
-        if 1 < len(sources) <= 4 * MOST_SCANNERS and _interleaved(sources.values()):
+        if 1 < len(sources) <= 4 * MAX_SCANNERS and _interleaved(sources.values()):
             heads = _heads(sources)
-            if 1 < len(heads) <= MOST_SCANNERS:
+            if 1 < len(heads) <= MAX_SCANNERS:
                 return "point_source_id", heads
         return None, [0]
 
@@ -70,7 +70,7 @@ def times_by_value(values, time):
     # of what all have the same one tells
     few = values if values.strides[0] else values[:1]
     low, high = int(few.min()), int(few.max())
-    present = [low, high][:high - low + 1] if high - low < 2 else np.flatnonzero(np.bincount(values))[: 4 * MOST_SCANNERS + 1].tolist()
+    present = [low, high][:high - low + 1] if high - low < 2 else np.flatnonzero(np.bincount(values))[: 4 * MAX_SCANNERS + 1].tolist()
     found = {}
     for value in present:
         times = time if low == high else time[values == value]
@@ -112,4 +112,4 @@ def _interleaved(spans):
         total += count
         # where a recording begins or ends one scanner may see the road alone
         shared += count * (longest > 0 and longest >= 0.5 * (last - first))
-    return shared >= MOST_POINTS * total
+    return shared >= MIN_INTERLEAVED_SHARE * total

@@ -46,12 +46,12 @@ def placing(size):
     """Station and offset of points that are decoded already, from their raw coordinates and times."""
     from lanewright.core.common.parallel import ordered_map
     from lanewright.core.survey import ingest as reading
-    from lanewright.core.survey.frame.projection import Placing
+    from lanewright.core.survey.frame.projection import RoadProjection
     from lanewright.core.survey.frame.road_frame import CORRIDOR, build_frame
     from lanewright.core.survey.las.reader import POINTS_PER_BLOCK, read_blocks
     from lanewright.core.survey.trajectory.reader import read_trajectory
 
-    blocks = [block for path in clouds_of("dense", size) for block in read_blocks(str(path), POINTS_PER_BLOCK, reading.LAYERS)]
+    blocks = [block for path in clouds_of("dense", size) for block in read_blocks(str(path), POINTS_PER_BLOCK, reading.DECODED_LAYERS)]
     frame = build_frame(read_trajectory(trajectory_of("dense", size)))
 
     def place(block):
@@ -60,7 +60,7 @@ def placing(size):
         _, _, d = places.place(x, y, np.ascontiguousarray(block.array["gps_time"]))
         return int(np.isfinite(d).sum())
 
-    places = Placing(frame, CORRIDOR)
+    places = RoadProjection(frame, CORRIDOR)
     points, seconds = timed(lambda: sum(ordered_map(place, blocks)))
     return dict(seconds, points=points)
 
@@ -73,7 +73,7 @@ def storing(size):
     from lanewright.core.survey.trajectory.reader import read_trajectory
 
     clouds, trajectory = clouds_of("dense", size), read_trajectory(trajectory_of("dense", size))
-    decoded = {str(path): list(read_blocks(str(path), POINTS_PER_BLOCK, reading.LAYERS)) for path in clouds}
+    decoded = {str(path): list(read_blocks(str(path), POINTS_PER_BLOCK, reading.DECODED_LAYERS)) for path in clouds}
 
     class Decoded:
         """Stands in for the readers of the files."""

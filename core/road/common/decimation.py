@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...common.order_statistics import thinned
+from ...common.order_statistics import decimate_cells
 from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.spill_file import SpillFile
 
@@ -286,7 +286,7 @@ def limit_points_per_cell(place):
     if len(place) <= POINTS_PER_UNEVEN_CELL:
         return slice(None)
     place = place - place.min()
-    return slice(None) if np.bincount(place).max() <= POINTS_PER_UNEVEN_CELL else thinned(place, POINTS_PER_UNEVEN_CELL)
+    return slice(None) if np.bincount(place).max() <= POINTS_PER_UNEVEN_CELL else decimate_cells(place, POINTS_PER_UNEVEN_CELL)
 
 
 class _Cells:

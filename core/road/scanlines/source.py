@@ -11,7 +11,7 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...survey.lattice.scan_lattice import ScanLattice, find_lattice
-from ...survey.sensor_height import DEFAULT_HEIGHT, height_above
+from ...survey.sensor_height import DEFAULT_SENSOR_HEIGHT, sensor_height_of
 from .grid import LINE_SEPARATION
 from .scanlines import Scanlines
 from .section_planes import ScanlineSettings, scanline_runs
@@ -111,10 +111,10 @@ class LayerScanlines:
                 lines = self.lines[p.road]
                 lines = lines[lines.pass_number == p.number]
                 drops = _drops(lines, *p.at_station(lines.station))
-            height = height_above(drops)
+            height = sensor_height_of(drops)
             if height is not None:
                 known[p.number] = height
-        typical = float(np.median(list(known.values()))) if known else DEFAULT_HEIGHT
+        typical = float(np.median(list(known.values()))) if known else DEFAULT_SENSOR_HEIGHT
         return {p.number: known.get(p.number, typical) for p in self.frame.passes}
 
     def roads(self) -> list[int]:

@@ -16,19 +16,19 @@ from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ..store.records import COORDINATE_SCALE, to_units
 from ..store.section_store import SectionStore
-from .corrections import STEP, PassMoves
-from .register import AXES, MOST, WINDOW, pass_offsets
+from .corrections import CORRECTION_STEP, PassCorrections
+from .register import AXES, MAX_OFFSET, WINDOW_LENGTH, pass_offsets
 
-COORDINATES = "x", "y", "z", "s", "d"
-PLAN, UP = 0.020, 0.007    # m: where nine tenths of a road's offsets are less, it stays as it was measured
-RELIABLE = 0.003           # m, sigma of a measured offset
-STRAY = 0.010              # m off its neighbours, from where on an offset is heard less
-ROUNDS = 5                 # of weighing offsets by how well they fit
-CHANGE = 0.010             # m, sigma of the drift from window to window
-FREE = 0.20                # m, sigma of the drift itself
+MOVED_COLUMNS = "x", "y", "z", "s", "d"
+AGREEMENT_PLAN, AGREEMENT_HEIGHT = 0.020, 0.007    # m: where nine tenths of a road's offsets are less, it stays as it was measured
+OFFSET_SIGMA = 0.003           # m, sigma of a measured offset
+OUTLIER_SCALE = 0.010              # m off its neighbours, from where on an offset is weighted less
+REWEIGHTING_ROUNDS = 5                 # of weighing offsets by how well they fit
+DRIFT_CHANGE_SIGMA = 0.010             # m, sigma of the drift from window to window
+DRIFT_SIGMA = 0.20                # m, sigma of the drift itself
 
 
-def fit_passes(survey, progress=Progress()):
+def adjust_passes(survey, progress=Progress()):
     """Lay the passes over every road on each other where they measurably lie apart.
 
     Points and tracks are moved in place and height; the roads' reference lines stay.
@@ -41,20 +41,20 @@ def fit_passes(survey, progress=Progress()):
     moves = {}
     for k, road in enumerate(roads):
         offsets = pass_offsets(survey, road, progress.part(0.5 * k / len(roads), 0.5 * (k + 1) / len(roads)))
-        apart = _apart(offsets)
+        apart = _disagree(offsets)
         if apart:
-            moves.update(shares(offsets))
-        _tell(road, offsets, apart, progress)
+            moves.update(solve_corrections(offsets))
+        _report_offsets(road, offsets, apart, progress)
     if moves:
-        _move(survey, _on_the_map(survey.frame, moves), progress.part(0.5, 1.0))
+        _replace_points(survey, _map_corrections(survey.frame, moves), progress.part(0.5, 1.0))
 
 
-def shares(offsets):
+def solve_corrections(offsets):
     """How each pass is moved, from the offsets between them.
 
     Parameters
     ----------
-    offsets : list of Offsets of one road
+    offsets : list of PassOffsets of one road
 
     Returns
     -------
@@ -62,32 +62,32 @@ def shares(offsets):
     """
     numbers = sorted({number for pair in offsets for number in (pair.one, pair.other)})
     first, last = (end(np.concatenate([pair.stations for pair in offsets])) for end in (np.min, np.max))
-    stations = np.arange(first, last + STEP / 2, STEP)
+    stations = np.arange(first, last + CORRECTION_STEP / 2, CORRECTION_STEP)
     count = len(stations)
     rows = np.arange(count - 1)
     step = sparse.coo_matrix((np.r_[-np.ones(count - 1), np.ones(count - 1)], (np.r_[rows, rows], np.r_[rows, rows + 1])), (count - 1, count))
-    calm = sparse.kron(sparse.identity(len(numbers)), step.T @ step / CHANGE**2 + sparse.identity(count) / FREE**2)
+    prior = sparse.kron(sparse.identity(len(numbers)), step.T @ step / DRIFT_CHANGE_SIGMA**2 + sparse.identity(count) / DRIFT_SIGMA**2)
     found = np.zeros((len(numbers), len(AXES), count))
     for k, axis in enumerate(AXES):
         rows, values = [], []
         for pair in offsets:
             known = np.flatnonzero(np.isfinite(getattr(pair, axis)))
-            at = np.rint((pair.stations[known] - first) / STEP).astype(np.int64)
+            at = np.rint((pair.stations[known] - first) / CORRECTION_STEP).astype(np.int64)
             rows.append(np.c_[numbers.index(pair.one) * count + at, numbers.index(pair.other) * count + at])
             values.append(getattr(pair, axis)[known])
         rows, values = np.concatenate(rows), np.concatenate(values)
         of = np.repeat(np.arange(len(values)), 2)
         between = sparse.csr_matrix((np.tile([-1.0, 1.0], len(values)), (of, rows.ravel())), (len(values), len(numbers) * count))
         weight = np.ones(len(values))
-        for _ in range(ROUNDS):
-            heard = sparse.diags(weight / RELIABLE**2)
-            u = spsolve((between.T @ heard @ between + calm).tocsc(), between.T @ (heard @ values))
-            weight = 1.0 / (1.0 + ((between @ u - values) / STRAY) ** 2)
+        for _ in range(REWEIGHTING_ROUNDS):
+            precision = sparse.diags(weight / OFFSET_SIGMA**2)
+            u = spsolve((between.T @ precision @ between + prior).tocsc(), between.T @ (precision @ values))
+            weight = 1.0 / (1.0 + ((between @ u - values) / OUTLIER_SCALE) ** 2)
         found[:, k] = u.reshape(len(numbers), count)
     return {number: (stations, found[k]) for k, number in enumerate(numbers)}
 
 
-def _distances(offsets):
+def _separations(offsets):
     """(N,) metres in plan and (M,) in height between passes, where they are known."""
     plan = np.concatenate([np.hypot(np.nan_to_num(pair.along), np.nan_to_num(pair.left))[np.isfinite(pair.left) | np.isfinite(pair.along)]
                            for pair in offsets] or [np.empty(0)])
@@ -95,38 +95,38 @@ def _distances(offsets):
     return plan, up
 
 
-def _apart(offsets):
-    return any(len(values) and np.percentile(values, 90) > least for values, least in zip(_distances(offsets), (PLAN, UP)))
+def _disagree(offsets):
+    return any(len(values) and np.percentile(values, 90) > least for values, least in zip(_separations(offsets), (AGREEMENT_PLAN, AGREEMENT_HEIGHT)))
 
 
-def _tell(road, offsets, moved, progress):
+def _report_offsets(road, offsets, moved, progress):
     """What was found and done, in a line; a warning where it is beyond what drifts."""
     if moved:
-        plan, up = (f"{100 * np.median(v):.1f} cm (at most {100 * v.max():.1f})" if len(v) else "an unknown distance" for v in _distances(offsets))
+        plan, up = (f"{100 * np.median(v):.1f} cm (at most {100 * v.max():.1f})" if len(v) else "an unknown distance" for v in _separations(offsets))
         progress.info(f"Road {road}: its passes lay {plan} beside and {up} above each other, as navigation drifts between two drives. "
                      "They were laid on each other, each moved by its share.")
-    elif all(len(v) for v in _distances(offsets)):
-        plan, up = (100 * np.percentile(v, 90) for v in _distances(offsets))
+    elif all(len(v) for v in _separations(offsets)):
+        plan, up = (100 * np.percentile(v, 90) for v in _separations(offsets))
         progress.info(f"Road {road}: nine tenths of its passes lie within {plan:.1f} cm beside and {up:.1f} cm above each other; "
                      "they stay as they were measured.")
-    beyond = WINDOW * sum(pair.beyond for pair in offsets)
+    beyond = WINDOW_LENGTH * sum(pair.beyond for pair in offsets)
     if beyond:
-        progress.warn(f"Road {road}: along {beyond:.0f} m its passes seem to lie more than {100 * MOST:.0f} cm apart, which is too far to lay "
+        progress.warn(f"Road {road}: along {beyond:.0f} m its passes seem to lie more than {100 * MAX_OFFSET:.0f} cm apart, which is too far to lay "
                       "them on each other: curbs and lines may be doubled there. Adjust the trajectories of the drives to each other, or "
                       "process the files of each drive by itself.")
 
 
-def _on_the_map(frame, found):
-    """PassMoves of what `shares` gives."""
+def _map_corrections(frame, found):
+    """PassCorrections of what `solve_corrections` gives."""
     moves = {}
     for number, (stations, (along, left, up)) in found.items():
         heading = frame.road(frame.passes[number].road).heading(stations)
         c, n = np.cos(heading), np.sin(heading)
         moves[number] = float(stations[0]), to_units([along * c - left * n, along * n + left * c, up]).astype(np.int16)
-    return PassMoves(moves)
+    return PassCorrections(moves)
 
 
-def _change(frame, moves, number, s, d):
+def _coordinate_changes(frame, moves, number, s, d):
     """Changes of x, y, z, s and d, each (N,) metres, of places of a pass."""
     east, north, up = moves.metres(number, s)
     road = frame.road(frame.passes[number].road)
@@ -137,13 +137,13 @@ def _change(frame, moves, number, s, d):
 
 def _moved_points(frame, moves, records):
     """The Columns of a section with its points moved."""
-    moved = {name: np.array(records[name]) for name in COORDINATES}
+    moved = {name: np.array(records[name]) for name in MOVED_COLUMNS}
     numbers = records["pass_number"]
     for number in np.unique(numbers).tolist():
         if number in moves.by_pass:
             own = np.flatnonzero(numbers == number)
-            change = _change(frame, moves, number, *(records[name].take(own) * COORDINATE_SCALE for name in ("s", "d")))
-            for name, metres in zip(COORDINATES, change):
+            change = _coordinate_changes(frame, moves, number, *(records[name].take(own) * COORDINATE_SCALE for name in ("s", "d")))
+            for name, metres in zip(MOVED_COLUMNS, change):
                 moved[name][own] += to_units(metres)
     return records.with_columns(**moved)
 
@@ -152,12 +152,12 @@ def _moved_track(frame, moves, p):
     """A pass with its track moved."""
     if p.number not in moves.by_pass:
         return p
-    change = _change(frame, moves, p.number, p.s, p.d)
-    return replace(p, **{name: getattr(p, name) + metres for name, metres in zip(COORDINATES, change)},
+    change = _coordinate_changes(frame, moves, p.number, p.s, p.d)
+    return replace(p, **{name: getattr(p, name) + metres for name, metres in zip(MOVED_COLUMNS, change)},
                    _by_station=None, _progress=None, _by_tick={})
 
 
-def _move(survey, moves, progress):
+def _replace_points(survey, moves, progress):
     """Put the moved points into a store of their own, and the moved tracks into the frame."""
     before, frame = survey.store, survey.frame
     store = SectionStore(before.dtype, before.section_length, before.memory_limit)

@@ -6,16 +6,16 @@ import numpy as np
 
 from ..store.records import COORDINATE_SCALE, to_units
 
-STEP = 10.0        # m of station between the nodes
-OWNER = "Lanewright"  # of the records in LAS files, one for each pass, numbered from 1
+CORRECTION_STEP = 10.0        # m of station between the nodes
+VLR_USER_ID = "Lanewright"  # of the records in LAS files, one for each pass, numbered from 1
 _HEAD = np.dtype([("first", "<f8"), ("count", "<u4")])
 
 
 @dataclass(frozen=True)
-class PassMoves:
+class PassCorrections:
     """East, north and up of every pass that was moved, by station.
 
-    by_pass : {pass number: (station of the first node, (3, N) int16 in 0.1 mm)}, nodes STEP metres apart; a pass goes
+    by_pass : {pass number: (station of the first node, (3, N) int16 in 0.1 mm)}, nodes CORRECTION_STEP metres apart; a pass goes
         on beyond its first and last node as there
     """
 
@@ -24,7 +24,7 @@ class PassMoves:
     def metres(self, number, s):
         """East, north and up, (N,) metres, of a pass at (N,) stations."""
         first, values = self.by_pass[number]
-        nodes = first + STEP * np.arange(values.shape[1])
+        nodes = first + CORRECTION_STEP * np.arange(values.shape[1])
         return tuple(np.interp(s, nodes, row) * COORDINATE_SCALE for row in values)
 
     def units(self, records):
@@ -40,7 +40,7 @@ class PassMoves:
         """laspy VLRs."""
         import laspy
 
-        return [laspy.VLR(OWNER, number + 1, "Move of a pass",
+        return [laspy.VLR(VLR_USER_ID, number + 1, "Move of a pass",
                           np.array([(first, values.shape[1])], _HEAD).tobytes() + np.ascontiguousarray(values, "<i2").tobytes())
                 for number, (first, values) in sorted(self.by_pass.items())]
 
@@ -49,7 +49,7 @@ class PassMoves:
         """What `to_records` wrote, from the VLRs of a file; None where there is nothing of it."""
         found = {}
         for record in records:
-            if record.user_id.rstrip("\0") == OWNER:
+            if record.user_id.rstrip("\0") == VLR_USER_ID:
                 data = bytes(record.record_data_bytes())
                 first, count = np.frombuffer(data, _HEAD, 1)[0].tolist()
                 found[record.record_id - 1] = first, np.frombuffer(data, "<i2", 3 * count, _HEAD.itemsize).reshape(3, count)

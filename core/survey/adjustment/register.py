@@ -15,40 +15,40 @@ from scipy.ndimage import gaussian_filter1d
 
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from .corrections import STEP
+from .corrections import CORRECTION_STEP
 
 AXES = "along", "left", "up"
 CHANNELS = "steps", "paint"
-WHOLE = {"steps": 1e4, "paint": 64.0}  # in 0.1 mm and in parts of a spread
-WINDOW = STEP          # m of road compared at a time, counted from station 0
-REACH = 12.0           # m either side of the reference line
-FINE, COARSE = 0.02, 0.25  # m: cells in the direction of an offset, and across it
-MOST = 0.30            # m between two passes
-LAGS = np.arange(-int(round(MOST / FINE)), int(round(MOST / FINE)) + 1)
-LOWEST, HIGHEST = -0.3, 0.4   # m about the road's expected height: ground and curbs
-BLUR = 3               # cells over which heights are averaged
-SMOOTH = 51            # cells: what varies over more than a metre is no curb and no paint
-EDGE, CONTRAST = 0.05, 4.0  # m of height, and spreads of brightness, beyond which a cell tells no more
-BEST = 0.999           # correlation: more tells no more
-LEVEL = 0.01           # m: cells that lie flat tell how far one pass lies above the other
-FEWEST = 300           # cells that two passes must share in a window
-ALIKE = 6.0            # neighbouring cells whose errors are alike
-POOLED = 15.0          # m, sigma: over so much road drift changes little
-SURE = 0.006           # m, sigma of an offset that counts
-USUAL = 0.10           # m, sigma of what is expected at all: of two offsets as good the smaller one
-CLEAR = 25.0           # by how much the best offset must be likelier (twice the logarithm) than none
-ALONE = 0.7            # of that at most, another offset that stands out may reach
-TOP = 2                # cells either side of the best that tell where between cells it lies
-BESIDE = 2             # cells beside the best that are no others
+CHANNEL_SCALE = {"steps": 1e4, "paint": 64.0}  # in 0.1 mm and in parts of a spread
+WINDOW_LENGTH = CORRECTION_STEP          # m of road compared at a time, counted from station 0
+STRIP_HALF_WIDTH = 12.0           # m either side of the reference line
+LAG_CELL, ROW_CELL = 0.02, 0.25  # m: cells in the direction of an offset, and across it
+MAX_OFFSET = 0.30            # m between two passes
+LAGS = np.arange(-int(round(MAX_OFFSET / LAG_CELL)), int(round(MAX_OFFSET / LAG_CELL)) + 1)
+MIN_CELL_HEIGHT, MAX_CELL_HEIGHT = -0.3, 0.4   # m about the road's expected height: ground and curbs
+HEIGHT_BLUR_CELLS = 3               # cells over which heights are averaged
+DETREND_CELLS = 51            # cells: what varies over more than a metre is no curb and no paint
+MAX_STEP, MAX_CONTRAST = 0.05, 4.0  # m of height, and spreads of brightness, beyond which a cell tells no more
+MAX_CORRELATION = 0.999           # correlation: more tells no more
+FLAT_STEP = 0.01           # m: cells that lie flat tell how far one pass lies above the other
+MIN_SHARED_CELLS = 300           # cells that two passes must share in a window
+CORRELATED_CELLS = 6.0            # neighbouring cells whose errors are alike
+POOLING_SIGMA = 15.0          # m, sigma: over so much road drift changes little
+MAX_OFFSET_SIGMA = 0.006           # m, sigma of an offset that counts
+PRIOR_OFFSET_SIGMA = 0.10           # m, sigma of what is expected at all: of two offsets as good the smaller one
+MIN_LIKELIHOOD_RATIO = 25.0           # by how much the best offset must be likelier (twice the logarithm) than none
+MAX_RUNNER_UP = 0.7            # of that at most, another offset that stands out may reach
+PARABOLA_CELLS = 2                # cells either side of the best that tell where between cells it lies
+PEAK_CELLS = 2             # cells beside the best that are no others
 
 
 @dataclass(frozen=True)
-class Offsets:
+class PassOffsets:
     """What must be added to pass `other` to lay it on pass `one`, window by window of a road.
 
     stations : (N,) middles of the windows
     along, left, up : (N,) metres, NaN where nothing tells
-    beyond : windows in which they seem to lie more than MOST apart
+    beyond : windows in which they seem to lie more than MAX_OFFSET apart
     """
 
     one: int
@@ -67,32 +67,32 @@ class _Strips:
     """
 
     def __init__(self, fine, coarse, h, intensity, shape):
-        row, cell = (coarse / COARSE).astype(np.int64), (fine / FINE).astype(np.int64)
+        row, cell = (coarse / ROW_CELL).astype(np.int64), (fine / LAG_CELL).astype(np.int64)
         inside = (row >= 0) & (row < shape[0]) & (cell >= 0) & (cell < shape[1])
         place = (row * shape[1] + cell)[inside]
 
         def means(values, cells):
             # of a cell and those beside it where points may lie farther apart than cells
-            total, count = (_around(np.bincount(place, some, shape[0] * shape[1]).reshape(shape).astype(np.float32), cells)
+            total, count = (_box_sum(np.bincount(place, some, shape[0] * shape[1]).reshape(shape).astype(np.float32), cells)
                             for some in (values[inside], None))
             with np.errstate(invalid="ignore", divide="ignore"):
                 return np.where(count > 0.5, total / count, np.float32(np.nan))
 
-        self.heights = means(h, BLUR)
-        self.steps = np.clip(_without_slow(self.heights), -EDGE, EDGE)
-        paint = _without_slow(means(intensity, 1))
+        self.heights = means(h, HEIGHT_BLUR_CELLS)
+        self.steps = np.clip(_detrended(self.heights), -MAX_STEP, MAX_STEP)
+        paint = _detrended(means(intensity, 1))
         known = np.isfinite(paint)
         spread = float(np.median(np.abs(paint[known]))) / 0.6745 if known.any() else 0.0
-        self.paint = np.clip(paint / max(spread, 1e-6), -CONTRAST, CONTRAST)
+        self.paint = np.clip(paint / max(spread, 1e-6), -MAX_CONTRAST, MAX_CONTRAST)
 
 
-def _without_slow(values):
-    """Rows of values less their mean over SMOOTH cells; NaN stays."""
+def _detrended(values):
+    """Rows of values less their mean over DETREND_CELLS cells; NaN stays."""
     known = np.isfinite(values)
-    return values - _around(np.where(known, values, np.float32(0)), SMOOTH) / np.maximum(_around(known.astype(np.float32), SMOOTH), 1)
+    return values - _box_sum(np.where(known, values, np.float32(0)), DETREND_CELLS) / np.maximum(_box_sum(known.astype(np.float32), DETREND_CELLS), 1)
 
 
-def _around(values, cells):
+def _box_sum(values, cells):
     """Sums over so many cells of a row."""
     return cv2.boxFilter(values, cv2.CV_32F, (cells, 1), normalize=False, borderType=cv2.BORDER_CONSTANT)
 
@@ -103,13 +103,13 @@ def _shifted(one, other, lag):
     return one[:, max(lag, 0):size + min(lag, 0)], other[:, max(-lag, 0):size - max(lag, 0)]
 
 
-def _likeness(one, other):
+def _correlation_sums(one, other):
     """(2, 4, L) of steps and paint, for every lag: sums of products and of either's squares over the cells both saw, and how many these are."""
     found = np.zeros((2, 4, len(LAGS)))
     for k, name in enumerate(CHANNELS):
         known = [np.isfinite(getattr(strips, name)) for strips in (one, other)]
         # whole numbers sum exactly, in whatever order a library does it
-        values = [np.where(there, np.rint(getattr(strips, name) * WHOLE[name]), 0.0) for there, strips in zip(known, (one, other))]
+        values = [np.where(there, np.rint(getattr(strips, name) * CHANNEL_SCALE[name]), 0.0) for there, strips in zip(known, (one, other))]
         known = [there.astype(float) for there in known]
         squares = [v * v for v in values]
         for j, lag in enumerate(LAGS.tolist()):
@@ -118,12 +118,12 @@ def _likeness(one, other):
     return found
 
 
-def _rise(one, other, lag):
+def _height_offset(one, other, lag):
     """Median metres that `one` lies above `other` moved by `lag`, of level cells; NaN of too few."""
     off = np.subtract(*_shifted(one.heights, other.heights, lag))
-    level = np.maximum(*map(np.abs, _shifted(one.steps, other.steps, lag))) < LEVEL
+    level = np.maximum(*map(np.abs, _shifted(one.steps, other.steps, lag))) < FLAT_STEP
     off = off[level & np.isfinite(off)]
-    return float(np.median(off)) if len(off) >= FEWEST else np.nan
+    return float(np.median(off)) if len(off) >= MIN_SHARED_CELLS else np.nan
 
 
 def pass_offsets(survey, road, progress=Progress()):
@@ -136,96 +136,96 @@ def pass_offsets(survey, road, progress=Progress()):
 
     Returns
     -------
-    list of Offsets
+    list of PassOffsets
     """
     start, end = survey.store.span(road)
-    windows = [number for number in range(int(np.floor(start / WINDOW)), int(np.ceil(end / WINDOW)))
-               if _shared(survey.frame.passes_of(road), number * WINDOW, (number + 1) * WINDOW)]
+    windows = [number for number in range(int(np.floor(start / WINDOW_LENGTH)), int(np.ceil(end / WINDOW_LENGTH)))
+               if _several_passes(survey.frame.passes_of(road), number * WINDOW_LENGTH, (number + 1) * WINDOW_LENGTH)]
     seen = {}
-    for number, found in zip(windows, ordered_map(lambda number: _looked_at(survey, road, number), windows, progress)):
+    for number, found in zip(windows, ordered_map(lambda number: _window_evidence(survey, road, number), windows, progress)):
         for pair, evidence in found.items():
             seen.setdefault(pair, []).append((number, *evidence))
-    return [_settled(pair, evidence) for pair, evidence in sorted(seen.items())]
+    return [_combine_windows(pair, evidence) for pair, evidence in sorted(seen.items())]
 
 
-def _shared(passes, start, end):
+def _several_passes(passes, start, end):
     """Whether two passes were there."""
     return sum(p.span[0] < end and p.span[1] > start for p in passes) > 1
 
 
-def _looked_at(survey, road, number):
+def _window_evidence(survey, road, number):
     """What a window says of passes, each against the next: {(one, other): (likeness across, likeness along, rise)}."""
-    points = survey.window(road, number * WINDOW, (number + 1) * WINDOW)
-    nodes = number * WINDOW + np.arange(int(WINDOW / COARSE) + 1) * COARSE
+    points = survey.window(road, number * WINDOW_LENGTH, (number + 1) * WINDOW_LENGTH)
+    nodes = number * WINDOW_LENGTH + np.arange(int(WINDOW_LENGTH / ROW_CELL) + 1) * ROW_CELL
     s, d = points.s, points.d
     h = points.z - np.interp(s, nodes, survey.road_height(road, nodes))
-    near = np.flatnonzero((np.abs(d) < REACH) & (h > LOWEST) & (h < HIGHEST))
-    owner, s, d, h = points.pass_number.take(near), s[near] - number * WINDOW, d[near] + REACH, h[near]
+    near = np.flatnonzero((np.abs(d) < STRIP_HALF_WIDTH) & (h > MIN_CELL_HEIGHT) & (h < MAX_CELL_HEIGHT))
+    owner, s, d, h = points.pass_number.take(near), s[near] - number * WINDOW_LENGTH, d[near] + STRIP_HALF_WIDTH, h[near]
     intensity = points.intensity.take(near).astype(float)
     strips = []
     for numbers in np.unique(owner).tolist():
         own = np.flatnonzero(owner == numbers)
-        if len(own) > FEWEST:
-            sides = [_Strips(fine[own], coarse[own], h[own], intensity[own], (round(width / COARSE), round(length / FINE)))
-                     for fine, coarse, length, width in ((d, s, 2 * REACH, WINDOW), (s, d, WINDOW, 2 * REACH))]
+        if len(own) > MIN_SHARED_CELLS:
+            sides = [_Strips(fine[own], coarse[own], h[own], intensity[own], (round(width / ROW_CELL), round(length / LAG_CELL)))
+                     for fine, coarse, length, width in ((d, s, 2 * STRIP_HALF_WIDTH, WINDOW_LENGTH), (s, d, WINDOW_LENGTH, 2 * STRIP_HALF_WIDTH))]
             strips.append((numbers, *sides))
-    return {(one[0], other[0]): (_likeness(one[1], other[1]), _likeness(one[2], other[2]), _rise(one[1], other[1], 0))
+    return {(one[0], other[0]): (_correlation_sums(one[1], other[1]), _correlation_sums(one[2], other[2]), _height_offset(one[1], other[1], 0))
             for one, other in zip(strips[:-1], strips[1:])}
 
 
-def _settled(pair, evidence):
-    """Offsets of two passes from what their windows say, each window helped by those beside it."""
+def _combine_windows(pair, evidence):
+    """PassOffsets of two passes from what their windows say, each window helped by those beside it."""
     numbers = np.array([row[0] for row in evidence])
-    across, lengthwise = (_pooled(numbers, np.array([row[k] for row in evidence])) for k in (1, 2))
-    (steps, steps_far), (paint, paint_far) = (_best_lags(across[:, k]) for k in range(len(CHANNELS)))
+    across, lengthwise = (_pool(numbers, np.array([row[k] for row in evidence])) for k in (1, 2))
+    (steps, steps_far), (paint, paint_far) = (_best_offsets(across[:, k]) for k in range(len(CHANNELS)))
     # a curb face looks another way from the other lane: it tells where no paint does
     left, far = np.where(np.isnan(paint), steps, paint), np.where(np.isnan(paint), steps_far | paint_far, False)
     # along the road, it is hit here on its face and there on its top by scan lines as regular as any pattern
-    along, _ = _best_lags(lengthwise[:, CHANNELS.index("paint")])
+    along, _ = _best_offsets(lengthwise[:, CHANNELS.index("paint")])
     rises = np.array([row[3] for row in evidence])
     known = np.isfinite(rises)
-    total = _pooled(numbers, known.astype(float))
-    up = np.where(total > 0.5, _pooled(numbers, np.nan_to_num(rises)) / np.maximum(total, 1e-9), np.nan)
-    stations = (numbers + 0.5) * WINDOW
-    return Offsets(*pair, stations, along, left, up, int(np.count_nonzero(far)))
+    total = _pool(numbers, known.astype(float))
+    up = np.where(total > 0.5, _pool(numbers, np.nan_to_num(rises)) / np.maximum(total, 1e-9), np.nan)
+    stations = (numbers + 0.5) * WINDOW_LENGTH
+    return PassOffsets(*pair, stations, along, left, up, int(np.count_nonzero(far)))
 
 
-def _pooled(numbers, values):
+def _pool(numbers, values):
     """(N, ...) sums over the windows of numbers (N,) and those beside them, which count the less the farther they are."""
-    sigma = POOLED / WINDOW
+    sigma = POOLING_SIGMA / WINDOW_LENGTH
     whole = np.zeros((numbers[-1] - numbers[0] + 1, *values.shape[1:]))
     whole[numbers - numbers[0]] = values
     return gaussian_filter1d(whole, sigma, axis=0, mode="constant")[numbers - numbers[0]] * (sigma * np.sqrt(2 * np.pi))
 
 
-def _best_lags(likeness):
-    """Offsets, (N,) metres or NaN, at which passes are most alike, from (N, 4, L) of `_likeness`; and where that is at the very limit.
+def _best_offsets(likeness):
+    """PassOffsets, (N,) metres or NaN, at which passes are most alike, from (N, 4, L) of `_correlation_sums`; and where that is at the very limit.
 
     Correlation, unlike the mean difference, says nothing where there is but noise, however that is spread over the cells.
     """
     products, squares, others, counts = np.moveaxis(likeness, 1, 0)
     enough = counts[:, len(LAGS) // 2]
-    correlation = np.clip(products / np.sqrt(np.maximum(squares * others, 1e-12)), 0.0, BEST)
-    fit = np.log(1.0 - correlation**2) * (enough / ALIKE)[:, None]
-    unlikely = np.where(enough[:, None] >= FEWEST, fit, 0.0) + (FINE * LAGS / USUAL) ** 2
+    correlation = np.clip(products / np.sqrt(np.maximum(squares * others, 1e-12)), 0.0, MAX_CORRELATION)
+    fit = np.log(1.0 - correlation**2) * (enough / CORRELATED_CELLS)[:, None]
+    unlikely = np.where(enough[:, None] >= MIN_SHARED_CELLS, fit, 0.0) + (LAG_CELL * LAGS / PRIOR_OFFSET_SIGMA) ** 2
     best = np.argmin(unlikely, axis=1)
     least = unlikely.min(axis=1)
-    clear = (least < -CLEAR) & (_runner_up(unlikely, best) > ALONE * least)
+    clear = (least < -MIN_LIKELIHOOD_RATIO) & (_second_best(unlikely, best) > MAX_RUNNER_UP * least)
     limit = clear & ((best == 0) | (best == len(LAGS) - 1))
     # a parabola through the best and those about it
-    k = np.clip(best, TOP, len(LAGS) - 1 - TOP)[:, None] + np.arange(-TOP, TOP + 1)
-    bend, slope, _ = np.polyfit(np.arange(-TOP, TOP + 1.0), np.take_along_axis(unlikely, k, 1).T, 2)
+    k = np.clip(best, PARABOLA_CELLS, len(LAGS) - 1 - PARABOLA_CELLS)[:, None] + np.arange(-PARABOLA_CELLS, PARABOLA_CELLS + 1)
+    bend, slope, _ = np.polyfit(np.arange(-PARABOLA_CELLS, PARABOLA_CELLS + 1.0), np.take_along_axis(unlikely, k, 1).T, 2)
     bend = np.maximum(bend, 1e-12)
-    found = FINE * (LAGS[k[:, TOP]] + np.clip(-0.5 * slope / bend, -TOP, TOP))
-    return np.where(clear & ~limit & (FINE / np.sqrt(bend) < SURE), found, np.nan), limit
+    found = LAG_CELL * (LAGS[k[:, PARABOLA_CELLS]] + np.clip(-0.5 * slope / bend, -PARABOLA_CELLS, PARABOLA_CELLS))
+    return np.where(clear & ~limit & (LAG_CELL / np.sqrt(bend) < MAX_OFFSET_SIGMA), found, np.nan), limit
 
 
-def _runner_up(unlikely, best):
+def _second_best(unlikely, best):
     """(N,) the least of (N, L) values that is less than its neighbours and none of those beside the best; infinite where there is none.
 
     Slabs and cobbles fit themselves again one stone farther.
     """
     dips = np.zeros(unlikely.shape, bool)
     dips[:, 1:-1] = (unlikely[:, 1:-1] <= unlikely[:, :-2]) & (unlikely[:, 1:-1] <= unlikely[:, 2:])
-    dips &= np.abs(np.arange(unlikely.shape[1]) - best[:, None]) > BESIDE
+    dips &= np.abs(np.arange(unlikely.shape[1]) - best[:, None]) > PEAK_CELLS
     return np.where(dips, unlikely, np.inf).min(axis=1)

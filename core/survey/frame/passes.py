@@ -7,15 +7,15 @@ from math import hypot
 import numpy as np
 from scipy.spatial import cKDTree
 
-STEP = 2.0          # m between the positions that are compared
-NEAR = 12.0         # m: closer than this and parallel is the same carriageway
-LEVEL = 3.0         # m of height: farther above is another level of a ramp or bridge
-PARALLEL = np.radians(30.0)
-RETURN_AFTER = 60.0  # m of driving before coming near one's own track counts as a return
-SHORTEST = 10.0     # m: shorter pieces are not worth a pass of their own
-LONGEST = 200_000.0  # m of one road: its stations have 32 bits; what is longer becomes several roads
-STANDSTILL = 0.5    # m that a standing vehicle's position may tremble
-TURN = np.radians(75.0)   # off the apex's heading: where a turn on the spot begins and ends
+TRACK_STEP = 2.0          # m between the positions that are compared
+SAME_CARRIAGEWAY = 12.0         # m: closer than this and parallel is the same carriageway
+LEVEL_SEPARATION = 3.0         # m of height: farther above is another level of a ramp or bridge
+PARALLEL_ANGLE = np.radians(30.0)
+MIN_LOOP_LENGTH = 60.0  # m of driving before coming near one's own track counts as a return
+MIN_PASS_LENGTH = 10.0     # m: shorter pieces are not worth a pass of their own
+MAX_ROAD_LENGTH = 200_000.0  # m of one road: its stations have 32 bits; what is longer becomes several roads
+STANDSTILL_RADIUS = 0.5    # m that a standing vehicle's position may tremble
+TURN_ANGLE = np.radians(75.0)   # off the apex's heading: where a turn on the spot begins and ends
 TURN_REACH = 40.0   # m either side of its apex
 
 
@@ -34,7 +34,7 @@ class DrivenPath:
     line_last: int
 
 
-def thin_by_distance(x, y, step):
+def decimate_by_distance(x, y, step):
     """Indices of positions at least `step` metres of driving apart; first and last are kept."""
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
     if driven[-1] < step:
@@ -46,7 +46,7 @@ def thin_by_distance(x, y, step):
     return keep
 
 
-def moving_rows(x, y, step=STANDSTILL):
+def moving_rows(x, y, step=STANDSTILL_RADIUS):
     """Indices of rows that lie at least `step` metres from the one kept before: trembling adds no length to the road.
 
     First and last row are kept (the last in place of the one before where that is nearer than `step`).
@@ -75,7 +75,7 @@ def moving_rows(x, y, step=STANDSTILL):
 
 
 def split_into_passes(trajectory):
-    """Cut the trajectory where it pauses, turns back, crosses itself or returns to its own track, and what is longer than LONGEST.
+    """Cut the trajectory where it pauses, turns back, crosses itself or returns to its own track, and what is longer than MAX_ROAD_LENGTH.
 
     Returns
     -------
@@ -84,7 +84,7 @@ def split_into_passes(trajectory):
     pieces = []
     for first, last in _split_at_pauses(trajectory):
         pieces += _split_at_returns(trajectory, first, last)
-    return [piece for piece in pieces if piece.length >= SHORTEST] or \
+    return [piece for piece in pieces if piece.length >= MIN_PASS_LENGTH] or \
         [max(pieces, key=lambda piece: piece.length)]
 
 
@@ -103,7 +103,7 @@ def _split_at_returns(trajectory, first, last):
     x, y = trajectory.x[first:last], trajectory.y[first:last]
     rows = moving_rows(x, y)
     driven = np.interp(np.arange(last - first), rows, np.r_[0.0, np.cumsum(np.hypot(np.diff(x[rows]), np.diff(y[rows])))])
-    rows = rows[thin_by_distance(x[rows], y[rows], STEP)]
+    rows = rows[decimate_by_distance(x[rows], y[rows], TRACK_STEP)]
     cuts = []
     if len(rows) >= 4:
         px, py = x[rows], y[rows]
@@ -112,32 +112,32 @@ def _split_at_returns(trajectory, first, last):
         cuts = [(int(rows[k]), *(int(rows[m]) for m in (_turn_ends(heading, along, k) if is_turn else (k, k))))
                 for k, is_turn in _return_cuts(px, py, along, heading)]
     count = last - first
-    cuts = _short_enough(_long_enough(cuts, driven), driven)
+    cuts = _split_long_pieces(_drop_short_pieces(cuts, driven), driven)
     starts = [(0, 0)] + [(row, after) for row, _, after in cuts]
     ends = [(row + 1, before + 1) for row, before, _ in cuts] + [(count, count)]
     return [DrivenPath(first + a, first + b, float(driven[b - 1] - driven[a]), first + line_a, first + line_b)
             for (a, line_a), (b, line_b) in zip(starts, ends) if b - a > 1]
 
 
-def _long_enough(cuts, driven):
+def _drop_short_pieces(cuts, driven):
     """The cuts without those that leave a piece too short for a pass: its rows stay with the piece before."""
     kept, begins = [], 0.0
     for cut in cuts:
-        if driven[cut[0]] - begins >= SHORTEST:
+        if driven[cut[0]] - begins >= MIN_PASS_LENGTH:
             kept.append(cut)
             begins = driven[cut[0]]
-    while kept and driven[-1] - driven[kept[-1][0]] < SHORTEST:
+    while kept and driven[-1] - driven[kept[-1][0]] < MIN_PASS_LENGTH:
         kept.pop()
     return kept
 
 
-def _short_enough(cuts, driven):
-    """The cuts with further ones, by which pieces longer than LONGEST become equal parts."""
+def _split_long_pieces(cuts, driven):
+    """The cuts with further ones, by which pieces longer than MAX_ROAD_LENGTH become equal parts."""
     ends = [0, *(row for row, _, _ in cuts), len(driven) - 1]
     found = []
     for first, last in zip(ends[:-1], ends[1:]):
         length = driven[last] - driven[first]
-        parts = int(np.ceil(length / LONGEST))
+        parts = int(np.ceil(length / MAX_ROAD_LENGTH))
         rows = np.searchsorted(driven, driven[first] + length * np.arange(1, parts) / max(parts, 1)).tolist()
         found += [(row, row, row) for row in rows if first < row < last]
     return sorted([*cuts, *found])
@@ -146,7 +146,7 @@ def _short_enough(cuts, driven):
 def _turn_ends(heading, along, apex):
     """Indices before and after the apex of a turn on the spot at which the vehicle is back in its lane's direction."""
     off = np.abs(heading - heading[apex])
-    straight = (off >= TURN) & (np.abs(along - along[apex]) <= TURN_REACH)
+    straight = (off >= TURN_ANGLE) & (np.abs(along - along[apex]) <= TURN_REACH)
     before, after = np.flatnonzero(straight[:apex]), np.flatnonzero(straight[apex:])
     return (before[-1] if len(before) else apex), (apex + after[0] if len(after) else apex)
 
@@ -159,15 +159,15 @@ def _apex(px, py, heading, a, b):
 
 def _return_cuts(px, py, along, heading):
     """[(index, is it a turn on the spot)] of the positions at which a new pass begins."""
-    pairs = cKDTree(np.c_[px, py]).query_pairs(NEAR, output_type="ndarray")
+    pairs = cKDTree(np.c_[px, py]).query_pairs(SAME_CARRIAGEWAY, output_type="ndarray")
     if not len(pairs):
         return []
     i, j = pairs.min(axis=1), pairs.max(axis=1)
     apart = along[j] - along[i]
     turned = np.abs((heading[j] - heading[i] + np.pi) % (2 * np.pi) - np.pi)
-    back = (turned > np.pi - PARALLEL) & (apart > 4 * STEP)
-    again = (turned < PARALLEL) & (apart > RETURN_AFTER)
-    crossed = (apart > RETURN_AFTER) & (np.hypot(px[i] - px[j], py[i] - py[j]) < STEP)
+    back = (turned > np.pi - PARALLEL_ANGLE) & (apart > 4 * TRACK_STEP)
+    again = (turned < PARALLEL_ANGLE) & (apart > MIN_LOOP_LENGTH)
+    crossed = (apart > MIN_LOOP_LENGTH) & (np.hypot(px[i] - px[j], py[i] - py[j]) < TRACK_STEP)
     use = back | again | crossed
     order = np.flatnonzero(use)[np.lexsort((-i[use], j[use]))]
     cuts, start = [], 0
@@ -176,7 +176,7 @@ def _return_cuts(px, py, along, heading):
             continue
         # A turn on the spot is cut at its apex, a return from elsewhere where it comes back, and a loop that crosses
         # itself half way round: neither part then has two stations at the crossing, on whatever levels they meet
-        is_turn = bool(is_back and path < RETURN_AFTER + 20)
+        is_turn = bool(is_back and path < MIN_LOOP_LENGTH + 20)
         if is_turn:
             start = _apex(px, py, heading, a, b)
         else:
@@ -187,8 +187,8 @@ def _return_cuts(px, py, along, heading):
 
 # One run of the vehicle along a road: where it was at any time, and at any station.
 
-TICK = 0.005       # s between the times at which a pass is looked up
-MOST_TICKS = 20_000_000
+TIME_TICK = 0.005       # s between the times at which a pass is looked up
+MAX_TICKS = 20_000_000
 
 
 @dataclass
@@ -220,7 +220,7 @@ class Pass:
         """
         if not self._by_tick:
             span = self.time[-1] - self.time[0]
-            tick = max(TICK, span / MOST_TICKS)
+            tick = max(TIME_TICK, span / MAX_TICKS)
             self._by_tick["time"] = tick, self.time[0] + tick * np.arange(int(np.ceil(span / tick)) + 2)
         tick, times = self._by_tick["time"]
         at = (np.asarray(time, float) - times[0]) * (1.0 / tick)
@@ -256,15 +256,15 @@ class Pass:
 
     def at_station(self, s):
         """Offset and height of the vehicle's track where it passes station s."""
-        stations, d, z = self._in_order()
+        stations, d, z = self._track_by_station()
         return np.interp(s, stations, d), np.interp(s, stations, z)
 
     def height_at_station(self, s):
         """Height of the vehicle's track where it passes station s."""
-        stations, _, z = self._in_order()
+        stations, _, z = self._track_by_station()
         return np.interp(s, stations, z)
 
-    def _in_order(self):
+    def _track_by_station(self):
         if self._by_station is None:
             order = np.argsort(self.s, kind="stable")
             self._by_station = self.s[order], self.d[order], self.z[order]

@@ -9,36 +9,36 @@ import numpy as np
 
 from ...common.memory import ScratchBuffers
 from ..store.records import COORDINATE_SCALE, to_units
-from .passes import MOST_TICKS, TICK
-from .reference_line import NODE
+from .passes import MAX_TICKS, TIME_TICK
+from .reference_line import NODE_SPACING
 
-STEP = round(NODE / COORDINATE_SCALE)  # units from node to node
-FINE = 4              # bits that places of nodes have beyond the unit
-MOST_STEPS = 3        # from node to node for the few places that one step from the vehicle's node leaves beside their own
-FARTHEST = 300.0      # nodes that a step leads on
-BESIDE = 1e-3         # of a node beyond its ends: the direction there is that of the next one to 1e-6
-CLEAR = 0.55          # of a bend's radius to its inner side, as far as the closed form is trusted
-AHEAD = (0.4, 2.5)    # metres that a metre ahead may be along a bend, at the least and the most
+NODE_UNITS = round(NODE_SPACING / COORDINATE_SCALE)  # units from node to node
+NODE_FRACTION_BITS = 4              # bits that places of nodes have beyond the unit
+MAX_NODE_STEPS = 3        # from node to node for the few places that one step from the vehicle's node leaves beside their own
+MAX_NODE_LEAP = 300.0      # nodes that a step leads on
+NODE_TOLERANCE = 1e-3         # of a node beyond its ends: the direction there is that of the next one to 1e-6
+CLOSED_FORM_BEND = 0.55          # of a bend's radius to its inner side, as far as the closed form is trusted
+BEND_STRETCH = (0.4, 2.5)    # metres that a metre ahead may be along a bend, at the least and the most
 
 
-class LineTable:
+class LineLookup:
     """A road's reference line in tables by node.
 
-    Lengths are in nodes (NODE metres) here, and `bend` is a place's metres left of the line over the radius there.
+    Lengths are in nodes (NODE_SPACING metres) here, and `bend` is a place's metres left of the line over the radius there.
     """
 
     def __init__(self, road):
         self.road, self.last, self._few = road, len(road.x) - 2, ScratchBuffers()
         self.start = round(road.start / COORDINATE_SCALE)
-        self.end = self.start + STEP * (len(road.x) - 1)
+        self.end = self.start + NODE_UNITS * (len(road.x) - 1)
         # where places have 64 bits, 32 of them tell them apart within the box about the line
         self._box = [(int(v.min() / COORDINATE_SCALE), int(v.max() / COORDINATE_SCALE)) for v in (road.x, road.y)]
         # 32 bits of fine units reach 13 km: what lies nearer to a node is told right wherever both are, for differences wrap as places do
-        self.x, self.y = (np.rint(v / COORDINATE_SCALE * 2**FINE).astype(np.int64).astype(np.int32) for v in (road.x, road.y))
+        self.x, self.y = (np.rint(v / COORDINATE_SCALE * 2**NODE_FRACTION_BITS).astype(np.int64).astype(np.int32) for v in (road.x, road.y))
         c, n = road._cos, road._sin
-        dx, dy, dc, dn = (np.diff(v, append=v[-1:]) / NODE for v in (road.x, road.y, c, n))
-        self.cos, self.sin = ((v / (STEP * 2**FINE)).astype(np.float32) for v in (c, n))
-        self.turn, self.sag = (c * dn * NODE - n * dc * NODE).astype(np.float32), (dx * n - dy * c).astype(np.float32)
+        dx, dy, dc, dn = (np.diff(v, append=v[-1:]) / NODE_SPACING for v in (road.x, road.y, c, n))
+        self.cos, self.sin = ((v / (NODE_UNITS * 2**NODE_FRACTION_BITS)).astype(np.float32) for v in (c, n))
+        self.turn, self.sag = (c * dn * NODE_SPACING - n * dc * NODE_SPACING).astype(np.float32), (dx * n - dy * c).astype(np.float32)
 
     def feet(self, x, y, start, corridor, s, d, kept):
         """Put stations and offsets of places near whose foot node `start` lies into s and d.
@@ -55,21 +55,22 @@ class LineTable:
         -------
         (N,) bool: which have a foot, as `Road.locate` tells it; None where all have
         """
-        seen = [np.left_shift(places.astype(np.int32, copy=False), FINE, out=kept(name, np.int32)) for places, name in ((x, "x"), (y, "y"))]
+        seen = [np.left_shift(places.astype(np.int32, copy=False), NODE_FRACTION_BITS, out=kept(name, np.int32))
+                for places, name in ((x, "x"), (y, "y"))]
         ahead, _, _, bend = self._seen_from(start, *seen, kept)
         k = self._moved(start, ahead, bend, kept)
         found = share, offset, left, bend, _ = self._foot(k, *seen, kept)
-        if not _all_within(share, -BESIDE, 1.0 + BESIDE):
+        if not _all_within(share, -NODE_TOLERANCE, 1.0 + NODE_TOLERANCE):
             self._carry_on(k, *seen, found)
         near = None
-        if not (_all_within(share, -BESIDE, 1.0 + BESIDE) and _all_within(bend, -CLEAR, CLEAR)):
-            near = _beside(share) & (np.abs(bend) < CLEAR)
+        if not (_all_within(share, -NODE_TOLERANCE, 1.0 + NODE_TOLERANCE) and _all_within(bend, -CLOSED_FORM_BEND, CLOSED_FORM_BEND)):
+            near = _beside(share) & (np.abs(bend) < CLOSED_FORM_BEND)
         with np.errstate(invalid="ignore"):  # of what has no foot
-            share *= STEP
+            share *= NODE_UNITS
             np.copyto(s, np.rint(share, out=share), casting="unsafe")
-            offset *= STEP
+            offset *= NODE_UNITS
             np.copyto(d, np.rint(offset, out=offset), casting="unsafe")
-        k *= STEP
+        k *= NODE_UNITS
         k += self.start
         np.add(s, k, out=s, casting="unsafe")
         reach = int(corridor / COORDINATE_SCALE)
@@ -82,7 +83,7 @@ class LineTable:
         inside = (s >= self.start) & (s < self.end) & (d >= -reach) & (d <= reach)
         if near is not None:
             inside &= near
-            self._follow(x, y, start, np.flatnonzero(~near & (np.abs(left) < (1.5 * corridor + 5.0) / NODE)), corridor, s, d, inside)
+            self._follow(x, y, start, np.flatnonzero(~near & (np.abs(left) < (1.5 * corridor + 5.0) / NODE_SPACING)), corridor, s, d, inside)
         return inside
 
     def _about(self, x, y, reach):
@@ -113,11 +114,11 @@ class LineTable:
     def _moved(self, k, ahead, bend, kept):
         """The node beside places that node k sees so far ahead, and with such a bend."""
         on = np.subtract(np.float32(1.0), bend, out=kept("n", np.float32))
-        if not _all_within(on, *AHEAD):
-            np.clip(on, *AHEAD, out=on)
+        if not _all_within(on, *BEND_STRETCH):
+            np.clip(on, *BEND_STRETCH, out=on)
         np.divide(ahead, on, out=on)
-        if not _all_within(on, -FARTHEST, FARTHEST):
-            np.clip(on, -FARTHEST, FARTHEST, out=on)
+        if not _all_within(on, -MAX_NODE_LEAP, MAX_NODE_LEAP):
+            np.clip(on, -MAX_NODE_LEAP, MAX_NODE_LEAP, out=on)
         moved = kept("moved", np.intp)
         np.copyto(moved, np.floor(on, out=on), casting="unsafe")
         moved += k
@@ -144,7 +145,7 @@ class LineTable:
         rows = np.flatnonzero(~_beside(share))
         bend, ahead = bend.take(rows), ahead.take(rows)
         x, y = x.take(rows), y.take(rows)
-        for _ in range(MOST_STEPS):
+        for _ in range(MAX_NODE_STEPS):
             if not len(rows):
                 break
             few = self._few.of(len(rows))
@@ -163,7 +164,7 @@ class LineTable:
         road, (x, y) = self.road, (places.take(rows) for places in (x, y))
         k = start.take(rows)
         ahead = (x * COORDINATE_SCALE - road.x[k]) * road._cos[k] + (y * COORDINATE_SCALE - road.y[k]) * road._sin[k]
-        s_there, d_there = road.locate(x * COORDINATE_SCALE, y * COORDINATE_SCALE, road.start + k * NODE + ahead, corridor)
+        s_there, d_there = road.locate(x * COORDINATE_SCALE, y * COORDINATE_SCALE, road.start + k * NODE_SPACING + ahead, corridor)
         found = np.isfinite(s_there)
         rows = rows[found]
         s[rows], d[rows] = to_units(s_there[found]), to_units(d_there[found])
@@ -182,16 +183,16 @@ def _all_within(values, least, most):
 
 def _beside(share):
     """Whether feet lie within their node, or so little beyond that it serves them too."""
-    return (share >= -BESIDE) & (share <= 1.0 + BESIDE)
+    return (share >= -NODE_TOLERANCE) & (share <= 1.0 + NODE_TOLERANCE)
 
 
 # Station and offset of many points at once: a lookup along the trajectory, then the foot on the reference line.
 
-AT_ONCE = 100_000     # points worked at a time: of fewer more time goes into waiting for Python's lock, of many more into waiting for memory
+POINTS_PER_PROJECTION = 100_000   # fewer points spend more time on Python's interpreter lock, many more on memory access
 CLOCK_SLACK = 1.0     # s that a cloud may begin before or end after the trajectory
 
 
-class Placing:
+class RoadProjection:
     """Places points of a survey with times in its road frame.
 
     Parameters
@@ -204,9 +205,9 @@ class Placing:
         self.frame, self.corridor = frame, corridor
         self.starts = np.array([p.time[0] for p in frame.passes])
         self.ends = np.array([p.time[-1] for p in frame.passes])
-        self._lines = [LineTable(road) for road in frame.roads]
+        self._lines = [LineLookup(road) for road in frame.roads]
         self._kept = ScratchBuffers()
-        self._ticks = [_Ticks(p, frame.road(p.road)) for p in frame.passes]
+        self._ticks = [_PassClock(p, frame.road(p.road)) for p in frame.passes]
 
     def place(self, x, y, time):
         """Pass, station and offset of local places, to the unit of 0.1 mm in which points are kept.
@@ -236,8 +237,8 @@ class Placing:
         inside : (N,) bool: which have a place; None where all have. Stations and offsets of the others mean nothing.
         """
         passes, inside = self._owner(time), None
-        for first in range(0, len(x), AT_ONCE):
-            part = slice(first, first + AT_ONCE)
+        for first in range(0, len(x), POINTS_PER_PROJECTION):
+            part = slice(first, first + POINTS_PER_PROJECTION)
             here = self._part(passes[part], x[part], y[part], time[part], s[part], d[part])
             if here is not None:
                 inside = np.ones(len(x), bool) if inside is None else inside
@@ -277,14 +278,14 @@ class Placing:
         return line.feet(x, y, self._ticks[number].node(time, kept), self.corridor, s, d, kept)
 
 
-class _Ticks:
+class _PassClock:
     """The node of the reference line beside the vehicle, tick by tick of a pass."""
 
     def __init__(self, driven, road):
         self.first, span = driven.time[0], driven.time[-1] - driven.time[0]
-        self.tick = max(TICK, span / MOST_TICKS)
+        self.tick = max(TIME_TICK, span / MAX_TICKS)
         times = self.first + self.tick * np.arange(int(span / self.tick) + 2)
-        self.nodes = np.clip((np.interp(times, driven.time, driven.s) - road.start) / NODE, 0, len(road.x) - 2).astype(np.int32)
+        self.nodes = np.clip((np.interp(times, driven.time, driven.s) - road.start) / NODE_SPACING, 0, len(road.x) - 2).astype(np.int32)
 
     def node(self, time, kept):
         """(N,) intp node numbers; the ends serve times before and after the pass."""

@@ -6,16 +6,16 @@ from scipy.ndimage import gaussian_filter1d
 from scipy.spatial import cKDTree
 
 from ...common.errors import RoadExtractionError
-from .passes import LEVEL, NEAR, moving_rows
+from .passes import LEVEL_SEPARATION, SAME_CARRIAGEWAY, moving_rows
 
-NODE = 0.1         # m between nodes of the reference line: 0.02 mm of sagitta at R = 60 m
-SMOOTHING = 2.0    # m, sigma: takes jitter out of the heading; d is measured from the result anyway
-EXTENSION = 10.0   # m that the frame reaches beyond the driven part: scanners look ahead and behind
-SPARSE = 2.0       # m between rows beyond which chords would cut the bends
-JUNCTION = 15.0    # m between the end of one pass and the start of the next that continues the road
-ASIDE = 6.0        # m to the side: another lane of the same carriageway
-STRAIGHT_ON = np.radians(30.0)
-BLEND = 40.0       # m over which a continuing pass in another lane is led over to the line
+NODE_SPACING = 0.1         # m between nodes of the reference line: 0.02 mm of sagitta at R = 60 m
+LINE_SMOOTHING = 2.0    # m, sigma: takes jitter out of the heading; d is measured from the result anyway
+FRAME_EXTENSION = 10.0   # m that the frame reaches beyond the driven part: scanners look ahead and behind
+SPARSE_TRACK_SPACING = 2.0       # m between rows beyond which chords would cut the bends
+JUNCTION_GAP = 15.0    # m between the end of one pass and the start of the next that continues the road
+MAX_LATERAL_JUMP = 6.0        # m to the side: another lane of the same carriageway
+MAX_JUNCTION_ANGLE = np.radians(30.0)
+LANE_BLEND_LENGTH = 40.0       # m over which a continuing pass in another lane is led over to the line
 
 
 def track_line(x, y, z):
@@ -25,7 +25,7 @@ def track_line(x, y, z):
 
 
 def reference_nodes(line):
-    """Nodes of the reference line, NODE apart and EXTENSION beyond both ends, of (N, 2+) track places.
+    """Nodes of the reference line, NODE_SPACING apart and FRAME_EXTENSION beyond both ends, of (N, 2+) track places.
 
     Raises
     ------
@@ -38,28 +38,28 @@ def reference_nodes(line):
     driven, x, y = driven[unique], x[unique], y[unique]
     if driven[-1] < 1.0:
         raise RoadExtractionError("The trajectory does not move: at least 1 m of driving is needed to define a road.")
-    u = np.arange(0.0, driven[-1] + NODE / 2, NODE)
-    if np.median(np.diff(driven)) > SPARSE and len(driven) > 3:
+    u = np.arange(0.0, driven[-1] + NODE_SPACING / 2, NODE_SPACING)
+    if np.median(np.diff(driven)) > SPARSE_TRACK_SPACING and len(driven) > 3:
         x, y = CubicSpline(driven, x)(u), CubicSpline(driven, y)(u)
     else:
         x, y = np.interp(u, driven, x), np.interp(u, driven, y)
     x, y = _extend(_smooth(x), _smooth(y))
     along = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
-    u = np.arange(0.0, along[-1], NODE)
+    u = np.arange(0.0, along[-1], NODE_SPACING)
     return np.interp(u, along, x), np.interp(u, along, y)
 
 
 def _smooth(values):
     """Gaussian along the line, mirrored through its end points so that these stay."""
-    pad = min(int(4 * SMOOTHING / NODE), len(values) - 1)
+    pad = min(int(4 * LINE_SMOOTHING / NODE_SPACING), len(values) - 1)
     head = 2 * values[0] - values[1:pad + 1][::-1]
     tail = 2 * values[-1] - values[-pad - 1:-1][::-1]
-    return gaussian_filter1d(np.r_[head, values, tail], SMOOTHING / NODE)[pad:pad + len(values)]
+    return gaussian_filter1d(np.r_[head, values, tail], LINE_SMOOTHING / NODE_SPACING)[pad:pad + len(values)]
 
 
 def _extend(x, y):
-    reach = min(int(3.0 / NODE), len(x) - 1)
-    steps = np.arange(1, int(round(EXTENSION / NODE)) + 1) * NODE
+    reach = min(int(3.0 / NODE_SPACING), len(x) - 1)
+    steps = np.arange(1, int(round(FRAME_EXTENSION / NODE_SPACING)) + 1) * NODE_SPACING
 
     def beyond(tip, inner):
         direction = np.array([x[tip] - x[inner], y[tip] - y[inner]])
@@ -71,7 +71,7 @@ def _extend(x, y):
     return np.r_[hx[::-1], x, tx], np.r_[hy[::-1], y, ty]
 
 
-def continued(line, track):
+def continue_line(line, track):
     """A line lengthened by a track that goes on where it ends, either way driven; None where it does not.
 
     Parameters
@@ -83,22 +83,22 @@ def continued(line, track):
     (M, 3) places, the direction of `line` kept, or None
     """
     for way in (track, track[::-1]):
-        found = _appended(line, way)
+        found = _append_track(line, way)
         if found is not None:
             return found
-        found = _appended(line[::-1], way)
+        found = _append_track(line[::-1], way)
         if found is not None:
             return found[::-1]
     return None
 
 
-def _appended(line, track):
+def _append_track(line, track):
     direction = _direction(line[::-1]) * -1.0
     ahead = (track[:, :2] - line[-1, :2]) @ direction
     aside = (track[:, :2] - line[-1, :2]) @ np.array([-direction[1], direction[0]])
-    if not (-JUNCTION < ahead[0] < JUNCTION and abs(aside[0]) < ASIDE and abs(track[0, 2] - line[-1, 2]) < LEVEL):
+    if not (-JUNCTION_GAP < ahead[0] < JUNCTION_GAP and abs(aside[0]) < MAX_LATERAL_JUMP and abs(track[0, 2] - line[-1, 2]) < LEVEL_SEPARATION):
         return None
-    if np.arccos(np.clip(_direction(track) @ direction, -1, 1)) > STRAIGHT_ON:
+    if np.arccos(np.clip(_direction(track) @ direction, -1, 1)) > MAX_JUNCTION_ANGLE:
         return None
     beyond = track[int(np.argmax(ahead > 1.0)):] if (ahead > 1.0).any() else track[:0]
     if len(beyond) < 3:
@@ -108,7 +108,7 @@ def _appended(line, track):
         return None
     step = np.gradient(beyond[:, :2], axis=0)
     left = np.c_[-step[:, 1], step[:, 0]] / np.maximum(np.hypot(*step.T), 1e-9)[:, None]
-    share = np.clip(1.0 - driven / BLEND, 0.0, 1.0)
+    share = np.clip(1.0 - driven / LANE_BLEND_LENGTH, 0.0, 1.0)
     share = share * share * (3.0 - 2.0 * share)
     beyond = beyond.copy()
     beyond[:, :2] -= left * (aside[0] * share)[:, None]
@@ -118,8 +118,8 @@ def _appended(line, track):
 def _comes_back(line, beyond, driven):
     """Whether a continuation comes near the line elsewhere than at its end: one place would have two stations."""
     left = np.r_[0.0, np.cumsum(np.hypot(*np.diff(line[::-1, :2], axis=0).T))][::-1]
-    for old, new in ((line[left > 3 * NEAR], beyond), (line, beyond[driven > 3 * NEAR])):
-        if len(old) and len(new) and cKDTree(old[:, :2]).query(new[:, :2])[0].min() < NEAR:
+    for old, new in ((line[left > 3 * SAME_CARRIAGEWAY], beyond), (line, beyond[driven > 3 * SAME_CARRIAGEWAY])):
+        if len(old) and len(new) and cKDTree(old[:, :2]).query(new[:, :2])[0].min() < SAME_CARRIAGEWAY:
             return True
     return False
 

@@ -12,15 +12,15 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..trajectory.trajectory import clean_trajectory
-from .passes import LEVEL, LONGEST, TURN_REACH, Pass, moving_rows, split_into_passes, thin_by_distance
-from .reference_line import EXTENSION, JUNCTION, NODE, continued, reference_nodes, track_line
+from .passes import LEVEL_SEPARATION, MAX_ROAD_LENGTH, TURN_REACH, Pass, decimate_by_distance, moving_rows, split_into_passes
+from .reference_line import FRAME_EXTENSION, JUNCTION_GAP, NODE_SPACING, continue_line, reference_nodes, track_line
 
 CORRIDOR = 25.0    # m either side
-FARTHEST_CORRIDOR = 200.0     # m beyond the track that no point with a place lies: the widest corridor, and the ends of a road
-JOIN_DISTANCE = 12.0          # m between two passes over one carriageway
-JOIN_REACH = 15.0             # m at most, where the lanes of one drift apart
-JOIN_ANGLE = np.radians(30.0)
-JOIN_LENGTH = 20.0            # m that two passes must share
+MAX_POINT_DISTANCE = 200.0     # m beyond the track that no point with a place lies: the widest corridor, and the ends of a road
+MAX_PASS_DISTANCE = 12.0          # m between two passes over one carriageway
+MAX_LANE_DISTANCE = 15.0             # m at most, where the lanes of one drift apart
+MAX_PASS_ANGLE = np.radians(30.0)
+MIN_SHARED_LENGTH = 20.0            # m that two passes must share
 
 
 class Road:
@@ -33,16 +33,16 @@ class Road:
         self.number = number
         self.start = start
         self.x, self.y = nodes_x, nodes_y
-        dx, dy = np.gradient(nodes_x, NODE), np.gradient(nodes_y, NODE)
+        dx, dy = np.gradient(nodes_x, NODE_SPACING), np.gradient(nodes_y, NODE_SPACING)
         self._heading = np.unwrap(np.arctan2(dy, dx))
         self._cos, self._sin = np.cos(self._heading), np.sin(self._heading)
-        self._curvature = np.gradient(self._heading, NODE)
-        self.end = start + NODE * (len(nodes_x) - 1)
-        self.length = self.end - EXTENSION
+        self._curvature = np.gradient(self._heading, NODE_SPACING)
+        self.end = start + NODE_SPACING * (len(nodes_x) - 1)
+        self.length = self.end - FRAME_EXTENSION
         self._tree = None
 
     def _at(self, s):
-        u = np.clip((np.asarray(s, float) - self.start) / NODE, 0, len(self.x) - 1)
+        u = np.clip((np.asarray(s, float) - self.start) / NODE_SPACING, 0, len(self.x) - 1)
         k = np.minimum(u.astype(np.int64), len(self.x) - 2)
         return k, u - k
 
@@ -118,7 +118,7 @@ class Road:
         if self._tree is None:
             self._tree = cKDTree(np.c_[self.x[::5], self.y[::5]])
         distance, index = self._tree.query(np.c_[x, y], distance_upper_bound=corridor * 1.05 + 1.0)
-        return np.where(np.isfinite(distance), self.start + 5 * NODE * index, np.nan)
+        return np.where(np.isfinite(distance), self.start + 5 * NODE_SPACING * index, np.nan)
 
 
 @dataclass
@@ -141,7 +141,7 @@ class RoadFrame:
     @property
     def farthest(self):
         """Metres of x or y from the origin beyond which no point can have a place."""
-        return max(max(np.abs(p.x).max(), np.abs(p.y).max()) for p in self.passes) + FARTHEST_CORRIDOR
+        return max(max(np.abs(p.x).max(), np.abs(p.y).max()) for p in self.passes) + MAX_POINT_DISTANCE
 
     def to_local(self, x, y, z=None):
         """Map coordinates to local ones."""
@@ -199,7 +199,7 @@ def build_frame(trajectory):
     """Roads and passes of a trajectory.
 
     The drive is cut into passes; the longest becomes the reference of the first
-    road, lengthened by passes that go on where it ends, up to LONGEST; what runs within 12 m of
+    road, lengthened by passes that go on where it ends, up to MAX_ROAD_LENGTH; what runs within 12 m of
     it and parallel, either way, is a further pass over the same road; what is
     left makes the next road.
     """
@@ -219,7 +219,7 @@ def build_frame(trajectory):
     while waiting:
         waiting = _longest_first(waiting, driven)
         longest = waiting[0]
-        if roads and _length(longest, driven) < JOIN_LENGTH:
+        if roads and _length(longest, driven) < MIN_SHARED_LENGTH:
             break
         road, members, waiting = _grow_road(len(roads), track, turning, moved, driven, waiting)
         roads.append(road)
@@ -252,16 +252,16 @@ def _grow_road(number, track, turning, moved, driven, waiting):
     """(Road, row ranges of its passes, row ranges left over), beginning with the first of the ranges waiting."""
     longest, line = waiting[0], _line_of(track, turning, waiting[0])
     while True:
-        road = Road(number, *reference_nodes(line), -EXTENSION)
+        road = Road(number, *reference_nodes(line), -FRAME_EXTENSION)
         members, rest = [], []
         for rows in waiting:
             shared, left = ([rows], []) if rows == longest else _shared_with(road, line, track, moved, rows)
             members += shared
             rest += left
         for rows in _longest_first(rest, driven):
-            if _length(rows, driven) >= JOIN_LENGTH and _ends_near(line, track, rows):
-                longer = continued(line, _line_of(track, turning, rows))
-                if longer is not None and np.hypot(*np.diff(longer[:, :2], axis=0).T).sum() <= LONGEST:
+            if _length(rows, driven) >= MIN_SHARED_LENGTH and _ends_near(line, track, rows):
+                longer = continue_line(line, _line_of(track, turning, rows))
+                if longer is not None and np.hypot(*np.diff(longer[:, :2], axis=0).T).sum() <= MAX_ROAD_LENGTH:
                     line = longer
                     break
         else:
@@ -271,12 +271,13 @@ def _grow_road(number, track, turning, moved, driven, waiting):
 def _ends_near(line, track, rows):
     """Whether a range of rows begins or ends where a line does, turns on the spot allowed for."""
     ends = track[[rows[0], rows[1] - 1], None, :2] - line[None, [0, -1], :2]
-    return bool((np.hypot(ends[..., 0], ends[..., 1]) < JUNCTION + TURN_REACH).any())
+    return bool((np.hypot(ends[..., 0], ends[..., 1]) < JUNCTION_GAP + TURN_REACH).any())
 
 
 def _away(line, places):
     """Whether places lie wholly outside the box about a line."""
-    return bool((places.min(axis=0) > line.max(axis=0) + JOIN_REACH).any() or (places.max(axis=0) < line.min(axis=0) - JOIN_REACH).any())
+    return bool((places.min(axis=0) > line.max(axis=0) + MAX_LANE_DISTANCE).any()
+                or (places.max(axis=0) < line.min(axis=0) - MAX_LANE_DISTANCE).any())
 
 
 def _shared_with(road, line, track, moved, rows):
@@ -285,20 +286,20 @@ def _shared_with(road, line, track, moved, rows):
     if _away(line[:, :2], track[a:b, :2]):
         return [], [rows]
     kept = np.unique(np.r_[a, moved[(moved >= a) & (moved < b)], b - 1])
-    kept = kept[thin_by_distance(*track[kept, :2].T, 2.0)]
+    kept = kept[decimate_by_distance(*track[kept, :2].T, 2.0)]
     x, y, z = track[kept].T
-    s, d = road.locate(x, y, corridor=JOIN_REACH)
-    level = np.abs(z - line[cKDTree(line[:, :2]).query(np.c_[x, y])[1], 2]) < LEVEL
+    s, d = road.locate(x, y, corridor=MAX_LANE_DISTANCE)
+    level = np.abs(z - line[cKDTree(line[:, :2]).query(np.c_[x, y])[1], 2]) < LEVEL_SEPARATION
     direction = np.arctan2(np.gradient(y), np.gradient(x)) if len(kept) > 1 else np.zeros(len(kept))
     turned = np.abs((direction - road.heading(np.where(np.isnan(s), 0, s)) + np.pi / 2) % np.pi - np.pi / 2)
-    along = np.isfinite(d) & (turned < JOIN_ANGLE) & level
-    if len(kept) < JOIN_LENGTH:
+    along = np.isfinite(d) & (turned < MAX_PASS_ANGLE) & level
+    if len(kept) < MIN_SHARED_LENGTH:
         along[:] = 2 * along.sum() > len(along)
-    along = _fill_runs(along, int(JOIN_LENGTH / 2))
+    along = _fill_runs(along, int(MIN_SHARED_LENGTH / 2))
     if not along.all():
-        along = ~_fill_runs(~along, int(JOIN_LENGTH / 2))
+        along = ~_fill_runs(~along, int(MIN_SHARED_LENGTH / 2))
     for i, j in _runs(along):
-        if along[i] and not np.nanmedian(np.abs(d[i:j])) <= JOIN_DISTANCE:
+        if along[i] and not np.nanmedian(np.abs(d[i:j])) <= MAX_PASS_DISTANCE:
             along[i:j] = False
     shared, left = [], []
     for i, j in _runs(along):
@@ -313,9 +314,9 @@ def _shared_with(road, line, track, moved, rows):
 
 
 def _jumps(s):
-    """Indices at which the station leaps, at least JOIN_LENGTH from the ends and each other."""
+    """Indices at which the station leaps, at least MIN_SHARED_LENGTH from the ends and each other."""
     found = np.flatnonzero(np.abs(np.diff(s)) > 10.0) + 1
-    shortest, kept, last = int(JOIN_LENGTH / 2), [], 0
+    shortest, kept, last = int(MIN_SHARED_LENGTH / 2), [], 0
     for k in found:
         if k - last >= shortest and len(s) - k >= shortest:
             kept.append(int(k))
@@ -342,7 +343,7 @@ def _make_pass(road, time, x, y, z):
     """A pass with the vehicle's own feet on the road, found by walking so that they never leap."""
     kept = moving_rows(x, y)
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x[kept]), np.diff(y[kept])))]
-    s, _ = road.locate(x[kept], y[kept], corridor=2 * JOIN_DISTANCE)
+    s, _ = road.locate(x[kept], y[kept], corridor=2 * MAX_PASS_DISTANCE)
     rows = np.arange(len(x))
     run = _longest_run(s)
     if run is None:
@@ -354,7 +355,7 @@ def _make_pass(road, time, x, y, z):
         before, after = driven[:i] - driven[i], driven[j:] - driven[j - 1]
         walked = np.r_[s[i] + direction * before, s[i:j], s[j - 1] + direction * after]
         hint = np.interp(rows, kept, walked)
-    s, d = road.locate(x, y, hint, corridor=2 * JOIN_DISTANCE)
+    s, d = road.locate(x, y, hint, corridor=2 * MAX_PASS_DISTANCE)
     good = np.isfinite(s)
     if not good.any():
         return Pass(0, road.number, direction, time, x, y, z, np.clip(hint, road.start, road.end), np.zeros(len(x)))

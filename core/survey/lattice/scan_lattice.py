@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from ...common.order_statistics import BITS
+from ...common.order_statistics import RADIX_BITS
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ..store.records import COORDINATE_SCALE, take_rows
@@ -190,7 +190,7 @@ def time_order(time: np.ndarray) -> np.ndarray:
     """(N,) indices that sort (N,) times in seconds: by radix, in linear time unless the times span days."""
     ticks = ((time - time.min()) / TIME_SORT_TICK).astype(np.int64)
     order = np.argsort(ticks.astype(np.uint16), kind="stable")
-    for shift in range(BITS, int(ticks.max()).bit_length(), BITS):
+    for shift in range(RADIX_BITS, int(ticks.max()).bit_length(), RADIX_BITS):
         order = order[np.argsort((ticks >> shift).astype(np.uint16)[order], kind="stable")]
     return order
 

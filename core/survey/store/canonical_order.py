@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...common.order_statistics import BITS, above_least, bucket_argsort, order_by
+from ...common.order_statistics import RADIX_BITS, above_least, bucket_argsort, order_by
 from .columns import Columns
 from .records import take_rows
 
@@ -37,7 +37,7 @@ def canonical_order(records: np.ndarray | Columns, mask: np.ndarray | None = Non
     for end in _chunk_ends(ends):
         rows = order[first:end]
         s, d = above_least(along.take(rows)), above_least(across.take(rows))
-        d >>= max(int(d.max()).bit_length() - BITS, 0)
+        d >>= max(int(d.max()).bit_length() - RADIX_BITS, 0)
         by_place = order_by(d, s)
         order[first:end] = rows.take(by_place)
         tied_parts.append(_same_as_next(s.take(by_place), d.take(by_place)) + first)

@@ -22,7 +22,7 @@ class RoadPoints:
     origin : (3,) whole numbers, map coordinates in metres that were subtracted from x, y, z
     crs : WKT, "" where unknown
     has_corrected, has_cluster : whether the columns `corrected` and `cluster` hold values
-    moves : PassMoves, the shifts of the passes against the coordinates that were measured; None where there are none
+    moves : PassCorrections, the shifts of the passes against the coordinates that were measured; None where there are none
     """
 
     store: SectionStore

@@ -8,7 +8,7 @@ from lanewright.core.common.parallel import cancellation_scope
 from lanewright.core.common.progress import Progress
 from lanewright.core.pipeline import road_map as chain
 from lanewright.core.pipeline.road_map import RoadMapSettings, make_road_map
-from lanewright.core.pipeline.stages import NAMES
+from lanewright.core.pipeline.stages import STAGE_NAMES
 
 pytestmark = pytest.mark.slow
 
@@ -41,7 +41,7 @@ def questions(monkeypatch, survey, folder, last=None):
 
     with monkeypatch.context() as patch, cancellation_scope(found):
         patch.setattr(chain.Stages, "run", noted)
-        patch.setattr("lanewright.core.common.parallel.PATIENCE", 60.0)  # no question depends on the machine's speed
+        patch.setattr("lanewright.core.common.parallel.POLL_INTERVAL", 60.0)  # no question depends on the machine's speed
         make_road_map([cloud], sample.trajectory, folder / "image.tif", RoadMapSettings(), found)
     return found.asked
 
@@ -63,7 +63,7 @@ def test_no_stretch_without_a_question_grows_with_the_road(asked):
     short, long = asked
     few = {stage: (short[stage], long[stage]) for stage in long if stage != "survey" and long[stage] < 1.5 * short[stage]}
     assert not few
-    assert set(long) == set(NAMES)
+    assert set(long) == set(STAGE_NAMES)
 
 
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.75, 0.99])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.common.progress import Progress
-from lanewright.core.pipeline.stages import NAMES, PAINT, Extent, Stages
+from lanewright.core.pipeline.stages import INTENSITY_STAGES, STAGE_NAMES, Extent, Stages
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 from lanewright.core.survey.trajectory.trajectory import Trajectory
 
@@ -38,20 +38,20 @@ def test_a_packed_survey_takes_longer_to_read_than_a_plain_one():
 def test_the_bar_never_goes_back_and_ends_full_whatever_is_learnt_on_the_way(method, known):
     bar = Bar()
     stages = Stages(bar, DENSE, method)
-    for name in NAMES:
+    for name in STAGE_NAMES:
         stages.run(name, name, nothing)
         if name == "survey":
             stages.know(known)
     assert (np.diff(bar.places) >= 0).all()
     assert bar.places[-1] == pytest.approx(1.0)
-    assert set(stages.seconds) == set(NAMES)
+    assert set(stages.seconds) == set(STAGE_NAMES)
 
 
 def test_stages_that_are_left_out_take_no_share():
     bar = Bar()
     stages = Stages(bar, DENSE, "profiles")
     stages.run("survey", "", nothing)
-    stages.know(DENSE, PAINT)
+    stages.know(DENSE, INTENSITY_STAGES)
     for name in ("curbs", "edges", "surface"):
         stages.run(name, "", nothing)
     assert bar.places[-1] == pytest.approx(1.0)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from drives import write_cloud
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.survey.adjustment.corrections import STEP, PassMoves
+from lanewright.core.survey.adjustment.corrections import CORRECTION_STEP, PassCorrections
 from lanewright.core.survey.road_points_las import read_road_points, write_road_points
 from lanewright.core.survey.store.records import ROAD_POINT, to_units
 from lanewright.core.survey.store.road_points import RoadPoints
@@ -49,9 +49,9 @@ def test_points_of_moved_passes_are_written_as_measured_and_read_as_moved(tmp_pa
     import laspy
 
     written = road_points(count=500)
-    stations = np.arange(-15.0, 300.0, STEP)
+    stations = np.arange(-15.0, 300.0, CORRECTION_STEP)
     left = np.rint([200 + stations, -100 + 0 * stations, 5 * np.sin(stations)]).astype(np.int16)
-    written.moves = PassMoves({1: (-15.0, left), 4: (-15.0, -left)})
+    written.moves = PassCorrections({1: (-15.0, left), 4: (-15.0, -left)})
     write_road_points(written, tmp_path / "road.laz")
     read = read_road_points(tmp_path / "road.laz")
     for road, number in written.all_sections():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from drives import ahead, bend, chain, drive
 from lanewright.core.survey.frame.road_frame import build_frame
-from lanewright.core.survey.sensor_height import HeightTally, Tracks, first_estimate
+from lanewright.core.survey.sensor_height import HeightHistogram, VehicleTracks, estimate_sensor_height
 from lanewright.core.survey.store.columns import Columns
 from lanewright.core.survey.store.records import SURVEY_POINT, to_units
 
@@ -34,9 +34,9 @@ def road_below(frame, reach=4.0, count=40_000):
 def test_the_height_is_told_to_the_millimetre_on_a_steep_road_too(grade):
     frame = climbing(grade)
     points, _ = road_below(frame)
-    (number, drops), = Tracks(frame).drops(0, points)
-    assert first_estimate(drops) == pytest.approx(RIDES, abs=5e-4)
-    tally = HeightTally([number], 2.0)
+    (number, drops), = VehicleTracks(frame).drops(0, points)
+    assert estimate_sensor_height(drops) == pytest.approx(RIDES, abs=5e-4)
+    tally = HeightHistogram([number], 2.0)
     for some in np.array_split(drops, 7):
         tally.add(number, some)
     assert tally.heights()[number] == pytest.approx(RIDES, abs=1.1e-3)
@@ -45,15 +45,15 @@ def test_the_height_is_told_to_the_millimetre_on_a_steep_road_too(grade):
 def test_points_on_the_track_are_those_within_a_metre_and_a_half_of_it():
     frame = climbing(0.0)
     points, off = road_below(frame)
-    (_, drops), = Tracks(frame).drops(0, points)
+    (_, drops), = VehicleTracks(frame).drops(0, points)
     assert len(drops) == pytest.approx(np.count_nonzero(np.abs(off) < 1.5), abs=20)
     own = np.abs(off) > 1.0
-    (_, some), = Tracks(frame).drops(0, points, own)
+    (_, some), = VehicleTracks(frame).drops(0, points, own)
     assert len(some) == pytest.approx(np.count_nonzero((np.abs(off) < 1.5) & own), abs=20)
-    assert not list(Tracks(frame).drops(0, points, np.abs(off) > 1.6))
+    assert not list(VehicleTracks(frame).drops(0, points, np.abs(off) > 1.6))
 
 
 def test_what_lies_far_below_or_above_is_not_counted():
-    tally = HeightTally([0], 2.0)
+    tally = HeightHistogram([0], 2.0)
     tally.add(0, to_units(np.r_[np.full(60, 2.5), np.full(500, 90.0), np.full(500, -90.0)]))
     assert tally.heights() == {0: 2.5}

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lanewright.core.common.progress import Progress
-from lanewright.core.survey.adjustment.adjust import fit_passes, shares
-from lanewright.core.survey.adjustment.register import Offsets, pass_offsets
+from lanewright.core.survey.adjustment.adjust import adjust_passes, solve_corrections
+from lanewright.core.survey.adjustment.register import PassOffsets, pass_offsets
 from scanned_streets import driven, scanned, survey_of
 
 FLAT = ((-20.0, 0.0), (20.0, 0.0))
@@ -64,7 +64,7 @@ class Heard(Progress):
 
 def test_two_drives_five_centimetres_apart_meet_in_their_middle():
     survey, heard = twice(left=0.05, up=0.02), Heard()
-    fit_passes(survey, heard)
+    adjust_passes(survey, heard)
     one, other = face_of(survey, 0), face_of(survey, 1)
     np.testing.assert_allclose(one, other, atol=0.006)
     np.testing.assert_allclose(np.r_[one, other], 3.525, atol=0.008)
@@ -79,7 +79,7 @@ def test_two_drives_five_centimetres_apart_meet_in_their_middle():
 def test_a_track_goes_with_its_points():
     survey = twice(left=0.06)
     before = [p.d.mean() for p in survey.frame.passes]
-    fit_passes(survey)
+    adjust_passes(survey)
     moved = [p.d.mean() - d for p, d in zip(survey.frame.passes, before)]
     np.testing.assert_allclose(moved, [0.03, -0.03], atol=0.006)
 
@@ -87,14 +87,14 @@ def test_a_track_goes_with_its_points():
 def test_drives_that_agree_stay_as_they_were_measured():
     survey, heard = twice(), Heard()
     store, frame = survey.store, survey.frame
-    fit_passes(survey, heard)
+    adjust_passes(survey, heard)
     assert survey.store is store and survey.frame is frame
     assert "stay as they were measured" in heard.said[0]
 
 
 def test_drift_that_grows_along_the_street_is_followed():
     survey = twice(left=lambda x: 0.0006 * x)
-    fit_passes(survey)
+    adjust_passes(survey)
     one, other = face_of(survey, 0), face_of(survey, 1)
     np.testing.assert_allclose(one, other, atol=0.012)
 
@@ -122,7 +122,7 @@ def test_cobbles_fit_again_one_stone_farther_and_move_nothing():
 def test_drives_half_a_metre_apart_are_warned_of_and_not_moved():
     survey, heard = twice(left=0.36), Heard()
     store = survey.store
-    fit_passes(survey, heard)
+    adjust_passes(survey, heard)
     assert survey.store is store
     assert "more than 30 cm" in heard.warned[0]
 
@@ -130,16 +130,16 @@ def test_drives_half_a_metre_apart_are_warned_of_and_not_moved():
 @pytest.mark.slow
 def test_the_fit_does_not_depend_on_where_sections_are_cut():
     one, other = twice(left=0.05, up=0.02), twice(left=0.05, up=0.02, section_length=7.0)
-    fit_passes(one)
-    fit_passes(other)
+    adjust_passes(one)
+    adjust_passes(other)
     np.testing.assert_array_equal(records(one), records(other))
 
 
 def test_of_three_drives_each_is_moved_by_its_share():
     stations = np.arange(5.0, 200.0, 10.0)
     nothing = np.zeros(len(stations))
-    offsets = [Offsets(0, 1, stations, nothing, nothing + 0.03, nothing, 0), Offsets(1, 2, stations, nothing, nothing + 0.03, nothing, 0)]
-    moved = shares(offsets)
+    offsets = [PassOffsets(0, 1, stations, nothing, nothing + 0.03, nothing, 0), PassOffsets(1, 2, stations, nothing, nothing + 0.03, nothing, 0)]
+    moved = solve_corrections(offsets)
     for number, left in ((0, -0.03), (1, 0.0), (2, 0.03)):
         np.testing.assert_allclose(moved[number][1][1], left, atol=0.001)
 
@@ -149,5 +149,5 @@ def test_one_offset_out_of_line_moves_nothing_by_much():
     nothing = np.zeros(len(stations))
     left = nothing + 0.02
     left[9] = 0.28
-    moved = shares([Offsets(0, 1, stations, nothing, left, nothing, 0)])
+    moved = solve_corrections([PassOffsets(0, 1, stations, nothing, left, nothing, 0)])
     np.testing.assert_allclose(moved[1][1][1] - moved[0][1][1], 0.02, atol=0.012)

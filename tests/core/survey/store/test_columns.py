@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.order_statistics import order_by, thinned
+from lanewright.core.common.order_statistics import decimate_cells, order_by
 from lanewright.core.survey.store.columns import Columns
 
 
@@ -104,6 +104,6 @@ def test_integers_of_any_sign_and_size_are_sorted_by_the_last_key_first(count):
 
 def test_crowded_cells_are_thinned_evenly_and_others_left_alone():
     cell = np.repeat([0, 1, 5], [3, 1000, 10]).astype(np.int32)
-    kept = thinned(cell, 10)
+    kept = decimate_cells(cell, 10)
     assert np.bincount(cell[kept]).tolist() == [3, 10, 0, 0, 0, 10]
     assert (np.diff(kept[3:13]) == 100).all()
