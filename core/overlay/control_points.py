@@ -1,21 +1,29 @@
-"""Ground control points: places known both in the image and on the map, from a table in any usual form.
+"""Ground control points: places known in the image and on the map, from a table or a file.
 
-Pixel and line count from the outer corner of the first pixel, whose middle is
-0.5, 0.5. QGIS's georeferencer counts lines upwards, so that they are negative;
-that is recognised and turned.
+Files are `.points` of the QGIS georeferencer, in its old and new forms, and CSV with any delimiter. Columns are recognised
+by their names or, without names, by the size of the image. Pixel and line count from the outer corner of the
+first pixel, whose middle is 0.5, 0.5. The QGIS georeferencer counts lines upward, as negative numbers; this
+is recognised and converted.
 """
+
+from __future__ import annotations
 
 import csv
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ..common.errors import RoadExtractionError
+from .source_image import SourceImage
 
-# Which column of a table of control points is which, by their names or, without names, by the image's size.
-
+MAX_TABLE_BYTES = 20_000_000  # a table of control points has a few thousand bytes
+CONTROL, CHECK, DISABLED = "control", "check", "disabled"  # roles of a point
+_FALSE_TEXTS = ("0", "false", "no", "off", "n", "f")
+_CHECK_TEXTS = ("check", "checkpoint", "check point", "chk", "cp", "test")
 COLUMN_ALIASES = {
     "pixel": "pixel pixelx sourcex srcx column col sample px imagex imgx imx xpixel ximage xsource u".split(),
     "line": "line pixely sourcey srcy row py imagey imgy imy ypixel yimage ysource v".split(),
@@ -30,94 +38,97 @@ COLUMN_ALIASES = {
 REQUIRED_COLUMNS = ("pixel", "line", "easting", "northing")
 
 
-def find_columns(names, what):
-    """{meaning: index} of the columns of a table with a header.
+@dataclass(frozen=True)
+class ControlPoints:
+    """N control points.
 
-    Bare `x`, `y` are map coordinates, unless those have names of their own.
-
-    Raises
-    ------
-    RoadExtractionError
-        If one of pixel, line, easting, northing has no column.
+    Attributes
+    ----------
+    pixel, line : (N,) in the image, lines counted downward
+    easting, northing, height : (N,) m; height is NaN where it is unknown
+    names : N texts
+    roles : (N,) texts: "control" (used in the fit), "check" (compared with it) or "disabled"
+    crs : WKT of the map coordinates, "" where unknown
+    left_out : count of rows of the table without numbers
     """
-    plain = [re.sub(r"[^a-z]", "", re.sub(r"\(.*?\)|\[.*?\]", "", str(name).lower())) for name in names]
-    found = {}
-    for key, aliases in COLUMN_ALIASES.items():
-        places = [plain.index(alias) for alias in aliases if alias in plain]
-        if places:
-            found[key] = places[0]
-    for bare, keys in (("x", ("easting", "pixel")), ("y", ("northing", "line"))):
-        free = [key for key in keys if key not in found]
-        if bare in plain and free:
-            found[free[0]] = plain.index(bare)
-    missing = [key for key in REQUIRED_COLUMNS if key not in found]
-    if missing:
-        raise RoadExtractionError(
-            f"{what} has the columns {', '.join(map(str, names))}; {' and '.join(missing)} cannot be told among them. "
-            "Name the columns pixel, line, easting, northing.")
-    return found
+
+    pixel: np.ndarray
+    line: np.ndarray
+    easting: np.ndarray
+    northing: np.ndarray
+    height: np.ndarray
+    names: tuple[str, ...]
+    roles: np.ndarray
+    crs: str = ""
+    left_out: int = 0
+
+    def __len__(self) -> int:
+        return len(self.pixel)
+
+    def having(self, role: str) -> np.ndarray:
+        """(M,) int, indices of the points with a role."""
+        return np.flatnonzero(self.roles == role)
+
+    def with_disabled_as_checks(self) -> ControlPoints:
+        """The points, with the disabled ones as check points."""
+        return replace(self, roles=np.where(self.roles == DISABLED, CHECK, self.roles))
 
 
-def guess_columns(rows, image, what):
-    """{meaning: index} of a table without names: two columns lie in the image, two beside them on the map.
-
-    Raises
-    ------
-    RoadExtractionError
-        If both orders, or none, would do.
-    """
-    width = min(len(row) for row in rows)
-    values = np.array([[as_number(field) for field in row[:width]] for row in rows])
-    fits = []
-    for start in (0, 1):  # a point's name may come first
-        if start + 4 > width or not np.isfinite(values[:, start:start + 4]).all():
-            continue
-        first, second = values[:, start:start + 2], values[:, start + 2:start + 4]
-        for order, pair, other in ((("pixel", "line", "easting", "northing"), first, second),
-                                   (("easting", "northing", "pixel", "line"), second, first)):
-            inside, elsewhere = (image.holds(p[:, 0], np.abs(p[:, 1]), 1.0).all() for p in (pair, other))
-            if inside and not elsewhere:
-                fits.append({**{key: start + k for k, key in enumerate(order)}, **({"name": 0} if start else {}),
-                             **_enable(values, start + 4)})
-    if len(fits) != 1:
-        raise RoadExtractionError(
-            f"The columns of {what} have no names, and their numbers do not tell which are pixel and line in an image of "
-            f"{image.width} by {image.height}. Put a line above them: pixel,line,easting,northing.")
-    return fits[0]
-
-
-def _enable(values, column):
-    """The georeferencer's fifth column where there is one, of zeros and ones."""
-    return {"enable": column} if column < values.shape[1] and np.isin(values[:, column], (0, 1)).all() else {}
-
-
-def as_number(value):
-    """The number that a field holds, NaN where it is none."""
-    try:
-        return float(str(value).strip().replace(",", "."))
-    except ValueError:
-        return np.nan
-
-
-# Control points from a file: QGIS's `.points` in its old and new forms, or CSV with any delimiter.
-
-MAX_TABLE_BYTES = 20_000_000  # bytes; a table of control points is a few thousand
-
-
-def read_control_points(path, image, crs=""):
-    """ControlPoints of a file.
+def control_points(names: Sequence[Any] | None, rows: Sequence[Sequence[Any]], image: SourceImage, what: str,
+                   crs: str = "") -> ControlPoints:
+    """Control points of a table.
 
     Parameters
     ----------
-    path : `.points` of QGIS's georeferencer (a line "#CRS: ..." or none; mapX, mapY, sourceX,
-        sourceY or pixelX, pixelY; commas or, from QGIS 1, tabs), or a CSV or TXT table
+    names : of the columns, or None where the table has no header
+    rows : of texts or numbers
     image : SourceImage that the points belong to
-    crs : WKT of the map coordinates where the file names none
+    what : name of the table for error messages
+    crs : WKT of the map coordinates, "" where unknown
+
+    Returns
+    -------
+    ControlPoints
 
     Raises
     ------
     RoadExtractionError
-        If the file cannot be read or its columns cannot be told.
+        If a needed column is missing, no row has numbers, or the points lie outside the image.
+    """
+    if not rows:
+        raise RoadExtractionError(f"{what} holds no control points. It needs a row for each: pixel, line, easting, northing.")
+    where = guess_columns(rows, image, what) if names is None else find_columns(names, what)
+    table = {key: _numbers(rows, where.get(key)) for key in ("pixel", "line", "easting", "northing", "height")}
+    known = np.isfinite([table[key] for key in ("pixel", "line", "easting", "northing")]).all(axis=0)
+    if not known.any():
+        raise RoadExtractionError(
+            f"{what} holds no row with numbers for pixel, line, easting and northing. "
+            "Write numbers with a decimal point (or a comma, where semicolons separate the columns).")
+    usable = [row for row, good in zip(rows, known) if good]
+    roles = _roles(usable, where)
+    pixel, line = _in_the_image(table["pixel"][known], table["line"][known], roles != DISABLED, image, what)
+    easting, northing, height = (table[key][known] for key in ("easting", "northing", "height"))
+    return ControlPoints(pixel, line, easting, northing, height, _names(usable, where.get("name")), roles, crs, int((~known).sum()))
+
+
+def read_control_points(path: str | Path, image: SourceImage, crs: str = "") -> ControlPoints:
+    """Control points of a file.
+
+    Parameters
+    ----------
+    path : `.points` of the QGIS georeferencer (with or without a line "#CRS: ..."; mapX, mapY, sourceX, sourceY or
+        pixelX, pixelY; commas or, from QGIS 1, tabs), or a CSV or TXT table
+    image : SourceImage that the points belong to
+    crs : WKT of the map coordinates where the file names none
+
+    Returns
+    -------
+    ControlPoints
+
+    Raises
+    ------
+    RoadExtractionError
+        If the file cannot be read, or its columns or its CRS are not recognised.
     """
     lines, named = _lines(path)
     delimiter = _delimiter(lines)
@@ -131,7 +142,7 @@ def read_control_points(path, image, crs=""):
 
 
 def _lines(path):
-    """The lines of the table, and the CRS named above it."""
+    """The lines of the table, and the CRS given above it."""
     try:
         if Path(path).stat().st_size > MAX_TABLE_BYTES:
             raise RoadExtractionError(f"{path} is too large for a table of control points. Was the image chosen in its place?")
@@ -161,12 +172,13 @@ def _lines(path):
 
 
 def _delimiter(lines):
-    """Of the first line that has one; a comma beside semicolons or tabs is a decimal sign."""
+    """Delimiter of the first line; a comma beside semicolons or tabs is a decimal comma."""
     first = next(iter(lines), "")
     return next((mark for mark in (";", "\t", ",") if mark in first), " ")
 
 
 def _wkt(named, path):
+    """WKT of the CRS that a file names, "" where it names none."""
     from ..io.crs import parse_crs
 
     if not named:
@@ -177,76 +189,93 @@ def _wkt(named, path):
         raise RoadExtractionError(f"{path} names a CRS that is not understood: {named[:60]!r}. "
                                   "Correct its first line (#CRS: EPSG:number) or remove it and give the CRS.") from problem
 
-CONTROL, CHECK, DISABLED = "control", "check", "disabled"
-_FALSE_TEXTS = ("0", "false", "no", "off", "n", "f")
-_CHECK_TEXTS = ("check", "checkpoint", "check point", "chk", "cp", "test")
 
+def find_columns(names: Sequence[Any], what: str) -> dict[str, int]:
+    """Columns of a table with a header.
 
-@dataclass(frozen=True)
-class ControlPoints:
-    """N points.
-
-    Attributes
-    ----------
-    pixel, line : (N,) in the image, lines counted downwards
-    easting, northing, height : (N,) on the map, m; height NaN where it is not known
-    names : N texts
-    roles : (N,) of "control" (they place the image), "check" (they only judge it), "disabled"
-    crs : WKT of the map coordinates, "" where unknown
-    left_out : rows of the table that held no numbers
-    """
-
-    pixel: np.ndarray
-    line: np.ndarray
-    easting: np.ndarray
-    northing: np.ndarray
-    height: np.ndarray
-    names: tuple
-    roles: np.ndarray
-    crs: str = ""
-    left_out: int = 0
-
-    def __len__(self):
-        return len(self.pixel)
-
-    def having(self, role):
-        """Indices of the points of one role."""
-        return np.flatnonzero(self.roles == role)
-
-    def with_disabled_as_checks(self):
-        return replace(self, roles=np.where(self.roles == DISABLED, CHECK, self.roles))
-
-
-def control_points(names, rows, image, what, crs=""):
-    """The control points of a table.
+    Columns named only `x` and `y` are map coordinates, unless other columns have the names of these.
 
     Parameters
     ----------
-    names : list of column names, or None where the table has no header
-    rows : list of rows, of texts or numbers
-    image : SourceImage that the points belong to
-    what : the table's name for messages
-    crs : WKT of its map coordinates
+    names : of the columns
+    what : name of the table for error messages
+
+    Returns
+    -------
+    dict of meaning (a key of COLUMN_ALIASES) to index of the column
 
     Raises
     ------
     RoadExtractionError
-        If a needed column is missing, no row holds numbers, or the points lie outside the image.
+        If pixel, line, easting or northing has no column.
     """
-    if not rows:
-        raise RoadExtractionError(f"{what} holds no control points. It needs a row for each: pixel, line, easting, northing.")
-    where = guess_columns(rows, image, what) if names is None else find_columns(names, what)
-    table = {key: _numbers(rows, where.get(key)) for key in ("pixel", "line", "easting", "northing", "height")}
-    known = np.isfinite([table[key] for key in ("pixel", "line", "easting", "northing")]).all(axis=0)
-    if not known.any():
+    plain = [re.sub(r"[^a-z]", "", re.sub(r"\(.*?\)|\[.*?\]", "", str(name).lower())) for name in names]
+    found = {}
+    for key, aliases in COLUMN_ALIASES.items():
+        places = [plain.index(alias) for alias in aliases if alias in plain]
+        if places:
+            found[key] = places[0]
+    for bare, keys in (("x", ("easting", "pixel")), ("y", ("northing", "line"))):
+        free = [key for key in keys if key not in found]
+        if bare in plain and free:
+            found[free[0]] = plain.index(bare)
+    missing = [key for key in REQUIRED_COLUMNS if key not in found]
+    if missing:
         raise RoadExtractionError(
-            f"{what} holds no row with numbers for pixel, line, easting and northing. "
-            "Write numbers with a decimal point (a comma only where semicolons part the columns).")
-    kept = [row for row, good in zip(rows, known) if good]
-    roles = _roles(kept, where)
-    pixel, line = _in_the_image(table["pixel"][known], table["line"][known], roles != DISABLED, image, what)
-    return ControlPoints(pixel, line, *(table[key][known] for key in ("easting", "northing", "height")),
-                         _names(kept, where.get("name")), roles, crs, int((~known).sum()))
+            f"{what} has the columns {', '.join(map(str, names))}; none of them was recognised as {' or '.join(missing)}. "
+            "Name the columns pixel, line, easting, northing.")
+    return found
+
+
+def guess_columns(rows: Sequence[Sequence[Any]], image: SourceImage, what: str) -> dict[str, int]:
+    """Columns of a table without a header: two columns lie in the image, and the two beside them do not.
+
+    Parameters
+    ----------
+    rows : of the table
+    image : SourceImage
+    what : name of the table for error messages
+
+    Returns
+    -------
+    dict of meaning (a key of COLUMN_ALIASES) to index of the column
+
+    Raises
+    ------
+    RoadExtractionError
+        If both orders are possible, or neither.
+    """
+    width = min(len(row) for row in rows)
+    values = np.array([[as_number(field) for field in row[:width]] for row in rows])
+    fits = []
+    for start in (0, 1):  # a point's name may come first
+        if start + 4 > width or not np.isfinite(values[:, start:start + 4]).all():
+            continue
+        first, second = values[:, start:start + 2], values[:, start + 2:start + 4]
+        for order, pair, other in ((("pixel", "line", "easting", "northing"), first, second),
+                                   (("easting", "northing", "pixel", "line"), second, first)):
+            inside, elsewhere = (image.holds(p[:, 0], np.abs(p[:, 1]), 1.0).all() for p in (pair, other))
+            if inside and not elsewhere:
+                fits.append({**{key: start + k for k, key in enumerate(order)}, **({"name": 0} if start else {}),
+                             **_enable(values, start + 4)})
+    if len(fits) != 1:
+        raise RoadExtractionError(
+            f"The columns of {what} have no names, and their numbers do not show which are pixel and line in an image of "
+            f"{image.width} by {image.height}. Put a line above them: pixel,line,easting,northing.")
+    return fits[0]
+
+
+def _enable(values, column):
+    """The fifth column of the QGIS georeferencer, zeros and ones, where there is one."""
+    return {"enable": column} if column < values.shape[1] and np.isin(values[:, column], (0, 1)).all() else {}
+
+
+def as_number(value: Any) -> float:
+    """The number in a field, with a decimal point or comma; NaN where it holds none."""
+    try:
+        return float(str(value).strip().replace(",", "."))
+    except ValueError:
+        return np.nan
 
 
 def _numbers(rows, column):
@@ -254,15 +283,15 @@ def _numbers(rows, column):
 
 
 def _in_the_image(pixel, line, used, image, what):
-    """Pixel and line, lines downwards; source coordinates of an image that had a place become pixels.
+    """Pixel and line, with lines counted downward; source coordinates of an image with a position become pixels.
 
-    Where disabled points lie is their own affair, unless there are no others.
+    Disabled points may lie anywhere, unless all points are disabled.
     """
     used = used if used.any() else np.ones(len(pixel), dtype=bool)
     margin = 1.0 + 0.02 * max(image.width, image.height)
     forms = [(pixel, -line) if np.median(line[used]) < 0 else (pixel, line)]
     if image.geotransform is not None:
-        # QGIS writes these where the image it worked on had a place on the map
+        # QGIS writes map coordinates of the source where its image had a position
         forms.append(image.pixel_of(pixel, line))
     for columns, lines in forms:
         if image.holds(columns, lines, margin)[used].all():
@@ -272,7 +301,7 @@ def _in_the_image(pixel, line, used, image, what):
     raise RoadExtractionError(
         f"{outside} of {len(columns)} points of {what} lie outside the image: pixels run from {columns.min():.0f} to {columns.max():.0f} "
         f"and lines from {lines.min():.0f} to {lines.max():.0f}, the image has {image.width} by {image.height}. "
-        "Are they of another image, of one in another size, or are pixel and line swapped?")
+        "Do they belong to another image or to another size of it, or are pixel and line swapped?")
 
 
 def _names(rows, column):

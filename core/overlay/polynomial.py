@@ -1,33 +1,45 @@
-"""Polynomials from pixels to the map, fitted to control points by least squares."""
+"""Polynomials from pixels to the map, fitted to ground control points by least squares."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
 
 COLLINEAR_RATIO = 0.01         # extent across over extent along, below which points lie on a line
-MIN_INVERSE_CONDITION = 1e-3        # smallest over largest singular value, below which the points do not tell the coefficients
-MIN_CONTROL_POINTS = (1, 3, 6, 10)
+MIN_INVERSE_CONDITION = 1e-3   # smallest over largest singular value, below which the points do not determine the coefficients
+MIN_CONTROL_POINTS = (1, 3, 6, 10)  # by order: a shift needs one point, order t needs (t + 1)(t + 2) / 2
+NEWTON_STEPS = 30              # of the inverse; it converges in a few
 
 
-def term_powers(order):
-    """(K, 2) powers of the terms u^a v^b with a + b <= order; K = (order + 1)(order + 2) / 2."""
+def term_powers(order: int) -> np.ndarray:
+    """Powers of the terms u^a v^b with a + b <= order.
+
+    Parameters
+    ----------
+    order : of the polynomial
+
+    Returns
+    -------
+    (K, 2) int, K = (order + 1)(order + 2) / 2
+    """
     return np.array([(total - b, b) for total in range(order + 1) for b in range(total + 1)])
 
 
 @dataclass(frozen=True)
 class ImagePolynomial:
-    """From pixel and line to the map.
+    """A polynomial from pixel and line to the map.
 
-    Coordinates are centred and turned to their principal axes, then scaled to unit spread,
-    so that the terms are of one size: u = (p - centre) @ whiten.
+    Coordinates are centred, rotated to their principal axes and scaled to unit spread, so that all terms are of
+    similar size: u = (p - centre) @ whiten.
 
     Attributes
     ----------
-    order : of the polynomial; a shift is kept as a polynomial of order 1
-    centre : (2,) pixel, line
+    order : of the polynomial; a shift is stored as a polynomial of order 1
+    centre : (2,) pixel and line
     whiten : (2, 2)
-    origin : (2,) map coordinates subtracted before the fit
-    coefficients : (K, 2) of the terms in `term_powers(order)`, for easting and northing
+    origin : (2,) m, map coordinates subtracted before the fit
+    coefficients : (K, 2) m of the terms in `term_powers(order)`, for easting and northing
     """
 
     order: int
@@ -36,16 +48,17 @@ class ImagePolynomial:
     origin: np.ndarray
     coefficients: np.ndarray
 
-    def terms(self, pixel, line):
+    def terms(self, pixel: np.ndarray, line: np.ndarray) -> np.ndarray:
+        """(N, K) values of the terms at N places in the image."""
         return _terms(self._scaled(pixel, line), self.order)
 
-    def to_map(self, pixel, line):
-        """(easting, northing), (N,) each, of places in the image."""
+    def to_map(self, pixel: np.ndarray, line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Easting and northing, (N,) m each, of (N,) places in the image."""
         places = self.terms(pixel, line) @ self.coefficients + self.origin
         return places[:, 0], places[:, 1]
 
-    def jacobian(self, pixel, line):
-        """(N, 2, 2): metres east and north (rows) per pixel and line (columns)."""
+    def jacobian(self, pixel: np.ndarray, line: np.ndarray) -> np.ndarray:
+        """(N, 2, 2) m east and north (rows) per pixel and line (columns), at N places in the image."""
         u, powers = self._scaled(pixel, line), term_powers(self.order)
         slopes = []
         for axis in (0, 1):
@@ -55,10 +68,17 @@ class ImagePolynomial:
         inner = np.stack([slope @ self.coefficients for slope in slopes], axis=2)
         return np.einsum("nij,kj->nik", inner, self.whiten)
 
-    def to_pixel(self, easting, northing, steps=30):
-        """(pixel, line), (N,) each, of places on the map, by Newton's method from the affine part.
+    def to_pixel(self, easting: np.ndarray, northing: np.ndarray, steps: int = NEWTON_STEPS) -> tuple[np.ndarray, np.ndarray]:
+        """Places in the image by Newton's method, started from the affine part.
 
-        NaN where it does not settle: the polynomial has no single answer there.
+        Parameters
+        ----------
+        easting, northing : (N,) m
+        steps : of the iteration, at most
+
+        Returns
+        -------
+        pixel, line : (N,); NaN where the iteration does not converge, because the polynomial has no unique inverse
         """
         target = np.column_stack([np.asarray(easting, float), np.asarray(northing, float)])
         affine = self.jacobian(self.centre[:1], self.centre[1:])[0]
@@ -89,16 +109,15 @@ def _terms(u, order):
 
 @dataclass(frozen=True)
 class ControlPointFit:
-    """A polynomial with what the control points say about it.
+    """A polynomial fitted to N control points, with the quality of the fit.
 
     Attributes
     ----------
     polynomial : ImagePolynomial
-    residuals : (N, 2) m, map coordinates of the points minus the polynomial's
-    leverage : (N,) how much each point pulls the polynomial to itself, 0 to 1
-    triangle : (K, K) R of the fit's QR, for the leverage of other places
+    residuals : (N, 2) m, map coordinates of the points minus those of the polynomial
+    leverage : (N,) 0 to 1, influence of each point on its own residual
+    triangle : (K, K) matrix R of the QR decomposition of the terms
     order : 0 for a shift
-    free : points beyond the smallest number
     """
 
     polynomial: ImagePolynomial
@@ -108,55 +127,81 @@ class ControlPointFit:
     order: int
 
     @property
-    def free(self):
+    def free(self) -> int:
+        """Redundant points: those beyond the smallest number."""
         return len(self.residuals) - MIN_CONTROL_POINTS[self.order]
 
     @property
-    def left_out(self):
-        """(N, 2) m, where each point would be off had it not been used: r / (1 - h); NaN where the rest would not do."""
+    def left_out(self) -> np.ndarray:
+        """(N, 2) m, leave-one-out residuals r / (1 - h); NaN where the other points do not determine the polynomial."""
         rest = 1.0 - self.leverage
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where((rest > 1e-6)[:, None], self.residuals / rest[:, None], np.nan)
 
-    def leverage_at(self, pixel, line):
-        """The same measure, (M,), of any places; above 1 the polynomial extrapolates."""
+    def leverage_at(self, pixel: np.ndarray, line: np.ndarray) -> np.ndarray:
+        """(M,) leverage of any places in the image; the polynomial extrapolates where it exceeds 1."""
         terms = self.polynomial.terms(pixel, line) if self.order else np.ones((len(pixel), 1))
         return np.sum(np.linalg.solve(self.triangle.T, terms.T) ** 2, axis=0)
 
 
-def principal_extents(places):
-    """(along, across): how far places, (N, 2), reach along their principal axes."""
+def principal_extents(places: np.ndarray) -> tuple[float, float]:
+    """Extents of places along their principal axes.
+
+    Parameters
+    ----------
+    places : (N, 2)
+
+    Returns
+    -------
+    along, across : in the unit of the places
+    """
     _, _, turned = np.linalg.svd(places - places.mean(axis=0), full_matrices=False)
     along, across = np.ptp((places - places.mean(axis=0)) @ turned.T, axis=0)
     return float(along), float(across)
 
 
-def inverse_condition(pixel, line, order):
-    """Smallest over largest singular value of the terms at control points; 0 where they are no full set."""
+def inverse_condition(pixel: np.ndarray, line: np.ndarray, order: int) -> float:
+    """Smallest over largest singular value of the terms at control points.
+
+    Parameters
+    ----------
+    pixel, line : (N,)
+    order : of the polynomial
+
+    Returns
+    -------
+    0 to 1; 0 where the points do not determine the coefficients
+    """
     centre, whiten = _frame(np.column_stack([pixel, line]))
     singular = np.linalg.svd(_terms((np.column_stack([pixel, line]) - centre) @ whiten, order), compute_uv=False)
     return float(singular[-1] / singular[0])
 
 
 def _frame(places):
-    """Centre and whitening matrix of places (N, 2), which do not lie in a line."""
+    """Centre and whitening matrix of places (N, 2) that do not lie on a line."""
     centre = places.mean(axis=0)
     _, singular, turned = np.linalg.svd(places - centre, full_matrices=False)
     return centre, turned.T / (singular / np.sqrt(len(places)))
 
 
-def fit_image_polynomial(pixel, line, easting, northing, order):
-    """Fit of order 1 to 3: X = sum a_ij u^i v^j, Y likewise, by QR of the centred and scaled terms.
+def fit_image_polynomial(pixel: np.ndarray, line: np.ndarray, easting: np.ndarray, northing: np.ndarray, order: int) -> ControlPointFit:
+    """Fit a polynomial of order 1 to 3: X = sum a_ij u^i v^j, and Y likewise.
 
     Parameters
     ----------
-    pixel, line, easting, northing : (N,), N at least MIN_CONTROL_POINTS[order], neither in a line nor weak
+    pixel, line : (N,) in the image; N at least MIN_CONTROL_POINTS[order], not on a line
+    easting, northing : (N,) m
+    order : 1, 2 or 3
+
+    Returns
+    -------
+    ControlPointFit
 
     Notes
     -----
-    The number of terms is that of ArcGIS's and GDAL's polynomials, (t + 1)(t + 2) / 2. With R of the
-    QR, h_i = |R^-T t_i|^2 is the leverage, and the residual that a point would have
-    without being used is r_i / (1 - h_i) (Belsley, Kuh and Welsch 1980, Regression Diagnostics).
+    The terms are those of the polynomials of ArcGIS and GDAL. They are centred and scaled, and solved by QR. With R of the QR,
+    h_i = |R^-T t_i|^2 is the leverage, and r_i / (1 - h_i) the residual of a point that is left out (Belsley, Kuh
+    and Welsch 1980, Regression Diagnostics).
     """
     places, target = np.column_stack([pixel, line]).astype(float), np.column_stack([easting, northing]).astype(float)
     centre, whiten = _frame(places)
@@ -168,12 +213,19 @@ def fit_image_polynomial(pixel, line, easting, northing, order):
     return ControlPointFit(ImagePolynomial(order, centre, whiten, origin, coefficients), residuals, np.sum(basis**2, axis=1), triangle, order)
 
 
-def fit_shift(pixel, line, easting, northing, geotransform):
-    """Fit of order 0: the image keeps the scale and direction of its rough position and is only moved.
+def fit_shift(pixel: np.ndarray, line: np.ndarray, easting: np.ndarray, northing: np.ndarray,
+              geotransform: tuple[float, ...]) -> ControlPointFit:
+    """Fit of order 0: the image keeps the scale and rotation of its approximate position and is only shifted.
 
     Parameters
     ----------
-    geotransform : rough position of the image, as GDAL has it
+    pixel, line : (N,) in the image
+    easting, northing : (N,) m
+    geotransform : approximate position of the image, six numbers as in GDAL
+
+    Returns
+    -------
+    ControlPointFit
     """
     x0, xp, xl, y0, yp, yl = geotransform
     places, target = np.column_stack([pixel, line]).astype(float), np.column_stack([easting, northing]).astype(float)

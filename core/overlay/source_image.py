@@ -1,4 +1,6 @@
-"""The image to be georeferenced, as it comes: any raster that GDAL reads, with a place on the map or none."""
+"""The image to be georeferenced: any raster that GDAL reads, with or without a position on the map."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,52 +15,87 @@ _NO_GEOTRANSFORM = (0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
 @dataclass(frozen=True)
 class SourceImage:
-    """What is known about the image without reading its pixels.
+    """What is known about an image without reading its pixels.
 
     Attributes
     ----------
     path : of the file
     width, height : pixels
-    geotransform : as GDAL has it, or None where the image has no place on the map
-    crs : WKT, "" where the image says none
-    bands : their number, an alpha band included
-    has_alpha : whether the last band is one
-    palette : whether the values are places in a colour table
-    kind : "byte", "integer" or "real", what the values are
+    geotransform : six numbers as in GDAL, or None where the image has no position on the map
+    crs : WKT, "" where the image has none
+    bands : count, including an alpha band
+    has_alpha : whether the last band is an alpha band
+    palette : whether the values are indices of a colour table
+    kind : "byte", "integer" or "real", type of the values
     nodata : value of pixels without data, or None
     """
 
     path: str
     width: int
     height: int
-    geotransform: tuple = None
+    geotransform: tuple[float, ...] | None = None
     crs: str = ""
     bands: int = 1
     has_alpha: bool = False
     palette: bool = False
     kind: str = "byte"
-    nodata: float = None
+    nodata: float | None = None
 
-    def pixel_of(self, x, y):
-        """Pixel and line, (N,) each, of places given in the position that the image came with."""
+    def pixel_of(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Pixel and line of map coordinates, by the position of the image itself.
+
+        Parameters
+        ----------
+        x, y : (N,) m
+
+        Returns
+        -------
+        pixel, line : (N,)
+
+        Raises
+        ------
+        ValueError
+            If the image has no position.
+        """
+        if self.geotransform is None:
+            raise ValueError("the image has no position")
         x0, xp, xl, y0, yp, yl = self.geotransform
         turn = np.linalg.inv(np.array([[xp, xl], [yp, yl]]))
-        return tuple(turn @ np.stack([np.asarray(x, float) - x0, np.asarray(y, float) - y0]))
+        pixel, line = turn @ np.stack([np.asarray(x, float) - x0, np.asarray(y, float) - y0])
+        return pixel, line
 
-    def holds(self, pixel, line, margin=0.0):
-        """Which of some places, (N,), lie in the image or within `margin` pixels of it."""
+    def holds(self, pixel: np.ndarray, line: np.ndarray, margin: float = 0.0) -> np.ndarray:
+        """Whether places lie in the image.
+
+        Parameters
+        ----------
+        pixel, line : (N,)
+        margin : pixels around the image that count as inside
+
+        Returns
+        -------
+        (N,) bool
+        """
         return ((pixel >= -margin) & (pixel <= self.width + margin)
                 & (line >= -margin) & (line <= self.height + margin))
 
 
 @gdal_exceptions()
-def open_image(path):
-    """SourceImage of a file; refuses what GDAL cannot read and images that are too small to hold anything.
+def open_image(path: str | Path) -> SourceImage:
+    """Read the description of an image.
+
+    Parameters
+    ----------
+    path : of a file that GDAL reads
+
+    Returns
+    -------
+    SourceImage
 
     Raises
     ------
     RoadExtractionError
-        If there is no such file, or it is no raster.
+        If there is no such file, or it is no raster with bands.
     """
     from osgeo import gdal
 
@@ -69,7 +106,7 @@ def open_image(path):
     except RuntimeError as problem:
         raise RoadExtractionError(f"{path} cannot be read as an image ({problem}). Give a TIFF, JPEG or PNG.") from problem
     if dataset.RasterCount == 0:
-        raise RoadExtractionError(f"{path} holds several images and none of its own. Name one of them, or export it as a TIFF.")
+        raise RoadExtractionError(f"{path} is a container of several images. Give one of them, or export it as a TIFF.")
     transform = dataset.GetGeoTransform(can_return_null=True)
     placed = transform is not None and tuple(transform) != _NO_GEOTRANSFORM
     first, last = dataset.GetRasterBand(1), dataset.GetRasterBand(dataset.RasterCount)

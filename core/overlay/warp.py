@@ -1,4 +1,6 @@
-"""The image drawn on the map, by GDAL."""
+"""The georeferenced image, resampled by GDAL into a GeoTIFF."""
+
+from __future__ import annotations
 
 import os
 from pathlib import Path
@@ -10,28 +12,51 @@ from ..common.errors import Cancelled, RoadExtractionError
 from ..common.progress import Progress
 from ..io.gdal_errors import gdal_exceptions
 from ..io.geotiff import GEOTIFF_TILE
-from .georeference import node_grid, own_pixel_size
+from .georeference import Georeferencing, node_grid, own_pixel_size
 
-GDAL_CACHE = 128_000_000     # bytes of GDAL's cache: blocks beyond it are written while the work goes on, not all at its end
-MAX_RESULT_PIXELS = 4e9            # pixels of the result; beyond this the polynomial or the pixel size is wrong
-_APPROXIMATION = 0.05    # px, within which GDAL interpolates places along a row
-_NODES = 21              # per side, of the node_grid that tells GDAL the polynomial
-_MARGINS = (0.2, 0.1, 0.04, 0.0)  # of the area, by which the node_grid reaches beyond it
-_SMALLEST_OVERVIEW = 256
+GDAL_CACHE = 128_000_000  # bytes: a larger cache delays the writing of blocks to the end of the work
+MAX_RESULT_PIXELS = 4e9  # a larger result means that the polynomial or the pixel size is wrong
+_APPROXIMATION = 0.05    # pixels, error of the interpolation along a row by GDAL
+_NODES = 21              # per side, of the grid of points that replaces the polynomial in GDAL
+_MARGINS = (0.2, 0.1, 0.04, 0.0)  # of the size of the area, by which the grid exceeds it
+_SMALLEST_OVERVIEW = 256  # pixels
 _ALGORITHMS = {"nearest": "near", "bilinear": "bilinear", "cubic": "cubic"}
 
 
-def drawn_area(found):
-    """What is drawn of the image: shapely polygon in pixel and line."""
+def drawn_area(found: Georeferencing) -> shapely.Geometry:
+    """The part of the image that is drawn.
+
+    Parameters
+    ----------
+    found : Georeferencing
+
+    Returns
+    -------
+    shapely polygon in pixel and line
+    """
     frame = shapely.box(0, 0, found.image.width, found.image.height)
-    return found.hull.intersection(frame) if found.cut else frame
+    return found.hull.intersection(frame) if found.cut and found.hull is not None else frame
 
 
-def output_grid(found):
-    """((min x, min y, max x, max y), width, height) of the result.
+def output_grid(found: Georeferencing) -> tuple[tuple[float, float, float, float], int, int]:
+    """Bounds and size of the result.
 
-    Bounds are whole multiples of the pixel size; those of a shift at the image's own pixel size
-    are the image's, so that its pixels stay as they are.
+    Bounds are whole multiples of the pixel size. A shift at the pixel size of the image keeps the bounds of the image, so that
+    no pixel is resampled.
+
+    Parameters
+    ----------
+    found : Georeferencing
+
+    Returns
+    -------
+    bounds : (min x, min y, max x, max y), m
+    width, height : pixels
+
+    Raises
+    ------
+    RoadExtractionError
+        If the result would have more than MAX_RESULT_PIXELS.
     """
     outline = drawn_area(found).exterior
     outline = shapely.get_coordinates(outline.segmentize(max(outline.length / 400, 1e-6)))
@@ -44,36 +69,38 @@ def output_grid(found):
     if width * height > MAX_RESULT_PIXELS:
         raise RoadExtractionError(
             f"The result would have {width} by {height} pixels of {size:g} m. Give a larger pixel size, choose a lower order, "
-            "or look for a wrong control point.")
+            "or check the control points.")
     y1 = y0 + height * size if not _keeps_its_pixels(found) else y1
     return (float(x0), float(y1 - height * size), float(x0 + width * size), float(y1)), width, height
 
 
 def _keeps_its_pixels(found):
+    """Whether the image is only shifted, at its own pixel size."""
     slope = found.fit.polynomial.jacobian(np.zeros(1), np.zeros(1))[0]
     return found.settings.order == 0 and np.allclose(slope, found.pixel_size * np.array([[1, 0], [0, -1]]), rtol=1e-9, atol=1e-12)
 
 
 @gdal_exceptions()
-def draw_image(found, path, progress=None):
-    """Write the image as a tiled, losslessly compressed GeoTIFF with overviews; it takes its name when it is whole.
+def draw_image(found: Georeferencing, path: str | Path, progress: Progress | None = None) -> float:
+    """Write the image as a tiled GeoTIFF with lossless compression and overviews; the file appears when it is complete.
 
-    Bytes get an alpha band where the image ends; integers of more bits get 0, real numbers NaN as no-data value,
-    unless the image brings its own.
+    Images of bytes get an alpha band. Images of larger integers get 0, and those of real numbers NaN, as no-data value,
+    unless the image has its own.
 
     Parameters
     ----------
     found : Georeferencing
     path : of the GeoTIFF
+    progress : Progress
 
     Returns
     -------
-    float, the greatest distance in pixels between where GDAL draws a place and where the polynomial puts it
+    pixels, greatest distance between the places where GDAL and the polynomial put a pixel
 
     Raises
     ------
     RoadExtractionError
-        If the result would be absurdly large, the image cannot be read, or the file cannot be written.
+        If the result would be too large, the image cannot be read, or the file cannot be written.
     """
     from osgeo import gdal
 
@@ -81,18 +108,19 @@ def draw_image(found, path, progress=None):
     bounds, width, height = output_grid(found)
     unfinished, tiled = (Path(path).with_name(Path(path).name + end) for end in (".unfinished.tif", ".source.tif"))
     source = view = result = None
-    cancelled, failure = [], ""
+    cancelled: list[bool] = []
+    failure = ""
     cache = gdal.GetCacheMax()
     gdal.SetCacheMax(min(cache, GDAL_CACHE))
     try:
-        source = _with_lattice(gdal, found, _tiled(gdal, found.image, tiled, _callback(progress, 0.0, 0.1, cancelled)))
+        source = _with_point_grid(gdal, found, _tiled(gdal, found.image, tiled, _callback(progress, 0.0, 0.1, cancelled)))
         off = _departure(gdal, source, found) + _APPROXIMATION
-        # Drawn block by block as it is written: each tile is compressed once, and Cancel is heard in between
+        # Blocks are resampled while they are written: every tile is compressed once, and Cancel takes effect in between
         view = gdal.Warp("", source, **_warp_options(found, bounds))
         result = gdal.GetDriverByName("GTiff").CreateCopy(str(unfinished), view, options=_file_options(found.image),
                                                           callback=_callback(progress, 0.1, 0.8, cancelled))
         levels = [2**k for k in range(1, 16) if max(width, height) / 2**k >= _SMALLEST_OVERVIEW]
-        result = None  # GDAL 3.6 may wait for its own threads for ever where it reads what they still write
+        result = None  # GDAL 3.6 may deadlock where it reads what its own threads still write
         if levels and not cancelled:
             result = gdal.Open(str(unfinished), gdal.GA_Update)
             result.BuildOverviews("AVERAGE", levels, callback=_callback(progress, 0.8, 1.0, cancelled))
@@ -107,7 +135,7 @@ def draw_image(found, path, progress=None):
         gdal.SetCacheMax(cache)
         for leftover in (unfinished, Path(f"{unfinished}.aux.xml"), tiled):
             leftover.unlink(missing_ok=True)
-    # Raised out here, since GDAL's own error would keep its datasets alive until after GDAL itself is gone
+    # Raised here, because the error of GDAL would keep its datasets alive until after GDAL itself is unloaded
     if cancelled:
         raise Cancelled
     if failure:
@@ -118,7 +146,7 @@ def draw_image(found, path, progress=None):
 
 
 def _callback(progress, start, end, cancelled):
-    """GDAL's progress as ours; a user's Cancel is noted in `cancelled`, since GDAL knows only yes and no."""
+    """GDAL's progress as ours; Cancel is noted in `cancelled`, because GDAL has no exception for it."""
     part = progress.part(start, end)
 
     def tell(fraction, *_):
@@ -133,9 +161,9 @@ def _callback(progress, start, end, cancelled):
 
 
 def _tiled(gdal, image, path, callback):
-    """The image's path; that of a copy in tiles where it is large and stored line by line (JPEG, PNG).
+    """The path of the image, or of a copy in tiles where it is large and stored line by line (JPEG, PNG).
 
-    A turned image is read across its lines, and such a file begins anew each time.
+    A rotated image is read across its lines, and each such read would decompress the file from its beginning.
     """
     dataset = gdal.Open(image.path)
     band = dataset.GetRasterBand(1)
@@ -146,12 +174,12 @@ def _tiled(gdal, image, path, callback):
     return str(path)
 
 
-def _with_lattice(gdal, found, path):
-    """The image as GDAL opens it, with points in place of a position.
+def _with_point_grid(gdal, found, path):
+    """The image with a grid of ground control points in place of a position, as an open GDAL dataset.
 
-    GDAL would fit a polynomial of its own from the map to the image, which is no
-    inverse of ours: tens of pixels beside it in a tilted picture. It is given a dense node_grid that obeys our
-    polynomial instead, for splines between the nodes (an affine needs no more than any three).
+    GDAL would fit its own polynomial from the map to the image, which is not the inverse of ours: in an oblique image it is
+    off by tens of pixels. A dense grid of points that follow our polynomial makes it interpolate by thin-plate splines
+    instead (an affine transformation needs any three of them).
     """
     area, polynomial = drawn_area(found), found.fit.polynomial
     x0, y0, x1, y1 = area.bounds
@@ -171,7 +199,7 @@ def _method(found):
 
 
 def _departure(gdal, source, found):
-    """Pixels between where GDAL's transformer and the polynomial's inverse look for places of the result."""
+    """Pixels between the places where GDAL's transformer and the inverse of the polynomial look for the result."""
     area = drawn_area(found)
     pixel, line = node_grid(area.bounds, 33)
     inside = shapely.contains_xy(area, pixel, line)
@@ -193,7 +221,7 @@ def _warp_options(found, bounds):
             ends = {"dstAlpha": True}
         else:
             ends = {"dstNodata": 0 if image.kind == "integer" else "nan"}
-    # Left to itself GDAL guesses the scale from each window's extent, and blurs turned images at their rims
+    # By default GDAL estimates the scale from the extent of each window, and blurs rotated images at their borders
     scale = min(1.0, own_pixel_size(found.fit, drawn_area(found)) / size)
     options = [f"XSCALE={scale}", f"YSCALE={scale}"]
     if found.cut:

@@ -106,7 +106,7 @@ def test_points_of_another_image_are_refused_with_both_sizes(tmp_path):
 
 def test_a_missing_column_is_named(tmp_path):
     told = refusal("pixel,line,easting,height\n1,2,3,4\n", tmp_path)
-    assert "northing cannot be told" in told and "height" in told
+    assert "none of them was recognised as northing" in told and "height" in told
 
 
 def test_columns_without_names_that_could_be_either_are_refused(tmp_path):

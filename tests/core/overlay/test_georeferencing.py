@@ -53,8 +53,8 @@ def test_points_piled_on_each_other_are_not_six():
 
 
 def test_few_points_are_warned_of_and_enough_are_not():
-    assert "the residuals flatter" in notes(placed(2, count=8))
-    assert "flatter" not in notes(placed(2, count=9))
+    assert "the residuals are smaller than the errors" in notes(placed(2, count=8))
+    assert "smaller than the errors" not in notes(placed(2, count=9))
 
 
 def test_a_shift_needs_a_rough_position_or_a_pixel_size():
@@ -104,7 +104,7 @@ def test_a_point_that_folds_the_image_is_named():
     points.easting[5] += 30.0
     points.northing[5] -= 30.0
     told = refusal(3, points)
-    assert "folds" in told and "(look at 6 first)" in told
+    assert "folds" in told and "(check 6 first)" in told
 
 
 def test_a_point_that_does_not_fit_is_named_with_its_distance():

@@ -120,7 +120,7 @@ def test_points_without_crs_give_an_image_without_one(tmp_path):
     path = tmp_path / "flown.tif"
     chequered(path)
     found = georeference(open_image(path), measured(places=RIMS, crs=""), GeoreferenceSettings(order=2))
-    assert "carry no CRS" in found.notes[0]
+    assert "have no CRS" in found.notes[0]
     draw_image(found, tmp_path / "drawn.tif")
     dataset = gdal.Open(str(tmp_path / "drawn.tif"))
     assert not dataset.GetProjection()
