@@ -37,7 +37,7 @@ def main(arguments=None):
     """Run the program; its exit code: 0, 1 after one sentence on stderr, 130 after Ctrl-C."""
     arguments = sys.argv[1:] if arguments is None else list(arguments)
     try:
-        missing = [name for name in ("numpy", "scipy", "laspy", "lazrs", "shapely", "pyproj", "fiona", "cv2") if find_spec(name) is None]
+        missing = [name for name in ("numpy", "scipy", "laspy", "lazrs", "shapely", "pyproj", "fiona", "cv2", "jinja2") if find_spec(name) is None]
         if missing:
             raise RoadExtractionError(f"These Python packages are missing: {', '.join(missing)}. pip install lanewright brings them.")
         return _main(arguments)

@@ -16,9 +16,10 @@ from .texts import tr
 
 # What Python imports -> what it is called where one installs it
 NEEDED = {"numpy": "numpy", "scipy": "scipy", "laspy": "laspy", "lazrs": "lazrs", "shapely": "shapely",
-          "pyproj": "pyproj", "cv2": "opencv-python-headless"}
+          "pyproj": "pyproj", "cv2": "opencv-python-headless", "jinja2": "jinja2", "markupsafe": "markupsafe"}
 # Debian's and Ubuntu's own, built for the numpy and PROJ that their QGIS uses
-DEBIAN = {"numpy": "python3-numpy", "scipy": "python3-scipy", "pyproj": "python3-pyproj", "cv2": "python3-opencv"}
+DEBIAN = {"numpy": "python3-numpy", "scipy": "python3-scipy", "pyproj": "python3-pyproj", "cv2": "python3-opencv",
+          "jinja2": "python3-jinja2", "markupsafe": "python3-markupsafe"}
 OLDEST_SHAPELY = 2
 
 

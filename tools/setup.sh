@@ -8,7 +8,7 @@ cd "$LANEWRIGHT_ROOT"
 
 OLDEST=3.40
 NEWER="Debian 12 has 3.40 in bookworm-backports, Debian 13 has it itself, and https://qgis.org/download serves other systems"
-PACKAGES=(ca-certificates fonts-dejavu-core gdal-bin make python3-fiona python3-numpy python3-opencv python3-pip
+PACKAGES=(ca-certificates fonts-dejavu-core gdal-bin make python3-fiona python3-jinja2 python3-numpy python3-opencv python3-pip
   python3-pyproj python3-pytest python3-scipy python3-setuptools python3-venv python3-wheel)
 TESTED_WITH=(postgresql postgresql-postgis) # the tests start a server of their own, in a folder that goes afterwards
 

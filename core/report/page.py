@@ -1,87 +1,109 @@
-"""A small HTML page: headings, numbers, tables and pictures, all in one file."""
+"""A report as one HTML file: headings, texts, tables and pictures. Its looks are in `templates/page.html`."""
+
+from __future__ import annotations
 
 import base64
-import html
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
 
-STYLE = """
-body { font: 15px/1.5 "DejaVu Sans", "Segoe UI", Helvetica, Arial, sans-serif; color: #222; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }
-h1 { font-size: 1.6rem; margin-bottom: .2rem; } h2 { font-size: 1.15rem; margin-top: 2rem; border-bottom: 1px solid #ddd; }
-table { border-collapse: collapse; margin: .6rem 0; } th, td { padding: .22rem .9rem .22rem 0; text-align: left; vertical-align: top; }
-th { font-weight: 600; border-bottom: 1px solid #bbb; } td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
-img { max-width: 100%; border: 1px solid #ccc; } .note { color: #555; } .warning { background: #fff3d6; padding: .4rem .8rem; }
-svg { max-width: 100%; height: auto; }
-.key { display: inline-block; width: 1.6rem; height: .5rem; margin: 0 .4rem 0 1rem; vertical-align: middle; }
-"""
+TEMPLATES = Path(__file__).parent / "templates"
 
 
 class Page:
-    """Collects the parts of a report in order; `html()` gives the whole page. All texts are escaped."""
+    """Collects the blocks of a report in order; `html()` returns the whole page. All texts are escaped."""
 
-    def __init__(self, title, subtitle=""):
+    def __init__(self, title: str, subtitle: str = "") -> None:
         self.title = title
-        self.parts = [f"<h1>{html.escape(title)}</h1>"]
+        self.blocks: list[dict[str, Any]] = []
         if subtitle:
             self.note(subtitle)
 
-    def heading(self, text):
-        self.parts.append(f"<h2>{html.escape(text)}</h2>")
+    def heading(self, text: str) -> None:
+        """A heading."""
+        self._add("heading", text=text)
 
-    def text(self, text):
-        self.parts.append(f"<p>{html.escape(text)}</p>")
+    def text(self, text: str) -> None:
+        """A paragraph."""
+        self._add("text", text=text)
 
-    def note(self, text):
-        self.parts.append(f'<p class="note">{html.escape(text)}</p>')
+    def note(self, text: str) -> None:
+        """A paragraph of less weight, such as a caption."""
+        self._add("note", text=text)
 
-    def warning(self, text):
-        self.parts.append(f'<p class="warning">{html.escape(text)}</p>')
+    def warning(self, text: str) -> None:
+        """A highlighted paragraph."""
+        self._add("warning", text=text)
 
-    def facts(self, rows):
+    def facts(self, rows: Iterable[tuple[str, Any]]) -> None:
         """A table of (name, value) without a head."""
-        cells = "".join(f"<tr><td>{html.escape(str(name))}</td>{_cell(value)}</tr>" for name, value in rows)
-        self.parts.append(f"<table>{cells}</table>")
+        self._add("table", head=(), rows=[(_Cell(str(name)), _cell(value)) for name, value in rows])
 
-    def table(self, head, rows, digits=()):
-        """A table; numbers stand right, those of a column with `digits` (None: as number() likes) after the point."""
+    def table(self, head: Sequence[str], rows: Iterable[Sequence[Any]], digits: Sequence[int | None] = ()) -> None:
+        """A table; columns of numbers are aligned to the right.
+
+        Parameters
+        ----------
+        head : names of the columns
+        rows : of str, int, float or None (shown as a dash)
+        digits : decimals of each column; None or a missing one: as many as `number` gives
+        """
         rows = [list(row) for row in rows]
-        right = [bool(rows) and all(isinstance(row[k], (int, float)) or row[k] is None for row in rows) for k in range(len(head))]
-        top = "".join(f'<th{" class=number" if r else ""}>{html.escape(str(h))}</th>' for h, r in zip(head, right))
+        numeric = [bool(rows) and all(isinstance(row[k], (int, float)) or row[k] is None for row in rows) for k in range(len(head))]
         digits = [*digits, *[None] * (len(head) - len(digits))]
-        body = "".join(f"<tr>{''.join(_cell(value, places) for value, places in zip(row, digits))}</tr>" for row in rows)
-        self.parts.append(f"<table><tr>{top}</tr>{body}</table>")
+        self._add("table", head=[_Cell(str(name), right) for name, right in zip(head, numeric)],
+                  rows=[[_cell(value, decimals) for value, decimals in zip(row, digits)] for row in rows])
 
-    def picture(self, png, caption=""):
+    def picture(self, png: bytes, caption: str = "") -> None:
         """A picture from the bytes of a PNG file."""
-        data = base64.b64encode(png).decode("ascii")
-        self.parts.append(f'<p><img alt="{html.escape(caption)}" src="data:image/png;base64,{data}"></p>')
+        self._add("picture", text=caption, data=base64.b64encode(png).decode("ascii"))
         if caption:
             self.note(caption)
 
-    def drawing(self, svg, caption=""):
-        """A chart as SVG text made by `chart`, which escapes what it writes."""
-        self.parts.append(f"<p>{svg}</p>")
+    def drawing(self, svg: str, caption: str = "") -> None:
+        """A chart as SVG text from `Chart.svg`, which escapes its own texts."""
+        self._add("drawing", svg=svg)
         if caption:
             self.note(caption)
 
-    def colour_key(self, entries):
-        """What the colours of a picture mean: (css colour, text)."""
-        marks = "".join(f'<span class="key" style="background:{html.escape(colour)}"></span>{html.escape(text)}'
-                        for colour, text in entries)
-        self.parts.append(f"<p>{marks}</p>")
+    def colour_key(self, entries: Iterable[tuple[str, str]]) -> None:
+        """The meaning of the colours of a picture: (CSS colour, text)."""
+        self._add("colour_key", entries=list(entries))
 
-    def html(self):
-        return (f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{html.escape(self.title)}</title>'
-                f"<style>{STYLE}</style></head><body>\n" + "\n".join(self.parts) + "\n</body></html>\n")
+    def html(self) -> str:
+        """The whole page."""
+        return _template().render(title=self.title, blocks=self.blocks)
+
+    def _add(self, kind: str, **content: Any) -> None:
+        self.blocks.append({"kind": kind, **content})
 
 
-def _cell(value, digits=None):
+@dataclass(frozen=True)
+class _Cell:
+    """A cell of a table."""
+
+    text: str
+    is_number: bool = False
+
+
+def _cell(value: Any, decimals: int | None = None) -> _Cell:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        return f"<td>{html.escape('–' if value is None else str(value))}</td>"
-    shown = number(value) if digits is None or value != value else f"{value:.{digits}f}"
-    return f'<td class="number">{shown}</td>'
+        return _Cell("–" if value is None else str(value))
+    return _Cell(number(value) if decimals is None or value != value else f"{value:.{decimals}f}", True)
 
 
-def number(value):
-    """A number as people read it: thousands apart, no more digits than mean something."""
+@lru_cache(maxsize=1)
+def _template() -> Any:
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined  # only when a report is written: QGIS starts no slower
+
+    loader = FileSystemLoader(str(TEMPLATES))
+    return Environment(loader=loader, autoescape=True, undefined=StrictUndefined, keep_trailing_newline=True).get_template("page.html")
+
+
+def number(value: float) -> str:
+    """A number for readers: thousands separated, about three significant digits, a dash for NaN."""
     if value != value:
         return "–"
     if isinstance(value, int):

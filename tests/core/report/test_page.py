@@ -14,6 +14,19 @@ def test_text_from_files_cannot_become_markup():
     assert "<script>" not in page.html() and "&lt;script&gt;" in page.html()
 
 
+def test_a_caption_stays_inside_its_picture():
+    page = Page("t")
+    page.picture(b"png", 'A "crossing" <i>')
+    page.colour_key([("#123456", "kerb & <b>")])
+    assert 'alt="A &#34;crossing&#34; &lt;i&gt;"' in page.html() and "kerb &amp; &lt;b&gt;" in page.html()
+
+
+def test_a_drawing_is_taken_as_it_is():
+    page = Page("t")
+    page.drawing("<svg><title>a &amp; b</title></svg>", "Heights")
+    assert "<p><svg><title>a &amp; b</title></svg></p>" in page.html() and '<p class="note">Heights</p>' in page.html()
+
+
 def test_numbers_read_well():
     assert number(1234567) == "1\u202f234\u202f567"
     assert number(0.0123) == "0.012"
