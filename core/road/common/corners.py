@@ -1,47 +1,58 @@
-"""Bottom corners of curbs, measured from the raw points about a rising cell.
+"""Bottom corners of curbs, measured from the points about a rising cell.
 
-The corner is where the road's line meets the line of the face. Road, face and the
-raised ground behind are told apart by height over the road's own line, so the
-corner does not carry the grain of the cells.
+The corner is where the line of the road meets the line of the face. Road, face and
+the raised ground behind are separated by their height above the line of the road, so
+the corner does not depend on the grid of the cells.
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
-from .pseudo_scanlines import TOP_QUANTILE_SIGMAS, expand_ranges
+from .pseudo_scanlines import TOP_QUANTILE_SIGMAS, PseudoScanLines, expand_ranges
 
-ROAD_SIDE_LENGTH = 0.40    # m of road before the face that give the road's line
-FACE_MARGIN = 0.05    # m next to the face left out of it: a blurred face begins there
-BEHIND_LENGTH = 0.40       # m behind the face where the ground must stay up
-SLOPE_PER_NOISE = 6.0    # per m: heights that scatter tilt the short line behind a face
-MAX_LOW_SHARE = 0.15     # share of the points behind that may lie below half the height; a verge has more
-FACE_SEARCH_HALF_WIDTH = 0.15  # m either side of the rising cell within which the face lies
-MAX_ROAD_SLOPE = 0.15  # rise over run of the road side; ditches are steeper
-MAX_FACE_WIDTH = 0.10   # m across
-FACE_NOISE_SIGMAS = 4.0      # sigmas by which noise widens a face
-CANDIDATE_HEIGHT_SHARE = 0.8         # share of the least height below which no turning makes a step of a rise
-MIN_STEP_SIGMAS = 4.0        # a step must stand this far above the noise of its road side
-CANDIDATE_SIGMA_SHARE = 0.5        # share of that below which no turning makes a step of a rise
-MIN_VIEW_POINTS = 5       # points of a view that is measured by itself, and of the other: else it shows what all points show
+ROAD_SIDE_LENGTH = 0.40     # m of road before the face to which the road's line is fitted
+FACE_MARGIN = 0.05          # m next to the face left out of that line: a blurred face begins there
+BEHIND_LENGTH = 0.40        # m behind the face in which the ground must stay raised
+SLOPE_PER_NOISE = 6.0       # per m: heights that scatter tilt the short line behind a face
+MAX_LOW_SHARE = 0.15        # share of the points behind that may lie below half the height; a verge has more
+FACE_SEARCH_HALF_WIDTH = 0.15   # m on either side of the rising cell within which the face lies
+MAX_ROAD_SLOPE = 0.15       # rise over run of the road side; ditches are steeper
+MAX_FACE_WIDTH = 0.10       # m across
+FACE_NOISE_SIGMAS = 4.0     # sigmas by which noise widens a face
+CANDIDATE_HEIGHT_SHARE = 0.8    # share of the least height below which a rise is no step in any direction
+MIN_STEP_SIGMAS = 4.0       # a step must stand this far above the noise of its road side
+CANDIDATE_SIGMA_SHARE = 0.5     # share of that below which a rise is no step in any direction
+MIN_VIEW_POINTS = 5         # points that each of two views needs to be measured separately; else one shows what all points show
 FACE_LOWER_SHARE, FACE_UPPER_SHARE = 0.15, 0.70  # part of the height that counts as face: grass hangs over the top
-MIN_FACE_SHARE = 0.5    # noise brings points from above and below into a thinner part
-REMEASURE_SKEW = 0.1         # m outward per m along beyond which a face is measured again, turned straight
-MAX_FACE_SKEW = 1.0      # m outward per m along
-SKEW_PRIOR = 3e-3    # m²: keeps a face seen in one scan line along the road
-FACE_PRIOR = 2e-4   # m²: keeps a face seen in few points upright
+MIN_FACE_SHARE = 0.5        # of the height; noise brings points from above and below into a thinner part
+REMEASURE_SKEW = 0.1        # m outward per m along above which a face is measured again across its own direction
+MAX_FACE_SKEW = 1.0         # m outward per m along
+SKEW_PRIOR = 3e-3           # m²: keeps a face seen in one scan line parallel to the road
+FACE_PRIOR = 2e-4           # m²: keeps a face seen in few points upright
+
+AnySteps = TypeVar("AnySteps", bound="CurbSteps")
 
 
 @dataclass
 class CurbSteps:
     """Bottom corners found on profiles, one entry each.
 
-    profile : (M,) number of the profile; s, u, h : (M,) station, outward offset and height
-    above the expected road of the bottom corner; skew : (M,) m outward per m along of the
-    face; height : (M,) m of the step; run : (M,) m
-    across of the face, less what noise adds; noise : (M,) m, heights about the road side's line; scanner_noise : (M,) m, the
-    scanner's own noise there; support : (M,) points of road side and face; behind : (M,) points
-    of the raised ground
+    Attributes
+    ----------
+    profile : (M,) number of the profile
+    s, u, h : (M,) m, station, outward offset, and height above the expected road of the bottom corner
+    skew : (M,) m outward per m along, direction of the face
+    height : (M,) m of the step
+    run : (M,) m across of the face, less what noise adds
+    noise : (M,) m, scatter of heights about the line of the road side
+    scanner_noise : (M,) m, the scanner's own noise there
+    support : (M,) points of road side and face
+    behind : (M,) points of the raised ground
     """
 
     profile: np.ndarray
@@ -56,25 +67,26 @@ class CurbSteps:
     support: np.ndarray
     behind: np.ndarray
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.s)
 
-    def __getitem__(self, which):
+    def __getitem__(self: AnySteps, which: np.ndarray) -> AnySteps:
         return type(self)(*(getattr(self, name)[which] for name in self.__dataclass_fields__))
 
     @classmethod
-    def join(cls, parts):
+    def join(cls: type[AnySteps], parts: Sequence[AnySteps]) -> AnySteps:
+        """The entries of all parts, one after the other."""
         return cls(*(np.concatenate([getattr(p, name) for p in parts]) for name in cls.__dataclass_fields__))
 
 
-def measure_corners(lines, rows, cells, least, highest):
+def measure_corners(lines: PseudoScanLines, rows: np.ndarray, cells: np.ndarray, min_height: float, max_height: float) -> CurbSteps:
     """The step at each rising cell, where it proves to be one.
 
     Parameters
     ----------
     lines : PseudoScanLines
-    rows, cells : (M,) rising cells
-    least, highest : metres, heights of a step
+    rows, cells : (M,) profiles and cells in which the ground rises
+    min_height, max_height : m, of a step
 
     Returns
     -------
@@ -89,38 +101,38 @@ def measure_corners(lines, rows, cells, least, highest):
     if not ground.all():
         ground = np.flatnonzero(ground)
         owner, index = owner.take(ground), index.take(ground)
-    seen = _seen(lines, rows, cells, owner, index, least, highest)
-    # positions that drifted between one view and the next blur a face that each of them shows sharp: what is
-    # no step in all points together may be one in those seen from before, or from behind alone
+    best = _measure(lines, rows, cells, owner, index, min_height, max_height)
+    # positions that drifted between one view and the next blur a face that each view shows sharply: what is no
+    # step in all points together may be one in the points seen from one side of the vehicle
     ahead = lines.along.take(index) > 0
     ahead_of, count = np.bincount(owner, ahead, len(rows)), np.bincount(owner, minlength=len(rows))
     mixed = np.minimum(ahead_of, count - ahead_of) >= MIN_VIEW_POINTS
-    left = np.flatnonzero(seen["likely"] & ~seen["good"] & mixed)
-    if len(left):
+    again = np.flatnonzero(best["likely"] & ~best["good"] & mixed)
+    if len(again):
         number = np.full(len(rows), -1)
-        number[left] = np.arange(len(left))
+        number[again] = np.arange(len(again))
         own = np.flatnonzero(number.take(owner) >= 0)
         owner, index, ahead = number.take(owner.take(own)), index.take(own), ahead.take(own)
-        views = [_seen(lines, rows[left], cells[left], owner[view], index[view], least, highest) for view in (~ahead, ahead)]
+        views = [_measure(lines, rows[again], cells[again], owner[view], index[view], min_height, max_height) for view in (~ahead, ahead)]
         support = [np.where(view["good"], view["support"], 0) for view in views]
         for view, better in zip(views, (support[0] >= support[1], support[0] < support[1])):
             better &= view["good"]
             for name, values in view.items():
-                seen[name][left[better]] = values[better]
-    good = seen["good"]
+                best[name][again[better]] = values[better]
+    good = best["good"]
     return CurbSteps(profile=lines.first + rows[good], scanner_noise=lines.noise[rows[good]],
-                 **{name: values[good] for name, values in seen.items() if name not in ("good", "likely")})
+                     **{name: values[good] for name, values in best.items() if name not in ("good", "likely")})
 
 
-def _seen(lines, rows, cells, owner, index, least, highest):
-    """What StepPatches.corners gives of rising cells, in stations and offsets; the points `index` belong to the cells `owner`."""
+def _measure(lines, rows, cells, owner, index, min_height, max_height):
+    """`StepPatches.corners` of rising cells, as stations and offsets; the points `index` belong to the cells `owner`."""
     edge, middle = lines.offset(cells), (lines.first + rows + 0.5) * lines.width
-    near = StepPatches(owner, lines.u.take(index) - edge.take(owner), lines.s.take(index) - middle.take(owner), lines.h.take(index),
-                     lines.noise[rows], least, highest)
-    found = near.corners()
+    patches = StepPatches(owner, lines.u.take(index) - edge.take(owner), lines.s.take(index) - middle.take(owner), lines.h.take(index),
+                          lines.noise[rows], min_height, max_height)
+    found = patches.corners()
     skewed = np.flatnonzero(np.abs(found["skew"]) > REMEASURE_SKEW)
     if len(skewed):
-        again = near.turned(skewed, found["skew"][skewed]).corners()
+        again = patches.straightened(skewed, found["skew"][skewed]).corners()
         again["skew"] = again["skew"] + found["skew"][skewed]
         for name, values in again.items():
             found[name][skewed] = values
@@ -130,58 +142,72 @@ def _seen(lines, rows, cells, owner, index, least, highest):
 
 
 class StepPatches:
-    """Ground points about candidate steps: offset and station from each one's own place, outward and along."""
+    """Ground points about M candidate steps, in coordinates outward and along from each candidate's place.
 
-    def __init__(self, owner, u, s, h, scanner_noise, least, highest):
+    Parameters
+    ----------
+    owner : (N,) candidate of every point
+    u, s, h : (N,) m, offset outward, distance along, and height
+    scanner_noise : (M,) m
+    min_height, max_height : m, of a step
+    skew : (M,) m outward per m along that was taken out of the offsets, or 0
+    """
+
+    def __init__(self, owner: np.ndarray, u: np.ndarray, s: np.ndarray, h: np.ndarray, scanner_noise: np.ndarray,
+                 min_height: float, max_height: float, skew: np.ndarray | float = 0.0):
         self.owner, self.u, self.s, self.h = owner, u, s, h
-        self.scanner_noise, self.least, self.highest, self.count = scanner_noise, least, highest, len(scanner_noise)
+        self.scanner_noise, self.min_height, self.max_height = scanner_noise, min_height, max_height
+        self.count, self.skew = len(scanner_noise), skew
 
-    def turned(self, which, skew):
-        """The candidates `which` alone, with the direction of each face taken out of the offsets."""
+    def straightened(self, which: np.ndarray, skew: np.ndarray) -> StepPatches:
+        """The candidates `which`, (K,) indices, with the direction of each face, (K,) m outward per m along, taken out of the offsets."""
         number = np.full(self.count, -1)
         number[which] = np.arange(len(which))
         own = np.flatnonzero(number[self.owner] >= 0)
         owner = number[self.owner[own]]
-        near = StepPatches(owner, self.u[own] - skew[owner] * self.s[own], self.s[own], self.h[own], self.scanner_noise[which],
-                     self.least, self.highest)
-        near.turn = skew
-        return near
+        return StepPatches(owner, self.u[own] - skew[owner] * self.s[own], self.s[own], self.h[own], self.scanner_noise[which],
+                           self.min_height, self.max_height, skew)
 
-    turn = 0.0
-
-    def total(self, mask, values=None):
+    def _total(self, mask, values=None):
         return np.bincount(self.owner[mask], None if values is None else values[mask], minlength=self.count)
 
-    def corners(self):
-        """Everything a CurbSteps holds, as a dict of (count,) arrays, `good`: is it a step, and `likely`: may it be one, seen otherwise?"""
+    def corners(self) -> dict[str, np.ndarray]:
+        """The corner of every candidate.
+
+        Returns
+        -------
+        dict of (M,) arrays: the attributes of CurbSteps except `profile` and `scanner_noise`; `good` : bool, is it a step?;
+        `likely` : bool, may it be one in another direction or view?
+        """
         owner, u, s, h, count = self.owner, self.u, self.s, self.h, self.count
         road = np.flatnonzero((u < -FACE_MARGIN) & (u > -ROAD_SIDE_LENGTH - FACE_MARGIN))
         side = owner.take(road), u.take(road), h.take(road)
         level, slope, noise, n_road = _line_per_owner(*side, count)
         off = np.abs(side[2] - level.take(side[0]) - slope.take(side[0]) * side[1])
         keep = np.flatnonzero(off < np.maximum(2.5 * noise, 0.01).take(side[0]))
-        level, slope, noise, n_road = _line_per_owner(*(v.take(keep) for v in side), count)
+        level, slope, noise, n_road = _line_per_owner(side[0].take(keep), side[1].take(keep), side[2].take(keep), count)
         rise = h - level.take(owner) - slope.take(owner) * u
-        height, n_behind, stays = self._raised(rise)
+        height, n_behind, stays = self._raised_ground(rise)
         found = dict(level=level, slope=slope, noise=noise, n_road=n_road, height=height, n_behind=n_behind, stays=stays)
-        # most candidates are no step from whatever direction they are seen: their faces need no measuring
-        likely = (n_road >= 4) & (height >= np.maximum(CANDIDATE_HEIGHT_SHARE * self.least, CANDIDATE_SIGMA_SHARE * MIN_STEP_SIGMAS * noise)) \
+        # most candidates are no step in any direction: their faces need no measurement
+        likely = (n_road >= 4) & (height >= np.maximum(CANDIDATE_HEIGHT_SHARE * self.min_height, CANDIDATE_SIGMA_SHARE * MIN_STEP_SIGMAS * noise)) \
             & (np.abs(slope) <= MAX_ROAD_SLOPE / CANDIDATE_HEIGHT_SHARE)
         which = np.flatnonzero(likely)
         number = np.full(count, -1)
         number[which] = np.arange(len(which))
         own = np.flatnonzero((np.abs(u) < FACE_SEARCH_HALF_WIDTH) & (number.take(owner) >= 0))
-        near = StepPatches(number.take(owner.take(own)), *(v.take(own) for v in (u, s, h)), self.scanner_noise[which], self.least, self.highest)
-        near.turn = self.turn if np.isscalar(self.turn) else self.turn[which]
+        skew = self.skew if isinstance(self.skew, float) else self.skew[which]
+        near = StepPatches(number.take(owner.take(own)), u.take(own), s.take(own), h.take(own), self.scanner_noise[which],
+                           self.min_height, self.max_height, skew)
         seen = dict(likely=likely)
-        for name, values in near._measured(rise.take(own), **{name: values[which] for name, values in found.items()}).items():
+        for name, values in near._faces(rise.take(own), **{name: values[which] for name, values in found.items()}).items():
             seen[name] = np.zeros(count, values.dtype)
             seen[name][which] = values
         return seen
 
-    def _measured(self, rise, level, slope, noise, n_road, height, n_behind, stays):
-        """What `corners` gives, of candidates whose road side and height are known and points whose rise is."""
-        owner, u, s, count, total = self.owner, self.u, self.s, self.count, self.total
+    def _faces(self, rise, level, slope, noise, n_road, height, n_behind, stays):
+        """What `corners` returns, for candidates whose road side and height are known; `rise` : (N,) m of the points above the road."""
+        owner, u, s, count, total = self.owner, self.u, self.s, self.count, self._total
         scatter = np.maximum(noise, self.scanner_noise)
         # the part of the height that is surely neither road nor raised ground
         lower = np.minimum(np.maximum(FACE_LOWER_SHARE * height, 2 * scatter), 0.45 * height)
@@ -200,18 +226,18 @@ class StepPatches:
         share = np.maximum((upper - lower) / np.maximum(height, 1e-3), MIN_FACE_SHARE)
         run = 2 * np.sqrt(np.maximum(spread**2 - (1.35 * scatter) ** 2, 0.0)) / share
         run = np.where(n_face < 3, 0.0, np.maximum(run - FACE_NOISE_SIGMAS * scatter, 0.0))
-        good = (np.isfinite(level) & (n_road >= 4) & (height >= self.least) & (height <= self.highest)
+        good = (np.isfinite(level) & (n_road >= 4) & (height >= self.min_height) & (height <= self.max_height)
                 & (height >= MIN_STEP_SIGMAS * noise) & (np.abs(slope) <= MAX_ROAD_SLOPE) & stays
                 & (n_face >= 1) & (run <= MAX_FACE_WIDTH))
-        return dict(s=at, u=corner + self.turn * at, h=level + slope * corner, skew=skew, height=height, run=run,
+        return dict(s=at, u=corner + self.skew * at, h=level + slope * corner, skew=skew, height=height, run=run,
                     noise=noise, support=n_road + n_face, behind=n_behind, good=good)
 
-    def _raised(self, rise):
+    def _raised_ground(self, rise):
         """Height of the ground behind the face, how many points lie there, and whether it stays up and level."""
         count = self.count
         beyond = np.flatnonzero((self.u > 0.03) & (self.u < BEHIND_LENGTH))
         owner, u, rise_there = self.owner.take(beyond), self.u.take(beyond), rise.take(beyond)
-        raised = np.flatnonzero((rise_there > 0.4 * self.least) & (rise_there < self.highest + 0.1))
+        raised = np.flatnonzero((rise_there > 0.4 * self.min_height) & (rise_there < self.max_height + 0.1))
         up, out, to = owner.take(raised), u.take(raised), rise_there.take(raised)
         first = _mean(np.bincount(up, to, count), np.bincount(up, minlength=count))
         alike = np.flatnonzero(np.abs(to - first.take(up)) < 0.05)
@@ -221,7 +247,7 @@ class StepPatches:
         level = (n_behind < 4) | (np.abs(climb) <= MAX_ROAD_SLOPE + SLOPE_PER_NOISE * self.scanner_noise)
         peak = np.zeros(count)
         near = np.flatnonzero((self.u > -0.03) & (self.u < FACE_SEARCH_HALF_WIDTH) & (n_behind < 2).take(self.owner))
-        with np.errstate(invalid="ignore"):  # a rise that could not be told stays one; newer numpy says so aloud
+        with np.errstate(invalid="ignore"):  # an unknown rise stays unknown; newer numpy warns about it
             np.maximum.at(peak, self.owner.take(near), rise.take(near))
         height = np.where(n_behind >= 2, _mean(np.bincount(up, to, count), n_behind),
                           np.maximum(peak - TOP_QUANTILE_SIGMAS * self.scanner_noise, 0.0))
@@ -235,8 +261,8 @@ class StepPatches:
 def _skew(owner, u, s, mask, scatter, count):
     """How far the face turns away from the road's direction, and offsets with that taken out.
 
-    Returns (count,) metres outward per metre along, drawn to 0 where few points or a
-    short stretch cannot tell, and (N,) offsets moved along the face to its mean station.
+    Returns (count,) m outward per m along, close to 0 where there are few points or a
+    short stretch, and (N,) m offsets moved along the face to its mean station.
     """
     n = np.bincount(owner[mask], minlength=count)
     at, out = (_mean(np.bincount(owner[mask], v[mask], count), n) for v in (s, u))

@@ -1,33 +1,56 @@
-"""What the scanner saw beside the road: ground, or something tall in front of it.
+"""Where the curb is occluded: the ground and the tall things that the scanner saw beside the road.
 
-A missing curb is hidden only where no ground was measured at its place and
-something tall stands between it and the vehicle. Ground seen there means that the
+A missing curb counts as occluded only where no ground was measured at its place and
+something tall stands between it and the vehicle. Where ground was seen there, the
 road is open: a driveway, a junction.
 """
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-OCCLUSION_CELL = 0.25      # m across
-MIN_OCCLUDER_HEIGHT = 0.45      # m above the expected road: what can hide a curb
-MAX_BOTTOM_DIFFERENCE = 0.30       # m about the curb's bottom within which ground counts as seen
-HIDDEN_POINT_SPACING = 0.5  # m along the road between two points of hidden curb, and the length that each stands for
-SHADOW_REACH = 3.0       # m along the road: scanners look askew, so does the shadow
+if TYPE_CHECKING:
+    from .pseudo_scanlines import PseudoScanLines
+
+OCCLUSION_CELL = 0.25         # m across
+MIN_OCCLUDER_HEIGHT = 0.45    # m above the expected road, from which a thing can hide a curb
+MAX_BOTTOM_DIFFERENCE = 0.30  # m above or below the curb's bottom within which ground counts as seen
+HIDDEN_POINT_SPACING = 0.5    # m along the road between two points of hidden curb, and the length that each stands for
+SHADOW_REACH = 3.0            # m along the road: the scan planes are oblique, so the shadows are, too
 
 
 class OcclusionGrid:
-    """Ground and tall things of one side of a road on a grid of profiles and cells of 0.25 m.
+    """Ground and tall things on one side of a road: profiles along, cells of OCCLUSION_CELL across.
 
-    Heights of the ground are above the expected road, NaN where none was seen.
+    Parameters
+    ----------
+    width : m of road per profile
+    first, count : number of the first profile, and how many there are
+    reach : m, the largest outward offset
+
+    Attributes
+    ----------
+    ground : (P, C) float32, m, height of the lowest ground above the expected road, NaN where none was seen
+    tall : (P, C) bool, is there something that can hide a curb?
     """
 
-    def __init__(self, width, first, count, reach):
+    def __init__(self, width: float, first: int, count: int, reach: float):
         self.width, self.first = width, first
         self.cells = int(np.ceil(reach / OCCLUSION_CELL))
         self.ground = np.full((count, self.cells), np.nan, np.float32)
         self.tall = np.zeros((count, self.cells), bool)
 
-    def add_points(self, u, s, h, profiles, lines):
-        """Note the points and pseudo scan-lines of some profiles (first, last + 1); passes add up."""
+    def add_points(self, u: np.ndarray, s: np.ndarray, h: np.ndarray, profiles: tuple[int, int], lines: PseudoScanLines) -> None:
+        """Add what one pass saw of some profiles.
+
+        Parameters
+        ----------
+        u, s, h : (N,) m, outward offset, station, and height above the expected road of the tall points
+        profiles : (first, last + 1)
+        lines : PseudoScanLines of these profiles
+        """
         first, last = profiles[0] - self.first, profiles[1] - self.first
         row = np.floor(s / self.width).astype(np.int64) - self.first
         cell = np.floor(u / OCCLUSION_CELL).astype(np.int64)
@@ -39,17 +62,31 @@ class OcclusionGrid:
         seen = self.ground[first:last]
         seen[:, place[starts]] = np.fmin(seen[:, place[starts]], lowest)
 
-    def add_level_ground(self, profiles, nearest, farthest, height):
-        """Note that some profiles (first, last + 1) have ground everywhere between two offsets, (R,) each, at a height."""
+    def add_level_ground(self, profiles: tuple[int, int], nearest: np.ndarray, farthest: np.ndarray, height: np.ndarray) -> None:
+        """Add ground without gaps.
+
+        Parameters
+        ----------
+        profiles : (first, last + 1), P of them
+        nearest, farthest : (P,) m, outward offsets between which it lies
+        height : (P,) m above the expected road
+        """
         cell = np.arange(self.cells) * OCCLUSION_CELL
         there = (cell >= nearest[:, None]) & (cell + OCCLUSION_CELL <= farthest[:, None])
         seen = self.ground[profiles[0] - self.first:profiles[1] - self.first]
         seen[:] = np.where(there, np.fmin(seen, height[:, None]), seen)
 
-    def hidden(self, s, u, h, near):
-        """(N,) bool: is a curb expected at station s, offset u and height h hidden from view?
+    def hidden(self, s: np.ndarray, u: np.ndarray, h: np.ndarray, near: np.ndarray) -> np.ndarray:
+        """Is the curb that is expected at a place hidden from the scanner?
 
-        near : (N,) offset of the vehicle's track, metres
+        Parameters
+        ----------
+        s, u, h : (N,) m, station, outward offset, and height of its bottom above the expected road
+        near : (N,) m, outward offset of the vehicle's track
+
+        Returns
+        -------
+        (N,) bool
         """
         rows = len(self.ground)
         row = np.clip(np.floor(s / self.width).astype(np.int64) - self.first, 0, rows - 1)
@@ -59,11 +96,11 @@ class OcclusionGrid:
         there = self.ground[row[:, None], np.clip(offsets, 0, self.cells - 1)]
         with np.errstate(invalid="ignore"):
             seen = inside & (np.abs(there - h[:, None]) < MAX_BOTTOM_DIFFERENCE)
-        # cumulative counts answer "anything tall within these rows and cells" at once
+        # a summed-area table gives the tall cells of any rectangle in four look-ups
         sums = np.zeros((rows + 1, self.cells + 1), np.int32)
         np.cumsum(np.cumsum(self.tall, 0, np.int32), 1, np.int32, out=sums[1:, 1:])
-        lean = int(round(SHADOW_REACH / self.width))
-        r0, r1 = np.clip(row - lean, 0, rows), np.clip(row + lean + 1, 0, rows)
+        reach = int(round(SHADOW_REACH / self.width))
+        r0, r1 = np.clip(row - reach, 0, rows), np.clip(row + reach + 1, 0, rows)
         c0 = np.clip(np.floor(near / OCCLUSION_CELL).astype(np.int64) + 3, 0, self.cells)
         c1 = np.maximum(np.clip(cell + 1, 0, self.cells), c0)
         tall = sums[r1, c1] - sums[r0, c1] - sums[r1, c0] + sums[r0, c0]

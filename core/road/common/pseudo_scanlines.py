@@ -1,32 +1,56 @@
 """Profiles across the road, and the pseudo scan-lines made of them.
 
-The road is cut into profiles: slices across it, PROFILE_WIDTH long, at fixed
-stations from 0. A profile is cut into cells POINT_SPACING wide; in each cell the
-points are parted into layers where the height jumps, so that branches, cars and
-ghosts lie in layers of their own. The lowest layer gives the cell's principal
-point, and the principal points of a profile are its pseudo scan-line.
+The road is cut into profiles: slices across it, one profile width long, at fixed
+stations counted from 0. A profile is cut into cells one point spacing wide. Within a
+cell the points are separated into layers where the height jumps, so that branches,
+cars and ghost points lie in layers of their own. The lowest layer gives the cell's
+principal point, and the principal points of a profile are its pseudo scan-line.
 
 References
 ----------
 Guan et al. (2014), ISPRS Journal 87, and the driving-line thesis after it, section
-3.3. The thesis takes the highest point of the lowest layer; here it is a high
+3.3. The thesis takes the highest point of the lowest layer. Here it is a high
 quantile, less what noise alone would give: the highest of many noisy points would
-raise a whole road above its sparser neighbours.
+lift a dense road above its sparser neighbours.
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...common.order_statistics import order_by
 
-# Layers of the points of cells: where heights jump, what lies above is no ground.
+MIN_GROUND_LAYER_SHARE = 0.15   # share of the points of its cell below which the lowest layer is multipath and not ground
+TOP_QUANTILE = 0.9              # quantile of the lowest layer that stands for its highest point
+TOP_QUANTILE_SIGMAS = 1.2816    # the same quantile of a normal distribution, in sigmas
+MIN_SCANNER_NOISE = 0.002       # m
+DEFAULT_SCANNER_NOISE = 0.005   # m, where too few cells hold enough points for an estimate
+SIGMA_PER_MEAN_DEVIATION = 1.2533   # of a normal distribution: sqrt(pi / 2)
+MAX_GROUND_DEVIATION = 0.15     # m from a cell's ground within which points count for the scanner's noise
+MIN_SPREAD_POINTS = 5           # points of a cell, and
+MIN_SPREAD_CELLS = 10           # such cells of a profile, that an estimate of its spread needs
+SPREAD_PROFILES = 6             # profiles on either side that are estimated together
+GROUND_DEPTH = 2.0              # m below, and
+GROUND_HEIGHT = 2.0             # m above the expected road within which ground is looked for
 
-MIN_GROUND_LAYER_SHARE = 0.15  # a lowest layer with less than this share of its cell is multipath, not ground
 
+def lowest_layers(place: np.ndarray, h: np.ndarray, layer_jump: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The lowest layer of every cell: from one layer to the next the height jumps, and what lies above is no ground.
 
-def lowest_layers(place, h, layer_jump):
-    """Which points are ground; first index and count of the lowest real layer of every occupied cell."""
+    Parameters
+    ----------
+    place : (N,) cell of every point, ascending
+    h : (N,) m, heights, ascending within a cell
+    layer_jump : m of height between two layers
+
+    Returns
+    -------
+    ground : (N,) bool, the points of the lowest layers
+    first, count : (C,) index of the first point and number of points of the lowest layer of every occupied cell
+    """
     if not len(place):
         empty = np.empty(0, np.int64)
         return np.empty(0, bool), empty, empty
@@ -43,47 +67,50 @@ def lowest_layers(place, h, layer_jump):
     layer_cell = np.cumsum(first_of_cell) - 1
     cell_count = np.bincount(layer_cell, layer_count)
     real = layer_count >= MIN_GROUND_LAYER_SHARE * cell_count[layer_cell]
-    chosen = np.flatnonzero(real)
-    chosen = chosen[np.r_[True, np.diff(layer_cell[chosen]) > 0]]
+    lowest = np.flatnonzero(real)
+    lowest = lowest[np.r_[True, np.diff(layer_cell[lowest]) > 0]]
     other = np.ones(len(layer_start), bool)
-    other[chosen] = False
+    other[lowest] = False
     ground[expand_ranges(layer_start[other], layer_start[other] + layer_count[other])[1]] = False
-    return ground, layer_start[chosen], layer_count[chosen]
+    return ground, layer_start[lowest], layer_count[lowest]
 
 
-def expand_ranges(start, end):
-    """Every index of ragged ranges, and which range it belongs to: (N,) owners and (N,) indices."""
+def expand_ranges(start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """All indices of ranges of different lengths.
+
+    Parameters
+    ----------
+    start, end : (M,) first index of each range, and the one after its last
+
+    Returns
+    -------
+    owner, index : (N,) number of the range, and the index
+    """
     length = np.maximum(end - start, 0)
     owner = np.repeat(np.arange(len(start)), length)
     index = np.arange(len(owner))
     index += np.repeat(start - (np.cumsum(length) - length), length)
     return owner, index
 
-TOP_QUANTILE = 0.9          # quantile of the lowest layer that stands for its highest point
-TOP_QUANTILE_SIGMAS = 1.2816  # the same quantile of a normal distribution, in sigmas
-MIN_SCANNER_NOISE = 0.002  # m
-DEFAULT_SCANNER_NOISE = 0.005  # m, where too few cells hold enough points to tell
-MAX_GROUND_DEVIATION = 0.15  # m from a cell's ground within which points tell the scanner's noise
-MIN_SPREAD_POINTS, MIN_SPREAD_CELLS = 5, 10  # points in a cell, and such cells in a profile, that tell it
-SPREAD_PROFILES = 6     # profiles either side that tell it together
-GROUND_DEPTH, GROUND_HEIGHT = 2.0, 2.0  # m below and above the expected road within which ground is sought
-
 
 @dataclass
 class PseudoScanLines:
-    """Profiles of one side of the road, offsets counted outward from the reference line.
+    """Profiles of one side of the road; offsets count outward from the reference line.
 
-    first : number of the first profile; station of profile k's middle is (k + 1/2) * width
-    width, spacing : metres
-    u, s, h : (N,) the points, sorted by profile, cell and height; u is the outward
-        offset, h the height above the expected road, which takes the grade out
-    along : (N,) m along the road from the vehicle to the point when it was seen
+    Attributes
+    ----------
+    first : number of the first of P profiles; station of profile k's middle is (k + 1/2) * width
+    width, spacing : m of road per profile, and m across per cell
+    origin : m, outward offset at which the first of C cells begins
+    u, s, h : (N,) m, the points, sorted by profile, cell and height: outward offset, station, and height above the
+        expected road, which removes the grade
+    along : (N,) m along the road from the vehicle to the point when it was measured
     ground : (N,) bool, points of the lowest layer
     starts : (P * C + 1,) index of the first point of every cell
-    low, high : (P, C) median and high quantile of the lowest layer, m; NaN where no point lies
+    low, high : (P, C) m, median and high quantile of the lowest layer, NaN where there is no point
     noise : (P,) m, spread of heights within a cell of level road
-    spread : (P,) m, the same with the points of all layers next to the ground, in the smoother cells
-        over a few metres of road: near `noise` for a scanner that measures to millimetres, far above for one that does not
+    spread : (P,) m, the same with the points of all layers near the ground, in the smoother cells over a few
+        metres of road: near `noise` for a scanner with millimetre noise, far above it for any other
     """
 
     first: int
@@ -102,22 +129,23 @@ class PseudoScanLines:
     spread: np.ndarray
 
     @property
-    def shape(self):
+    def shape(self) -> tuple[int, ...]:
+        """(P, C)"""
         return self.low.shape
 
-    def offset(self, cell):
-        """Outward offset of the middle of cells, metres."""
+    def offset(self, cell: np.ndarray) -> np.ndarray:
+        """Outward offset of the middle of cells, m."""
         return self.origin + (np.asarray(cell) + 0.5) * self.spacing
 
-    def part(self, first, last):
+    def part(self, first: int, last: int) -> PseudoScanLines:
         """The profiles from `first` to before `last`; the points are shared."""
         a, b, cells = first - self.first, last - self.first, self.shape[1]
         return replace(self, first=first, starts=self.starts[a * cells:b * cells + 1], low=self.low[a:b], high=self.high[a:b],
                        noise=self.noise[a:b], spread=self.spread[a:b])
 
 
-def seen_from(lines, nearest, farthest, layer_jump):
-    """The PseudoScanLines of the points that were measured from `nearest` to before `farthest` metres ahead."""
+def seen_from(lines: PseudoScanLines, nearest: float, farthest: float, layer_jump: float) -> PseudoScanLines:
+    """The same profiles from the points alone that lay `nearest` <= distance < `farthest` metres ahead when they were measured."""
     own = np.flatnonzero((lines.along >= nearest) & (lines.along < farthest))
     rows, cells = lines.shape
     seen = pseudo_scan_lines(lines.u[own], lines.s[own], lines.h[own], lines.along[own], (lines.first, lines.first + rows),
@@ -125,16 +153,18 @@ def seen_from(lines, nearest, farthest, layer_jump):
     return replace(seen, spread=lines.spread)
 
 
-def pseudo_scan_lines(u, s, h, along, profiles, width, spacing, layer_jump, origin, reach):
+def pseudo_scan_lines(u: np.ndarray, s: np.ndarray, h: np.ndarray, along: np.ndarray, profiles: tuple[int, int], width: float,
+                      spacing: float, layer_jump: float, origin: float, reach: float) -> PseudoScanLines:
     """Cut points of one side into profiles and cells and find the ground in each.
 
     Parameters
     ----------
-    u, s, h : (N,) outward offset, station, and height above the expected road, metres
-    along : (N,) metres along the road from the vehicle to the point when it was measured
+    u, s, h : (N,) m, outward offset, station, and height above the expected road
+    along : (N,) m along the road from the vehicle to the point when it was measured
     profiles : (first, last + 1) numbers of the profiles
-    width, spacing, layer_jump : metres
-    origin, reach : nearest and farthest outward offset, metres
+    width, spacing : m of road per profile, m across per cell
+    layer_jump : m of height between two layers
+    origin, reach : m, nearest and farthest outward offset
 
     Returns
     -------
@@ -148,13 +178,16 @@ def pseudo_scan_lines(u, s, h, along, profiles, width, spacing, layer_jump, orig
 
 @dataclass
 class ProfileRun:
-    """Some profiles, by themselves: fields as of PseudoScanLines, but for those below.
+    """Some of the profiles of a section; attributes as of PseudoScanLines, and in addition:
 
+    Attributes
+    ----------
+    profiles : (first, last + 1)
     count : (P, C) points of every cell
-    smooth : (P,) m, spread of heights next to the ground in the smoother cells, NaN where too few tell
+    smooth : (P,) m, spread of heights near the ground in the smoother cells, NaN where there are too few of them
     """
 
-    profiles: tuple
+    profiles: tuple[int, int]
     u: np.ndarray
     s: np.ndarray
     h: np.ndarray
@@ -167,22 +200,25 @@ class ProfileRun:
     smooth: np.ndarray
 
 
-def ground_of_profiles(points, kept, place, profiles, cells, layer_jump):
+def ground_of_profiles(points: Sequence[np.ndarray], inside: np.ndarray, place: np.ndarray, profiles: tuple[int, int],
+                       cells: int, layer_jump: float) -> ProfileRun:
     """The ground of profiles, cell by cell.
 
     Parameters
     ----------
-    points : (u, s, h, along) of many points
-    kept, place : (N,) indices of those in the profiles and cells, and the place of each (`_places`)
+    points : (u, s, h, along), each (K,) m
+    inside, place : (N,) indices of the points within the profiles and cells, and their cells (`cells_of_points`)
     profiles : (first, last + 1)
+    cells : number of cells of a profile
+    layer_jump : m of height between two layers
     """
     rows = profiles[1] - profiles[0]
-    height = points[2].take(kept)
+    height = points[2].take(inside)
     height += GROUND_DEPTH
     height *= 1e4
     order = order_by(np.rint(height, out=height).astype(np.int32), place)
-    place, kept = place.take(order), kept.take(order)
-    u, s, h, along = (v.take(kept) for v in points)
+    place, inside = place.take(order), inside.take(order)
+    u, s, h, along = (v.take(inside) for v in points)
     ground, first_of, count = lowest_layers(place, h, layer_jump)
     low, high, noise = (np.full((rows, cells), np.nan) for _ in range(3))
     owner = place[first_of]
@@ -195,8 +231,9 @@ def ground_of_profiles(points, kept, place, profiles, cells, layer_jump):
     return ProfileRun(profiles, u, s, h, along, ground, held, low, high, _profile_noise(noise), _smooth(h, held, low))
 
 
-def join_profile_runs(runs, profiles, width, spacing, origin):
-    """PseudoScanLines of profiles (first, last + 1) from runs of them that follow one another; those that none holds are empty."""
+def join_profile_runs(runs: Sequence[ProfileRun], profiles: tuple[int, int], width: float, spacing: float,
+                      origin: float) -> PseudoScanLines:
+    """PseudoScanLines of profiles (first, last + 1) from runs that follow one another; profiles of no run are empty."""
     rows, cells = profiles[1] - profiles[0], runs[0].low.shape[1]
     low, high = np.full((rows, cells), np.nan), np.full((rows, cells), np.nan)
     held = np.zeros((rows, cells), np.int64)
@@ -210,15 +247,31 @@ def join_profile_runs(runs, profiles, width, spacing, origin):
 
 
 
-def cells_of_points(u, s, h, seen, profiles, cells, width, spacing, origin):
-    """Of the points `seen` those within profiles and cells, and the place of each: profile * cells + cell, from the first profile."""
-    u, s, h = u.take(seen), s.take(seen), h.take(seen)
+def cells_of_points(u: np.ndarray, s: np.ndarray, h: np.ndarray, rows: np.ndarray, profiles: tuple[int, int], cells: int,
+                    width: float, spacing: float, origin: float) -> tuple[np.ndarray, np.ndarray]:
+    """Which of the points `rows` lie within the profiles and cells, and in which.
+
+    Parameters
+    ----------
+    u, s, h : (K,) m, outward offset, station, and height above the expected road
+    rows : (M,) indices of points
+    profiles : (first, last + 1)
+    cells : number of cells of a profile
+    width, spacing : m of road per profile, m across per cell
+    origin : m, outward offset at which the first cell begins
+
+    Returns
+    -------
+    inside : (N,) indices of the points within
+    place : (N,) (profile - first) * cells + cell
+    """
+    u, s, h = u.take(rows), s.take(rows), h.take(rows)
     profile = np.floor(s / width).astype(np.int32)
     profile -= profiles[0]
     cell = np.floor((u - origin) / spacing).astype(np.int32)
-    kept = (profile >= 0) & (profile < profiles[1] - profiles[0]) & (cell >= 0) & (cell < cells) & (h > -GROUND_DEPTH) & (h < GROUND_HEIGHT)
+    within = (profile >= 0) & (profile < profiles[1] - profiles[0]) & (cell >= 0) & (cell < cells) & (h > -GROUND_DEPTH) & (h < GROUND_HEIGHT)
     place = profile * np.int32(cells) + cell
-    return (seen, place) if kept.all() else (seen[kept], place[kept])
+    return (rows, place) if within.all() else (rows[within], place[within])
 
 
 def _profile_noise(noise):
@@ -228,7 +281,7 @@ def _profile_noise(noise):
 
 
 def _smooth(h, held, low):
-    """(P,) spread of heights about the ground of their cells, in the smoother cells of every profile; NaN where too few tell."""
+    """(P,) spread of heights about the ground of their cells, in the smoother cells of every profile; NaN where there are too few."""
     rows, there = len(low), np.flatnonzero(held)
     own = np.full(low.shape, np.nan)
     if len(there):
@@ -239,17 +292,16 @@ def _smooth(h, held, low):
         if not near.all():
             off = np.where(near, off, 0.0)
             count = np.add.reduceat(near, first, dtype=np.int64)
-        # 1.2533 mean distances of a normal distribution are its sigma
-        mean = 1.2533 * np.add.reduceat(off, first) / np.maximum(count, 1)
+        mean = SIGMA_PER_MEAN_DEVIATION * np.add.reduceat(off, first) / np.maximum(count, 1)
         own.flat[there] = np.where(count >= MIN_SPREAD_POINTS, mean, np.nan)
-    # grass is rough with any scanner, so the smoother cells tell
+    # grass is rough to any scanner, so the smoother cells give the estimate
     ordered, n = _sorted_rows(own)
     return np.where(n >= MIN_SPREAD_CELLS, ordered[np.arange(rows), np.maximum(n - 1, 0) * 3 // 10], np.nan)
 
 
 def _spread(smooth):
     """(P,) spread of heights about the ground, in the smoother cells of profiles and their neighbours."""
-    # one profile beside a bush says nothing about the scanner
+    # a single profile beside a bush is no measure of the scanner
     padded = np.pad(smooth, SPREAD_PROFILES, constant_values=np.nan)
     around = np.sort(np.lib.stride_tricks.sliding_window_view(padded, 2 * SPREAD_PROFILES + 1), axis=1)
     known = np.isfinite(around).sum(1)
@@ -258,7 +310,7 @@ def _spread(smooth):
 
 
 def _sorted_rows(values):
-    """Every row without its NaN in order, filled up with NaN to the longest; and how many values each has."""
+    """Every row sorted, without its NaN, padded with NaN to the longest; and the number of values of each."""
     there = np.isfinite(values)
     count = there.sum(1)
     found = np.full((len(values), max(int(count.max(initial=0)), 1)), np.nan)

@@ -1,26 +1,45 @@
-"""The two sides of a road: from the driven tracks outward, section by section, in profiles."""
+"""The two sides of a road: points in profiles from the driven tracks outward, section by section."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .decimation import POINTS_PER_LEVEL_CELL, limit_points_per_cell
+from .decimation import POINTS_PER_LEVEL_CELL, PointDecimation, limit_points_per_cell
 from .occlusion import MIN_OCCLUDER_HEIGHT
-from .pseudo_scanlines import cells_of_points, ground_of_profiles, join_profile_runs
+from .pseudo_scanlines import PseudoScanLines, cells_of_points, ground_of_profiles, join_profile_runs
 
-SIDE_SIGNS = {"left": 1, "right": -1}
-BLOCK_SECTION_LENGTH = 20.0  # m of road for which the length of blocks is decided
-WORK_SECTION_LENGTH = 20.0     # m of road worked at a time
-MAX_CURB_OFFSET = 20.0    # m from the reference line beyond which no curb is sought
-HEIGHT_NODE_SPACING = 0.25     # m between the nodes of the expected height
-MAX_LOOK_ALONG = 4.0    # m along the road, and as much again as across, from which a point is used
+if TYPE_CHECKING:
+    from ...survey.frame.road_frame import RoadFrame
+    from ...survey.open_survey import Survey
+    from ...survey.store.records import Points
+    from ..profiles.detect import CurbSettings
+
+SIDE_SIGNS = {"left": 1, "right": -1}   # side -> sign of its offsets
+BLOCK_SECTION_LENGTH = 20.0   # m of road for which the length of blocks is decided
+WORK_SECTION_LENGTH = 20.0    # m of road that are worked on together
+MAX_CURB_OFFSET = 20.0        # m from the reference line within which curbs are looked for
+HEIGHT_NODE_SPACING = 0.25    # m between the nodes of the expected height
+MAX_LOOK_ALONG = 4.0          # m along the road from the vehicle to a point that is used, plus as much as it lies across
 
 
 class OutermostTrack:
-    """Outward offset of the outermost driven track of one side."""
+    """Outward offset of the outermost driven track on one side.
 
-    def __init__(self, frame, road, sign):
+    Parameters
+    ----------
+    frame : RoadFrame
+    road : number of the road
+    sign : of the side's offsets
+    """
+
+    def __init__(self, frame: RoadFrame, road: int, sign: int):
         self.passes, self.sign = frame.passes_of(road), sign
 
-    def __call__(self, s):
+    def __call__(self, s: np.ndarray) -> np.ndarray:
+        """Offsets, m, at stations s, m; both of one shape. 0 where no pass drove."""
         s = np.asarray(s, float)
         offsets = np.full(s.shape, -np.inf)
         for p in self.passes:
@@ -30,8 +49,8 @@ class OutermostTrack:
         return np.where(np.isfinite(offsets), offsets, 0.0)
 
 
-def work_sections(survey, road, width):
-    """The profiles of a road parted for work: list of (first, last + 1) profile numbers, about 20 m each."""
+def work_sections(survey: Survey, road: int, width: float) -> list[tuple[int, int]]:
+    """(first, last + 1) profile numbers of the sections of a road, about WORK_SECTION_LENGTH each; `width` is m of road per profile."""
     start, end = survey.store.span(road)
     first, last = int(np.floor(start / width)), int(np.ceil(end / width))
     count = max(int(np.ceil((end - start) / WORK_SECTION_LENGTH)), 1)
@@ -39,54 +58,58 @@ def work_sections(survey, road, width):
     return [(int(a), int(b)) for a, b in zip(bounds[:-1], bounds[1:])]
 
 
-def side_profiles(decimation, road, section, tracks, settings, most=POINTS_PER_LEVEL_CELL):
-    """Profiles of one section, for each side and pass apart.
+def side_profiles(decimation: PointDecimation, road: int, section: tuple[int, int], tracks: Mapping[str, OutermostTrack],
+                  settings: CurbSettings, points_per_cell: int | None = POINTS_PER_LEVEL_CELL,
+                  ) -> Iterator[tuple[str, int, tuple[np.ndarray, ...], PseudoScanLines]]:
+    """Profiles of one section, separately for each side and pass.
 
     Parameters
     ----------
-    decimation : Crowds of the survey
+    decimation : PointDecimation of the survey
+    road : number of the road
     section : (first, last + 1) profile numbers
-    tracks : dict of side to OutermostTrack
+    tracks : side -> OutermostTrack
     settings : CurbSettings
-    most : points of a cell that are looked at (see `Crowds`); None for all, as far as they tell its layers better
+    points_per_cell : see `PointDecimation.decimated_points`; None uses all points, up to POINTS_PER_UNEVEN_CELL of a cell
 
     Yields
     ------
-    side, pass number, (u, s, h) of the tall points, PseudoScanLines
+    side, pass number, (u, s, h) of the tall points (each (N,) m), PseudoScanLines
     """
     survey, width, spacing = decimation.survey, decimation.width, decimation.spacing
     stations = (np.arange(*section) + 0.5) * width
     origins = {side: np.floor(tracks[side](stations).min()) for side in SIDE_SIGNS}
-    runs, tall = {}, {}
-    for part in decimation.decimated_points(road, section, most):
-        s, d = part.s, part.d
+    runs: dict = {}
+    tall: dict = {}
+    for block in decimation.decimated_points(road, section, points_per_cell):
+        s, d = block.s, block.d
         if not len(s):
             continue
-        along = ahead_of_vehicle(survey, part, s)
+        along = ahead_of_vehicle(survey, block, s)
         near = np.abs(along) < MAX_LOOK_ALONG + np.abs(d)
-        h = part.z - expected_height(survey, road, s)
+        h = block.z - expected_height(survey, road, s)
         first = int(np.floor(s[0] / width))
-        own = max(first, section[0]), min(int(np.floor(s[-1] / width)) + 1, section[1])
+        profiles = max(first, section[0]), min(int(np.floor(s[-1] / width)) + 1, section[1])
         for side, sign in SIDE_SIGNS.items():
             u = sign * d
             cells = max(int(np.ceil((MAX_CURB_OFFSET - origins[side]) / spacing)), 1)
-            for number, seen in _by_pass(part.pass_number, near & (u > origins[side]) & (u < MAX_CURB_OFFSET)):
+            for number, rows in _rows_by_pass(block.pass_number, near & (u > origins[side]) & (u < MAX_CURB_OFFSET)):
                 key = side, number
-                kept, place = cells_of_points(u, s, h, seen, own, cells, width, spacing, origins[side])
-                if most is None:
-                    few = limit_points_per_cell(place)
-                    kept, place = kept[few], place[few]
-                runs.setdefault(key, []).append(ground_of_profiles((u, s, h, along), kept, place, own, cells, settings.layer_jump))
-                high = seen[h.take(seen) > MIN_OCCLUDER_HEIGHT]
+                inside, cell = cells_of_points(u, s, h, rows, profiles, cells, width, spacing, origins[side])
+                if points_per_cell is None:
+                    few = limit_points_per_cell(cell)
+                    inside, cell = inside[few], cell[few]
+                runs.setdefault(key, []).append(ground_of_profiles((u, s, h, along), inside, cell, profiles, cells, settings.layer_jump))
+                high = rows[h.take(rows) > MIN_OCCLUDER_HEIGHT]
                 tall.setdefault(key, []).append([v.take(high) for v in (u, s, h)])
     for side, number in sorted(runs, key=lambda key: (list(SIDE_SIGNS).index(key[0]), key[1])):
         lines = join_profile_runs(runs[side, number], section, width, spacing, origins[side])
         yield side, number, tuple(np.concatenate(column) for column in zip(*tall[side, number])), lines
 
 
-def _by_pass(numbers, chosen):
-    """[(pass number, indices)] of the chosen points."""
-    own = np.flatnonzero(chosen)
+def _rows_by_pass(numbers, mask):
+    """[(pass number, indices)] of the points of a mask."""
+    own = np.flatnonzero(mask)
     if not len(own):
         return []
     if numbers.min() == numbers.max():
@@ -95,8 +118,8 @@ def _by_pass(numbers, chosen):
     return [(int(number), own[numbers == number]) for number in np.flatnonzero(np.bincount(numbers))]
 
 
-def expected_height(survey, road, s):
-    """(N,) local z at which the road is expected, from nodes at fixed stations, so that many points cost little."""
+def expected_height(survey: Survey, road: int, s: np.ndarray) -> np.ndarray:
+    """(N,) m, local z at which the road is expected at (N,) stations, interpolated between nodes HEIGHT_NODE_SPACING apart."""
     if not len(s):
         return np.empty(0)
     first = int(np.floor(np.min(s) / HEIGHT_NODE_SPACING))
@@ -111,11 +134,21 @@ def expected_height(survey, road, s):
     return h
 
 
-def ahead_of_vehicle(survey, points, s):
-    """(N,) metres along the road from the vehicle to the point when it was measured (0 without times).
+def ahead_of_vehicle(survey: Survey, points: Points, s: np.ndarray) -> np.ndarray:
+    """Distance along the road from the vehicle to the points when they were measured.
 
-    What is seen from far behind or ahead lies at a flat angle and carries the drift
-    of the positions since; a spinning scanner sees every place from both.
+    A point far ahead or behind is seen at a grazing angle and carries the drift of the
+    positions since; a spinning scanner sees every place from both sides.
+
+    Parameters
+    ----------
+    survey : Survey
+    points : N Points
+    s : (N,) m, their stations
+
+    Returns
+    -------
+    (N,) m, positive ahead; 0 for surveys without times
     """
     if not survey.has_time or not len(points):
         return np.zeros(len(points))

@@ -1,53 +1,73 @@
-"""Chains of steps along the road, and the one chain after another that is the curb.
+"""Steps linked to chains along the road, and the sequence of chains that is the curb.
 
-A single step may be anything; a curb goes on. Steps of neighbouring profiles are
-linked where offset and height continue, and the links make chains. Of chains that
-lie side by side the choice along the road weighs the length covered against
-lateral jumps, with a weak preference for what is near the vehicle.
+A single step may be anything; a curb continues. Steps of neighbouring profiles are
+linked where offset and height continue, and the links make chains. Among chains side
+by side the selection along the road weighs the length that they cover against lateral
+jumps, with a weak preference for what is near the vehicle.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from .corners import CurbSteps
+
 MAX_LINK_LENGTH = 1.0       # m along the road that a link may span
 LINK_DRIFT = 0.20           # m across per m along that a link may differ from the faces' own direction
-LINK_TOLERANCE = 0.05           # m across that two steps of one line may differ anyway
-HEIGHT_TOLERANCE = 0.03    # m that bottom heights of neighbours may differ
-MIN_CHAIN_LENGTH = 0.75        # m of a chain that counts
-MIN_CURB_LENGTH = 4.0            # m of chains that lie in one line and make a curb
+LINK_TOLERANCE = 0.05       # m across that two steps of one line may differ in any case
+HEIGHT_TOLERANCE = 0.03     # m that bottom heights of neighbours may differ
+MIN_CHAIN_LENGTH = 0.75     # m of a chain that is used
+MIN_CURB_LENGTH = 4.0       # m of chains in one line that make a curb
 MAX_CHAIN_GAP = 8.0         # m between chains of one line
-MAX_JOINED_GAP = 2.5   # m along a curb between points, chains or lines that are joined without a sign of something in between
-END_DIRECTION_STEPS = 5          # at the end of a chain that give its direction
-MAX_EXTRAPOLATION = 3.0       # m that a chain is drawn on in its own direction
-MIN_CHAIN_DENSITY = 0.5          # share of its profiles in which a chain must be seen
-MAX_CHAIN_SCATTER = 0.02          # m, scatter about its own running line beyond the scanner's noise
-NOISY_SHARE = 0.125          # share of MIN_HEIGHT: a scanner whose heights spread more does not show a curb in one profile
-MAX_NOISE_ALLOWANCE = 0.3            # share of MIN_HEIGHT by which such a scanner may have seen a curb too low
-MAX_ROAD_ROUGHNESS = 0.010     # m about the road side's line, if the scanner's noise is less than half of it
-JUMP_COST = 4.0        # m of curb that a lateral jump of 1 m must bring to pay
-CLIMB_COST = 60.0      # the same for 1 m of height: ground behind a curb is higher
+MAX_JOINED_GAP = 2.5        # m along a curb between points, chains or lines that are joined without a sign of something in between
+END_DIRECTION_STEPS = 5     # steps at the end of a chain that give its direction
+MAX_EXTRAPOLATION = 3.0     # m that a chain is continued in its own direction
+MIN_CHAIN_DENSITY = 0.5     # share of its profiles in which a chain must be seen
+MAX_CHAIN_SCATTER = 0.02    # m, scatter about its own running line beyond the scanner's noise
+NOISY_SHARE = 0.125         # share of the least curb height: a scanner with a larger spread does not show a curb in one profile
+MAX_NOISE_ALLOWANCE = 0.3   # share of the least curb height by which such a scanner may have seen a curb too low
+MAX_ROAD_ROUGHNESS = 0.010  # m about the road side's line, if the scanner's noise is less than half of it
+JUMP_COST = 4.0             # m of curb that a lateral jump of 1 m must gain
+CLIMB_COST = 60.0           # m of curb that a difference of 1 m in height must gain: ground behind a curb is higher
 MAX_JUMP_COST = 10.0        # m of curb that any jump costs at most
-DISTANCE_PENALTY = 0.03        # share of a metre's worth lost for each metre farther out
-TRACKING_MEMORY = 40.0          # m of road after which a chain is forgotten
+DISTANCE_PENALTY = 0.03     # share of its value that a metre of curb loses for each metre farther from the track
+TRACKING_MEMORY = 40.0      # m of road after which a chain is no longer continued
 
 
 @dataclass
 class StepChain:
-    """Steps of one line, sorted by station: indices into the steps, first and last station."""
+    """Steps of one line.
+
+    Attributes
+    ----------
+    steps : (K,) indices into the CurbSteps, sorted by station
+    start, end : m, first and last station
+    """
 
     steps: np.ndarray
     start: float
     end: float
 
 
-def link_steps(steps, profile_width):
-    """(M,) number of the chain of every step, numbered by first station.
+def link_steps(steps: CurbSteps, profile_width: float) -> np.ndarray:
+    """Link steps of neighbouring profiles.
 
     Each step is linked with the one ahead that continues it best, if that one has
-    no better step behind: so chains never branch.
+    no better step behind, so chains do not branch.
+
+    Parameters
+    ----------
+    steps : M CurbSteps of one side of one road
+    profile_width : m of road per profile
+
+    Returns
+    -------
+    (M,) number of the chain of every step, numbered by first station
     """
     count = len(steps)
     if not count:
@@ -92,14 +112,15 @@ def _best_partner(steps, width, direction):
     return best
 
 
-def curb_chains(steps, label, profile_width, least, slope):
-    """Chains that look like a curb: long, dense, straight in the small, steep, with raised ground behind.
+def curb_chains(steps: CurbSteps, label: np.ndarray, profile_width: float, min_height: float, slope: float) -> list[StepChain]:
+    """Chains that look like a curb: long, dense, smooth, steep, with raised ground behind.
 
     Parameters
     ----------
-    steps : Steps of one side of one road
+    steps : M CurbSteps of one side of one road
     label : (M,) chain of each step
-    least : m, median height that a chain must have
+    profile_width : m of road per profile
+    min_height : m, median height that a chain must have
     slope : radians, least angle of the face
 
     Returns
@@ -115,47 +136,49 @@ def curb_chains(steps, label, profile_width, least, slope):
         if length < MIN_CHAIN_LENGTH - 1e-9 or len(members) * profile_width < MIN_CHAIN_DENSITY * length:
             continue
         height, scanner_noise = np.median(steps.height[members]), np.median(steps.scanner_noise[members])
-        # blur widens a face and never narrows it, so the sharper profiles tell
+        # blur widens a face and never narrows it, so the sharper profiles show its width
         sharp = max(np.quantile(steps.run[members], 0.3) - 2 * scanner_noise, 0.0)
-        doubt = min(scanner_noise, MAX_NOISE_ALLOWANCE * least) if scanner_noise > NOISY_SHARE * least else 0.0
-        if height < least - doubt or np.arctan2(height, sharp) < slope:
+        allowance = min(scanner_noise, MAX_NOISE_ALLOWANCE * min_height) if scanner_noise > NOISY_SHARE * min_height else 0.0
+        if height < min_height - allowance or np.arctan2(height, sharp) < slope:
             continue
         if np.median(steps.noise[members]) > max(MAX_ROAD_ROUGHNESS, 2 * scanner_noise):
             continue
         if np.mean(steps.behind[members] >= 2) < 0.5:
             continue
-        if len(members) > 2 and _wander(s, steps.u[members]) > MAX_CHAIN_SCATTER + scanner_noise:
+        if len(members) > 2 and _chain_scatter(s, steps.u[members]) > MAX_CHAIN_SCATTER + scanner_noise:
             continue
         chains.append(StepChain(members, float(s[0]), float(s[-1])))
     return sorted(chains, key=lambda c: (c.start, c.end))
 
 
-def select_along_road(chains, steps, near):
-    """The chain that is the curb, along the road.
+def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
+                      near: Callable[[float], np.ndarray]) -> list[tuple[int, float, float]]:
+    """Which chain is the curb at every station: the sequence of chains of the highest value, by dynamic programming.
 
     Parameters
     ----------
     chains : list of StepChain of one side
-    near : function, station -> outward offset of the outermost track on that side
+    steps : CurbSteps to which they refer
+    near : function, station in m -> outward offset of the outermost track on that side, m
 
     Returns
     -------
-    list of (chain index, from station, to station), in order along the road
+    list of (chain index, first station, last station), in order along the road
     """
     places = [(steps.s[c.steps], steps.u[c.steps], steps.h[c.steps]) for c in chains]
     starts, ends = np.array([c.start for c in chains]), np.array([c.end for c in chains])
     cuts = np.unique(np.r_[starts, ends])
-    tips = np.array([_directions(steps, c.steps) for c in chains]).reshape(-1, 2)
-    worth = np.full(len(chains), -np.inf)  # of the best way that is on this chain, or was on it last
-    way = [None] * len(chains)             # that way: (chain, from, to, way before)
-    old_worth, old_way = 0.0, None         # the best of what is forgotten; at first, no curb at all
+    tips = np.array([_end_directions(steps, c.steps) for c in chains]).reshape(-1, 2)
+    value = np.full(len(chains), -np.inf)  # of the best path that ends, or last was, on this chain
+    path: list = [None] * len(chains)      # that path: (chain, first, last station, path before)
+    old_value, old_path = 0.0, None        # the best path that left the memory; at first, the one without a curb
     for a, b in zip(cuts[:-1], cuts[1:]):
-        for c in np.flatnonzero((ends + TRACKING_MEMORY < a) & np.isfinite(worth)):
-            if worth[c] > old_worth:
-                old_worth, old_way = worth[c], way[c]
-            worth[c] = -np.inf
+        for c in np.flatnonzero((ends + TRACKING_MEMORY < a) & np.isfinite(value)):
+            if value[c] > old_value:
+                old_value, old_path = value[c], path[c]
+            value[c] = -np.inf
         active = np.flatnonzero((starts <= a) & (ends >= b))
-        known = np.flatnonzero(np.isfinite(worth))
+        known = np.flatnonzero(np.isfinite(value))
         there = np.array([[np.interp(a, places[k][0], v) for v in places[k][1:]] for k in known]).reshape(-1, 2)
         middle, found = 0.5 * (a + b), []
         for c in active:
@@ -163,59 +186,69 @@ def select_along_road(chains, steps, near):
             gain = (b - a) * max(1.0 - DISTANCE_PENALTY * farther, 0.1)
             u, h = (np.interp(a, places[c][0], v) for v in places[c][1:])
             gap = np.maximum(a - ends[known], 0.0)
-            # a gap is crossed in the direction in which the one ended and the other begins
+            # a gap is crossed in the mean direction of the end before and the start after it
             turn = np.minimum(gap, MAX_EXTRAPOLATION) * 0.5 * (tips[known, 1] + (tips[c, 0] if a <= starts[c] else 0.0))
             jump = np.maximum(np.abs(u - there[:, 0] - np.where(gap > 0, turn, 0.0)) - 0.05 - 0.1 * gap, 0.0)
             climb = np.maximum(np.abs(h - there[:, 1]) - 0.03 - 0.003 * gap, 0.0)
-            value = worth[known] - np.where(known == c, 0.0, np.minimum(JUMP_COST * jump + CLIMB_COST * climb, MAX_JUMP_COST))
-            best, before = old_worth - (MAX_JUMP_COST / 2 if old_way else 0.0), old_way
-            if len(known) and value.max() >= best:
-                k = int(np.argmax(value))
-                best, before = value[k], way[known[k]]
+            total = value[known] - np.where(known == c, 0.0, np.minimum(JUMP_COST * jump + CLIMB_COST * climb, MAX_JUMP_COST))
+            best, before = old_value - (MAX_JUMP_COST / 2 if old_path else 0.0), old_path
+            if len(known) and total.max() >= best:
+                k = int(np.argmax(total))
+                best, before = total[k], path[known[k]]
             found.append((c, best + gain, (int(c), float(a), float(b), before)))
-        for c, value, step in found:
-            worth[c], way[c] = value, step
-    if len(chains) and worth.max() >= old_worth:
-        old_way = way[int(np.argmax(worth))]
-    path = []
-    while old_way:
-        path.append(old_way[:3])
-        old_way = old_way[3]
-    return _merged(path[::-1])
+        for c, new_value, step in found:
+            value[c], path[c] = new_value, step
+    if len(chains) and value.max() >= old_value:
+        old_path = path[int(np.argmax(value))]
+    selected = []
+    while old_path:
+        selected.append(old_path[:3])
+        old_path = old_path[3]
+    return _merged(selected[::-1])
 
 
-def drop_short_curbs(chosen, chains, steps):
-    """Chosen chains that make a curb: those in line with each other add up to a length that counts.
+def drop_short_curbs(selected: Sequence[tuple[int, float, float]], chains: Sequence[StepChain],
+                     steps: CurbSteps) -> list[tuple[int, float, float]]:
+    """Selected intervals that make a curb: intervals in line with each other cover MIN_CURB_LENGTH together.
 
     A curb between parked cars is seen in pieces; a piece with nothing in line with it may be anything.
+
+    Parameters
+    ----------
+    selected : result of `select_along_road`
+    chains : list of StepChain
+    steps : CurbSteps to which they refer
+
+    Returns
+    -------
+    list like `selected`
     """
-    kept, group, covered, last = [], [], 0.0, None
-    for piece in chosen + [None]:
-        members = None
-        if piece is not None:
-            members = chains[piece[0]].steps
-            members = members[(steps.s[members] >= piece[1]) & (steps.s[members] <= piece[2])]
-        if piece is None or last is not None and not _in_line(steps, last, members):
-            kept += group if covered >= MIN_CURB_LENGTH else []
+    curbs: list[tuple[int, float, float]] = []
+    group: list[tuple[int, float, float]] = []
+    covered, last = 0.0, None
+    for chain, a, b in selected:
+        members = chains[chain].steps
+        members = members[(steps.s[members] >= a) & (steps.s[members] <= b)]
+        if last is not None and not _in_line(steps, last, members):
+            curbs += group if covered >= MIN_CURB_LENGTH else []
             group, covered = [], 0.0
-        if piece is not None:
-            group.append(piece)
-            covered += piece[2] - piece[1]
-            last = members
-    return kept
+        group.append((chain, a, b))
+        covered += b - a
+        last = members
+    return curbs + (group if covered >= MIN_CURB_LENGTH else [])
 
 
 def _in_line(steps, before, after):
-    """Does one run of steps go on in the other?"""
+    """Does one run of steps continue the other?"""
     a, b = before[-1], after[0]
     gap = steps.s[b] - steps.s[a]
-    turn = min(gap, MAX_EXTRAPOLATION) * 0.5 * (_directions(steps, before)[1] + _directions(steps, after)[0])
+    turn = min(gap, MAX_EXTRAPOLATION) * 0.5 * (_end_directions(steps, before)[1] + _end_directions(steps, after)[0])
     return gap <= MAX_CHAIN_GAP and abs(steps.u[b] - steps.u[a] - turn) <= 0.15 + 0.15 * gap \
         and abs(steps.h[b] - steps.h[a]) <= HEIGHT_TOLERANCE + 0.02 * gap
 
 
-def _directions(steps, members):
-    """How a run of steps begins and ends: m outward per m along, over its outermost metre or so."""
+def _end_directions(steps, members):
+    """Directions in which a run of steps begins and ends, m outward per m along, of its END_DIRECTION_STEPS outermost steps."""
     found = []
     for tip in (members[:END_DIRECTION_STEPS], members[-END_DIRECTION_STEPS:]):
         ds = steps.s[tip] - steps.s[tip].mean()
@@ -223,14 +256,14 @@ def _directions(steps, members):
     return found
 
 
-def _wander(s, u):
-    """Median distance of the steps of a chain from the chord of their neighbours."""
+def _chain_scatter(s, u):
+    """Median distance of the steps of a chain from the chord of their neighbours, m."""
     f = (s[1:-1] - s[:-2]) / np.maximum(s[2:] - s[:-2], 1e-6)
     return np.median(np.abs(u[1:-1] - u[:-2] - f * (u[2:] - u[:-2])))
 
 
 def _merged(path):
-    """Touching intervals of one chain made one."""
+    """Adjacent intervals of one chain joined."""
     merged = []
     for chain, a, b in path:
         if merged and merged[-1][0] == chain and merged[-1][2] == a:

@@ -110,7 +110,7 @@ def _steps_of_road(decimation, road, settings, progress):
         seen = list(side_profiles(decimation, road, wide, tracks, settings, most))
         # where averages are wanted every point counts
         if most and any((lines.part(*section).spread > NOISY_SHARE * settings.min_height).any() for *_, lines in seen):
-            seen = side_profiles(decimation, road, wide, tracks, settings, most=None)
+            seen = side_profiles(decimation, road, wide, tracks, settings, points_per_cell=None)
         for side, _, beside, lines in seen:
             occlusion[side].add_points(*beside, section, lines.part(*section))
             steps = _steps_by_noise(lines, section, settings)

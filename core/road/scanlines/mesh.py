@@ -119,7 +119,7 @@ def scanner_lines(records: Columns | np.ndarray, p: Pass, mirror: MirrorPhase, c
     d = records["d"]
     used = np.abs(d) <= int(round(corridor / COORDINATE_SCALE))
     if level is not None:
-        used &= ~level.holds(records["s"], d)
+        used &= ~level.contains(records["s"], d)
     records = take_rows(records, used)
     if len(records) < 4:
         return None

@@ -20,9 +20,9 @@ def crowded(noise=0.003, seed=5):
     return x, y, z + rng.normal(0.0, noise, len(z)), 1000.0 + x / 10
 
 
-def taken(survey, profiles=(36, 60), **most):
+def taken(survey, profiles=(36, 60), **options):
     """(N, 3) station, offset and height of the points taken, in units."""
-    parts = [PointDecimation(survey, WIDTH, SPACING).decimated_points(0, profiles, **most)]
+    parts = [PointDecimation(survey, WIDTH, SPACING).decimated_points(0, profiles, **options)]
     return np.concatenate([np.c_[part.records["s"], part.records["d"], part.records["z"]] for runs in parts for part in runs])
 
 
@@ -35,7 +35,7 @@ def in_cells(points):
 
 def test_of_level_ground_a_few_points_of_every_cell_are_taken():
     survey = survey_of(crowded(), driven(20.0))
-    assert np.median(in_cells(taken(survey, most=None))) > 4 * POINTS_PER_LEVEL_CELL
+    assert np.median(in_cells(taken(survey, points_per_cell=None))) > 4 * POINTS_PER_LEVEL_CELL
     assert abs(np.mean(in_cells(taken(survey))) - POINTS_PER_LEVEL_CELL) < 0.1 * POINTS_PER_LEVEL_CELL
     assert in_cells(taken(survey)).min() > 0
 
@@ -43,7 +43,7 @@ def test_of_level_ground_a_few_points_of_every_cell_are_taken():
 def test_a_curbs_face_keeps_its_points():
     survey = survey_of(crowded(), driven(20.0))
     faces = []
-    for points in (taken(survey, most=None), taken(survey)):
+    for points in (taken(survey, points_per_cell=None), taken(survey)):
         d, h = points[:, 1] * COORDINATE_SCALE, (points[:, 2] - points[:, 2].min()) * COORDINATE_SCALE
         faces.append(np.count_nonzero((np.abs(d - CURB) < 0.01) & (h > 0.04) & (h < 0.10)))
     assert faces[0] > 100
@@ -52,7 +52,7 @@ def test_a_curbs_face_keeps_its_points():
 
 def test_what_a_noisy_scanner_saw_is_taken_as_far_as_it_tells():
     survey = survey_of(crowded(noise=2.5 * LEVEL_CELL_STD), driven(20.0))
-    assert np.mean(in_cells(taken(survey))) > 0.9 * np.mean(np.minimum(in_cells(taken(survey, most=None)), 60))
+    assert np.mean(in_cells(taken(survey))) > 0.9 * np.mean(np.minimum(in_cells(taken(survey, points_per_cell=None)), 60))
 
 
 @pytest.mark.parametrize("profiles", [(41, 50), (40, 60), (44, 45)])

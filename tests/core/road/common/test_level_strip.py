@@ -56,7 +56,7 @@ def test_birds_and_ghosts_do_not_end_it():
 def test_to_a_noisy_scanner_no_ground_is_level_beyond_doubt(noise):
     found, low, high = strip(crowded(noise=noise))
     assert (low > high).all()
-    assert not found.holds(np.array([100_000, 120_000], np.int32), np.array([0, 0], np.int32)).any()
+    assert not found.contains(np.array([100_000, 120_000], np.int32), np.array([0, 0], np.int32)).any()
 
 
 def test_profiles_so_long_that_a_curb_may_look_like_a_slope_tell_of_no_strip():
@@ -86,7 +86,7 @@ def test_points_are_held_profile_by_profile():
     profile = np.floor(s / WIDTH).astype(int) - found.first
     expected = (d > found.low[profile] * COORDINATE_SCALE) & (d < found.high[profile] * COORDINATE_SCALE)
     clear = np.abs(s / WIDTH - np.rint(s / WIDTH)) > 0.01
-    held = found.holds(np.rint(s / COORDINATE_SCALE).astype(np.int32), np.rint(d / COORDINATE_SCALE).astype(np.int32))
+    held = found.contains(np.rint(s / COORDINATE_SCALE).astype(np.int32), np.rint(d / COORDINATE_SCALE).astype(np.int32))
     np.testing.assert_array_equal(held[clear], expected[clear])
 
 
