@@ -1,9 +1,9 @@
-"""The two ways a run ends early: the input is not fit, or the user stopped it."""
+"""The two exceptions that end a run early: unsuitable input, and cancellation by the user."""
 
 
 class RoadExtractionError(Exception):
-    """The input cannot be worked with: what we saw, what we needed, what to try."""
+    """The input cannot be processed; the message says what was found, what is needed and what to try."""
 
 
 class Cancelled(Exception):
-    """The user pressed Cancel; nothing is to be written."""
+    """The user cancelled the run; no result is written."""

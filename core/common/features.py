@@ -1,15 +1,23 @@
-"""Vector results between stages: geometries in map coordinates with their fields.
+"""Vector layers in memory: geometries in map coordinates with their fields.
 
-One small container, so that a layer read from a file and a result passed on in
-memory are the same thing to the next stage.
+A layer read from a file and a result passed on in memory have the same type, so every stage takes either.
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import Any
 
 
 @dataclass(frozen=True)
 class Field:
-    """A column: `name` has at most 10 characters, `type` is int, float or str."""
+    """A column of a layer.
+
+    name : at most 10 characters
+    type : int, float or str
+    alias : the name spelled out, with its unit
+    """
 
     name: str
     type: type
@@ -18,7 +26,7 @@ class Field:
 
 @dataclass
 class Features:
-    """A layer in memory.
+    """A vector layer in memory.
 
     Attributes
     ----------
@@ -26,25 +34,26 @@ class Features:
     schema : list of Field
     geometries : list of shapely geometries with Z in map coordinates (None in a table)
     rows : list of dict, field name to value; a missing name is NULL
-    crs : WKT or "" where unknown
+    crs : WKT, "" where unknown
     """
 
     geometry_type: str
-    schema: list
-    geometries: list = field(default_factory=list)
-    rows: list = field(default_factory=list)
+    schema: list[Field]
+    geometries: list[Any] = field(default_factory=list)
+    rows: list[dict[str, Any]] = field(default_factory=list)
     crs: str = ""
 
-    def add(self, geometry, **row):
+    def add(self, geometry: Any, **row: Any) -> None:
+        """Append a feature with its field values."""
         self.geometries.append(geometry)
         self.rows.append(row)
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.rows)
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[tuple[Any, dict[str, Any]]]:
         return iter(zip(self.geometries, self.rows))
 
-    def column(self, name, default=None):
-        """The values of one field, in row order."""
+    def column(self, name: str, default: Any = None) -> list[Any]:
+        """The values of one field in row order, `default` where NULL."""
         return [default if row.get(name) is None else row[name] for row in self.rows]

@@ -1,37 +1,44 @@
-"""Arrays that a thread uses over and over: memory touched for the first time is dear, touched again it is cheap."""
+"""Reused working memory, and the return of freed memory to the operating system."""
+
+from __future__ import annotations
 
 import ctypes
 import sys
 import threading
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
+from numpy.typing import DTypeLike
 
-# Memory that was freed and is kept all the same, handed back to the system.
 
-def trim_heap():
-    """Ask the C library for what it keeps of memory that was freed.
+def trim_heap() -> None:
+    """Return freed memory from the C library to the operating system.
 
-    glibc keeps it for the threads that had asked for it, and the threads of the
-    next stage ask anew: after a few stages most of a process is such leftovers.
-    Nothing happens where the C library knows no such request (Windows, macOS, musl).
+    glibc keeps freed memory per thread, and the threads of the next stage allocate anew: after a few stages most of
+    the memory of a process would be such remains. Nothing happens where the C library has no `malloc_trim` (Windows,
+    macOS, musl).
     """
     if sys.platform.startswith("linux"):
         trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
         if trim is not None:
             trim(0)
 
+
 class ScratchBuffers(threading.local):
-    """Working arrays by name, of every thread its own; what they held is not remembered from one use to the next."""
+    """Per-thread working arrays by name; reuse avoids the page faults of newly allocated memory.
 
-    def __init__(self):
-        self._arrays = {}
+    The content of an array is undefined at the start of each use.
+    """
 
-    def of(self, count):
-        """A function of a name, and of a dtype where it is not float64, that returns the array of `count` values."""
+    def __init__(self) -> None:
+        self._arrays: dict[str, np.ndarray] = {}
+
+    def of(self, count: int) -> Callable[..., np.ndarray]:
+        """A function (name, dtype=float64) that returns the array of that name with `count` values."""
         return partial(self._array, count)
 
-    def _array(self, count, name, dtype=np.float64):
+    def _array(self, count: int, name: str, dtype: DTypeLike = np.float64) -> np.ndarray:
         nbytes = count * np.dtype(dtype).itemsize
         data = self._arrays.get(name)
         if data is None or len(data) < nbytes:
@@ -39,4 +46,4 @@ class ScratchBuffers(threading.local):
         return data[:nbytes].view(dtype)
 
 
-column_buffers = ScratchBuffers()   # those in which columns are put down and picked up again
+column_buffers = ScratchBuffers()   # for packing and unpacking columns of records

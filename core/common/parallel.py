@@ -1,41 +1,67 @@
-"""Work on sections side by side, results in order."""
+"""Worker threads with ordered results, and cancellation of long work."""
+
+from __future__ import annotations
 
 import os
 import threading
 from collections import deque
-from concurrent.futures import ThreadPoolExecutor, wait
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
+from typing import TypeVar
 
 from .errors import Cancelled
 from .progress import Progress
 
-POLL_INTERVAL = 0.2   # s between two questions whether to go on, while a result is waited for
+POLL_INTERVAL = 0.2   # s between two checks for cancellation while a result is awaited
+MAX_WORKERS = 4       # threads by default at most
 
 _thread = threading.local()
 
+Item = TypeVar("Item")
+Result = TypeVar("Result")
 
-def ordered_map(function, items, progress=Progress(), threads=None):
-    """Yield function(item) for every item, in order, computed by a few threads.
 
-    No more results wait than there are threads, so memory stays bounded. An
-    error or a cancel stops the rest and is raised here; a cancel is heard while a
-    result is waited for too, and ends the workers at their next `check_cancelled`. numpy and scipy
-    release the interpreter lock in their heavy loops, which is where the time goes.
+def ordered_map(function: Callable[[Item], Result], items: Iterable[Item], progress: Progress = Progress(),
+                threads: int | None = None) -> Iterator[Result]:
+    """Apply a function to every item in several threads and yield the results in the order of the items.
+
+    At most one result more than there are threads is computed ahead, so memory stays bounded. While a result is
+    awaited, cancellation is checked too. numpy and scipy release the interpreter lock in their heavy loops, which is
+    where most of the time is spent.
+
+    Parameters
+    ----------
+    function : called with one item, in a worker thread
+    items : items in order
+    progress : reports the share of the items that are done
+    threads : number of threads; by default one per processor core, at most four
+
+    Yields
+    ------
+    function(item) for every item
+
+    Raises
+    ------
+    Cancelled
+        If the user cancelled; the worker threads end at their next `check_cancelled`.
+    Exception
+        Whatever `function` raises; the remaining items are dropped.
     """
     items = list(items)
-    threads = threads or min(4, os.cpu_count() or 1)
+    threads = threads or min(MAX_WORKERS, os.cpu_count() or 1)
     stop = threading.Event()
 
-    def ask():
+    def check_stopped() -> None:
         if stop.is_set():
             raise Cancelled
 
-    def work(item):
-        _thread.ask = ask
+    def work(item: Item) -> Result:
+        _thread.check = check_stopped
         return function(item)
 
     with ThreadPoolExecutor(threads) as pool:
-        waiting = deque()
+        waiting: deque[Future[Result]] = deque()
         try:
             for done in range(len(items)):
                 while len(waiting) <= threads and done + len(waiting) < len(items):
@@ -51,25 +77,25 @@ def ordered_map(function, items, progress=Progress(), threads=None):
 
 
 @contextmanager
-def cancellation_scope(progress):
-    """While this lasts, `check_cancelled` in this thread asks `progress` whether to go on."""
-    before = getattr(_thread, "ask", None)
-    _thread.ask = progress.check_cancelled
+def cancellation_scope(progress: Progress) -> Iterator[None]:
+    """Within this context, `check_cancelled` in the current thread checks `progress` for cancellation."""
+    before = getattr(_thread, "check", None)
+    _thread.check = progress.check_cancelled
     try:
         yield
     finally:
-        _thread.ask = before
+        _thread.check = before
 
 
-def check_cancelled():
-    """Called now and then in long work that has no `progress` at hand.
+def check_cancelled() -> None:
+    """Check for cancellation in long work that has no `progress` argument.
 
     Raises
     ------
     Cancelled
-        Where the user pressed Cancel (`cancellation_scope`), or in a thread of `ordered_map` whose results
-        are no longer taken.
+        If the user cancelled (see `cancellation_scope`), or in a worker thread of `ordered_map` whose results are no
+        longer used.
     """
-    ask = getattr(_thread, "ask", None)
-    if ask is not None:
-        ask()
+    check = getattr(_thread, "check", None)
+    if check is not None:
+        check()

@@ -1,74 +1,99 @@
-"""How long a computation will still take, told now and then in round figures."""
+"""Progress of a computation: fraction done, log messages, cancellation and an estimate of the remaining time."""
+
+from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
+
+REMAINING_STEPS = (10, 20, 40, 60, 120, 180, 300, 600, 900, 1200, 1800, 2700, 3600, 7200, 10800, 18000, 28800, 43200, 86400)  # s, as reported
+MIN_ELAPSED = 5.0      # s of work before the first estimate
+MIN_FRACTION = 0.08    # of the work that must be done before the first estimate
+LONGER_FACTOR = 1.5    # a longer estimate replaces the last one only if it exceeds it by this factor
+MIN_REPEAT = 20.0      # s after the last estimate before a longer one may replace it
 
 
 class Progress:
-    """A silent listener; the shell's listener moves the bar, prints, and raises Cancelled.
+    """Receives the progress of a computation. This base class ignores it.
 
-    Every core function that takes longer than a blink has `progress` as its
-    last argument. `report` may raise Cancelled, so call it once per section.
+    A user interface overrides the methods: it moves the bar, prints the messages and raises `Cancelled`.
+    Every function of the core that may take longer than a second has `progress` as its last argument.
     """
 
-    def report(self, fraction):
-        """Report the fraction done, 0 to 1, of this computation."""
+    def report(self, fraction: float) -> None:
+        """Report the fraction of this computation that is done, 0 to 1.
 
-    def check_cancelled(self):
-        """Raise Cancelled where the work shall stop; the bar stays where it is."""
+        Raises
+        ------
+        Cancelled
+            If the user cancelled. Call it at least once per section of road.
+        """
 
-    def info(self, text):
-        """Report a finding or a step in one line."""
+    def check_cancelled(self) -> None:
+        """Raise `Cancelled` if the user cancelled; the bar does not move."""
 
-    def warn(self, text):
-        """Report, once, what is doubtful, with a count."""
+    def info(self, text: str) -> None:
+        """Log a result or a step in one line."""
 
-    def part(self, start, end):
-        """A listener for one part of the work, from fraction `start` to `end`."""
-        return _Part(self, start, end)
+    def warn(self, text: str) -> None:
+        """Log a doubtful finding once, with its count."""
+
+    def part(self, start: float, end: float) -> Progress:
+        """The progress of one part of the work, which runs from fraction `start` to `end` of the whole."""
+        return _PartOfProgress(self, start, end)
 
 
-class _Part(Progress):
-    def __init__(self, whole, start, end):
+class _PartOfProgress(Progress):
+    def __init__(self, whole: Progress, start: float, end: float):
         self.whole, self.start, self.span = whole, start, end - start
-        self.info, self.warn, self.check_cancelled = whole.info, whole.warn, whole.check_cancelled
 
-    def report(self, fraction):
+    def report(self, fraction: float) -> None:
         self.whole.report(self.start + self.span * min(max(fraction, 0.0), 1.0))
 
-REMAINING_STEPS = (10, 20, 40, 60, 120, 180, 300, 600, 900, 1200, 1800, 2700, 3600, 7200, 10800, 18000, 28800, 43200, 86400)  # s, what is told
-MIN_ELAPSED = 5.0      # s of work before anything is told,
-MIN_FRACTION = 0.08        # and share of the work
-LONGER_FACTOR = 1.5        # times what was told last, from which on it was wrong and is told anew,
-MIN_REPEAT = 20.0     # s after it was told at the earliest
+    def check_cancelled(self) -> None:
+        self.whole.check_cancelled()
+
+    def info(self, text: str) -> None:
+        self.whole.info(text)
+
+    def warn(self, text: str) -> None:
+        self.whole.warn(text)
 
 
 class RemainingTime:
-    """Listens to the share that is done and says, when there is something new to say, how long the rest will take.
+    """Estimates the remaining time from the fraction done, in round steps.
 
-    The rest takes as long as what was done took, share for share. Told are the steps of a
-    coarse scale, each once as the time runs down, so that a run of a minute is told
-    of four times; a longer time than was told comes only where it is clearly longer.
+    The remaining work is assumed to advance as fast as the work so far. Each of `REMAINING_STEPS` is returned at most
+    once as the time runs down, so a run of one minute gets four estimates. A longer estimate than the last one is
+    returned only if it is clearly longer.
+
+    Parameters
+    ----------
+    clock : function that returns the current time in seconds
     """
 
-    def __init__(self, clock=time.monotonic):
+    def __init__(self, clock: Callable[[], float] = time.monotonic):
         self._clock, self._began = clock, clock()
-        self._told, self._told_at = math.inf, 0.0
+        self._last, self._last_at = math.inf, 0.0
 
-    def after(self, fraction):
-        """Seconds left, of `REMAINING_STEPS`, where that is new; None where there is nothing to tell.
+    def after(self, fraction: float) -> int | None:
+        """The remaining time where a new estimate is due.
 
         Parameters
         ----------
-        fraction : done, 0 to 1
+        fraction : fraction of the work that is done, 0 to 1
+
+        Returns
+        -------
+        Seconds, one of `REMAINING_STEPS`; None where no new estimate is due.
         """
-        passed = self._clock() - self._began
-        if passed < MIN_ELAPSED or not MIN_FRACTION <= fraction < 1.0:
+        elapsed = self._clock() - self._began
+        if elapsed < MIN_ELAPSED or not MIN_FRACTION <= fraction < 1.0:
             return None
-        left = passed * (1.0 - fraction) / fraction
+        left = elapsed * (1.0 - fraction) / fraction
         step = min(REMAINING_STEPS, key=lambda seconds: abs(math.log(seconds / max(left, 1e-3))))
-        longer = step > self._told and left > LONGER_FACTOR * self._told and passed - self._told_at > MIN_REPEAT
-        if left < REMAINING_STEPS[0] / 2 or not (step < self._told or longer):
+        longer = step > self._last and left > LONGER_FACTOR * self._last and elapsed - self._last_at > MIN_REPEAT
+        if left < REMAINING_STEPS[0] / 2 or not (step < self._last or longer):
             return None
-        self._told, self._told_at = step, passed
+        self._last, self._last_at = step, elapsed
         return step

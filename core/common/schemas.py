@@ -1,4 +1,8 @@
-"""The fields of every layer, in one place: names of at most 10 characters, spelled out in the alias."""
+"""The fields of all layers: names of at most 10 characters, spelled out in the alias."""
+
+from __future__ import annotations
+
+from typing import Any
 
 from .features import Field
 
@@ -15,7 +19,7 @@ AGREE = Field("agree_cm", float, "Agreement of the two methods (cm)")
 LENGTH = Field("length_m", float, "Length (m)")
 WIDTH = Field("width_m", float, "Width (m)")
 RADIUS = Field("radius_m", float, "Radius (m)")
-# of a curb: the road's own, or one that leads away from it or stands in it
+# main: along the road; corner, side_street: leads away from it; island: stands in it
 CURB_KIND = Field("kind", str, "Kind (main/corner/side_street/island)")
 RMSE = Field("rmse_m", float, "RMSE of the fit (m)")
 
@@ -76,6 +80,6 @@ ASSESSED_MARKINGS = [OUTCOME, WHY, Field("source", str, "Of (reference/result)")
                      Field("share_pct", float, "Share of it in the other layer (%)"), Field("area_m2", float, "Judged area (m²)")]
 
 
-def of_main_curb(row):
-    """Is a row of curb points or road edges of the road's own curb? Layers without `kind` hold nothing else."""
+def of_main_curb(row: dict[str, Any]) -> bool:
+    """Whether a row of curb points or road edges belongs to the curb along the road; so does every row without `kind`."""
     return (row.get("kind") or "main") == "main"

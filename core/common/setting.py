@@ -1,6 +1,9 @@
-"""A setting with its limits: one pair of numbers for what the core refuses and what a dialog offers."""
+"""Settings with limits, declared once: the core refuses what lies outside them, and a dialog offers what lies inside."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
+from typing import Any
 
 from .errors import RoadExtractionError
 
@@ -9,11 +12,12 @@ _KEY = "limits"
 
 @dataclass(frozen=True)
 class Limits:
-    """What a setting may be.
+    """The values that a setting may have.
 
     minimum, maximum : both allowed, in `unit`
-    name : the setting as a sentence begins with it
-    zero : what 0 stands for, where 0 is allowed though it lies below the minimum; "" where it is not
+    name : the setting, as at the beginning of a sentence
+    unit : "" without one
+    zero : what 0 stands for, where 0 is allowed below the minimum; "" where it is not
     """
 
     minimum: float
@@ -23,17 +27,17 @@ class Limits:
     zero: str = ""
 
     @property
-    def lowest(self):
-        """The least number that is allowed, the 0 that stands for something else among them."""
+    def lowest(self) -> float:
+        """The smallest value allowed, including a 0 with a meaning of its own."""
         return 0 * self.minimum if self.zero else self.minimum
 
-    def check(self, value):
+    def check(self, value: float) -> None:
         """Refuse a value that is not allowed.
 
         Raises
         ------
         RoadExtractionError
-            If it lies outside the limits, or is no number.
+            If it lies outside the limits, or is NaN.
         """
         if self.minimum <= value <= self.maximum or self.zero and value == 0:
             return
@@ -42,23 +46,29 @@ class Limits:
         raise RoadExtractionError(f"{self.name} is {value}{unit}; it must be between {self.minimum:.10g} and {self.maximum:.10g}{unit}{zero}.")
 
 
-def setting(default, minimum, maximum, name, unit="", zero=""):
-    """A number of a Settings class with its Limits; `check_limits` in `__post_init__` refuses what lies outside."""
+def setting(default: Any, minimum: float, maximum: float, name: str, unit: str = "", zero: str = "") -> Any:
+    """A dataclass field of a Settings class with Limits; call `check_limits` in its `__post_init__`.
+
+    Parameters
+    ----------
+    default : default value
+    minimum, maximum, name, unit, zero : see Limits
+    """
     return field(default=default, metadata={_KEY: Limits(minimum, maximum, name, unit, zero)})
 
 
-def limits_of(settings, name):
+def limits_of(settings: Any, name: str) -> Limits | None:
     """The Limits of a field of a Settings class or object, None where it has none."""
     return next(entry.metadata.get(_KEY) for entry in fields(settings) if entry.name == name)
 
 
-def check_limits(settings):
-    """Refuse the first of the settings that lies outside its limits.
+def check_limits(settings: Any) -> None:
+    """Check all settings of an object against their limits.
 
     Raises
     ------
     RoadExtractionError
-        If there is one.
+        If one lies outside; the message names the first.
     """
     for entry in fields(settings):
         if _KEY in entry.metadata:
