@@ -16,7 +16,7 @@ from .scanners import ScannerCensus, times_by_value
 from .sensor_height import DEFAULT_SENSOR_HEIGHT, HeightHistogram, VehicleTracks, estimate_sensor_height
 from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, fill_units, point_dtype, to_units
-from .trajectory.time_systems import WEEK
+from .trajectory.time_systems import SECONDS_PER_WEEK
 
 # Point cloud files into the section store, block by block in several threads.
 
@@ -306,7 +306,7 @@ class BlockProjector:
 
 def unwrap_week(time):
     """Seconds of the week, those after the week's end carried on."""
-    return np.where(time < WEEK / 2, time + WEEK, time)
+    return np.where(time < SECONDS_PER_WEEK / 2, time + SECONDS_PER_WEEK, time)
 
 
 def _returns(block):

@@ -1,42 +1,51 @@
-"""Reading a trajectory: text tables of any dress, Applanix SBET, or the columns of a layer."""
+"""Reading a trajectory: text tables in any format, Applanix SBET, or the columns of a layer."""
 
+from __future__ import annotations
+
+import os
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...io.crs import horizontal_part, parse_crs
 from ...io.text_table import SAMPLE_BYTES, finite_or_nan, read_number_table
-from .columns import AGREES, ROLES, angle_between, angle_unit_said, columns_by_role, columns_from_numbers, driven_course, find_header, geographic_unit
+from .columns import ROLES, columns_by_role, find_header, stated_angle_unit
+from .drive_checks import HEADING_TOLERANCE, METRES_PER_DEGREE, angle_between, driven_course, geographic_unit
 from .reprojection import reproject_trajectory
 from .trajectory import Trajectory
+from .unnamed_columns import columns_from_numbers
 
 SBET_DOUBLES = 17  # time, lat, lon, height, 3 velocities, roll, pitch, heading, wander angle, 6 more
-GEOGRAPHIC = "EPSG:4326"
+WGS84 = "EPSG:4326"
+# A vehicle on a road rolls by more than 3 degrees somewhere, but never by 0.2 radians.
+MAX_ROLL_RADIANS = 0.15
 
 
-def read_trajectory(path, crs="", target_crs=""):
+def read_trajectory(path: str | os.PathLike[str], crs: str = "", target_crs: str = "") -> Trajectory:
     """A trajectory from a CSV or text file, with or without header, or an Applanix SBET file.
 
     Parameters
     ----------
-    path : the file
-    crs : WKT or "EPSG:n" of its coordinates; "" takes what the file says, and
+    path : of the file
+    crs : WKT or "EPSG:n" of its coordinates; by default the one that the file states, and
         WGS 84 for longitude and latitude
-    target_crs : where given and the trajectory's CRS is known, it is reprojected
+    target_crs : WKT or "EPSG:n"; where it is given and the trajectory's CRS is known, the trajectory is reprojected
 
     Returns
     -------
-    Trajectory, not yet cleaned: rows in file order, angles in degrees, `notes`
-    say what was found out. Longitude and latitude stay in degrees (x is the
+    Trajectory, not yet cleaned: rows in file order, angles in degrees; `notes`
+    state what was recognised. Longitude and latitude stay in degrees (x is the
     longitude) when no `target_crs` is given.
 
     Raises
     ------
     RoadExtractionError
-        If the file cannot be read or its columns cannot be told.
+        If the file cannot be read or its columns are not recognised.
     """
     path = Path(path)
     if not path.is_file():
@@ -47,17 +56,22 @@ def read_trajectory(path, crs="", target_crs=""):
     return reproject_trajectory(trajectory, target_crs) if target_crs else trajectory
 
 
-def trajectory_from_columns(columns, crs="", angle_unit="", label="The trajectory", notes=()):
-    """A Trajectory of columns of numbers.
+def trajectory_from_columns(columns: Mapping[str, Any], crs: str = "", angle_unit: str = "", label: str = "The trajectory",
+                            notes: Sequence[str] = ()) -> Trajectory:
+    """A trajectory from columns of numbers, such as those of a layer.
 
     Parameters
     ----------
-    columns : role to (N,) array; roles are time, x, y, z, roll, pitch, heading,
-        and lon, lat in place of x, y. Points of a layer in their order, vertices
-        of a line: without `time` the order is the drive
+    columns : {role: (N,) array}; roles are time, x, y, z, roll, pitch, heading,
+        and lon, lat instead of x, y. Without `time` the positions are in driving order
     crs : WKT or "EPSG:n" of x, y; "" where unknown
-    angle_unit : "degrees", "radians", or "" to recognise it
-    label : how messages name the source
+    angle_unit : "degrees" or "radians"; "" recognises it
+    label : the source, for messages
+    notes : of the Trajectory so far
+
+    Returns
+    -------
+    Trajectory, not yet cleaned
 
     Raises
     ------
@@ -65,19 +79,19 @@ def trajectory_from_columns(columns, crs="", angle_unit="", label="The trajector
         If x, y or z is missing, or coordinates and CRS contradict each other.
     """
     columns = {role: finite_or_nan(np.asarray(values, float)) for role, values in columns.items()}
-    notes = list(notes)
+    remarks = list(notes)
     time = columns.get("time")
-    has_time = time is not None and np.isfinite(time).any()
-    x, y, crs = _plane_coordinates(columns, time if has_time else None, crs, label, notes)
+    has_time = time is not None and bool(np.isfinite(time).any())
+    x, y, crs = _plane_coordinates(columns, time if has_time else None, crs, label, remarks)
     if "z" not in columns or not np.isfinite(columns["z"]).any():
         raise RoadExtractionError(
             f"{label} has no heights. Each position needs a z (the height of the vehicle): name the column z or height, "
             "or use a layer whose points have Z.")
-    if not has_time:
+    if time is None or not has_time:
         time = np.arange(len(x), dtype=float)
-        notes.append(f"{label} has no time; its positions count in the order they stand in.")
-    angles = _angles(columns, x, y, crs, angle_unit, notes)
-    return Trajectory(time, x, y, columns["z"], *angles, crs=crs, has_time=has_time, notes=tuple(notes))
+        remarks.append(f"{label} has no time; its positions are used in file order.")
+    roll, pitch, heading = _angles(columns, x, y, crs, angle_unit, remarks)
+    return Trajectory(time, x, y, columns["z"], roll, pitch, heading, crs=crs, has_time=has_time, notes=tuple(remarks))
 
 
 def _read_text(path, crs):
@@ -89,12 +103,12 @@ def _read_text(path, crs):
         roles = columns_by_role(names)
         place = {role: names.index(name) for role, name in roles.items()}
         _check_complete(path, names, place, table.first_row)
-        said = [units[place[role]] for role in ("heading", "roll", "pitch") if role in place and units[place[role]]]
-        unit = said[0] if said else angle_unit_said(table.preamble)
+        stated = [units[place[role]] for role in ("heading", "roll", "pitch") if role in place and units[place[role]]]
+        unit = stated[0] if stated else stated_angle_unit(table.preamble)
         _refuse_feet(path, units, place, table.preamble)
     else:
         place = columns_from_numbers(table.values, path)
-        unit = angle_unit_said(table.preamble)
+        unit = stated_angle_unit(table.preamble)
         notes.append(f"{path.name} has no line of names; recognised by the numbers: "
                      + ", ".join(f"{role} in column {place[role] + 1}" for role in (*ROLES, "lon", "lat") if role in place) + ".")
     if table.dropped:
@@ -103,19 +117,19 @@ def _read_text(path, crs):
     _seconds(columns, units[place["time"]] if "time" in place else "")
     if "lon" in place and units[place["lon"]] in ("degrees", "radians"):
         columns["_plane_unit"] = units[place["lon"]]
-    return _with_crs_said(columns, crs, unit, path, table.preamble, notes)
+    return _with_stated_crs(columns, crs, unit, path, table.preamble, notes)
 
 
-def _with_crs_said(columns, crs, unit, path, preamble, notes):
+def _with_stated_crs(columns, crs, unit, path, preamble, notes):
     plane_unit = columns.pop("_plane_unit", "")
     if plane_unit == "radians":
         columns["lon"], columns["lat"] = np.degrees(columns["lon"]), np.degrees(columns["lat"])
-    said = re.search(r"EPSG\s*[:=]?\s*(\d{4,6})", " ".join(preamble), re.IGNORECASE)
-    if said and not crs:
-        found = parse_crs(f"EPSG:{said.group(1)}")
+    stated = re.search(r"EPSG\s*[:=]?\s*(\d{4,6})", " ".join(preamble), re.IGNORECASE)
+    if stated and not crs:
+        found = parse_crs(f"EPSG:{stated.group(1)}")
         if horizontal_part(found).is_projected == ("x" in columns):
             crs = found.to_wkt()
-            notes.append(f"{path.name} says that it is in {found.name} (EPSG:{said.group(1)}).")
+            notes.append(f"{path.name} states the CRS {found.name} (EPSG:{stated.group(1)}).")
     return trajectory_from_columns(columns, crs, unit, path.name, notes)
 
 
@@ -154,11 +168,11 @@ def _plane_coordinates(columns, time, crs, label, notes):
         unit = geographic_unit(x, y, time)
         if geographic and not unit and max(np.nanmax(np.abs(x)), np.nanmax(np.abs(y))) > 360:
             raise RoadExtractionError(
-                f"{label} is said to be in {horizontal_part(known).name} (degrees), but its coordinates reach "
+                f"{label} has the CRS {horizontal_part(known).name} (degrees), but its coordinates reach "
                 f"{np.nanmax(np.abs(x)):.0f}, {np.nanmax(np.abs(y)):.0f}. Give the CRS that its x and y are in.")
         if not geographic and known is not None and unit:
             raise RoadExtractionError(
-                f"{label} is said to be in {horizontal_part(known).name}, but its coordinates look like longitude and latitude "
+                f"{label} has the CRS {horizontal_part(known).name}, but its coordinates look like longitude and latitude "
                 f"(about {np.nanmedian(x):.4f}, {np.nanmedian(y):.4f}). Set its CRS to EPSG:4326.")
         if not geographic and not unit:
             return x, y, "" if known is None else known.to_wkt()
@@ -167,7 +181,7 @@ def _plane_coordinates(columns, time, crs, label, notes):
         unit = geographic_unit(x, y, time)
         if not unit and max(np.nanmax(np.abs(x)), np.nanmax(np.abs(y))) > 360:
             raise RoadExtractionError(
-                f"{label} has longitude and latitude up to {np.nanmax(np.abs(x)):.0f}, {np.nanmax(np.abs(y)):.0f}: no degrees. "
+                f"{label} has longitude and latitude up to {np.nanmax(np.abs(x)):.0f}, {np.nanmax(np.abs(y)):.0f}; these are not degrees. "
                 "Name the columns x and y when they are metres.")
     else:
         raise RoadExtractionError(f"{label} has no x and y, nor longitude and latitude. Name its columns time, x, y, z.")
@@ -175,7 +189,7 @@ def _plane_coordinates(columns, time, crs, label, notes):
         x, y = np.degrees(x), np.degrees(y)
         notes.append(f"{label} gives longitude and latitude in radians.")
     if known is None or not geographic:
-        known = parse_crs(GEOGRAPHIC)
+        known = parse_crs(WGS84)
         notes.append(f"{label} gives longitude and latitude; taken as WGS 84.")
     return x, y, known.to_wkt()
 
@@ -186,8 +200,8 @@ def _angles(columns, x, y, crs, unit, notes):
     if all(values is None for values in found.values()):
         return [None, None, None]
     if crs and horizontal_part(parse_crs(crs)).is_geographic:
-        x = x * np.cos(np.radians(np.nanmedian(y))) * 1.11e5
-        y = y * 1.11e5
+        x = x * np.cos(np.radians(np.nanmedian(y))) * METRES_PER_DEGREE
+        y = y * METRES_PER_DEGREE
     heading = found["heading"]
     good = np.isfinite(x) & np.isfinite(y) & np.isfinite(np.nan if heading is None else heading)
     if good.sum() > 2:
@@ -196,41 +210,41 @@ def _angles(columns, x, y, crs, unit, notes):
         if np.abs(heading[good]).max() > 2 * np.pi + 0.1:
             unit = "degrees"
         elif not unit and len(rows):
-            unit = min(("degrees", "radians"), key=lambda u: _off(heading_there, u, course))
+            unit = min(("degrees", "radians"), key=lambda u: _median_difference(heading_there, u, course))
         if len(rows):
             in_degrees = np.degrees(heading_there) if unit == "radians" else heading_there
             heading, note = _from_north(heading, in_degrees, course, unit)
             found["heading"] = heading
             notes += note
     elif not unit:
-        # the roll of a car on a road passes 3 degrees somewhere, but never 0.2 radians
         largest = max((np.nanmax(np.abs(v)) for v in found.values() if v is not None and np.isfinite(v).any()), default=1.0)
-        unit = "radians" if largest < 0.15 else "degrees"
+        unit = "radians" if largest < MAX_ROLL_RADIANS else "degrees"
     if unit == "radians":
-        notes.append("Roll, pitch and heading are in radians; they were turned into degrees.")
+        notes.append("Roll, pitch and heading are in radians; they were converted to degrees.")
         found = {role: None if values is None else np.degrees(values) for role, values in found.items()}
     if found["heading"] is not None:
         found["heading"] = found["heading"] % 360.0
     return [found["roll"], found["pitch"], found["heading"]]
 
 
-def _off(heading, unit, course):
+def _median_difference(heading, unit, course):
+    """Median difference in degrees between a heading in some unit and the course."""
     return float(np.median(angle_between(np.degrees(heading) if unit == "radians" else heading, course)))
 
 
 def _from_north(heading, in_degrees, course, unit):
-    """The heading clockwise from north, and a note where it was counted from east or contradicts the drive."""
-    off = float(np.median(angle_between(in_degrees, course)))
-    if off < 3 * AGREES:
+    """The heading clockwise from north, and a note where it was counted from east or contradicts the course."""
+    difference = float(np.median(angle_between(in_degrees, course)))
+    if difference < 3 * HEADING_TOLERANCE:
         return heading, []
-    if np.median(angle_between(90.0 - in_degrees, course)) < AGREES:
+    if np.median(angle_between(90.0 - in_degrees, course)) < HEADING_TOLERANCE:
         quarter = np.pi / 2 if unit == "radians" else 90.0
-        return quarter - heading, ["The heading is counted counter-clockwise from east; it was turned into clockwise from north."]
-    return heading, [f"The heading differs from the course driven by {off:.0f}° in the median; the course is used, not the heading."]
+        return quarter - heading, ["The heading is counted counter-clockwise from east; it was converted to clockwise from north."]
+    return heading, [f"The heading differs from the course driven by {difference:.0f}° in the median; the course is used, not the heading."]
 
 
 def _is_sbet(path):
-    """Binary records of 17 doubles whose latitude, longitude and time can be such."""
+    """Whether a file consists of binary records of 17 doubles with valid latitude, longitude and increasing time."""
     size = path.stat().st_size
     with open(path, "rb") as file:
         head = file.read(SAMPLE_BYTES)
@@ -259,6 +273,6 @@ def _read_sbet(path, crs):
     true_heading = rows[:, 9] - rows[:, 10]
     columns = dict(time=rows[:, 0], x=np.degrees(rows[:, 2]), y=np.degrees(rows[:, 1]), z=rows[:, 3],
                    roll=rows[:, 7], pitch=rows[:, 8], heading=true_heading)
-    trajectory = trajectory_from_columns(columns, crs or GEOGRAPHIC, "radians", path.name, notes)
-    kept = tuple(note for note in trajectory.notes if "radians" not in note)
-    return replace(trajectory, notes=kept)
+    trajectory = trajectory_from_columns(columns, crs or WGS84, "radians", path.name, notes)
+    remarks = tuple(note for note in trajectory.notes if "radians" not in note)
+    return replace(trajectory, notes=remarks)

@@ -1,24 +1,31 @@
-"""The ways to count GPS time, and how a trajectory is brought to the cloud's."""
+"""The systems of GPS time, and the conversion of a trajectory's time to that of the point cloud."""
+
+from __future__ import annotations
 
 import numpy as np
 
 from ...common.errors import RoadExtractionError
 
-WEEK, DAY, ADJUSTED = 604800.0, 86400.0, 1e9
-SYSTEMS = ("automatic", "gps", "adjusted", "week", "day")
-NAMES = {"as it is": "the cloud's own seconds", "gps": "GPS seconds since 1980", "adjusted": "adjusted GPS seconds (GPS less 1e9)",
-         "week": "seconds of the week", "day": "seconds of the day"}
-SLACK = 1.0  # s that two clocks may miss each other by, as nominal times do
+SECONDS_PER_WEEK, SECONDS_PER_DAY = 604800.0, 86400.0
+ADJUSTED_OFFSET = 1e9  # s by which adjusted standard GPS time is less than GPS time (ASPRS LAS 1.4)
+TIME_SYSTEMS = ("automatic", "gps", "adjusted", "week", "day")
+TIME_SYSTEM_NAMES = {"as it is": "the cloud's own seconds", "gps": "GPS seconds since 1980", "adjusted": "adjusted GPS seconds (GPS less 1e9)",
+                     "week": "seconds of the week", "day": "seconds of the day"}
+TIME_TOLERANCE = 1.0  # s between the ends of the times of cloud and trajectory, which may be rounded
 # s between GPS and UTC now and in earlier years, between TAI and UTC, and between TAI and GPS
-LEAPS = (18.0, 17.0, 16.0, 15.0, 14.0, 37.0, 36.0, 35.0, 19.0)
+LEAP_SECONDS = (18.0, 17.0, 16.0, 15.0, 14.0, 37.0, 36.0, 35.0, 19.0)
 
 
-def unwrap_time(time):
-    """Seconds of the week or day, in driving order, carried on past midnight or the week's end.
+def unwrap_time(time: np.ndarray) -> np.ndarray:
+    """Seconds of the week or day, continued past midnight or the end of the week.
+
+    Parameters
+    ----------
+    time : (N,) seconds, in driving order
 
     Returns
     -------
-    (N,) float64: the same values where the count does not start again.
+    (N,) float64 seconds; the same values where the count does not start again
     """
     time = np.asarray(time, float)
     known = np.flatnonzero(np.isfinite(time))
@@ -26,8 +33,8 @@ def unwrap_time(time):
         return time
     values = time[known]
     step = np.diff(values)
-    for period in (WEEK, DAY):
-        # A start from zero again is one step back by nearly the whole period, with time going on around it
+    for period in (SECONDS_PER_WEEK, SECONDS_PER_DAY):
+        # A new start from zero is a single step back by nearly the whole period, while time increases otherwise.
         back = step < -0.9 * period
         if back.any() and back.sum() * 20 < len(step) + 20 and values.max() <= period * 1.001 and values.min() >= 0 \
                 and (step[~back] >= 0).mean() > 0.95:
@@ -37,38 +44,39 @@ def unwrap_time(time):
     return time
 
 
-def wrapped_week(span):
-    """Whether a cloud's (first, last) gps_time can only be a week that ended during the drive."""
-    return 0 <= span[0] and span[1] <= WEEK * 1.001 and span[1] - span[0] > 0.75 * WEEK
+def wrapped_week(span: tuple[float, float]) -> bool:
+    """Whether a cloud's (first, last) gps_time in seconds shows that a GPS week ended during the drive."""
+    return 0 <= span[0] and span[1] <= SECONDS_PER_WEEK * 1.001 and span[1] - span[0] > 0.75 * SECONDS_PER_WEEK
 
 
-def align_time(time, cloud_span, system="automatic", adjusted=True):
-    """Seconds to add to a trajectory's time to bring it to the cloud's.
+def align_time(time: np.ndarray, cloud_span: tuple[float, float], system: str = "automatic", adjusted: bool = True) -> tuple[float, str]:
+    """Seconds to add to a trajectory's time to convert it to the cloud's.
 
     Parameters
     ----------
-    time : (N,) the trajectory's time, in driving order where it starts again from zero
-    cloud_span : (first, last) gps_time of the cloud
-    system : how the trajectory counts: "gps" (seconds since 1980), "adjusted"
+    time : (N,) seconds of the trajectory, in driving order where the count starts again from zero
+    cloud_span : (first, last) gps_time of the cloud, seconds
+    system : the time system of the trajectory: "gps" (seconds since 1980), "adjusted"
         (the same minus 1e9), "week", "day", or "automatic"
-    adjusted : whether the cloud says it is in adjusted standard time
+    adjusted : whether the header of the cloud states adjusted standard GPS time
 
     Returns
     -------
-    (offset, note for the user; "" where nothing was changed and nothing is doubtful)
+    offset : seconds
+    note : a sentence for the user; "" where nothing was changed and nothing is doubtful
 
     Raises
     ------
     RoadExtractionError
-        If no way of counting makes the two overlap.
+        If the time system is not known, the trajectory has no times, or cloud and trajectory overlap in no time system.
 
     Notes
     -----
     Leap seconds are never guessed: where a shift of 18 s (or 17, 37 ...) would
-    make the two agree, the note or the message says so, and the user settles it.
+    make the two agree, the note or the message says so, and the user decides.
     """
-    if system not in SYSTEMS:
-        raise RoadExtractionError(f"The time system {system!r} is not known; choose one of {', '.join(SYSTEMS)}.")
+    if system not in TIME_SYSTEMS:
+        raise RoadExtractionError(f"The time system {system!r} is not known; choose one of {', '.join(TIME_SYSTEMS)}.")
     if not np.isfinite(time).any():
         raise RoadExtractionError("The trajectory holds no position with a time. Check the file, or export it again.")
     time = unwrap_time(time)
@@ -79,53 +87,54 @@ def align_time(time, cloud_span, system="automatic", adjusted=True):
     def overlap(offset):
         return min(last + offset, cloud_last) - max(first + offset, cloud_first)
 
-    name, offset = max(options, key=lambda option: (overlap(option[1]) > -SLACK and option[0] == "as it is", overlap(option[1])))
+    name, offset = max(options, key=lambda option: (overlap(option[1]) > -TIME_TOLERANCE and option[0] == "as it is", overlap(option[1])))
     hint = _leap_hint(first + offset, last + offset, cloud_first, cloud_last)
-    if overlap(offset) <= -SLACK:
-        tried = "One of them may count another way: set the trajectory's time system (gps, adjusted, week or day)" \
-            if system == "automatic" else f"The trajectory was taken to count {NAMES[system]}: set its time system to automatic"
+    if overlap(offset) <= -TIME_TOLERANCE:
+        tried = "One of them may use another time system: set the trajectory's time system (gps, adjusted, week or day)" \
+            if system == "automatic" else f"The trajectory was taken to count {TIME_SYSTEM_NAMES[system]}: set its time system to automatic"
         raise RoadExtractionError(
             f"The trajectory does not cover the scan in time. The scan was recorded from {cloud_first:.1f} s to {cloud_last:.1f} s"
-            f"{'' if not adjusted or cloud_last > WEEK else ' (said to be adjusted GPS time)'}, "
+            f"{'' if not adjusted or cloud_last > SECONDS_PER_WEEK else ' (said to be adjusted GPS time)'}, "
             f"the trajectory runs from {first:.1f} s to {last:.1f} s. {hint or tried + ' and run again.'}")
     if not offset:
         return 0.0, hint
-    return offset, (f"The trajectory counts {NAMES[name]}; {offset:+.0f} s bring it to the cloud's time. {hint}").strip()
+    return offset, (f"The trajectory counts {TIME_SYSTEM_NAMES[name]}; {offset:+.0f} s convert it to the time of the cloud. {hint}").strip()
 
 
 def _offsets(first, last, cloud, system):
-    """[(system, offset)]: what would bring each way of counting to the cloud's."""
-    absolute_cloud = cloud + ADJUSTED if cloud < ADJUSTED else cloud
-    counts_on = cloud > 1.5 * WEEK  # the cloud does not start again every week
+    """[(system, offset)]: the offsets that may convert each time system to the cloud's."""
+    absolute_cloud = cloud + ADJUSTED_OFFSET if cloud < ADJUSTED_OFFSET else cloud
+    absolute = cloud > 1.5 * SECONDS_PER_WEEK  # the count of the cloud does not start again every week
     options = []
-    for name, shift in (("adjusted", ADJUSTED), ("gps", 0.0)):
-        if counts_on:
+    for name, shift in (("adjusted", ADJUSTED_OFFSET), ("gps", 0.0)):
+        if absolute:
             options.append((name, shift + cloud - absolute_cloud))
-        elif system == name or first > 2 * WEEK or first < 0:
+        elif system == name or first > 2 * SECONDS_PER_WEEK or first < 0:
             start = first + shift
             options += [(name, -np.floor(start / period) * period + shift + turn * period)
-                        for period in ((WEEK, DAY) if cloud < 1.5 * DAY else (WEEK,)) for turn in (0, -1, 1)]
-    for name, period in (("week", WEEK), ("day", DAY)):
+                        for period in ((SECONDS_PER_WEEK, SECONDS_PER_DAY) if cloud < 1.5 * SECONDS_PER_DAY else (SECONDS_PER_WEEK,))
+                        for turn in (0, -1, 1)]
+    for name, period in (("week", SECONDS_PER_WEEK), ("day", SECONDS_PER_DAY)):
         if last > 2 * period and system != name:
             continue
-        if counts_on:
+        if absolute:
             start = np.floor(absolute_cloud / period) * period - absolute_cloud + cloud
         else:
             start = np.floor(cloud / period) * period
         options += [(name, start + turn * period) for turn in (0, -1, 1)]
-    if cloud < 1.5 * DAY <= first and last <= 2 * WEEK:
-        options += [("week", -np.floor(first / DAY) * DAY)]
+    if cloud < 1.5 * SECONDS_PER_DAY <= first and last <= 2 * SECONDS_PER_WEEK:
+        options += [("week", -np.floor(first / SECONDS_PER_DAY) * SECONDS_PER_DAY)]
     if system == "automatic":
         return [("as it is", 0.0), *((name, float(offset)) for name, offset in options)]
     return [(name, float(offset)) for name, offset in options if name == system]
 
 
 def _leap_hint(first, last, cloud_first, cloud_last):
-    """A sentence where shifting by leap seconds would cover a scan that is not covered now, else ""."""
+    """A sentence where a shift by leap seconds would cover a scan that is not covered now; otherwise ""."""
     early, late = first - cloud_first, cloud_last - last
-    if max(early, late) <= SLACK or max(early, late) > LEAPS[5] + SLACK:
+    if max(early, late) <= TIME_TOLERANCE or max(early, late) > LEAP_SECONDS[5] + TIME_TOLERANCE:
         return ""
-    for leap in LEAPS:
+    for leap in LEAP_SECONDS:
         for shift in (leap, -leap):
             if first + shift - cloud_first <= 0.1 and cloud_last - last - shift <= 0.1:
                 side = "begins" if early > late else "ends"

@@ -1,14 +1,18 @@
-"""Where the vehicle was: the cleaned trajectory."""
+"""The trajectory: where the vehicle was, and its cleaning."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
 from ...common.errors import RoadExtractionError
 from .time_systems import unwrap_time
 
-FASTEST = 70.0  # m/s that a survey vehicle may drive
-FAR_FROM_ZERO = 1000.0  # m from the origin of the coordinates beyond which no drive passes it
+MAX_VEHICLE_SPEED = 70.0    # m/s of a survey vehicle
+MIN_POSITION_JUMP = 2.0     # m: shorter steps are not outliers, whatever their speed
+MIN_ORIGIN_DISTANCE = 1000.0  # m: a drive whose positions are all farther from the origin of the coordinates does not pass through it
 
 
 @dataclass(frozen=True)
@@ -17,53 +21,62 @@ class Trajectory:
 
     Attributes
     ----------
-    time : (N,) seconds, strictly increasing; the running number where the source has no time
+    time : (N,) seconds, strictly increasing once cleaned; the index of the position where the source has no time
     x, y, z : (N,) map coordinates, metres
-    roll, pitch, heading : (N,) degrees (heading clockwise from grid north), NaN where unknown
-    crs : WKT or ""
-    has_time : False where the source gave no time
+    roll, pitch, heading : (N,) degrees (heading clockwise from grid north), NaN where unknown, which is the default
+    crs : WKT, "" where unknown
+    has_time : False where the source has no time
+    notes : sentences for the user about what was recognised and changed
     """
 
     time: np.ndarray
     x: np.ndarray
     y: np.ndarray
     z: np.ndarray
-    roll: np.ndarray = None
-    pitch: np.ndarray = None
-    heading: np.ndarray = None
+    roll: np.ndarray = None  # type: ignore[assignment]  # filled with NaN on construction
+    pitch: np.ndarray = None  # type: ignore[assignment]
+    heading: np.ndarray = None  # type: ignore[assignment]
     crs: str = ""
     has_time: bool = True
-    notes: tuple = field(default=())
+    notes: tuple[str, ...] = field(default=())
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name in ("roll", "pitch", "heading"):
             if getattr(self, name) is None:
                 object.__setattr__(self, name, np.full(len(self.time), np.nan))
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.time)
 
-    def rows(self, which):
-        """The trajectory of a mask, slice or index array."""
+    def rows(self, which: Any) -> Trajectory:
+        """The positions of a mask, slice or index array."""
         return replace(self, **{name: getattr(self, name)[which]
                                 for name in ("time", "x", "y", "z", "roll", "pitch", "heading")})
 
-    def attitude(self):
-        """(3, N) roll, pitch and heading in radians, the heading without leaps; unknown roll and pitch as 0. None without heading."""
+    def attitude(self) -> np.ndarray | None:
+        """(3, N) roll, pitch and heading in radians, the heading unwrapped, unknown roll and pitch as 0; None where a heading is unknown."""
         if not np.isfinite(self.heading).all():
             return None
         return np.stack([np.radians(np.nan_to_num(self.roll)), np.radians(np.nan_to_num(self.pitch)), np.unwrap(np.radians(self.heading))])
 
-    def shifted(self, seconds):
-        """The same drive with another zero of time, carried on where its count starts again."""
+    def shifted(self, seconds: float) -> Trajectory:
+        """The same drive with `seconds` added to its time, which is unwrapped first (`unwrap_time`)."""
         return replace(self, time=unwrap_time(self.time) + seconds)
 
 
-def clean_trajectory(trajectory):
-    """Sort by time, drop rows without a position and repeated times, and say what was done.
+def clean_trajectory(trajectory: Trajectory) -> Trajectory:
+    """The trajectory sorted by time, without repeated times, outliers and rows that have no position.
 
-    Standstills stay (time goes on while the vehicle waits); they only vanish
-    from the road's reference line, which is thinned by distance.
+    Standstills remain, since time goes on while the vehicle waits; the road's reference line, which is
+    sampled by distance, does not contain them.
+
+    Parameters
+    ----------
+    trajectory : Trajectory, as read
+
+    Returns
+    -------
+    Trajectory, whose notes also say what was changed
 
     Raises
     ------
@@ -72,10 +85,10 @@ def clean_trajectory(trajectory):
     """
     notes = list(trajectory.notes)
     _refuse_degrees(trajectory)
-    carried = unwrap_time(trajectory.time)
-    if carried is not trajectory.time and (carried != trajectory.time)[np.isfinite(carried)].any():
-        notes.append("The trajectory's time starts again from zero during the drive; it was carried on.")
-        trajectory = replace(trajectory, time=carried)
+    unwrapped = unwrap_time(trajectory.time)
+    if unwrapped is not trajectory.time and (unwrapped != trajectory.time)[np.isfinite(unwrapped)].any():
+        notes.append("The trajectory's time starts again from zero during the drive; it was continued.")
+        trajectory = replace(trajectory, time=unwrapped)
     good = np.isfinite(trajectory.time) & np.isfinite(trajectory.x) & np.isfinite(trajectory.y) & np.isfinite(trajectory.z)
     good &= ~_zero_rows(trajectory, good)
     if not good.all():
@@ -88,9 +101,9 @@ def clean_trajectory(trajectory):
     if repeated.any():
         notes.append(f"{np.count_nonzero(repeated)} trajectory rows repeated an earlier time and were dropped.")
         trajectory = trajectory.rows(~repeated)
-    jumps = _stray_rows(trajectory)
+    jumps = _outlier_rows(trajectory)
     if jumps.any():
-        notes.append(f"{np.count_nonzero(jumps)} trajectory rows lay aside of the drive, farther than a vehicle gets, and were dropped.")
+        notes.append(f"{np.count_nonzero(jumps)} trajectory rows lay farther from the drive than a vehicle can get, and were dropped.")
         trajectory = trajectory.rows(~jumps)
     length = float(np.hypot(np.diff(trajectory.x), np.diff(trajectory.y)).sum()) if len(trajectory) > 1 else 0.0
     if len(trajectory) < 2 or length < 1.0:
@@ -101,23 +114,23 @@ def clean_trajectory(trajectory):
 
 
 def _zero_rows(trajectory, good):
-    """Mask of rows at exactly (0, 0) where no other usable row is near: how receivers write that they had no position."""
+    """(N,) bool: rows at exactly (0, 0), as receivers write a missing position, unless other usable rows are near."""
     zero = (trajectory.x == 0) & (trajectory.y == 0)
-    away = np.hypot(trajectory.x[good & ~zero], trajectory.y[good & ~zero])
-    return zero & bool(len(away) and away.min() > FAR_FROM_ZERO)
+    distance = np.hypot(trajectory.x[good & ~zero], trajectory.y[good & ~zero])
+    return zero & bool(len(distance) and distance.min() > MIN_ORIGIN_DISTANCE)
 
 
-def _stray_rows(trajectory):
-    """Mask of single rows that no vehicle could reach from the row before nor leave for the row after."""
-    stray = np.zeros(len(trajectory), bool)
+def _outlier_rows(trajectory):
+    """(N,) bool: single rows that a vehicle could neither reach from the row before nor leave for the row after."""
+    outlier = np.zeros(len(trajectory), bool)
     if len(trajectory) < 3 or not trajectory.has_time:
-        return stray
+        return outlier
     seconds, dx, dy = (np.diff(a) for a in (trajectory.time, trajectory.x, trajectory.y))
     step = np.hypot(dx, dy)
-    leap = (step > FASTEST * seconds) & (step > 2.0)
-    on = np.hypot(dx[:-1] + dx[1:], dy[:-1] + dy[1:]) <= FASTEST * (seconds[:-1] + seconds[1:])
-    stray[1:-1] = leap[:-1] & leap[1:] & on
-    return stray
+    jump = (step > MAX_VEHICLE_SPEED * seconds) & (step > MIN_POSITION_JUMP)
+    reachable = np.hypot(dx[:-1] + dx[1:], dy[:-1] + dy[1:]) <= MAX_VEHICLE_SPEED * (seconds[:-1] + seconds[1:])
+    outlier[1:-1] = jump[:-1] & jump[1:] & reachable
+    return outlier
 
 
 def _refuse_degrees(trajectory):
@@ -126,5 +139,5 @@ def _refuse_degrees(trajectory):
     crs = parse_crs(trajectory.crs)
     if crs is not None and horizontal_part(crs).is_geographic:
         raise RoadExtractionError(
-            f"The trajectory is in {horizontal_part(crs).name} (degrees) and it is not known what to bring it to: the point cloud "
+            f"The trajectory is in {horizontal_part(crs).name} (degrees) and the CRS to convert it to is unknown: the point cloud "
             "carries no CRS. Give the projected CRS of the survey, or run Import trajectory with it as the target.")

@@ -231,7 +231,7 @@ def test_a_stray_position_is_dropped_and_counted():
     trajectory = drive(STREET)
     trajectory.y[700] += 35.0
     cleaned = clean_trajectory(trajectory)
-    assert len(cleaned) == len(trajectory) - 1 and "1 trajectory rows lay aside" in cleaned.notes[0]
+    assert len(cleaned) == len(trajectory) - 1 and "1 trajectory rows lay farther" in cleaned.notes[0]
     assert np.abs(build_frame(trajectory).roads[0].curvature(np.arange(0.0, 299.0))).max() < 1e-6
 
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from drives import STREET_TIME, drive, joined, straight
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.survey.trajectory.time_systems import DAY, WEEK, align_time, unwrap_time
+from lanewright.core.survey.trajectory.time_systems import SECONDS_PER_DAY, SECONDS_PER_WEEK, align_time, unwrap_time
 from lanewright.core.survey.trajectory.trajectory import clean_trajectory
 
 GPS = 1_318_204_000.0  # a Wednesday in 2021, seconds since 1980
-CLOCKS = {"gps": GPS, "adjusted": GPS - 1e9, "week": GPS % WEEK, "day": GPS % DAY}
+CLOCKS = {"gps": GPS, "adjusted": GPS - 1e9, "week": GPS % SECONDS_PER_WEEK, "day": GPS % SECONDS_PER_DAY}
 
 
 @pytest.mark.parametrize("chosen", ["automatic", "named"])
@@ -21,7 +21,7 @@ def test_every_clock_is_brought_to_every_other(trajectory, cloud, chosen):
     assert bool(note) == bool(offset), "the choice is reported where something was changed"
 
 
-@pytest.mark.parametrize("period, system", [(WEEK, "week"), (DAY, "day")])
+@pytest.mark.parametrize("period, system", [(SECONDS_PER_WEEK, "week"), (SECONDS_PER_DAY, "day")])
 def test_a_drive_past_midnight_or_the_week_s_end_goes_on(period, system):
     time = (period - 30.0 + STREET_TIME) % period
     carried = unwrap_time(time)
@@ -40,7 +40,7 @@ def test_time_that_does_not_start_again_stays_as_it_is():
 def test_two_drives_in_the_wrong_order_are_sorted_not_carried_on():
     morning, evening = drive(straight(100), start=30_000.0), drive(straight(100), start=80_000.0)
     cleaned = clean_trajectory(joined(evening, morning))
-    assert cleaned.time[0] == 30_000.0 and cleaned.time[-1] < DAY
+    assert cleaned.time[0] == 30_000.0 and cleaned.time[-1] < SECONDS_PER_DAY
 
 
 def test_no_overlap_is_one_sentence_with_both_spans():

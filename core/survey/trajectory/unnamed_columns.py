@@ -1,0 +1,185 @@
+"""Which column of a trajectory is which, by its numbers, where the columns have no names."""
+
+from __future__ import annotations
+
+import os
+
+import numpy as np
+
+from ...common.errors import RoadExtractionError
+from .drive_checks import METRES_PER_DEGREE, geographic_unit, heading_disagreement
+from .trajectory import MAX_VEHICLE_SPEED
+
+MAX_SAMPLE_ROWS = 20_000      # rows from which the columns are recognised
+MIN_MAP_COORDINATE = 9000.0   # m: x and y of map coordinates are larger, heights are smaller
+
+
+def columns_from_numbers(values: np.ndarray, path: str | os.PathLike[str]) -> dict[str, int]:
+    """The roles of the columns of a table without names.
+
+    Time increases evenly; x and y are large and change no faster than a vehicle drives; z follows
+    them; the heading agrees with the course driven. Nothing is guessed where several columns qualify.
+
+    Parameters
+    ----------
+    values : (N, K) numbers, in driving order
+    path : of the file, for messages
+
+    Returns
+    -------
+    {role: index of the column}, with x, y or lon, lat
+
+    Raises
+    ------
+    RoadExtractionError
+        If time, x, y and z cannot be recognised.
+    """
+    values = values[np.isfinite(values).sum(axis=1) >= 3]
+    sample = values[:MAX_SAMPLE_ROWS]
+    count = sample.shape[1]
+    if not len(sample):
+        raise _unrecognised_columns(path, count)
+    time = _time_column(sample) if count > 3 else None
+    others = [k for k in range(count) if k != time and not _is_counter(sample[:, k]) and np.isfinite(sample[:, k]).mean() > 0.9]
+    plane, heading = _plane(sample, time, others)
+    if plane is None:
+        raise _unrecognised_columns(path, count)
+    roles = dict(zip(("x", "y") if plane[2] == "metres" else ("lon", "lat"), plane[:2]))
+    z = _height_column(sample, time, others, plane[:2], heading)
+    if z is None:
+        raise _unrecognised_columns(path, count)
+    roles["z"] = z
+    if time is not None:
+        roles["time"] = time
+    if heading is not None:
+        roles["heading"] = heading
+        # roll, pitch, heading is the usual order; in another, roll and pitch cannot be distinguished
+        if heading - z == 3:
+            roles["roll"], roles["pitch"] = z + 1, z + 2
+    elif max(plane[:2]) < z <= count - 4:
+        following = [z + 1, z + 2, z + 3]
+        # a heading that disagrees with the course (driven backwards, another zero direction) still exceeds 45 degrees
+        if time not in following and np.nanmax(np.abs(sample[:, z + 3])) > 45 >= np.nanmax(np.abs(sample[:, [z + 1, z + 2]])):
+            roles["roll"], roles["pitch"], roles["heading"] = following
+    return roles
+
+
+def _unrecognised_columns(path, count):
+    return RoadExtractionError(
+        f"{path} has {count} columns without names, and time, x, y and z cannot be recognised from their numbers. "
+        "Put a line of names above them, such as time,x,y,z,roll,pitch,heading.")
+
+
+def _is_counter(column):
+    step = np.diff(column)
+    return len(step) > 3 and column[0] in (0, 1) and (step == 1).all()
+
+
+def _time_column(sample):
+    """The column that increases most evenly; a row number only where nothing else increases."""
+    best, found = np.inf, None
+    for k in range(sample.shape[1]):
+        step = np.diff(sample[:, k])
+        step = step[np.isfinite(step)]
+        if not len(step) or np.mean(step > 0) < 0.995:
+            continue
+        usual = np.median(step)
+        uneven = np.mean(np.abs(step - usual) > 0.2 * usual) + (1.0 if _is_counter(sample[:, k]) else 0.0)
+        # a coordinate increases evenly on a straight road, but never in equal steps
+        uneven += 0.1 * min(np.median(np.abs(step - usual)) / usual, 1.0)
+        if uneven < best - 1e-6:
+            best, found = uneven, k
+    return found
+
+
+def _rate(sample, time, k, percent):
+    """Change of a column per second, or per row where there is no time: a percentile, NaN where there is no step."""
+    step = np.abs(np.diff(sample[:, k]))
+    if time is not None:
+        seconds = np.diff(sample[:, time])
+        step = step / np.where(seconds > 0, seconds, np.nan)
+    step = step[np.isfinite(step)]
+    return np.percentile(step, percent) if len(step) else np.nan
+
+
+def _plane(sample, time, others):
+    """((x column, y column, unit) or None, heading column or None): coordinates that a heading confirms are preferred."""
+    rate = {k: _rate(sample, time, k, 98) for k in others}
+    size = {k: np.nanmedian(np.abs(sample[:, k])) for k in others}
+    map_like = [k for k in others if size[k] > MIN_MAP_COORDINATE and rate[k] < MAX_VEHICLE_SPEED]
+    if len(map_like) > 2:
+        return None, None
+    if len(map_like) == 2:
+        pairs = [(map_like[0], map_like[1], "metres"), (map_like[1], map_like[0], "metres")]
+    else:
+        pairs = _geographic_pairs(sample, time, others) or _local_pairs(sample, time, others, size, rate)
+    agreeing = []
+    for a, b, unit in pairs:
+        x, y = sample[:, a].copy(), sample[:, b].copy()
+        if unit != "metres":
+            scale = METRES_PER_DEGREE * (np.degrees(1.0) if unit == "radians" else 1.0)
+            middle = np.nanmedian(y) * (1.0 if unit == "radians" else np.pi / 180)
+            x, y = x * scale * np.cos(middle), y * scale
+        for h in others:
+            if h in (a, b):
+                continue
+            wrong = heading_disagreement(x, y, sample[:, h])
+            if wrong is not None:
+                # roll and pitch agree with the course of a drive due north, so a wide range of values counts more than a close fit
+                agreeing.append((np.nanmax(np.abs(sample[:, h])) < 15.0, a > b, wrong, (a, b, unit), h))
+    if agreeing:
+        return min(agreeing)[3:]
+    if len(map_like) == 2:
+        return _usual_order(pairs[0], size), None
+    if pairs and pairs[0][2] != "metres":
+        return _longitude_first(pairs, sample), None
+    return (pairs[0] if pairs else None), None
+
+
+def _local_pairs(sample, time, others, size, rate):
+    """x and y of local coordinates, whose values are too small to be recognised: only in the order x, y, z with time before or after it."""
+    first = next((k for k in range(sample.shape[1]) if k != time and not _is_counter(sample[:, k])), 0)
+    in_order = all(k in others for k in range(first, first + 3)) and (time is None or time < first or time == first + 3)
+    unexplained = [k for k in others if k >= first + 3 and size[k] > 360.0]
+    if not in_order or unexplained or not 0.1 < np.hypot(rate[first], rate[first + 1]) < MAX_VEHICLE_SPEED:
+        return []
+    return [(first, first + 1, "metres")]
+
+
+def _geographic_pairs(sample, time, others):
+    pairs = []
+    for a in others:
+        for b in others:
+            if abs(a - b) != 1 or np.nanmax(np.abs(sample[:, a])) > 180 or np.nanmax(np.abs(sample[:, b])) > 90:
+                continue
+            unit = geographic_unit(sample[:, a], sample[:, b], None if time is None else sample[:, time])
+            if unit:
+                pairs.append((a, b, unit))
+    return pairs
+
+
+def _usual_order(pair, size):
+    """x first, unless the values show that the first is the northing of a zone (easting 100 to 900 km)."""
+    a, b, unit = pair
+    a, b = min(a, b), max(a, b)
+    return (b, a, unit) if size[a] > 1e6 and 1e5 <= size[b] < 9e5 else (a, b, unit)
+
+
+def _longitude_first(pairs, sample):
+    """The pair whose second column must be the latitude, None where either may be."""
+    clear = [pair for pair in pairs if (pair[1], pair[0], pair[2]) not in pairs]
+    if len(clear) == 1:
+        return clear[0]
+    return None
+
+
+def _height_column(sample, time, others, plane, heading):
+    """The slowly changing column that follows x and y, otherwise the only one left."""
+    left = [k for k in others if k not in plane and k != heading and np.nanmax(np.abs(sample[:, k])) < MIN_MAP_COORDINATE]
+    slow = [k for k in left if _rate(sample, time, k, 90) < 20.0]
+    following = [k for k in slow if k == max(plane) + 1]
+    if following:
+        return following[0]
+    # roll and pitch stay near zero, heights seldom do
+    high = [k for k in slow if abs(np.nanmedian(sample[:, k])) > 8.0]
+    return slow[0] if len(slow) == 1 else high[0] if len(high) == 1 else None
