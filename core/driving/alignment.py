@@ -8,15 +8,15 @@ from ..curves.base import Arc
 from ..curves.clothoid import fit_clothoids
 from ..curves.model_selection import MAX_MISFIT, select_each
 from ..curves.segmentation import element_ranges
-from .cross_section import STEP
+from .cross_section import STATION_STEP
 from .lane_tracking import BRIDGED
+from .settings import MIN_PLACES_PER_FIT
 
-PARALLEL = 0.06     # m: 95 % of a lane's places are nearer than this to a parallel of the others
-LEAST_SHARED = 10.0  # m that a lane must share with others to be compared
-LEAST_PLACES = 8
-SHORT_ARC = 25.0     # m: a shorter arc may be a stair of a transition
-STAIRCASE = 0.02     # m
-SPACING = 1.0        # m between places that are divided: fitted lines err alike over metres
+MAX_PARALLEL_DEVIATION = 0.06     # m: 95 % of a lane's places are nearer than this to a parallel of the others
+MIN_SHARED_LENGTH = 10.0  # m that a lane must share with others to be compared
+MIN_ARC_LENGTH = 25.0     # m: a shorter arc may be a stair of a transition
+MAX_TRANSITION_MISFIT = 0.02     # m
+DIVISION_SPACING = 1.0        # m between places that are divided: fitted lines err alike over metres
 
 
 @dataclass(frozen=True)
@@ -82,11 +82,11 @@ def _parallel_lanes(tracks):
             shared = weight[rows] > 0
             offset = float(np.median(track.d))
             if members:
-                if shared.sum() * STEP < min(LEAST_SHARED, 0.5 * len(track) * STEP):
+                if shared.sum() * STATION_STEP < min(MIN_SHARED_LENGTH, 0.5 * len(track) * STATION_STEP):
                     continue
                 apart = track.d[shared] - total[rows[shared]] / weight[rows[shared]]
                 offset = float(np.median(apart))
-                if np.percentile(np.abs(apart - offset), 95) > PARALLEL:
+                if np.percentile(np.abs(apart - offset), 95) > MAX_PARALLEL_DEVIATION:
                     continue
             # a bridged place says little, but more than nothing where it is alone
             w = np.where(track.status == BRIDGED, 1e-3, 1.0)
@@ -118,7 +118,7 @@ class _Axis:
     @property
     def thinned(self):
         """x, y of places a metre apart."""
-        rows = np.unique(np.r_[np.arange(0, len(self.x), int(SPACING / STEP)), len(self.x) - 1])
+        rows = np.unique(np.r_[np.arange(0, len(self.x), int(DIVISION_SPACING / STATION_STEP)), len(self.x) - 1])
         return self.x[rows], self.y[rows]
 
     def part(self, first, last):
@@ -129,7 +129,7 @@ class _Axis:
 
 def _divided(axes):
     """[(start station, end station, curve)] of each of some axes, whose parts are fitted together."""
-    long = [k for k, axis in enumerate(axes) if len(axis.at) >= LEAST_PLACES]
+    long = [k for k, axis in enumerate(axes) if len(axis.at) >= MIN_PLACES_PER_FIT]
     cuts = element_ranges([axes[k].thinned for k in long])
     parts = [(k, first, last) for k, bounds in zip(long, cuts) for first, last in bounds]
     choices = select_each([axes[k].part(first, last) for k, first, last in parts])
@@ -157,7 +157,7 @@ def _without_steps(axes, found):
             joints[k][first, last] = joint
         for k, steps in pairs.items():
             merged = [(joints[k][first, last].residual_p95, j, joints[k][first, last]) for j, first, last in steps]
-            merged = [one for one in merged if one[0] < STAIRCASE]
+            merged = [one for one in merged if one[0] < MAX_TRANSITION_MISFIT]
             if merged:
                 _, j, joint = min(merged, key=lambda one: one[:2])
                 found[k] = found[k][:j] + [(found[k][j][0], found[k][j + 1][1], joint)] + found[k][j + 2:]
@@ -173,8 +173,8 @@ def _steps(found):
     for j in range(len(found) - 1):
         (first, middle, a), (_, last, b) = found[j:j + 2]
         arcs = [q for q, length in ((a, middle - first), (b, last - middle))
-                if q.curve.kind == "circle" and length < SHORT_ARC]
-        if arcs and not ({a.curve.kind, b.curve.kind} == {"circle", "line"} and last - first > 2 * SHORT_ARC):
+                if q.curve.kind == "circle" and length < MIN_ARC_LENGTH]
+        if arcs and not ({a.curve.kind, b.curve.kind} == {"circle", "line"} and last - first > 2 * MIN_ARC_LENGTH):
             steps.append((j, first, last))
     return steps
 
@@ -188,7 +188,7 @@ def _of_lane(track, offset, divided, s, road):
             continue
         a, b = max(start, at[0]), min(end, at[-1])
         inside = (at >= a) & (at <= b)
-        if inside.sum() < LEAST_PLACES:
+        if inside.sum() < MIN_PLACES_PER_FIT:
             continue
         u, e = curve.parallel(offset).project(x[inside], y[inside])
         arc = curve.parallel(offset + float(np.median(e)))

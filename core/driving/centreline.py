@@ -5,14 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..curves.model_selection import fit_curves
-from .cross_section import STEP
+from .cross_section import STATION_STEP
 from .lane_tracking import BRIDGED
+from .settings import MIN_PLACES_PER_FIT
 
-SHORT_PIECE = 5.0   # m: a shorter change of status is not worth a piece
-MOST_OF_IT = 0.9    # share of a piece that one element must cover to give it its name
-LEAST_PLACES = 8
-BLEND = 5.0         # m at its ends over which an arc passes into what comes before and after
-TRUE_ARC = 0.02     # m: RMSE below which a lane is taken to be the arc it shares with its neighbours
+MIN_STATUS_LENGTH = 5.0   # m: a shorter change of status is not worth a piece
+MIN_ELEMENT_SHARE = 0.9    # share of a piece that one element must cover to give it its name
+ARC_BLEND_LENGTH = 5.0         # m at its ends over which an arc passes into what comes before and after
+MAX_SHARED_ARC_RMSE = 0.02     # m: RMSE below which a lane is taken to be the arc it shares with its neighbours
 
 
 @dataclass
@@ -46,7 +46,7 @@ def lane_courses(tracks, s, road, elements):
     list of Course
     """
     fits = fit_curves([_known_places(track, s, road) for track in tracks])
-    drawn = [fit.curve.sample(STEP) for fit in fits]
+    drawn = [fit.curve.sample(STATION_STEP) for fit in fits]
     stations = road.locate(*np.concatenate(drawn).T)[0] if drawn else []
     found, first = [], 0
     for fit, places, of_lane in zip(fits, drawn, elements):
@@ -56,7 +56,7 @@ def lane_courses(tracks, s, road, elements):
         good[good] &= station[good] > np.r_[-np.inf, np.maximum.accumulate(station[good])[:-1]]
         places, station = places[good], station[good]
         for element in of_lane:
-            if element.rmse < TRUE_ARC:
+            if element.rmse < MAX_SHARED_ARC_RMSE:
                 places = _drawn_to(element, places, station)
         found.append(Course(places[:, 0], places[:, 1], station, fit.curve, fit.rmse))
     return found
@@ -65,7 +65,7 @@ def lane_courses(tracks, s, road, elements):
 def _known_places(track, s, road):
     """x, y of a lane where it is not bridged, of all of it where little is known."""
     known = track.status != BRIDGED
-    if known.sum() < LEAST_PLACES:
+    if known.sum() < MIN_PLACES_PER_FIT:
         known = np.ones(len(track), bool)
     return road.to_map(s[track.first:track.last + 1][known], track.d[known])
 
@@ -77,10 +77,10 @@ def _drawn_to(element, places, station):
         return places
     share = np.ones(inside.sum())
     at = station[inside]
-    if element.start - station[0] > STEP:
-        share = np.minimum(share, (at - element.start) / BLEND)
-    if station[-1] - element.end > STEP:
-        share = np.minimum(share, (element.end - at) / BLEND)
+    if element.start - station[0] > STATION_STEP:
+        share = np.minimum(share, (at - element.start) / ARC_BLEND_LENGTH)
+    if station[-1] - element.end > STATION_STEP:
+        share = np.minimum(share, (element.end - at) / ARC_BLEND_LENGTH)
     u, e = element.arc.project(places[inside, 0], places[inside, 1])
     heading = element.arc.heading(u)
     moved = places.copy()
@@ -88,10 +88,10 @@ def _drawn_to(element, places, station):
     return moved
 
 
-def settled(status):
+def without_short_status(status):
     """Status along a lane without changes shorter than 5 m: these take the worse of their neighbours."""
     status = status.copy()
-    shortest = int(SHORT_PIECE / STEP)
+    shortest = int(MIN_STATUS_LENGTH / STATION_STEP)
     while True:
         cuts = np.r_[0, np.flatnonzero(np.diff(status)) + 1, len(status)]
         lengths = np.diff(cuts)
@@ -102,7 +102,7 @@ def settled(status):
         status[cuts[k]:cuts[k + 1]] = max(beside)
 
 
-def pieces(status, first, s):
+def status_pieces(status, first, s):
     """(status, start station, end station) of the pieces of a lane; ends touch."""
     cuts = np.r_[0, np.flatnonzero(np.diff(status)) + 1, len(status)]
     bounds = s[first + cuts[:-1]]
@@ -113,6 +113,6 @@ def pieces(status, first, s):
 def element_of(elements, start, end):
     """The arc or straight that covers nine tenths of a piece between two stations, or None."""
     for element in elements:
-        if min(end, element.end) - max(start, element.start) >= MOST_OF_IT * (end - start):
+        if min(end, element.end) - max(start, element.start) >= MIN_ELEMENT_SHARE * (end - start):
             return element
     return None

@@ -11,11 +11,11 @@ from ..markings.lines.frame_lines import FrameLines
 from ..markings.lines.painted_lines import PaintedLines
 from .road_edges import RoadEdges
 
-STEP = 0.5                    # m of station between places where lanes are looked for
-OBLIQUE = np.tan(np.radians(25.0))  # a line that runs more across the road than this bounds no lane
-DOUBLE = 0.8                  # m: lines nearer than this are one boundary, a lane ends at the nearer one
-IN_LINE = 0.3                 # m across by which a line may jump where it goes on as another
-DASH_GAP = 9.5                # m that a dashed line may be silent at its ends before it is known to end
+STATION_STEP = 0.5                    # m of station between places where lanes are looked for
+MAX_LINE_OBLIQUITY = np.tan(np.radians(25.0))  # a line that runs more across the road than this bounds no lane
+MIN_BOUNDARY_SPACING = 0.8                  # m: lines nearer than this are one boundary, a lane ends at the nearer one
+MAX_LATERAL_JUMP = 0.3                 # m across by which a line may jump where it goes on as another
+MAX_DASH_GAP = 9.5                # m that a dashed line may be silent at its ends before it is known to end
 
 
 @dataclass
@@ -39,7 +39,7 @@ class CrossSections:
     @property
     def seen_length(self):
         """(L,) metres of each line that were measured."""
-        return STEP * (self.seen & np.isfinite(self.d)).sum(1)
+        return STATION_STEP * (self.seen & np.isfinite(self.d)).sum(1)
 
 
 def cross_sections(lines: FrameLines, number: np.ndarray, kind: np.ndarray, pattern: np.ndarray, seen: np.ndarray) -> dict[int, CrossSections]:
@@ -101,15 +101,15 @@ def _piece(s, d, z, kind, pattern, seen):
     rising = np.append(True, s[1:] > np.maximum.accumulate(s)[:-1])
     if not rising.all():
         s, d, z = s[rising], d[rising], z[rising]
-    if len(s) < 2 or median(np.abs(np.diff(d)) / np.diff(s)) > OBLIQUE:
+    if len(s) < 2 or median(np.abs(np.diff(d)) / np.diff(s)) > MAX_LINE_OBLIQUITY:
         return None
     return _Piece(s, d, z, kind, pattern, seen)
 
 
 def _on_grid(lines: dict[int, list[_Piece]]) -> CrossSections:
-    first = np.ceil(min(p.s[0] for pieces in lines.values() for p in pieces) / STEP)
-    last = np.floor(max(p.s[-1] for pieces in lines.values() for p in pieces) / STEP)
-    s = STEP * np.arange(first, last + 1)
+    first = np.ceil(min(p.s[0] for pieces in lines.values() for p in pieces) / STATION_STEP)
+    last = np.floor(max(p.s[-1] for pieces in lines.values() for p in pieces) / STATION_STEP)
+    s = STATION_STEP * np.arange(first, last + 1)
     # the order of the layer's rows must not matter
     order = sorted(lines, key=lambda key: (min(p.s[0] for p in lines[key]), np.median(lines[key][0].d), key))
     d, z = np.full((2, len(order), len(s)), np.nan)
@@ -151,8 +151,8 @@ def _joined(lines):
     for k in sorted(rows, key=lambda k: (ends[k][0], k)):
         last = ends[k][0]
         away = np.abs(lines.d[k, last] - at_end)
-        gap = (last - end) * STEP
-        behind = np.flatnonzero((gap > 0) & (gap <= DASH_GAP) & (away <= IN_LINE))
+        gap = (last - end) * STATION_STEP
+        behind = np.flatnonzero((gap > 0) & (gap <= MAX_DASH_GAP) & (away <= MAX_LATERAL_JUMP))
         if not len(behind):
             continue
         j = int(behind[np.argmin(away[behind])])
@@ -179,7 +179,7 @@ def _lead_over(lines, gaps):
 
     Returns the ends of lines that were led on, as (row, 1 where it ended or -1 where it began).
     """
-    reach, led = int(DASH_GAP / STEP), set()
+    reach, led = int(MAX_DASH_GAP / STATION_STEP), set()
     for j, last, first, before, after in gaps:
         if before == after:
             continue
@@ -190,7 +190,7 @@ def _lead_over(lines, gaps):
             if k == j or not len(columns):
                 continue
             end = columns[-1 if step > 0 else 0]
-            if not 0 <= (own - end) * step <= reach or abs(lines.d[k, end] - lines.d[j, end]) >= DOUBLE:
+            if not 0 <= (own - end) * step <= reach or abs(lines.d[k, end] - lines.d[j, end]) >= MIN_BOUNDARY_SPACING:
                 continue
             beside, gap = np.arange(end + step, own + step, step), np.arange(own + step, other, step)
             for values in (lines.d, lines.z):
@@ -209,7 +209,7 @@ def _even_doubles(lines, led):
     Else a lane would reach for the farther of the two where the nearer is worn away.
     """
     present = np.isfinite(lines.d)
-    reach = int(DASH_GAP / STEP)
+    reach = int(MAX_DASH_GAP / STATION_STEP)
     for k in np.flatnonzero(["double" in pattern for pattern in lines.patterns]):
         columns = np.flatnonzero(present[k])
         if not len(columns):
@@ -219,7 +219,7 @@ def _even_doubles(lines, led):
                 continue
             beside = np.abs(np.where(present[:, end], lines.d[:, end], np.nan) - lines.d[k, end])
             beside[k] = np.nan
-            twin = _nearest(beside < DOUBLE, beside)
+            twin = _nearest(beside < MIN_BOUNDARY_SPACING, beside)
             if twin is None:
                 continue
             ahead = end + step * np.arange(1, reach + 1)
@@ -238,7 +238,7 @@ def _lengthen_dashed(lines):
     missed after a gap's length.
     """
     present = np.isfinite(lines.d)
-    reach = int(DASH_GAP / STEP)
+    reach = int(MAX_DASH_GAP / STATION_STEP)
     for k in np.flatnonzero([pattern.startswith("dash") for pattern in lines.patterns]):
         columns = np.flatnonzero(present[k])
         if len(columns) < 2:
@@ -247,8 +247,8 @@ def _lengthen_dashed(lines):
             others = present[:, end].copy()
             others[k] = False
             offsets = np.where(others, lines.d[:, end] - lines.d[k, end], np.nan)
-            left = _nearest(offsets > DOUBLE, np.abs(offsets))
-            right = _nearest(offsets < -DOUBLE, np.abs(offsets))
+            left = _nearest(offsets > MIN_BOUNDARY_SPACING, np.abs(offsets))
+            right = _nearest(offsets < -MIN_BOUNDARY_SPACING, np.abs(offsets))
             if left is None or right is None:
                 continue
             ahead = end + step * np.arange(1, reach + 1)

@@ -13,8 +13,8 @@ FOOT = 0.3048
 # CJJ 37-2012 as printed in the driving-line thesis, table 4.11:
 # design speed km/h, least radius m, least length of a curve m
 DESIGN_CODE = ((30, 85.0, 25.0), (40, 150.0, 35.0), (50, 200.0, 40.0), (60, 300.0, 50.0), (80, 400.0, 70.0))
-STRAIGHT = 5000.0    # m: flatter arcs are straights to any driver
-LEAST_TURN = np.radians(1.0)
+MAX_CURVE_RADIUS = 5000.0    # m: flatter arcs are straights to any driver
+MIN_TURN = np.radians(1.0)
 MAX_TURN = np.pi * 0.95   # the tangents of a half circle do not meet
 
 
@@ -102,7 +102,7 @@ def design_check(radius: float, length: float, complete: bool = True) -> tuple[i
 
 def is_curve(arc: Arc) -> bool:
     """Whether an arc is a curve with elements: no straight, and no turn so small or so large that its elements mean nothing."""
-    return bool(arc.bend and arc.radius <= STRAIGHT and LEAST_TURN < abs(arc.bend) * arc.length < MAX_TURN)
+    return bool(arc.bend and arc.radius <= MAX_CURVE_RADIUS and MIN_TURN < abs(arc.bend) * arc.length < MAX_TURN)
 
 
 def element_row(arc: Arc, complete: bool, rmse: float, origin: np.ndarray) -> dict[str, Any]:

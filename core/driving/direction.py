@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from .cross_section import STEP
+from .cross_section import STATION_STEP
 
-SAME_RUN = 30.0     # m: where a centre line pauses for less, the divide goes on from end to end
-MOSTLY = 0.6
+MAX_DIVIDE_PAUSE = 30.0     # m: where a centre line pauses for less, the divide goes on from end to end
+MIN_DRIVEN_SHARE = 0.6
 
 
 def driven_offsets(frame, road, s):
@@ -58,7 +58,7 @@ def _bridged(values):
     nearest = np.abs(every - known[np.searchsorted(known, every).clip(0, len(known) - 1)])
     before = known[(np.searchsorted(known, every, "right") - 1).clip(0)]
     gap = np.minimum(nearest, np.abs(every - before))
-    return np.where(gap * STEP <= SAME_RUN, np.interp(every, known, values[known]), np.nan)
+    return np.where(gap * STATION_STEP <= MAX_DIVIDE_PAUSE, np.interp(every, known, values[known]), np.nan)
 
 
 def _between_passes(driven, directions, middles):
@@ -111,7 +111,7 @@ def side_votes(middle, driven, directions):
     with np.errstate(invalid="ignore"):
         right = (driven - middle) * directions[:, None] < -0.3
         left = (driven - middle) * directions[:, None] > 0.3
-    return STEP * np.array([right.sum(), left.sum()])
+    return STATION_STEP * np.array([right.sum(), left.sum()])
 
 
 def lane_directions(tracks, middle, driven, directions, side, asked):
@@ -127,7 +127,7 @@ def lane_directions(tracks, middle, driven, directions, side, asked):
             inside = np.abs(driven[:, window] - track.d) < 0.5 * track.width
         share = inside.mean(1) if len(inside) else np.zeros(0)
         # the lane that the vehicle drove in needs no reasoning
-        used = directions[share > MOSTLY] if len(share) else np.zeros(0)
+        used = directions[share > MIN_DRIVEN_SHARE] if len(share) else np.zeros(0)
         offset = (track.d - middle[window])[np.isfinite(middle[window])]
         if len(used) and not asked and abs(used.sum()) == len(used):
             found.append(int(used[0]))

@@ -9,19 +9,19 @@ import shapely
 
 from ..markings.objects.marking_objects import MarkingObjects
 from .cross_section import CrossSections
-from .lane_tracking import Track
-from .settings import NARROWEST
+from .lane_tracking import LaneTrack
+from .settings import MIN_LANE_WIDTH
 
 if TYPE_CHECKING:
     from ..survey.frame.road_frame import RoadFrame
 
-ON_CURB = 0.3       # share of a lane's width: a curb this near its middle runs along the lane
-MOSTLY = 0.5        # of its length beside such a curb, and it is no lane
-HATCHED = 0.25      # of its middle on the stripes of a hatched area (they cover less than half of it)
+CURB_CLEARANCE_SHARE = 0.3       # share of a lane's width: a curb this near its middle runs along the lane
+MAX_CURB_SHARE = 0.5        # of its length beside such a curb, and it is no lane
+MAX_HATCHED_SHARE = 0.25      # of its middle on the stripes of a hatched area (they cover less than half of it)
 
 
 class DrivableArea:
-    """Answers whether a Track is where a lane can be.
+    """Answers whether a LaneTrack is where a lane can be.
 
     Parameters
     ----------
@@ -43,16 +43,16 @@ class DrivableArea:
             self.hatched = shapely.union_all(shapely.force_2d(markings.outlines.polygons()[markings.kind == "hatch"]))
             shapely.prepare(self.hatched)
 
-    def clear(self, track: Track) -> bool:
-        """Whether neither a curb nor a hatched area lies in the way of a Track."""
+    def clear(self, track: LaneTrack) -> bool:
+        """Whether neither a curb nor a hatched area lies in the way of a LaneTrack."""
         window = slice(track.first, track.last + 1)
         if len(self.curbs):
             with np.errstate(invalid="ignore"):
-                beside = (np.abs(self.curbs[:, window] - track.d) < ON_CURB * track.width).any(0)
-            if beside.mean() > MOSTLY:
+                beside = (np.abs(self.curbs[:, window] - track.d) < CURB_CLEARANCE_SHARE * track.width).any(0)
+            if beside.mean() > MAX_CURB_SHARE:
                 return False
         if self.hatched is not None:
-            return bool(shapely.contains_xy(self.hatched, *self.road.to_map(self.s[window], track.d)).mean() < HATCHED)
+            return bool(shapely.contains_xy(self.hatched, *self.road.to_map(self.s[window], track.d)).mean() < MAX_HATCHED_SHARE)
         return True
 
     def half_lane(self, d: np.ndarray, side: int, half: float) -> np.ndarray:
@@ -70,8 +70,8 @@ class DrivableArea:
         """
         beyond = side * (self.curbs - d)
         with np.errstate(invalid="ignore"):
-            nearest = np.where(beyond > NARROWEST, beyond, np.inf).min(axis=0, initial=np.inf)
+            nearest = np.where(beyond > MIN_LANE_WIDTH, beyond, np.inf).min(axis=0, initial=np.inf)
         known = np.flatnonzero(np.isfinite(nearest))
-        if len(known) <= MOSTLY * np.isfinite(d).sum():
+        if len(known) <= MAX_CURB_SHARE * np.isfinite(d).sum():
             return np.full(len(d), half)
         return np.minimum(half, np.interp(np.arange(len(d)), known, nearest[known]) / 2)

@@ -11,15 +11,15 @@ from ..common.progress import Progress
 from ..markings.lines.painted_lines import PaintedLines
 from ..markings.objects.marking_objects import MarkingObjects
 from .alignment import lane_elements
-from .centreline import element_of, lane_courses, pieces, settled
-from .cross_section import STEP, CrossSections, sections_of_edges, sections_of_lines
+from .centreline import element_of, lane_courses, status_pieces, without_short_status
+from .cross_section import STATION_STEP, CrossSections, sections_of_edges, sections_of_lines
 from .curve_elements import is_curve
 from .direction import divide, driven_offsets, lane_directions, side_votes
 from .drivable_area import DrivableArea
 from .driving_layers import CurveElements, DrivingLines
 from .heights import lane_heights
-from .lane_tracking import STATUS, Track, connect, extend
-from .lanes import chosen_lines, divided_strips, lone_lanes, paired_lanes, strips, usual_width
+from .lane_tracking import LANE_STATUS, LaneTrack, connect, extend
+from .lanes import divided_strips, lane_strips, paired_lanes, select_lane_lines, single_line_lanes, typical_lane_width
 from .road_edges import RoadEdges
 from .settings import DrivingSettings
 
@@ -85,8 +85,8 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     return lines, _curve_elements(arcs, marking_lines.crs)
 
 
-def road_lanes(lines: CrossSections, driven: np.ndarray, settings: DrivingSettings, area: DrivableArea) -> list[Track]:
-    """The lanes of one road as a list of Track, by first station, then from right to left.
+def road_lanes(lines: CrossSections, driven: np.ndarray, settings: DrivingSettings, area: DrivableArea) -> list[LaneTrack]:
+    """The lanes of one road as a list of LaneTrack, by first station, then from right to left.
 
     Parameters
     ----------
@@ -96,26 +96,26 @@ def road_lanes(lines: CrossSections, driven: np.ndarray, settings: DrivingSettin
     area : DrivableArea
     """
     clear = area.clear
-    kept = chosen_lines(lines, driven)
-    all_strips = strips(lines, kept)
+    kept = select_lane_lines(lines, driven)
+    all_strips = lane_strips(lines, kept)
     tracks = paired_lanes(lines, all_strips, driven, clear)
-    lane_width = settings.lane_width or usual_width(tracks)
+    lane_width = settings.lane_width or typical_lane_width(tracks)
     gaps = settings.max_bridge, settings.max_inferred
     tracks = connect(tracks, lines, 0.0, 0.0)
-    tracks = [track for track in tracks if len(track) * STEP >= settings.shortest]
+    tracks = [track for track in tracks if len(track) * STATION_STEP >= settings.shortest]
     tracks = connect(tracks, lines, 0.0, settings.max_inferred)
     tracks = connect(extend(tracks, lines, kept, clear, settings.max_bridge), lines, *gaps)
     tracks += divided_strips(lines, all_strips, tracks, driven, lane_width, clear)
     tracks = connect(tracks, lines, *gaps)
     tracks = connect(extend(tracks, lines, kept, clear, settings.max_bridge), lines, *gaps)
-    half = (usual_width(tracks, painted=False) if tracks else lane_width) / 2
+    half = (typical_lane_width(tracks, painted=False) if tracks else lane_width) / 2
 
     def half_lane(d, side):
         return np.full(len(d), settings.line_distance) if settings.line_distance else area.half_lane(d, side, half)
 
-    tracks = connect(tracks + lone_lanes(lines, kept, tracks, driven, half_lane, settings.max_bridge, clear), lines, *gaps)
+    tracks = connect(tracks + single_line_lanes(lines, kept, tracks, driven, half_lane, settings.max_bridge, clear), lines, *gaps)
     tracks = [track.without_bridged_ends() for track in tracks]
-    tracks = [track for track in tracks if track is not None and len(track) * STEP >= settings.shortest]
+    tracks = [track for track in tracks if track is not None and len(track) * STATION_STEP >= settings.shortest]
     return sorted(tracks, key=lambda track: (track.first, float(track.d[0])))
 
 
@@ -134,8 +134,8 @@ def _lane_pieces(track, way, course, elements, road_lines, z) -> Iterator[dict[s
     """The pieces of one lane by status, in order of station."""
     s = road_lines.s
     grid = s[track.first:track.last + 1]
-    status = settled(track.status)
-    for code, start, end in pieces(status, track.first, s):
+    status = without_short_status(track.status)
+    for code, start, end in status_pieces(status, track.first, s):
         rows = slice(np.searchsorted(grid, start), np.searchsorted(grid, end) + 1)
         x, y, at = _between(course, start, end, code_first=start == grid[0], code_last=end == grid[-1])
         if len(x) < 2:
@@ -144,7 +144,7 @@ def _lane_pieces(track, way, course, elements, road_lines, z) -> Iterator[dict[s
         element = element_of(elements, start, end)
         yield dict(
             pattern=_patterns(track, rows, way, road_lines), direction=way, source="offset" if track.offset[rows].mean() > 0.5 else "pair",
-            status=STATUS[code], curve=element.arc if element is not None else course.curve, rmse=course.rmse, station=start, end=end,
+            status=LANE_STATUS[code], curve=element.arc if element is not None else course.curve, rmse=course.rmse, station=start, end=end,
             offset=np.median(track.d[rows]), width=np.median(track.width[rows]), places=places[::-1] if way < 0 else places)
 
 
@@ -204,6 +204,6 @@ def _report_lengths(lines: DrivingLines, side: str, progress: Progress) -> None:
         progress.warn("No two marking lines lie a lane's width apart, so there are no driving lines.")
         return
     lanes = len(set(zip(lines.road.tolist(), lines.lane.tolist())))
-    length = {name: float(lines.length[lines.status == name].sum()) for name in STATUS}
+    length = {name: float(lines.length[lines.status == name].sum()) for name in LANE_STATUS}
     progress.info(f"Driving lines: {lanes} lanes, {side}-hand traffic: "
                  + ", ".join(f"{metres:.0f} m {name}" for name, metres in length.items() if metres))

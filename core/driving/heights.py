@@ -6,14 +6,14 @@ from scipy.ndimage import gaussian_filter1d, median_filter
 from ..common.order_statistics import order_by
 from ..common.parallel import ordered_map
 from ..survey.store.records import COORDINATE_SCALE
-from .cross_section import STEP
+from .cross_section import STATION_STEP
 
-REACH = 0.3        # m either side of the driving line
-LEAST_POINTS = 3
-SLICE, CROWD = 0.05, 200  # m before and after a place: with so many points there, no others are looked at
-GRAIN = 4          # bits: points are sorted by offset to 1.6 mm
-SMOOTHING = 2.0    # m: a car does not follow a pothole
-WINDOW = 20.0      # m of road points in memory at a time
+HEIGHT_REACH = 0.3        # m either side of the driving line
+MIN_POINTS_PER_HEIGHT = 3
+DENSE_SLICE, DENSE_COUNT = 0.05, 200  # m before and after a place: with so many points there, no others are looked at
+OFFSET_GRAIN_BITS = 4          # bits: points are sorted by offset to 1.6 mm
+HEIGHT_SMOOTHING_SIGMA = 2.0    # m: a car does not follow a pothole
+HEIGHT_WINDOW = 20.0      # m of road points in memory at a time
 
 
 def road_heights(road_points, road, s, tracks):
@@ -31,7 +31,7 @@ def road_heights(road_points, road, s, tracks):
     list of (N,) z, NaN where there are fewer than 3 points, one array per track
     """
     found = [np.full(len(track), np.nan) for track in tracks]
-    size, length = int(WINDOW / STEP), road_points.store.section_length
+    size, length = int(HEIGHT_WINDOW / STATION_STEP), road_points.store.section_length
 
     def of_window(first):
         last = min(first + size, len(s)) - 1
@@ -39,7 +39,7 @@ def road_heights(road_points, road, s, tracks):
         inside = [row for row in inside if row[1] <= row[2]]
         if not inside:
             return []
-        near = [int(np.floor((s[k] + side * STEP / 2) / length)) for k, side in ((first, -1), (last, 1))]
+        near = [int(np.floor((s[k] + side * STATION_STEP / 2) / length)) for k, side in ((first, -1), (last, 1))]
         sections = [road_points.section(road, number).records for number in range(near[0], near[1] + 1)]
         lanes = [(np.arange(a, b + 1) - first, tracks[k].d[a - tracks[k].first:b - tracks[k].first + 1]) for k, a, b in inside]
         heights = _heights([records for records in sections if len(records)], s[first:last + 1], lanes)
@@ -54,20 +54,20 @@ def road_heights(road_points, road, s, tracks):
 def _heights(sections, s, lanes):
     """Median heights along lanes, each (cells, offsets), of sections of road points about grid stations s."""
     # of crowded points those right beside the grid stations say the same
-    found = _Near(sections, s, np.arange(len(s)), SLICE, lanes).medians(lanes)
-    few = [np.flatnonzero(count < CROWD) for _, count in found]
+    found = _Near(sections, s, np.arange(len(s)), DENSE_SLICE, lanes).medians(lanes)
+    few = [np.flatnonzero(count < DENSE_COUNT) for _, count in found]
     lacking = [(cells[which], d[which]) for (cells, d), which in zip(lanes, few)]
     cells = np.unique(np.concatenate([cells for cells, _ in lacking]))
     if len(cells):
-        for (z, _), which, (more, count) in zip(found, few, _Near(sections, s, cells, STEP / 2, lacking).medians(lacking)):
-            z[which] = np.where(count >= LEAST_POINTS, more, np.nan)
+        for (z, _), which, (more, count) in zip(found, few, _Near(sections, s, cells, STATION_STEP / 2, lacking).medians(lacking)):
+            z[which] = np.where(count >= MIN_POINTS_PER_HEIGHT, more, np.nan)
     return [z for z, _ in found]
 
 
 def _beside(lanes):
     """Where, in grains across the road, a table begins that tells which offsets lie within reach of lanes (offsets in metres), and the table."""
-    spans = np.array([(d.min() - REACH, d.max() + REACH) for d in lanes]) / COORDINATE_SCALE
-    spans = np.stack([np.floor(spans[:, 0]), np.ceil(spans[:, 1])], axis=1).astype(np.int32) >> GRAIN
+    spans = np.array([(d.min() - HEIGHT_REACH, d.max() + HEIGHT_REACH) for d in lanes]) / COORDINATE_SCALE
+    spans = np.stack([np.floor(spans[:, 0]), np.ceil(spans[:, 1])], axis=1).astype(np.int32) >> OFFSET_GRAIN_BITS
     first = np.int32(spans[:, 0].min() - 1)
     table = np.zeros(spans[:, 1].max() - first + 2, bool)
     for low, high in (spans - first).tolist():
@@ -89,10 +89,10 @@ class _Near:
             count = high - low
             rows = np.arange(count.sum()) + np.repeat(low - (np.cumsum(count) - count), count)
             offset = records.take(rows)["d"]
-            near = np.flatnonzero(beside.take((offset >> GRAIN) - first, mode="clip"))
+            near = np.flatnonzero(beside.take((offset >> OFFSET_GRAIN_BITS) - first, mode="clip"))
             parts.append((np.repeat(cells, count)[near], offset[near], records.take(rows[near])["z"]))
         cell, offset, height = (np.concatenate(columns) for columns in zip(*parts))
-        across = offset >> GRAIN
+        across = offset >> OFFSET_GRAIN_BITS
         order = order_by(across)
         self.across, self.offset, self.cell, self.height = across[order], offset[order], cell[order], height[order]
 
@@ -101,8 +101,8 @@ class _Near:
         return [self._medians(*lane) if len(lane[0]) else (np.empty(0), np.empty(0, int)) for lane in lanes]
 
     def _medians(self, cells, d):
-        middle, reach = np.rint(d / COORDINATE_SCALE).astype(np.int32), int(REACH / COORDINATE_SCALE)
-        low, high = np.array([middle.min() - reach, middle.max() + reach], np.int32) >> GRAIN
+        middle, reach = np.rint(d / COORDINATE_SCALE).astype(np.int32), int(HEIGHT_REACH / COORDINATE_SCALE)
+        low, high = np.array([middle.min() - reach, middle.max() + reach], np.int32) >> OFFSET_GRAIN_BITS
         near = slice(np.searchsorted(self.across, low), np.searchsorted(self.across, high, side="right"))
         at = np.full(int(cells[-1]) + 2, -1)
         at[cells] = np.arange(len(cells))
@@ -143,11 +143,11 @@ def smooth_heights(z):
     z = np.interp(rows, rows[known], z[known])
     z = median_filter(z, size=min(7, len(z)), mode="nearest")
     # slopes go on beyond the ends
-    pad = min(int(4 * SMOOTHING / STEP), len(z) - 1)
+    pad = min(int(4 * HEIGHT_SMOOTHING_SIGMA / STATION_STEP), len(z) - 1)
     if pad < 1:
         return z
     head, tail = 2 * z[0] - z[1:pad + 1][::-1], 2 * z[-1] - z[-pad - 1:-1][::-1]
-    return gaussian_filter1d(np.r_[head, z, tail], SMOOTHING / STEP)[pad:pad + len(z)]
+    return gaussian_filter1d(np.r_[head, z, tail], HEIGHT_SMOOTHING_SIGMA / STATION_STEP)[pad:pad + len(z)]
 
 
 def lane_heights(lines, road_points, road, tracks):

@@ -4,20 +4,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .cross_section import STEP
+from .cross_section import STATION_STEP
 
 MEASURED, INFERRED, BRIDGED = 0, 1, 2
-STATUS = ("measured", "inferred", "bridged")
-SAME_LANE = 0.35      # share of a lane's width by which it may jump from one stretch to the next
-NEAR_END = 10.0       # m around a gap within which other lanes tell of a split or merge
-CROWDED = 0.6         # share of a lane's width that lanes keep from each other
-INTRUDED = 0.3        # share of a lane's width within which a line makes it another lane
-FAR = 4               # times its own length that a lane is led on beside one line
-END_WIDTH = 10.0      # m over which a lane's width at its end is taken
+LANE_STATUS = ("measured", "inferred", "bridged")
+MAX_LANE_JUMP_SHARE = 0.35      # share of a lane's width by which it may jump from one stretch to the next
+GAP_NEIGHBOURHOOD = 10.0       # m around a gap within which other lanes tell of a split or merge
+MIN_LANE_SEPARATION_SHARE = 0.6         # share of a lane's width that lanes keep from each other
+INTRUSION_SHARE = 0.3        # share of a lane's width within which a line makes it another lane
+MAX_EXTENSION_RATIO = 4               # times its own length that a lane is led on beside one line
+END_WIDTH_LENGTH = 10.0      # m over which a lane's width at its end is taken
 
 
 @dataclass
-class Track:
+class LaneTrack:
     """A lane from grid station `first` on.
 
     d, width : (N,) metres; status : (N,) of MEASURED, INFERRED, BRIDGED; offset : (N,) True
@@ -41,14 +41,14 @@ class Track:
 
     def part(self, a, b):
         """Rows a to b (exclusive) as a track of their own."""
-        return Track(self.first + a, *(v[a:b] for v in self._columns()))
+        return LaneTrack(self.first + a, *(v[a:b] for v in self._columns()))
 
     def _columns(self):
         return self.d, self.width, self.status, self.offset, self.left, self.right
 
     def followed_by(self, other):
         """This track and one that begins at the next station."""
-        return Track(self.first, *(np.concatenate(pair) for pair in zip(self._columns(), other._columns())))
+        return LaneTrack(self.first, *(np.concatenate(pair) for pair in zip(self._columns(), other._columns())))
 
     def at(self, k):
         """Offset and width at grid station k; NaN where the lane is not."""
@@ -57,7 +57,7 @@ class Track:
         return np.nan, np.nan
 
     def end_width(self, head):
-        rows = int(END_WIDTH / STEP)
+        rows = int(END_WIDTH_LENGTH / STATION_STEP)
         return float(np.median(self.width[:rows] if head else self.width[-rows:]))
 
     def without_bridged_ends(self):
@@ -89,7 +89,7 @@ def connect(tracks, lines, most_bridged, most_inferred):
 
 def _connected(tracks, lines, most_bridged, most_inferred):
     tracks = sorted(tracks, key=lambda t: (t.first, float(t.d[0])))
-    reach = int(max(most_bridged, most_inferred) / STEP)
+    reach = int(max(most_bridged, most_inferred) / STATION_STEP)
     firsts = np.array([track.first for track in tracks])
     pairs = []
     for i, a in enumerate(tracks):
@@ -118,15 +118,15 @@ def _connected(tracks, lines, most_bridged, most_inferred):
 
 
 def _join(a, b, tracks, lines, most_bridged, most_inferred):
-    """(lateral jump, the Track between or None), or None where a and b are not one lane."""
+    """(lateral jump, the LaneTrack between or None), or None where a and b are not one lane."""
     count = b.first - a.last - 1
     wa, wb = a.end_width(False), b.end_width(True)
     course, status = _guide(a, b, lines, [t for t in tracks if t is not a and t is not b]) if count else (None, None)
-    if count * STEP > (most_bridged if course is None else most_inferred):
+    if count * STATION_STEP > (most_bridged if course is None else most_inferred):
         return None
     path = course if course is not None else np.zeros(count + 2)
     jump = (b.d[0] - path[-1]) - (a.d[-1] - path[0])
-    if abs(jump) > SAME_LANE * min(wa, wb) or abs(wa - wb) > 2 * SAME_LANE * max(wa, wb):
+    if abs(jump) > MAX_LANE_JUMP_SHARE * min(wa, wb) or abs(wa - wb) > 2 * MAX_LANE_JUMP_SHARE * max(wa, wb):
         return None
     if not _one_to_one(a, b, wa, wb, tracks):
         return None
@@ -135,7 +135,7 @@ def _join(a, b, tracks, lines, most_bridged, most_inferred):
     share = np.arange(1, count + 1) / (count + 1)
     # the road's own shape is in the frame; a bridge only has to leave and arrive smoothly
     d = _hermite(a, b, count) if course is None else a.d[-1] - path[0] + jump * share + path[1:-1]
-    between = Track(a.last + 1, *_filler(count, d, wa + (wb - wa) * share, BRIDGED, True))
+    between = LaneTrack(a.last + 1, *_filler(count, d, wa + (wb - wa) * share, BRIDGED, True))
     if course is not None:
         between.status[:] = status[1:-1]
     if any(_crowded(between, t) for t in tracks if t is not a and t is not b):
@@ -144,7 +144,7 @@ def _join(a, b, tracks, lines, most_bridged, most_inferred):
 
 
 def _hermite(a, b, count):
-    rows = int(END_WIDTH / STEP)
+    rows = int(END_WIDTH_LENGTH / STATION_STEP)
     slopes = [np.polyfit(np.arange(len(v)), v, 1)[0] if len(v) > 4 else 0.0 for v in (a.d[-rows:], b.d[:rows])]
     span = count + 1
     t = np.arange(1, count + 1) / span
@@ -168,7 +168,7 @@ def _guide(a, b, lines, others):
 
 
 def _one_to_one(a, b, wa, wb, tracks):
-    near = int(NEAR_END / STEP)
+    near = int(GAP_NEIGHBOURHOOD / STATION_STEP)
     starts = [t.d[max(b.first - t.first, 0)] for t in tracks
               if t is not a and a.last < t.first <= b.first + near and t.last >= b.first]
     ends = [t.d[min(a.last - t.first, len(t) - 1)] for t in tracks
@@ -183,7 +183,7 @@ def _crowded(track, other):
     if a > b:
         return False
     apart = np.abs(track.d[a - track.first:b - track.first + 1] - other.d[a - other.first:b - other.first + 1])
-    return bool((apart < CROWDED * track.width[a - track.first:b - track.first + 1]).any())
+    return bool((apart < MIN_LANE_SEPARATION_SHARE * track.width[a - track.first:b - track.first + 1]).any())
 
 
 def extend(tracks, lines, kept, room, most_bridged):
@@ -217,7 +217,7 @@ def _extension(track, others, lines, kept, head, most_bridged):
     if best_line is None:
         return None
     # a short stretch of lane does not rule a long road
-    best = min(best, int(max(most_bridged / STEP, FAR * np.count_nonzero(track.status != BRIDGED))))
+    best = min(best, int(max(most_bridged / STATION_STEP, MAX_EXTENSION_RATIO * np.count_nonzero(track.status != BRIDGED))))
     ahead = ahead[:best]
     # the lane keeps its place beside the line; half its width to the side it was on
     beside = track.d[tip] - lines.d[best_line, start]
@@ -225,17 +225,17 @@ def _extension(track, others, lines, kept, head, most_bridged):
     free = np.ones(best, bool)
     for other in others:
         inside = (ahead >= other.first) & (ahead <= other.last)
-        free[inside] &= np.abs(other.d[ahead[inside] - other.first] - d[inside]) >= CROWDED * width
-    cutting = kept[:, ahead] & (np.abs(lines.d[:, ahead] - d) < INTRUDED * width)
+        free[inside] &= np.abs(other.d[ahead[inside] - other.first] - d[inside]) >= MIN_LANE_SEPARATION_SHARE * width
+    cutting = kept[:, ahead] & (np.abs(lines.d[:, ahead] - d) < INTRUSION_SHARE * width)
     free &= ~cutting.any(0)
     length = _first_false(free)
-    if not length or length < best and length * STEP <= most_bridged and not _arrives(track, others, ahead[length], d[length], width):
+    if not length or length < best and length * STATION_STEP <= most_bridged and not _arrives(track, others, ahead[length], d[length], width):
         return None
     rows = slice(None, length)
-    more = Track(int(min(ahead[rows])), *_filler(
+    more = LaneTrack(int(min(ahead[rows])), *_filler(
         length, d[rows], np.full(length, width), INFERRED, True,
         best_line if best_line == track.left[tip] else -1, best_line if best_line == track.right[tip] else -1))
-    return Track(more.first, *(v[::-1] for v in more._columns())) if head else more
+    return LaneTrack(more.first, *(v[::-1] for v in more._columns())) if head else more
 
 
 def _outside(track, lines, line, tip, start):
@@ -246,7 +246,7 @@ def _outside(track, lines, line, tip, start):
 
 def _arrives(track, others, k, d, width):
     """Does the lane meet, at grid station k, another that is its own continuation?"""
-    return any(abs(other.at(k)[0] - d) < SAME_LANE * min(width, other.at(k)[1]) for other in others)
+    return any(abs(other.at(k)[0] - d) < MAX_LANE_JUMP_SHARE * min(width, other.at(k)[1]) for other in others)
 
 
 def _first_false(mask):

@@ -2,25 +2,25 @@
 
 import numpy as np
 
-from .cross_section import DOUBLE, STEP
-from .lane_tracking import BRIDGED, INFERRED, MEASURED, Track
-from .settings import NARROWEST, USUAL, WIDEST
+from .cross_section import MIN_BOUNDARY_SPACING, STATION_STEP
+from .lane_tracking import BRIDGED, INFERRED, MEASURED, LaneTrack
+from .settings import DEFAULT_LANE_WIDTH, MAX_LANE_WIDTH, MIN_LANE_WIDTH
 
-TRUSTED = 40.0     # m of measured length that make a line as good as any other
-SQUEEZE = 0.5      # what two lines too near for a lane between them cost, in lines
-STRADDLED = 0.5    # what a line costs that the vehicle drove along, astride
-MOST_LANES = 4     # between two outer lines
-RESTLESS = 0.8     # m of change of width beyond which a strip is classed place by place
-SAME_PLACE = 0.25  # share of a lane's width by which a known lane may lie beside its place in a division
-FLOATING = 15.0    # m: a shorter line between two that go on both ways needs a reason to part them
-BESIDE = 5.0       # m that they go on
-OFF_PLACE = 0.5    # m from where the line between two lanes of a strip should be
-SHORT_LANE = 2.0   # m: shorter, it is where lines end unevenly
-SHORT_CLASS = 5.0  # m: a shorter change of class is noise of the width
-SHOULDER = 3.0     # m between two edge lines: a hard shoulder or a row of parking places, unless driven on
+FULL_TRUST_LENGTH = 40.0     # m of measured length that make a line as good as any other
+NARROW_GAP_COST = 0.5      # what two lines too near for a lane between them cost, in lines
+STRADDLED_LINE_COST = 0.5    # what a line costs that the vehicle drove along, astride
+MAX_LANES = 4     # between two outer lines
+MAX_WIDTH_CHANGE = 0.8     # m of change of width beyond which a strip is classed place by place
+MAX_DIVISION_OFFSET_SHARE = 0.25  # share of a lane's width by which a known lane may lie beside its place in a division
+MAX_ISOLATED_LINE = 15.0    # m: a shorter line between two that go on both ways needs a reason to part them
+ISOLATED_LINE_MARGIN = 5.0       # m that they go on
+MAX_DIVIDER_OFFSET = 0.5    # m from where the line between two lanes of a strip should be
+MIN_LANE_LENGTH = 2.0   # m: shorter, it is where lines end unevenly
+MIN_CLASS_LENGTH = 5.0  # m: a shorter change of class is noise of the width
+MAX_SHOULDER_WIDTH = 3.0     # m between two edge lines: a hard shoulder or a row of parking places, unless driven on
 
 
-def chosen_lines(lines, driven):
+def select_lane_lines(lines, driven):
     """Which of the present lines bound lanes.
 
     Strokes of symbols, outlines and gutters make lines too, which cut a lane in two
@@ -38,9 +38,9 @@ def chosen_lines(lines, driven):
     -------
     (L, K) bool
     """
-    present = np.isfinite(lines.d) & ~floating_lines(lines)[:, None]
+    present = np.isfinite(lines.d) & ~isolated_lines(lines)[:, None]
     kept = np.zeros_like(present)
-    trust = np.clip(lines.seen_length / TRUSTED, 0.02, 1.0)
+    trust = np.clip(lines.seen_length / FULL_TRUST_LENGTH, 0.02, 1.0)
     for first, last in runs_of_columns(present):
         active = np.flatnonzero(present[:, first])
         if not len(active):
@@ -53,17 +53,17 @@ def chosen_lines(lines, driven):
         if len(driven):
             apart = np.abs(lines.d[active, window][:, None] - driven[None, :, window])
             astride = np.nanmin(np.where(np.isnan(apart), np.inf, apart), axis=1) < 0.4
-            weight = np.maximum(weight - STRADDLED * (astride.mean(1) > 0.8), 0.01)
+            weight = np.maximum(weight - STRADDLED_LINE_COST * (astride.mean(1) > 0.8), 0.01)
         kept[active[_cheapest(d, weight)], window] = True
     return kept
 
 
-def floating_lines(lines):
+def isolated_lines(lines):
     """(L,) True for short lines between two longer ones that do not part the road as lanes would."""
     present = np.isfinite(lines.d)
     found = np.zeros(len(present), bool)
-    more = int(BESIDE / STEP)
-    for k in np.flatnonzero(lines.seen_length < FLOATING):
+    more = int(ISOLATED_LINE_MARGIN / STATION_STEP)
+    for k in np.flatnonzero(lines.seen_length < MAX_ISOLATED_LINE):
         columns = np.flatnonzero(present[k])
         if not len(columns):
             continue
@@ -72,13 +72,13 @@ def floating_lines(lines):
             continue
         longer = np.flatnonzero(present[:, first:last + 1].all(1))
         apart = np.median(lines.d[longer][:, columns] - lines.d[k, columns], axis=1)
-        left, right = apart[apart > DOUBLE], apart[apart < -DOUBLE]
-        if not len(left) or not len(right) or (np.abs(apart) <= DOUBLE).any():
+        left, right = apart[apart > MIN_BOUNDARY_SPACING], apart[apart < -MIN_BOUNDARY_SPACING]
+        if not len(left) or not len(right) or (np.abs(apart) <= MIN_BOUNDARY_SPACING).any():
             continue
         width = left.min() - right.max()
-        count = lane_count(width, USUAL)
+        count = lane_count(width, DEFAULT_LANE_WIDTH)
         places = width * np.arange(1, count) / max(count, 1)
-        found[k] = count > 0 and not (np.abs(places + right.max()) < OFF_PLACE).any()
+        found[k] = count > 0 and not (np.abs(places + right.max()) < MAX_DIVIDER_OFFSET).any()
     return found
 
 
@@ -87,7 +87,7 @@ def _cheapest(d, weight):
     best, came = weight.copy(), np.full(len(d), -1)
     for j in range(1, len(d)):
         gap = d[:j] - d[j]
-        total = best[:j] + weight[j] - SQUEEZE * ((gap > DOUBLE) & (gap < NARROWEST))
+        total = best[:j] + weight[j] - NARROW_GAP_COST * ((gap > MIN_BOUNDARY_SPACING) & (gap < MIN_LANE_WIDTH))
         i = int(np.argmax(total))
         if total[i] > best[j]:
             best[j], came[j] = total[i], i
@@ -110,7 +110,7 @@ def true_runs(mask):
     return [(a, b) for a, b in runs_of_columns(np.atleast_2d(mask)) if mask[a]]
 
 
-def strips(lines, kept):
+def lane_strips(lines, kept):
     """Strips of road between neighbouring lines: (left line, right line, first, last), in order of station."""
     ranked = np.where(kept, -lines.d, np.inf)
     order = np.argsort(ranked, axis=0, kind="stable")
@@ -142,11 +142,11 @@ def classed(lines, strip):
     """
     left, right, first, last = strip
     width = lines.d[left, first:last + 1] - lines.d[right, first:last + 1]
-    if np.ptp(np.percentile(width, [5, 95])) < RESTLESS:
+    if np.ptp(np.percentile(width, [5, 95])) < MAX_WIDTH_CHANGE:
         width = np.full(len(width), np.median(width))
-    kind = np.where(width < NARROWEST, 0, np.where(width <= WIDEST, 1, 2))
+    kind = np.where(width < MIN_LANE_WIDTH, 0, np.where(width <= MAX_LANE_WIDTH, 1, 2))
     pieces = [[kind[a], a, b] for a, b in runs_of_columns(kind[None, :])]
-    shortest = SHORT_CLASS / STEP
+    shortest = MIN_CLASS_LENGTH / STATION_STEP
     while len(pieces) > 1:
         k = min(range(len(pieces)), key=lambda i: (pieces[i][2] - pieces[i][1], i))
         if pieces[k][2] - pieces[k][1] + 1 >= shortest:
@@ -159,11 +159,11 @@ def classed(lines, strip):
 
 
 def paired_lanes(lines, all_strips, driven, room):
-    """A Track for every strip as wide as one lane; `room` says where lanes may be."""
+    """A LaneTrack for every strip as wide as one lane; `room` says where lanes may be."""
     tracks = []
     for left, right, first, last in all_strips:
         for what, a, b in classed(lines, (left, right, first, last)):
-            if what == "lane" and b - a + 1 >= SHORT_LANE / STEP and not _shoulder(lines, left, right, a, b, driven):
+            if what == "lane" and b - a + 1 >= MIN_LANE_LENGTH / STATION_STEP and not _shoulder(lines, left, right, a, b, driven):
                 tracks.append(_share(lines, left, right, a, b, 0, 1))
     return [track for track in tracks if room(track)]
 
@@ -175,7 +175,7 @@ def _shoulder(lines, left, right, first, last, driven):
     window = slice(first, last + 1)
     dl, dr = lines.d[left, window], lines.d[right, window]
     used = ((driven[:, window] < dl) & (driven[:, window] > dr)).any(0) if len(driven) else np.zeros(1, bool)
-    return np.median(dl - dr) < SHOULDER and used.mean() < 0.5
+    return np.median(dl - dr) < MAX_SHOULDER_WIDTH and used.mean() < 0.5
 
 
 def _share(lines, left, right, first, last, place, count):
@@ -185,7 +185,7 @@ def _share(lines, left, right, first, last, place, count):
     seen = lines.seen[left, window].astype(int) + lines.seen[right, window]
     status = np.choose(seen, [BRIDGED, INFERRED, MEASURED if count == 1 else INFERRED])
     size = last - first + 1
-    return Track(first, dr + (dl - dr) * (place + 0.5) / count, (dl - dr) / count, status, np.zeros(size, bool),
+    return LaneTrack(first, dr + (dl - dr) * (place + 0.5) / count, (dl - dr) / count, status, np.zeros(size, bool),
                  np.full(size, left if place == count - 1 else -1), np.full(size, right if place == 0 else -1))
 
 
@@ -224,7 +224,7 @@ def _free(shares, dl, dr, tracks):
         here = slice(a - shares[0].first, b - shares[0].first + 1)
         known = track.d[a - track.first:b - track.first + 1]
         inside = (known < dl[here]) & (known > dr[here])
-        same = np.abs(d[:, here] - known) < SAME_PLACE * width[here]
+        same = np.abs(d[:, here] - known) < MAX_DIVISION_OFFSET_SHARE * width[here]
         taken[:, here] |= same & inside
         foreign[here] |= inside & ~same.any(0)
     return ~taken & ~foreign
@@ -232,18 +232,18 @@ def _free(shares, dl, dr, tracks):
 
 def lane_count(width, lane_width):
     """How many lanes of plausible width fill a strip; 0 where it is too wide to be one road's lanes."""
-    likely = [n for n in range(1, MOST_LANES + 1) if NARROWEST <= width / n <= WIDEST]
+    likely = [n for n in range(1, MAX_LANES + 1) if MIN_LANE_WIDTH <= width / n <= MAX_LANE_WIDTH]
     return min(likely, key=lambda n: (abs(width / n - lane_width), n)) if likely else 0
 
 
-def usual_width(tracks, painted=True):
+def typical_lane_width(tracks, painted=True):
     """The median width of lanes (of those between two painted lines), 3.5 m where there is none."""
     widths = [track.width[track.status == MEASURED] if painted else track.width for track in tracks]
     widths = np.concatenate(widths) if widths else np.empty(0)
-    return float(np.median(widths)) if len(widths) else USUAL
+    return float(np.median(widths)) if len(widths) else DEFAULT_LANE_WIDTH
 
 
-def lone_lanes(lines, kept, tracks, driven, half_lane, shortest, room):
+def single_line_lanes(lines, kept, tracks, driven, half_lane, shortest, room):
     """Lanes beside a line without partner: where the vehicle drove, and on both sides of a centre line that is alone.
 
     half_lane : a function of offsets (K,) of a painted line and a side, 1 or -1, that gives the (K,) distance of the
@@ -262,12 +262,12 @@ def lone_lanes(lines, kept, tracks, driven, half_lane, shortest, room):
             for other in np.flatnonzero((others & kept[k]).any(1)):
                 # with a line on the lane's other side the lane would have been paired or divided
                 beyond = side * (lines.d[other] - lines.d[k])
-                free &= ~(others[other] & (beyond > 0) & (beyond < 2 * WIDEST))
+                free &= ~(others[other] & (beyond > 0) & (beyond < 2 * MAX_LANE_WIDTH))
             for track in tracks + found:
                 window = slice(track.first, track.last + 1)
                 free[window] &= np.abs(track.d - d[window]) > 0.8 * half[window] + 0.4 * track.width
             for a, b in true_runs(free):
-                if b - a + 1 < shortest / STEP:
+                if b - a + 1 < shortest / STATION_STEP:
                     continue
                 window = slice(a, b + 1)
                 there = np.abs(driven[:, window] - d[window]) < half[window] if len(driven) else np.zeros((1, 1), bool)
@@ -275,7 +275,7 @@ def lone_lanes(lines, kept, tracks, driven, half_lane, shortest, room):
                     continue
                 size = b - a + 1
                 near = np.full(size, k)
-                track = Track(a, d[window].copy(), 2 * half[window], np.full(size, INFERRED), np.ones(size, bool),
+                track = LaneTrack(a, d[window].copy(), 2 * half[window], np.full(size, INFERRED), np.ones(size, bool),
                               near if side < 0 else np.full(size, -1), near if side > 0 else np.full(size, -1))
                 if room(track):
                     found.append(track)

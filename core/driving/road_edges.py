@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..common.features import Features
-from ..markings.lines.frame_lines import FrameLines, frame_lines, line_parts
+from ..markings.lines.frame_lines import FrameLines, line_parts, lines_in_frame
 
 if TYPE_CHECKING:
     from ..survey.frame.road_frame import RoadFrame
@@ -50,4 +50,4 @@ def edges_from_features(features: Features, frame: RoadFrame) -> RoadEdges:
     road = [-1 if row.get("road") is None else int(row["road"]) for row in rows]
     kind, status = (np.array([str(row.get(name) or missing) for row in rows], object)
                     for name, missing in (("kind", "main"), ("status", "measured")))
-    return RoadEdges(np.array(row_of, int), kind, status, frame_lines(parts, road, frame))
+    return RoadEdges(np.array(row_of, int), kind, status, lines_in_frame(parts, road, frame))

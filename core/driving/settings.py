@@ -5,10 +5,11 @@ from dataclasses import dataclass
 from ..common.errors import RoadExtractionError
 from ..common.setting import check_limits, setting
 
-NARROWEST = 2.2  # m between the lines of a lane
-WIDEST = 5.0
-USUAL = 3.5      # where no lane of the road shows its width
-SIDES = ("automatic", "right", "left")
+MIN_LANE_WIDTH = 2.2  # m between the lines of a lane
+MAX_LANE_WIDTH = 5.0
+DEFAULT_LANE_WIDTH = 3.5      # where no lane of the road shows its width
+MIN_PLACES_PER_FIT = 8  # grid stations of a lane that a curve is fitted to
+TRAFFIC_SIDES = ("automatic", "right", "left")
 
 
 @dataclass(frozen=True)
@@ -24,8 +25,8 @@ class DrivingSettings:
     shortest : shorter driving lines are not worth a line
     """
 
-    lane_width: float = setting(3.5, NARROWEST, WIDEST, "The lane width", "m", "to take the width from the lines themselves")
-    line_distance: float = setting(0.0, 0.3, WIDEST, "The distance from a line", "m", "for half a lane")
+    lane_width: float = setting(3.5, MIN_LANE_WIDTH, MAX_LANE_WIDTH, "The lane width", "m", "to take the width from the lines themselves")
+    line_distance: float = setting(0.0, 0.3, MAX_LANE_WIDTH, "The distance from a line", "m", "for half a lane")
     traffic_side: str = "automatic"
     max_bridge: float = setting(20.0, 0.0, 200.0, "The longest gap of all lines that is bridged", "m")
     max_inferred: float = setting(60.0, 0.0, 500.0, "The longest gap beside another line that is closed", "m")
@@ -33,6 +34,6 @@ class DrivingSettings:
 
     def __post_init__(self):
         check_limits(self)
-        if self.traffic_side not in SIDES:
+        if self.traffic_side not in TRAFFIC_SIDES:
             raise RoadExtractionError(
-                f"There is no traffic side called {self.traffic_side!r}. Choose one of {', '.join(SIDES)}.")
+                f"There is no traffic side called {self.traffic_side!r}. Choose one of {', '.join(TRAFFIC_SIDES)}.")

@@ -135,10 +135,10 @@ def sor_ours(size):
 
 def clusters_ours(size):
     """Which of a million points on paint belong together."""
-    from lanewright.core.markings.objects.cluster import ClusterSettings, group
+    from lanewright.core.markings.objects.cluster import ClusterSettings, connected_points
 
     points = _paint(size)
-    (records, labels), seconds = timed(lambda: group(points, points.roads()[0], ClusterSettings.distance))
+    (records, labels), seconds = timed(lambda: connected_points(points, points.roads()[0], ClusterSettings.distance))
     clusters = np.empty(len(labels), np.int64)
     clusters[records["time"].astype(np.int64)] = labels
     np.save(prepared("clusters_ours.npy", size), clusters)

@@ -4,18 +4,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-WEAR = 0.8           # m: a shorter hole is wear within a dash
-LONGEST_DASH = 10.5  # m: longer paint is solid line
-LEAST_GAP = 0.4      # of the dash: road markings leave gaps of half a dash (6 m and 3 m) or more
-PAIR = (1.5, 8.0)    # m: dashes of which two alone are taken for a dashed line
-ALIKE = 0.16         # of the period: how evenly dashes must follow each other
-EVEN = 0.2           # m: by which the two steps between three pieces of unlike lengths may differ
-FEWEST_SHORT, SHORT_ALIKE, UNEVEN = 4, 0.25, 0.25  # dashes, m, share: dashes a metre long with gaps as long must be so many and so even
-SOLID_GAP = 2.5      # m: a longer hole in a solid line is bridged, not measured
+MAX_WORN_HOLE = 0.8           # m: a shorter hole is wear within a dash
+MAX_DASH_LENGTH = 10.5        # m: longer paint is solid line
+MIN_GAP_PER_DASH = 0.4        # of the dash length: road markings leave gaps of half a dash (6 m and 3 m) or more
+DASH_PAIR_LENGTH = (1.5, 8.0)  # m: dashes of which two alone are taken for a dashed line
+PERIOD_TOLERANCE = 0.16       # of the period: how evenly dashes must follow each other
+STEP_TOLERANCE = 0.2          # m by which the two steps between three pieces of unequal lengths may differ
+MIN_SHORT_DASHES = 4          # dashes of about a metre with gaps as long must be so many
+SHORT_DASH_TOLERANCE = 0.25   # m: of such dashes, deviation of the length from the median
+MAX_UNEVEN_SHARE = 0.25       # of such dashes: those that deviate more
+MAX_SOLID_GAP = 2.5           # m: a longer hole in a solid line is bridged, not measured
 
 
 @dataclass(frozen=True)
-class Rhythm:
+class DashPattern:
     """Dashes of one length at one period; metres."""
 
     dash: float
@@ -28,11 +30,11 @@ class Rhythm:
 
 @dataclass(frozen=True)
 class Stretch:
-    """Part of a line of one pattern, from station `first` to `last`; `rhythm` is None where it is solid."""
+    """Part of a line of one pattern, from station `first` to `last`; `find_dash_pattern` is None where it is solid."""
 
     first: float
     last: float
-    rhythm: Rhythm
+    rhythm: DashPattern
     intervals: tuple   # (first, last) of each painted interval
 
     @property
@@ -40,12 +42,12 @@ class Stretch:
         return "dashed" if self.rhythm else "solid"
 
 
-def intervals(line):
+def painted_intervals(line):
     """(K, 2) stations between which a line is painted, holes of wear closed."""
     spans = [span for strand in line.strands for span in _painted(strand)]
     found = [list(spans[0])]
     for first, last in spans[1:]:
-        if first - found[-1][1] < WEAR:
+        if first - found[-1][1] < MAX_WORN_HOLE:
             found[-1][1] = max(found[-1][1], last)
         else:
             found.append([first, last])
@@ -54,27 +56,27 @@ def intervals(line):
 
 def _painted(strand):
     """(first, last) of the parts of a strand: a strand leaps the gaps of short dashes. Where they are uneven they are wear."""
-    holes = np.flatnonzero(np.diff(strand.s) > WEAR)
-    if len(holes) + 1 < FEWEST_SHORT:
+    holes = np.flatnonzero(np.diff(strand.s) > MAX_WORN_HOLE)
+    if len(holes) + 1 < MIN_SHORT_DASHES:
         return [(strand.first, strand.last)]
     parts = np.column_stack([np.r_[strand.first, strand.s[holes + 1]], np.r_[strand.s[holes], strand.last]])
     length, steps = np.diff(parts, axis=1)[:, 0], np.diff(parts.mean(axis=1))
-    if (np.abs(steps - np.median(steps)) > ALIKE * np.median(steps)).mean() > UNEVEN \
-            or (np.abs(length - np.median(length)) > SHORT_ALIKE).mean() > UNEVEN:
+    if (np.abs(steps - np.median(steps)) > PERIOD_TOLERANCE * np.median(steps)).mean() > MAX_UNEVEN_SHARE \
+            or (np.abs(length - np.median(length)) > SHORT_DASH_TOLERANCE).mean() > MAX_UNEVEN_SHARE:
         return [(strand.first, strand.last)]
     return list(map(tuple, parts.tolist()))
 
 
 def stretches(line):
     """The stretches of a line: dashed where short intervals follow a rhythm, solid elsewhere."""
-    spans = intervals(line)
-    long = np.diff(spans, axis=1)[:, 0] > LONGEST_DASH
+    spans = painted_intervals(line)
+    long = np.diff(spans, axis=1)[:, 0] > MAX_DASH_LENGTH
     cuts = np.flatnonzero(np.r_[True, np.diff(long.astype(int)) != 0, True])
     found = []
     for a, b in zip(cuts[:-1], cuts[1:]):
         group = spans[a:b]
         # beside solid stretches a few worn pieces look like dashes by chance
-        beat = None if long[a] or long.any() and len(group) < 3 else rhythm(group)
+        beat = None if long[a] or long.any() and len(group) < 3 else find_dash_pattern(group)
         if found and found[-1][1] is None and beat is None:
             found[-1] = (np.vstack([found[-1][0], group]), None)
         else:
@@ -83,8 +85,8 @@ def stretches(line):
             for group, beat in found]
 
 
-def rhythm(spans):
-    """The Rhythm of painted intervals (K, 2), or None where they follow none.
+def find_dash_pattern(spans):
+    """The DashPattern of painted intervals (K, 2), or None where they follow none.
 
     Dashes may be missing: steps between dashes are then whole multiples of the
     period. Some may be worn at their ends: three of five must have the common length.
@@ -100,28 +102,28 @@ def rhythm(spans):
     if len(spans) == 2:
         gap = float(spans[1, 0] - spans[0, 1])
         # two pieces may be alike by chance: they must be as long as dashes are, and equally long
-        even = np.ptp(length) <= max(0.4, 0.12 * dash) and PAIR[0] <= dash <= PAIR[1] \
-            and max(LEAST_GAP * dash, 1.5) <= gap <= 13.0
-        return Rhythm(dash, float(steps[0])) if even else None
+        even = np.ptp(length) <= max(0.4, 0.12 * dash) and DASH_PAIR_LENGTH[0] <= dash <= DASH_PAIR_LENGTH[1] \
+            and max(MIN_GAP_PER_DASH * dash, 1.5) <= gap <= 13.0
+        return DashPattern(dash, float(steps[0])) if even else None
     period = _period(steps)
-    if period is None or period - dash < LEAST_GAP * dash or alike.mean() < 0.55:
+    if period is None or period - dash < MIN_GAP_PER_DASH * dash or alike.mean() < 0.55:
         return None
     if len(spans) == 3 and not alike.all():
         # a worn dash keeps one of its ends, or its middle
         steps = np.diff(np.column_stack([spans, spans.mean(axis=1)]), axis=0)
-        if np.ptp(steps, axis=0).min() > EVEN:
+        if np.ptp(steps, axis=0).min() > STEP_TOLERANCE:
             return None
-    return Rhythm(dash, period)
+    return DashPattern(dash, period)
 
 
 def _period(steps):
     """The longest period of which most steps are whole multiples (up to 4), or None."""
     best, best_share = None, 0.0
     for start in np.unique(np.round(steps, 1)):
-        if start < 2 * WEAR:
+        if start < 2 * MAX_WORN_HOLE:
             continue
         times = np.maximum(np.round(steps / start), 1.0)
-        good = (np.abs(steps / start - times) <= ALIKE) & (times <= 4)
+        good = (np.abs(steps / start - times) <= PERIOD_TOLERANCE) & (times <= 4)
         share, single = good.mean(), (times[good] == 1).sum()
         # many steps over missing dashes are believed where nearly all fit
         if single < 0.4 * len(steps) and not (single >= 2 and len(steps) >= 5 and share >= 0.85):
@@ -131,21 +133,21 @@ def _period(steps):
     return best if best_share >= 0.65 else None
 
 
-def same_rhythm(before, after):
+def same_dash_pattern(before, after):
     """Whether two lines are dashed alike and the gap between them is a whole multiple of the period."""
     ends, begins = stretches(before)[-1], stretches(after)[0]
     if not ends.rhythm or not begins.rhythm:
         return False
     period = (ends.rhythm.period + begins.rhythm.period) / 2
-    if abs(ends.rhythm.period - begins.rhythm.period) > ALIKE * period \
+    if abs(ends.rhythm.period - begins.rhythm.period) > PERIOD_TOLERANCE * period \
             or abs(ends.rhythm.dash - begins.rhythm.dash) > max(0.6, 0.25 * ends.rhythm.dash):
         return False
     step = (np.mean(begins.intervals[0]) - np.mean(ends.intervals[-1])) / period
-    return abs(step - round(step)) <= ALIKE * 1.5
+    return abs(step - round(step)) <= PERIOD_TOLERANCE * 1.5
 
 
 @dataclass(frozen=True)
-class Piece:
+class LinePiece:
     """Part of a line of one status and pattern, between two stations."""
 
     first: float
@@ -154,7 +156,7 @@ class Piece:
     pattern: str
 
 
-def pieces(parts):
+def line_pieces(parts):
     """Cut a line of some stretches where its status or pattern changes.
 
     A regular gap between dashes is part of the dashed line; a hole longer than the
@@ -162,32 +164,32 @@ def pieces(parts):
     """
     found = []
     for k, part in enumerate(parts):
-        gap = part.rhythm.gap * 1.25 + 0.8 if part.rhythm else SOLID_GAP
+        gap = part.rhythm.gap * 1.25 + 0.8 if part.rhythm else MAX_SOLID_GAP
         if k:
             # between two patterns: the dashed one's gap, if there is one
             other = parts[k - 1]
-            between = max(gap, other.rhythm.gap * 1.25 + 0.8 if other.rhythm else SOLID_GAP)
+            between = max(gap, other.rhythm.gap * 1.25 + 0.8 if other.rhythm else MAX_SOLID_GAP)
             measured = part.first - other.last <= between
-            found.append(Piece(other.last, part.first, "measured" if measured else "bridged",
+            found.append(LinePiece(other.last, part.first, "measured" if measured else "bridged",
                                other.pattern if other.rhythm else part.pattern))
         spans = part.intervals
         for j, (first, last) in enumerate(spans):
             if j and first - spans[j - 1][1] > gap:
-                found.append(Piece(spans[j - 1][1], first, "bridged", part.pattern))
+                found.append(LinePiece(spans[j - 1][1], first, "bridged", part.pattern))
             elif j:
-                found.append(Piece(spans[j - 1][1], first, "measured", part.pattern))
-            found.append(Piece(first, last, "measured", part.pattern))
-    return merged(found)
+                found.append(LinePiece(spans[j - 1][1], first, "measured", part.pattern))
+            found.append(LinePiece(first, last, "measured", part.pattern))
+    return merged_pieces(found)
 
 
-def merged(parts):
+def merged_pieces(parts):
     """Pieces with equal neighbours put together; empty ones dropped."""
     found = []
     for part in parts:
         if part.last - part.first <= 1e-9:
             continue
         if found and (found[-1].status, found[-1].pattern) == (part.status, part.pattern):
-            found[-1] = Piece(found[-1].first, part.last, part.status, part.pattern)
+            found[-1] = LinePiece(found[-1].first, part.last, part.status, part.pattern)
         else:
             found.append(part)
     return found

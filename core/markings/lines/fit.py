@@ -14,14 +14,14 @@ from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...curves.model_selection import CURVES
 from ...survey.store.records import join_columns
-from ..lines import labelling as line_choice
 from ..objects.marking_objects import MarkingObjects
-from .dash_pattern import same_rhythm
-from .frame_lines import frame_lines
-from .geometry import shapes_of
-from .linking import Drift, Line, link, link_far, without_strays
+from .dash_pattern import same_dash_pattern
+from .frame_lines import lines_in_frame
+from .geometry import fit_line_shapes
+from .labelling import crossings, hatching_bars, hatching_borders, select_lines
+from .linking import CommonTrend, LinkedLine, link_lines, link_over_long_gaps, without_strays
 from .painted_lines import FittedPieces, PaintedLines
-from .strands import line_paint, trace
+from .strands import line_paint, trace_strands
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
@@ -87,19 +87,19 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
         part = progress.part(k / len(roads), (k + 1) / len(roads))
         records, rank = line_paint(_records_of(clustered_points, road), markings, road)
         part.report(0.1)
-        strands = trace(records, rank)
+        strands = trace_strands(records, rank)
         part.report(0.4)
-        hatched = line_choice.bars(markings, road)
+        hatched = hatching_bars(markings, road)
         lines, drift = _linked(strands, settings)
         # a line that leads up to a hatched area may be taken for its border: linked anew without that, it goes on behind the area
-        while borders := line_choice.hatching_borders(lines, hatched):
+        while borders := hatching_borders(lines, hatched):
             strands = [strand for strand in strands if not any(strand is border for border in borders)]
             lines, drift = _linked(strands, settings)
         part.report(0.5)
-        chosen = line_choice.choose(lines, drift, line_choice.crossings(markings, road), settings.min_paint,
+        chosen = select_lines(lines, drift, crossings(markings, road), settings.min_paint,
                                     hatched, frame.passes_of(road))
         dropped += len(lines) - len(chosen)
-        shapes, unwanted = shapes_of([one.line for one in chosen], [one.span for one in chosen], frame.road(road), drift,
+        shapes, unwanted = fit_line_shapes([one.line for one in chosen], [one.span for one in chosen], frame.road(road), drift,
                                      partial(frame.track_height, road), settings)
         part.report(0.8)
         replaced += unwanted
@@ -115,10 +115,10 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
 
 
 def _linked(strands, settings):
-    """Lines of strands, and the Drift they have in common."""
-    drift = Drift(strands)
-    lines = link([Line([strand]) for strand in strands], drift, settings.max_gap)
-    lines = link_far(lines, drift, settings.max_gap, settings.max_bridge, same_rhythm)
+    """Lines of strands, and the CommonTrend they have in common."""
+    drift = CommonTrend(strands)
+    lines = link_lines([LinkedLine([strand]) for strand in strands], drift, settings.max_gap)
+    lines = link_over_long_gaps(lines, drift, settings.max_gap, settings.max_bridge, same_dash_pattern)
     return [without_strays(line, drift) for line in lines], drift
 
 
@@ -152,5 +152,5 @@ def _painted_lines(rows: list[dict[str, Any]], frame: RoadFrame, crs: str) -> Pa
     fitted = FittedPieces([row["curve"] for row in rows], column("arc", float).reshape(-1, 2), np.concatenate([*places, np.empty((0, 3))]),
                           np.append(0, np.cumsum([len(some) for some in places], dtype=int)),
                           *(column(name, float) for name in ("station", "end", "offset", "width", "rmse")))
-    course = frame_lines(fitted.linestrings(frame), column("road", int), frame)
+    course = lines_in_frame(fitted.linestrings(frame), column("road", int), frame)
     return PaintedLines(column("line", int), *(column(name, object) for name in ("kind", "pattern", "status")), course, fitted, crs)

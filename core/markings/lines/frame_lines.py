@@ -14,7 +14,7 @@ from ..objects.placement import located
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
 
-VERTEX_SPACING = 0.5  # m between vertices at most: straight on the map is not straight in the road frame
+LINE_VERTEX_SPACING = 0.5  # m between vertices at most: straight on the map is not straight in the road frame
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class FrameLines:
         return shapely.linestrings(np.c_[self.x, self.y], indices=owner, out=found) if len(owner) else found
 
 
-def frame_lines(lines: Sequence[Any], road: Sequence[int] | np.ndarray, frame: RoadFrame) -> FrameLines:
+def lines_in_frame(lines: Sequence[Any], road: Sequence[int] | np.ndarray, frame: RoadFrame) -> FrameLines:
     """Lines in map coordinates as FrameLines.
 
     Parameters
@@ -69,7 +69,7 @@ def frame_lines(lines: Sequence[Any], road: Sequence[int] | np.ndarray, frame: R
     -------
     FrameLines
     """
-    shapes = shapely.segmentize(np.asarray(lines, object), VERTEX_SPACING) if len(lines) else np.empty(0, object)
+    shapes = shapely.segmentize(np.asarray(lines, object), LINE_VERTEX_SPACING) if len(lines) else np.empty(0, object)
     places, owner = shapely.get_coordinates(shapes, include_z=True, return_index=True)
     start = np.append(0, np.cumsum(np.bincount(owner, minlength=len(lines))))
     x, y = frame.to_local(places[:, 0], places[:, 1])

@@ -9,13 +9,13 @@ from ...curves.bspline import fit_splines, smooth_profiles
 from ...curves.curve_fit import CurveFit
 from ...curves.model_selection import fit_curve, fit_curves
 from ...curves.robust import median
+from .frame_lines import LINE_VERTEX_SPACING
 
-FAINT = 3            # points that a place must have to count, where there are enough such places
-GUIDED_GAP = 4.0     # m: in a longer gap the curve is guided parallel to the other lines
-GUIDE = 2.0          # m between guiding places
-LEVEL = 3.0          # m at either side of a gap that say where the guide begins and ends
-HEIGHT_SMOOTHING = 3.0  # m
-STEP = 0.5           # m between vertices
+MIN_POINTS_PER_PLACE = 3            # points that a place must have to count, where there are enough such places
+MIN_GUIDED_GAP = 4.0     # m: in a longer gap the curve is guided parallel to the other lines
+GUIDE_SPACING = 2.0          # m between guiding places
+GUIDE_LEVEL_REACH = 3.0          # m at either side of a gap that say where the guide begins and ends
+LINE_HEIGHT_SMOOTHING = 3.0  # m
 
 
 @dataclass
@@ -40,14 +40,14 @@ class LineShape:
     def draw(self, first, last):
         """(M, 3) local places from station `first` to `last`, at most half a metre apart."""
         ends = self.u(np.array([first, last]))
-        count = max(2, int(np.ceil((ends[1] - ends[0]) / STEP - 1e-9)) + 1)
+        count = max(2, int(np.ceil((ends[1] - ends[0]) / LINE_VERTEX_SPACING - 1e-9)) + 1)
         u = np.linspace(ends[0], ends[1], count)
         stations, lengths = self._station_to_u
         s = np.interp(u, lengths, stations) + np.minimum(u - lengths[0], 0.0) + np.maximum(u - lengths[-1], 0.0)
         return np.c_[self.fit.curve.at(u), self._height(s)]
 
 
-def shapes_of(lines, spans, road, drift, track_height, settings):
+def fit_line_shapes(lines, spans, road, drift, track_height, settings):
     """The LineShapes of linked lines, fitted together.
 
     Parameters
@@ -79,7 +79,7 @@ def shapes_of(lines, spans, road, drift, track_height, settings):
     for k, t, guided in zip(curved, along, fit_splines([(x[k], y[k]) for k in curved], along)):
         fits[k], near[k] = guided, guided.curve.u_of(t)
     track = np.split(track_height(s[own]), np.cumsum([len(course.z) for course in courses])[:-1])
-    heights = smooth_profiles([(course.s[course.own], course.z - below) for course, below in zip(courses, track)], HEIGHT_SMOOTHING)
+    heights = smooth_profiles([(course.s[course.own], course.z - below) for course, below in zip(courses, track)], LINE_HEIGHT_SMOOTHING)
     found = []
     for k, (course, fit, height) in enumerate(zip(courses, fits, heights)):
         u, e = fit.curve.project(x[k], y[k], near[k])
@@ -107,7 +107,7 @@ class _Course:
 
 def _course(line, drift, span):
     s, d, z, weight = line.places()
-    strong = weight >= FAINT
+    strong = weight >= MIN_POINTS_PER_PLACE
     if strong.sum() >= max(4, 0.5 * len(s)):
         s, d, z = s[strong], d[strong], z[strong]
     order = np.argsort(s, kind="stable")
@@ -133,21 +133,21 @@ def _fitted(places, settings):
 
 def _guides(s, level, drift, span):
     """Places in long gaps and beyond the ends, where nothing is painted: parallel to the other lines."""
-    wide = np.flatnonzero(np.diff(s) > GUIDED_GAP)
+    wide = np.flatnonzero(np.diff(s) > MIN_GUIDED_GAP)
     gaps = zip(s[wide].tolist(), s[wide + 1].tolist())
     stations, offsets = [], []
     for a, b in gaps:
-        at = np.linspace(a, b, int(np.ceil((b - a) / GUIDE)) + 1)[1:-1]
+        at = np.linspace(a, b, int(np.ceil((b - a) / GUIDE_SPACING)) + 1)[1:-1]
         start, stop = np.searchsorted(s, a, "right"), np.searchsorted(s, b)
-        before = median(level[np.searchsorted(s, a - LEVEL):start])
-        after = median(level[stop:np.searchsorted(s, b + LEVEL, "right")])
+        before = median(level[np.searchsorted(s, a - GUIDE_LEVEL_REACH):start])
+        after = median(level[stop:np.searchsorted(s, b + GUIDE_LEVEL_REACH, "right")])
         stations.append(at)
         offsets.append(np.interp(at, [a, b], [before, after]) + drift.at(at))
     for tip, end in ((s[0], span[0]), (s[-1], span[1])):
-        if abs(end - tip) > GUIDE / 4:
-            at = np.linspace(tip, end, int(np.ceil(abs(end - tip) / GUIDE)) + 1)[1:]
+        if abs(end - tip) > GUIDE_SPACING / 4:
+            at = np.linspace(tip, end, int(np.ceil(abs(end - tip) / GUIDE_SPACING)) + 1)[1:]
             stations.append(at)
-            offsets.append(median(level[np.abs(s - tip) <= LEVEL]) + drift.at(at))
+            offsets.append(median(level[np.abs(s - tip) <= GUIDE_LEVEL_REACH]) + drift.at(at))
     if not stations:
         return np.empty(0), np.empty(0)
     return np.concatenate(stations), np.concatenate(offsets)

@@ -5,33 +5,33 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...curves.robust import median
-from ..objects.classify import LANE
-from .dash_pattern import LONGEST_DASH, Piece, merged, pieces, stretches
-from .linking import TWIN, Line
+from ..objects.classify import LANE_CLEARANCE
+from .dash_pattern import MAX_DASH_LENGTH, LinePiece, line_pieces, merged_pieces, stretches
+from .linking import DOUBLE_LINE_SPACING, LinkedLine
 
 # Which lines part the two directions of traffic, and which bound the road: what lines say of each other.
 
-TWO_LANES = 5.0      # m between the outer lines of a road of two lanes
-SAME_OFFSET = 0.25   # m: a lone dash this near the course of a dashed line is one of its dashes
-GOES_ON = 40.0       # m: over a junction, between a double line and the dashes that take its place
-ONE_LANE = 2.2, 5.5  # m of carriageway on either side of a line that is alone: a lane, with a gutter or a cycle lane
+MIN_TWO_LANE_WIDTH = 5.0      # m between the outer lines of a road of two lanes
+SAME_COURSE_OFFSET = 0.25   # m: a lone dash this near the course of a dashed line is one of its dashes
+MAX_JUNCTION_GAP = 40.0       # m: over a junction, between a double line and the dashes that take its place
+SINGLE_LANE_WIDTH = 2.2, 5.5  # m of carriageway on either side of a line that is alone: a lane, with a gutter or a cycle lane
 
 
-def outer_lines_alone(chosen):
+def label_outer_lines(chosen):
     """Two solid lines with room for two lanes and no line between them are the road's edge lines.
 
     The road's own edge is no help there: where there is no curb, a smooth verge may pass for carriageway.
     """
     solid = [one for one in chosen if not one.double and all(piece.pattern == "solid" for piece in one.pieces)]
     pairs = [(one, other) for one in solid for other in solid
-             if TWO_LANES <= other.level - one.level and max(_shared(one, [other]), _shared(other, [one])) > 0.5]
+             if MIN_TWO_LANE_WIDTH <= other.level - one.level and max(_shared(one, [other]), _shared(other, [one])) > 0.5]
     for one, other in pairs:
-        between = [inner for inner in chosen if one.level + TWIN[1] < inner.level < other.level - TWIN[1]]
+        between = [inner for inner in chosen if one.level + DOUBLE_LINE_SPACING[1] < inner.level < other.level - DOUBLE_LINE_SPACING[1]]
         if not _shared(one, between) and not _shared(other, between):
             one.kind = other.kind = "edge"
 
 
-def one_centre(chosen):
+def label_single_centre(chosen):
     """A road has one centre line at a place.
 
     Where it is double, solid lines beside it are lane lines; of two solid lines the
@@ -55,10 +55,10 @@ def one_centre(chosen):
 def _on_course(one, other, central):
     """Whether a line lies where a centre line would go on; of a double line its middle counts, and only near its ends."""
     if not other.double:
-        return abs(other.level - one.level) <= SAME_OFFSET
-    twins = [twin.level for twin in central if twin.double and abs(twin.level - other.level) <= TWIN[1] and _shared(other, [twin])]
+        return abs(other.level - one.level) <= SAME_COURSE_OFFSET
+    twins = [twin.level for twin in central if twin.double and abs(twin.level - other.level) <= DOUBLE_LINE_SPACING[1] and _shared(other, [twin])]
     apart = max(one.span[0] - other.span[1], other.span[0] - one.span[1])
-    return abs(float(np.mean(twins)) - one.level) <= SAME_OFFSET and apart <= GOES_ON
+    return abs(float(np.mean(twins)) - one.level) <= SAME_COURSE_OFFSET and apart <= MAX_JUNCTION_GAP
 
 
 def _shared(one, others):
@@ -74,7 +74,7 @@ def _off_centre(one, chosen):
     return abs(one.level - (max(beside) + min(beside)) / 2) if beside else 0.0
 
 
-def lone_centre(chosen, passes):
+def label_isolated_centre(chosen, passes):
     """A dashed line alone on its road, with room for one lane on either side, parts the two directions.
 
     The lane that was driven is taken to reach as far beyond the vehicle as the line lies on
@@ -85,11 +85,11 @@ def lone_centre(chosen, passes):
     """
     for one in chosen:
         others = [other for other in chosen if other is not one]
-        if one.kind != "lane" or _shared(one, others) > 0.5 or not ONE_LANE[0] <= one.room <= ONE_LANE[1]:
+        if one.kind != "lane" or _shared(one, others) > 0.5 or not SINGLE_LANE_WIDTH[0] <= one.room <= SINGLE_LANE_WIDTH[1]:
             continue
         beside = _driven_beside(one, passes)
         driven = {way: {side for direction, side, _ in beside if direction == way} for way in (1, -1)}
-        if any(ONE_LANE[0] <= 2 * away <= ONE_LANE[1] for _, _, away in beside) and max(map(len, driven.values())) < 2:
+        if any(SINGLE_LANE_WIDTH[0] <= 2 * away <= SINGLE_LANE_WIDTH[1] for _, _, away in beside) and max(map(len, driven.values())) < 2:
             one.kind = "centre"
 
 
@@ -104,22 +104,22 @@ def _driven_beside(one, passes):
             found.append((int(drive.direction), bool(away > 0), abs(away)))
     return found
 
-SHARED = 0.6         # of a line's paint that must have its twin beside it in a double line
-TWIN_PAINT = 4.0     # m of paint: a shorter line beside another is its frayed edge, however short the other is there
-SLIVER = 0.35        # of a line's length: less paint beside a line than this is no second line but its frayed edge
-LONE_DASH = 1.5      # m
-LONG = 15.0          # m of paint: enough to bound a road by
-NEIGHBOUR = 8.0      # m across: a line this near starts and ends where this one does
-WIDE_LANE = 2.6      # m: a solid line with less room than this to the road edge bounds the road
-BAR = 4.0            # m along the road: what is called hatching and is longer is no single bar of it
-AT_BAR = 0.35        # m between the end of a bar and the outline
-BAR_PITCH = 3.0      # m from bar to bar along an outline
-BARS = 4             # that make an outline
-FEW_BARS = 2         # that tell which strands of an outline are its own
+MIN_SHARED_PAINT = 0.6         # of a line's paint that must have its twin beside it in a double line
+MIN_TWIN_PAINT = 4.0     # m of paint: a shorter line beside another is its frayed edge, however short the other is there
+MAX_FRAYED_SHARE = 0.35        # of a line's length: less paint beside a line than this is no second line but its frayed edge
+MIN_SINGLE_DASH = 1.5      # m
+MIN_BOUNDING_PAINT = 15.0          # m of paint: enough to bound a road by
+MAX_NEIGHBOUR_OFFSET = 8.0      # m across: a line this near starts and ends where this one does
+WIDE_LANE_CLEARANCE = 2.6      # m: a solid line with less room than this to the road edge bounds the road
+MAX_BAR_LENGTH = 4.0            # m along the road: what is called hatching and is longer is no single bar of it
+MAX_BAR_END_OFFSET = 0.35        # m between the end of a bar and the outline
+MAX_BAR_PITCH = 3.0      # m from bar to bar along an outline
+MIN_BARS = 4             # that make an outline
+MIN_BARS_OF_STRAND = 2         # that tell which strands of an outline are its own
 
 
 @dataclass
-class Chosen:
+class SelectedLine:
     """A line with its kind, its pieces by status and pattern, and the stations it is drawn between."""
 
     line: object
@@ -140,10 +140,10 @@ def crossings(markings, road):
     return _extents(markings, road, ("zebra", "stop"))
 
 
-def bars(markings, road):
+def hatching_bars(markings, road):
     """(K, 4) the same of the bars of hatched areas."""
     found = _extents(markings, road, ("hatch",))
-    return found[found[:, 1] - found[:, 0] < BAR]
+    return found[found[:, 1] - found[:, 0] < MAX_BAR_LENGTH]
 
 
 def _extents(markings, road, kinds):
@@ -152,7 +152,7 @@ def _extents(markings, road, kinds):
     return found[np.isfinite(found[:, 0])]
 
 
-def choose(lines, drift, crossed, min_paint, hatched=np.empty((0, 4)), passes=()):
+def select_lines(lines, drift, crossed, min_paint, hatched=np.empty((0, 4)), passes=()):
     """The lines worth drawing.
 
     A line needs paint: `min_paint` metres of it, or two dashes of a rhythm, or one dash
@@ -166,12 +166,12 @@ def choose(lines, drift, crossed, min_paint, hatched=np.empty((0, 4)), passes=()
     drift : Drift
     crossed : (K, 4) as `crossings` gives it
     min_paint : metres
-    hatched : (K, 4) as `bars` gives it
+    hatched : (K, 4) as `hatching_bars` gives it
     passes : the drives over the road
 
     Returns
     -------
-    list of Chosen, by station
+    list of SelectedLine, by station
     """
     if not lines:
         return []
@@ -185,27 +185,27 @@ def choose(lines, drift, crossed, min_paint, hatched=np.empty((0, 4)), passes=()
     found = []
     for k, line in enumerate(lines):
         lone = None
-        if not beats[k] and line.painted < LONGEST_DASH:
+        if not beats[k] and line.painted < MAX_DASH_LENGTH:
             lone = _dash_of_another(k, lines, beats, level)
         if frayed[k] or outside[k] or _frames_hatching(line, hatched) or not (line.painted >= min_paint or beats[k] or lone):
             continue
         kind = _kind(line, double[k], bool(beats[k]) or lone is not None)
-        drawn = pieces(parts[k])
+        drawn = line_pieces(parts[k])
         if lone is not None:
-            drawn = [Piece(line.first, line.last, "measured", "dashed")]
+            drawn = [LinePiece(line.first, line.last, "measured", "dashed")]
         neighbours = _painted_beside(k, lines, level)
         drawn = _extended(drawn, parts[k], lone, (painted_from, painted_to), crossed, neighbours, line)
         width = float(np.average([s.width for s in line.strands], weights=[s.length for s in line.strands]))
-        found.append(Chosen(line, kind, bool(double[k]), drawn, width, level[k], _room(line)))
-    outer_lines_alone(found)
-    one_centre(found)
-    lone_centre(found, passes)
+        found.append(SelectedLine(line, kind, bool(double[k]), drawn, width, level[k], _room(line)))
+    label_outer_lines(found)
+    label_single_centre(found)
+    label_isolated_centre(found, passes)
     return found
 
 
 def _painted_beside(k, lines, level):
     """(M, 2) stations between which the lines beside line k are painted."""
-    near = [line for j, line in enumerate(lines) if j != k and abs(level[j] - level[k]) <= NEIGHBOUR]
+    near = [line for j, line in enumerate(lines) if j != k and abs(level[j] - level[k]) <= MAX_NEIGHBOUR_OFFSET]
     return np.array([(strand.first, strand.last) for line in near for strand in line.strands]).reshape(-1, 2)
 
 
@@ -220,11 +220,11 @@ def _beats(parts):
 
 def _dash_of_another(k, lines, beats, level):
     """The Rhythm of a dashed line elsewhere on the road, on whose course and of whose dash length line k is."""
-    if lines[k].painted < LONE_DASH or len(lines[k].strands) > 2:
+    if lines[k].painted < MIN_SINGLE_DASH or len(lines[k].strands) > 2:
         return None
     for j, rhythms in enumerate(beats):
         apart = lines[j].last < lines[k].first or lines[j].first > lines[k].last
-        for beat in rhythms if apart and abs(level[j] - level[k]) <= SAME_OFFSET else ():
+        for beat in rhythms if apart and abs(level[j] - level[k]) <= SAME_COURSE_OFFSET else ():
             differs = abs(lines[k].last - lines[k].first - beat.dash)
             if len(lines[j].strands) >= 3 and differs <= max(0.6, 0.25 * beat.dash):
                 return beat
@@ -249,14 +249,15 @@ def _beside(lines, drift):
                 continue
             away = median(np.abs(tracks[k][1][a] - tracks[j][1][b]))
             share = len(a) / len(tracks[k][0])
-            if away <= TWIN[1] and share > SHARED:
+            if away <= DOUBLE_LINE_SPACING[1] and share > MIN_SHARED_PAINT:
                 # between two junctions both lines of a double are short, and one of them may go on farther beyond
-                twin = away >= TWIN[0] and lines[k].painted >= max(TWIN_PAINT, SHARED * _painted_there(lines[j], lines[k]))
-                if not twin and lines[k].painted < SLIVER * lines[j].painted and lines[k].painted < LONGEST_DASH:
+                least = max(MIN_TWIN_PAINT, MIN_SHARED_PAINT * _painted_there(lines[j], lines[k]))
+                twin = away >= DOUBLE_LINE_SPACING[0] and lines[k].painted >= least
+                if not twin and lines[k].painted < MAX_FRAYED_SHARE * lines[j].painted and lines[k].painted < MAX_DASH_LENGTH:
                     frayed[k] = True
-                elif away >= TWIN[0]:
+                elif away >= DOUBLE_LINE_SPACING[0]:
                     double[k] = True
-                    double[j] |= len(a) / len(tracks[j][0]) > SLIVER
+                    double[j] |= len(a) / len(tracks[j][0]) > MAX_FRAYED_SHARE
     return frayed, double
 
 
@@ -273,14 +274,15 @@ def _beyond_the_edge(lines, level):
     """
     result = np.zeros(len(lines), bool)
     bounds = [j for j, line in enumerate(lines)
-              if line.painted >= LONG and _votes(line).get("edge", 0.0) > 0.3 * line.painted]
+              if line.painted >= MIN_BOUNDING_PAINT and _votes(line).get("edge", 0.0) > 0.3 * line.painted]
     for k, line in enumerate(lines):
         for j in bounds:
             # the vehicle drove between the edge lines
             farther = np.sign(median(lines[j].places()[1])) * (level[k] - level[j])
             shared = min(lines[j].last, line.last) - max(lines[j].first, line.first)
-            least = SLIVER * lines[j].painted if farther < LANE else 0.0
-            if j != k and farther > TWIN[0] and shared > 0.5 * (line.last - line.first) and line.painted < max(least, LONG):
+            least = MAX_FRAYED_SHARE * lines[j].painted if farther < LANE_CLEARANCE else 0.0
+            if j != k and farther > DOUBLE_LINE_SPACING[0] and shared > 0.5 * (line.last - line.first) \
+                    and line.painted < max(least, MIN_BOUNDING_PAINT):
                 result[k] = True
     return result
 
@@ -288,20 +290,20 @@ def _beyond_the_edge(lines, level):
 def hatching_borders(lines, hatched):
     """Strands that frame hatched areas, of those lines that do so as a whole."""
     return [strand for line in lines if len(line.strands) > 1 and _frames_hatching(line, hatched)
-            for strand in line.strands if _frames_hatching(Line([strand]), hatched, FEW_BARS)]
+            for strand in line.strands if _frames_hatching(LinkedLine([strand]), hatched, MIN_BARS_OF_STRAND)]
 
 
-def _frames_hatching(line, hatched, fewest=BARS):
+def _frames_hatching(line, hatched, fewest=MIN_BARS):
     """Whether bars end at a line along most of it; an edge line beside a hatched area goes on after it."""
     s, d, *_ = line.places()
     middle = hatched[:, :2].mean(axis=1)
     at = np.interp(middle, s, d)
-    ends = np.minimum(np.abs(hatched[:, 2] - at), np.abs(hatched[:, 3] - at)) < AT_BAR
+    ends = np.minimum(np.abs(hatched[:, 2] - at), np.abs(hatched[:, 3] - at)) < MAX_BAR_END_OFFSET
     near = middle[ends & (middle > line.first) & (middle < line.last)]
     if len(near) < fewest:
         return False
     steps = np.diff(np.sort(near))
-    return steps[steps < BAR_PITCH].sum() + BAR_PITCH > SHARED * (line.last - line.first)
+    return steps[steps < MAX_BAR_PITCH].sum() + MAX_BAR_PITCH > MIN_SHARED_PAINT * (line.last - line.first)
 
 
 def _votes(line):
@@ -320,7 +322,7 @@ def _room(line):
 def _kind(line, double, dashed):
     if double:
         return "centre"
-    if _votes(line).get("edge", 0.0) > 0.5 * line.painted or _room(line) < (LANE if dashed else WIDE_LANE):
+    if _votes(line).get("edge", 0.0) > 0.5 * line.painted or _room(line) < (LANE_CLEARANCE if dashed else WIDE_LANE_CLEARANCE):
         return "edge"
     return "lane" if dashed else "centre"
 
@@ -341,12 +343,12 @@ def _extended(drawn, parts, lone, painted, crossed, neighbours, line):
         running = ((neighbours[:, 0] <= limit) & (neighbours[:, 1] > limit + 1.0)).any()
         start = max(limit, painted[0], *beside[beside[:, 1] < line.first + 0.5, 1],
                     *(begun[:0] if running else begun[np.argsort(begun)[:1]]))
-        drawn.insert(0, Piece(min(start, line.first), line.first, "measured", "dashed"))
+        drawn.insert(0, LinePiece(min(start, line.first), line.first, "measured", "dashed"))
     if after:
         limit = line.last + after.gap
         ended = neighbours[(neighbours[:, 1] < limit) & (neighbours[:, 1] >= line.last), 1]
         running = ((neighbours[:, 1] >= limit) & (neighbours[:, 0] < limit - 1.0)).any()
         end = min(limit, painted[1], *beside[beside[:, 0] > line.last - 0.5, 0],
                   *(ended[:0] if running else ended[np.argsort(-ended)[:1]]))
-        drawn.append(Piece(line.last, max(end, line.last), "measured", "dashed"))
-    return merged(drawn)
+        drawn.append(LinePiece(line.last, max(end, line.last), "measured", "dashed"))
+    return merged_pieces(drawn)

@@ -2,7 +2,7 @@
 
 Linking looks along the road, never across it. What helps most is that painted lines
 run parallel: the vehicle's weaving shows in all of them alike, and once it is
-taken out (`Drift`) a line is nearly a constant offset, so that the next dash is
+taken out (`CommonTrend`) a line is nearly a constant offset, so that the next dash is
 searched where the line is, not where its last metre happened to point.
 """
 
@@ -13,20 +13,20 @@ import numpy as np
 
 from ...curves.robust import median
 
-BIN = 0.5            # m, nodes of the drift
-MEMORY = 5.0         # m that slopes are averaged over
-END = 6.0            # m of a strand's end that say where it goes
-LEAST_PAINT = 3.0    # m that either side of a long gap must have
-OVERLAP = 0.6        # m that two strands of one line may overlap
-VIEW = 20.0          # m before and after a strand that say where it should lie
-SHORT = 4.0          # m: longer strands make their own case
-STRAY = 0.10         # m across
-TWIN = (0.15, 0.50)  # m between the middles of the two lines of a double line
-BETWEEN = (0.25, 0.75)  # of the way from one line of a double to the other: its middle
-TURN = np.tan(np.radians(10.0))   # across per along by which two strands may differ
+TREND_STEP = 0.5            # m, nodes of the drift
+SLOPE_WINDOW = 5.0         # m that slopes are averaged over
+END_WINDOW = 6.0            # m of a strand's end that say where it goes
+MIN_PAINT_BESIDE_GAP = 3.0    # m that either side of a long gap must have
+MAX_STRAND_OVERLAP = 0.6        # m that two strands of one line may overlap
+STRAY_WINDOW = 20.0          # m before and after a strand that say where it should lie
+MAX_STRAY_LENGTH = 4.0          # m: longer strands make their own case
+MAX_STRAY_OFFSET = 0.10         # m across
+DOUBLE_LINE_SPACING = (0.15, 0.50)  # m between the middles of the two lines of a double line
+MIDDLE_SHARE = (0.25, 0.75)  # of the way from one line of a double to the other: its middle
+MAX_LINE_SLOPE = np.tan(np.radians(10.0))   # across per along by which two strands may differ
 
 
-class Drift:
+class CommonTrend:
     """How the offset of all lines of a road changes together: d(s) of a line minus this is nearly constant."""
 
     def __init__(self, strands):
@@ -35,7 +35,7 @@ class Drift:
         if not long:
             return
         s, slope, weight = _slopes(long)
-        bins = np.floor(s / BIN).astype(np.int64)
+        bins = np.floor(s / TREND_STEP).astype(np.int64)
         order = np.lexsort((slope, bins))
         starts = np.flatnonzero(np.r_[True, np.diff(bins[order]) != 0])
         first = bins.min()
@@ -43,16 +43,16 @@ class Drift:
         middle = np.full(len(nodes), np.nan)
         middle[bins[order[starts]] - first] = _weighted_medians(slope[order], weight[order], starts)
         known = np.isfinite(middle)
-        at = (nodes + 0.5) * BIN
+        at = (nodes + 0.5) * TREND_STEP
         # where nothing is painted for long the lines are taken to follow the reference
         middle = np.interp(at, at[known], middle[known])
         away = np.abs(at - at[known][np.clip(np.searchsorted(at[known], at), 0, known.sum() - 1)])
         behind = np.abs(at - at[known][np.clip(np.searchsorted(at[known], at) - 1, 0, known.sum() - 1)])
         middle *= np.exp(-np.minimum(away, behind) / 10.0)
-        reach = int(MEMORY / BIN / 2)
+        reach = int(SLOPE_WINDOW / TREND_STEP / 2)
         middle = np.convolve(np.pad(middle, reach, mode="edge"), np.full(2 * reach + 1, 1 / (2 * reach + 1)), "valid")
-        self.s = np.r_[at[0] - BIN / 2, at + BIN / 2]
-        self.value = np.r_[0.0, np.cumsum(middle * BIN)]
+        self.s = np.r_[at[0] - TREND_STEP / 2, at + TREND_STEP / 2]
+        self.value = np.r_[0.0, np.cumsum(middle * TREND_STEP)]
 
     def at(self, s):
         """(N,) metres at stations s; flat beyond the painted part."""
@@ -65,13 +65,13 @@ def _slopes(strands):
     starts = np.cumsum(counts) - counts
     owner = np.repeat(np.arange(len(strands)), counts)
     own_s, own_d = (np.concatenate([getattr(strand, name) for strand in strands]) for name in ("s", "d"))
-    at = [np.arange(strand.first + BIN / 2, strand.last, BIN) for strand in strands]
+    at = [np.arange(strand.first + TREND_STEP / 2, strand.last, TREND_STEP) for strand in strands]
     of = np.repeat(np.arange(len(strands)), [len(some) for some in at])
     at = np.concatenate(at)
     # strands one after the other, so far apart that none reaches into the next
-    far = owner * (float(max(strand.last for strand in strands) - min(strand.first for strand in strands)) + 4 * MEMORY)
+    far = owner * (float(max(strand.last for strand in strands) - min(strand.first for strand in strands)) + 4 * SLOPE_WINDOW)
     shift = far[starts]
-    low, high = (np.searchsorted(own_s + far, at + shift[of] + side * MEMORY / 2) for side in (-1, 1))
+    low, high = (np.searchsorted(own_s + far, at + shift[of] + side * SLOPE_WINDOW / 2) for side in (-1, 1))
     # from the strand's own start, so that sums keep their digits
     s, d = own_s - own_s[starts][owner], own_d - own_d[starts][owner]
     n = high - low
@@ -80,12 +80,12 @@ def _slopes(strands):
     good = (n >= 5) & (spread > 0.2 * n * n)
     slope = np.where(good, (n * msd - ms * md) / np.where(good, spread, 1.0), 0.0)
     # a slope beyond any lane change is a false strand's
-    good &= np.abs(slope) < TURN
+    good &= np.abs(slope) < MAX_LINE_SLOPE
     return at[good], slope[good], (spread / np.maximum(n, 1))[good]
 
 
 @dataclass
-class Line:
+class LinkedLine:
     """Strands of one painted line in order of station."""
 
     strands: list
@@ -126,7 +126,7 @@ class _End:
         return self.d + trust * self.slope * (s - self.s)
 
 
-def line_ends(lines, drift, at_start, reach=END):
+def line_ends(lines, drift, at_start, reach=END_WINDOW):
     """The `_End` at the start or the end of every line, from its last `reach` metres of station."""
     if not lines:
         return []
@@ -148,7 +148,7 @@ def line_ends(lines, drift, at_start, reach=END):
     away = s - np.repeat(middle, count)
     squares = np.add.reduceat(weight * away**2, starts) if len(owner) else s
     slope = np.add.reduceat(weight * away * (d - np.repeat(offset, count)), starts) / np.where(span < 1.0, 1.0, squares) if len(owner) else s
-    slope = np.where(span < 1.0, 0.0, np.clip(slope, -TURN, TURN))
+    slope = np.where(span < 1.0, 0.0, np.clip(slope, -MAX_LINE_SLOPE, MAX_LINE_SLOPE))
     found = [_End(float(tip), float("nan"), 0.0, 0.0) for tip in tips]
     for k, lv, sl, m, reached in zip(owner[starts].tolist(), level.tolist(), slope.tolist(), middle.tolist(), span.tolist()):
         tip = float(tips[k])
@@ -169,7 +169,7 @@ def _weighted_medians(values, weight, starts):
     return values[starts + (share < share[:, -1:] / 2).sum(axis=1)]
 
 
-def mismatch(before, after):
+def lateral_mismatch(before, after):
     """Metres across by which the end of one line misses the start of the next, at the middle of the gap.
 
     The better of two views counts: the lines go on as they pointed, or parallel to
@@ -185,13 +185,13 @@ def _trust(before, after):
     return reach**2 / (reach**2 + 4.0)
 
 
-def link(lines, drift, max_gap, allowed=0.30):
+def link_lines(lines, drift, max_gap, allowed=0.30):
     """Lines linked over gaps up to `max_gap`, each end once, the best match first.
 
     Parameters
     ----------
     lines : list of Line
-    drift : Drift
+    drift : CommonTrend
     max_gap : metres
     allowed : metres across at the longest gap; half of it where lines touch
 
@@ -202,17 +202,17 @@ def link(lines, drift, max_gap, allowed=0.30):
     starts, ends = (line_ends(lines, drift, at_start) for at_start in (True, False))
     by_start = np.argsort([e.s for e in starts], kind="stable")
     stations = np.array([starts[k].s for k in by_start])
-    twin_ends, twin_starts = (twins(lines, drift, tips, at_start) for tips, at_start in ((ends, False), (starts, True)))
+    twin_ends, twin_starts = (twin_offsets(lines, drift, tips, at_start) for tips, at_start in ((ends, False), (starts, True)))
     pairs = []
     for a, before in enumerate(ends):
-        low, high = np.searchsorted(stations, [before.s - OVERLAP, before.s + max_gap])
+        low, high = np.searchsorted(stations, [before.s - MAX_STRAND_OVERLAP, before.s + max_gap])
         for b in by_start[low:high]:
             after, gap = starts[b], starts[b].s - before.s
             if b == a or lines[b].last <= lines[a].last:
                 continue
-            if abs(before.slope - after.slope) > TURN and min(before.reach, after.reach) > 3.0:
+            if abs(before.slope - after.slope) > MAX_LINE_SLOPE and min(before.reach, after.reach) > 3.0:
                 continue
-            miss, limit = mismatch(before, after), allowed * (0.5 + 0.5 * max(gap, 0.0) / max(max_gap, 1e-6))
+            miss, limit = lateral_mismatch(before, after), allowed * (0.5 + 0.5 * max(gap, 0.0) / max(max_gap, 1e-6))
             if _between_twins(twin_ends[a], twin_starts[b], before, after):
                 continue
             if miss <= limit:
@@ -225,7 +225,7 @@ def link(lines, drift, max_gap, allowed=0.30):
     return _joined(lines, follows, preceded)
 
 
-def twins(lines, drift, tips, at_start):
+def twin_offsets(lines, drift, tips, at_start):
     """(N,) signed distance across to the other line of a double line at each start (or end), of which `tips` tell; 0 where there is none."""
     spans = np.array([(line.first, line.last) for line in lines]).reshape(-1, 2)
     inner = np.array([tip.s for tip in tips]) + (1.0 if at_start else -1.0) * np.minimum(2.0, (spans[:, 1] - spans[:, 0]) / 2)
@@ -246,7 +246,7 @@ def twins(lines, drift, tips, at_start):
             near = np.abs(s - inner[k]) <= 2.0
             if near.any():
                 away = median(level[near]) - tip.d
-                if TWIN[0] <= abs(away) <= TWIN[1]:
+                if DOUBLE_LINE_SPACING[0] <= abs(away) <= DOUBLE_LINE_SPACING[1]:
                     result[k] = away
     return result
 
@@ -261,7 +261,7 @@ def _between_twins(twin_before, twin_after, before, after):
     middle = (before.s + after.s) / 2
     step = after.offset_at(middle, 0.0) - before.offset_at(middle, 0.0)
     share = step / twin_before if twin_before else -step / twin_after
-    return BETWEEN[0] < share < BETWEEN[1]
+    return MIDDLE_SHARE[0] < share < MIDDLE_SHARE[1]
 
 
 def _joined(lines, follows, preceded):
@@ -273,30 +273,30 @@ def _joined(lines, follows, preceded):
         while k in follows:
             k = follows[k]
             strands += lines[k].strands
-        found.append(Line(sorted(strands, key=lambda strand: strand.first)))
+        found.append(LinkedLine(sorted(strands, key=lambda strand: strand.first)))
     return sorted(found, key=lambda line: (line.first, line.strands[0].d[0]))
 
 
-def link_far(lines, drift, max_gap, max_bridge, same_rhythm, allowed=0.25):
+def link_over_long_gaps(lines, drift, max_gap, max_bridge, same_dash_pattern, allowed=0.25):
     """Link over longer gaps, up to `max_bridge`, where something carries over.
 
     Either both sides have one rhythm of dashes and the gap is a whole multiple of
-    it (`same_rhythm(before, after)`), or another line runs on beside the gap
+    it (`same_dash_pattern(before, after)`), or another line runs on beside the gap
     without one, so that the road does not end there.
     """
     while True:
-        ends, starts = (line_ends(lines, drift, at_start, 3 * END) for at_start in (False, True))
+        ends, starts = (line_ends(lines, drift, at_start, 3 * END_WINDOW) for at_start in (False, True))
         by_start = np.argsort([e.s for e in starts], kind="stable")
         stations = np.array([starts[k].s for k in by_start])
         pairs = []
         for a, before in enumerate(ends):
-            low, high = np.searchsorted(stations, [before.s + max_gap - OVERLAP, before.s + max_bridge])
+            low, high = np.searchsorted(stations, [before.s + max_gap - MAX_STRAND_OVERLAP, before.s + max_bridge])
             for b in by_start[low:high]:
                 after = starts[b]
-                if min(lines[a].painted, lines[b].painted) < LEAST_PAINT or mismatch(before, after) > allowed:
+                if min(lines[a].painted, lines[b].painted) < MIN_PAINT_BESIDE_GAP or lateral_mismatch(before, after) > allowed:
                     continue
-                if same_rhythm(lines[a], lines[b]) or _runs_beside(lines, (a, b), before, after, drift):
-                    score = (mismatch(before, after) / allowed) ** 2 + (after.s - before.s) / max_bridge
+                if same_dash_pattern(lines[a], lines[b]) or _runs_beside(lines, (a, b), before, after, drift):
+                    score = (lateral_mismatch(before, after) / allowed) ** 2 + (after.s - before.s) / max_bridge
                     pairs.append((score, before.s, a, int(b)))
         if not pairs:
             return lines
@@ -321,22 +321,22 @@ def without_strays(line, drift):
     kept = []
     for k, strand in enumerate(line.strands):
         middle = (strand.first + strand.last) / 2
-        window = np.arange(*np.searchsorted(s, [middle - VIEW, middle + VIEW]))
+        window = np.arange(*np.searchsorted(s, [middle - STRAY_WINDOW, middle + STRAY_WINDOW]))
         others, own = window[owner[window] != k], window[owner[window] == k]
         both = (s[others] < middle).any() and (s[others] > middle).any()
-        if strand.length > SHORT and strand.length > 0.1 * line.painted or not both:
+        if strand.length > MAX_STRAY_LENGTH and strand.length > 0.1 * line.painted or not both:
             kept.append(strand)
             continue
         expected = _robust_level(s[others] - middle, level[others], np.minimum(weight[others], 10.0))
-        if abs(median(level[own]) - expected) <= STRAY:
+        if abs(median(level[own]) - expected) <= MAX_STRAY_OFFSET:
             kept.append(strand)
-    return Line(kept)
+    return LinkedLine(kept)
 
 
 def _robust_level(s, level, weight):
     """Value at 0 of a straight line through (s, level), strays counting little."""
     base = weight
-    design = np.c_[np.ones(len(s)), s / VIEW]
+    design = np.c_[np.ones(len(s)), s / STRAY_WINDOW]
     for _ in range(6):
         root = np.sqrt(weight)
         found = np.linalg.lstsq(design * root[:, None], level * root, rcond=None)[0]

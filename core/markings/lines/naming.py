@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
-from ..objects.classify import LINES
+from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
 from .painted_lines import PaintedLines
 
@@ -24,7 +24,7 @@ def named_by_lines(markings: MarkingObjects, lines: PaintedLines) -> MarkingObje
     -------
     MarkingObjects, the same with the new names
     """
-    rows = np.flatnonzero(markings.keep & np.isin(markings.kind.astype(str), LINES))
+    rows = np.flatnonzero(markings.keep & np.isin(markings.kind.astype(str), LINE_KINDS))
     if not len(rows) or not len(lines):
         return markings
     places = shapely.point_on_surface(markings.outlines.polygons()[rows])

@@ -16,7 +16,7 @@ import shapely
 from ...common.features import Features
 from ...common.schemas import MARKING_LINES
 from ...curves.base import Curve
-from .frame_lines import FrameLines, frame_lines, line_parts
+from .frame_lines import FrameLines, line_parts, lines_in_frame
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
@@ -150,4 +150,4 @@ def lines_from_features(features: Features, frame: RoadFrame) -> PaintedLines:
     road = [-1 if row.get("road") is None else int(row["road"]) for row in rows]
     names = [np.array([str(row.get(name) or missing) for row in rows], object)
              for name, missing in (("kind", ""), ("pattern", ""), ("status", "measured"))]
-    return PaintedLines(line, *names, frame_lines(parts, road, frame), crs=features.crs)
+    return PaintedLines(line, *names, lines_in_frame(parts, road, frame), crs=features.crs)

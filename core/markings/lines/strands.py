@@ -9,20 +9,20 @@ from scipy.sparse.csgraph import connected_components
 from ...common.order_statistics import order_by
 from ...curves.robust import median, percentiles
 from ...survey.store.records import COORDINATE_SCALE
-from ..objects.classify import LINES
+from ..objects.classify import LINE_KINDS
 
-BIN = 5000             # units of 0.1 mm: 0.5 m of station in which runs of paint are told apart
-PLACE = 2500           # 0.25 m: one place of the line each, so that neighbouring places are nearly independent
-SPLIT = 600            # 6 cm across without paint separate two runs ...
-ONE_LINE = 2200        # ... unless together they are no wider than one worn line
-WIDEST = 3600          # 36 cm: wider is no line, or it is a double line whose middle is hazy
-PARTED = 6000          # 60 cm: where a mixed marking reaches farther across, it is hatching or a stop line there
-MIXED_SHORTEST = 2.0   # m of paint in a strand of a mixed marking
-LONGER_THAN_SYMBOLS = 9.0  # m: no arrow or letter is this long; a longer mixed marking has a line in it
-FEWEST = 3             # points in a run
-SHORTEST = 0.8         # m of paint in a strand
-REACH = 3              # bins that a strand may leap: 1.5 m of wear
-STEP, SLANT = 600, 400 # units: 6 cm, and 4 cm more per bin, that a strand may move across
+RUN_BIN_UNITS = 5000             # units of 0.1 mm: 0.5 m of station in which runs of paint are told apart
+PLACE_STEP_UNITS = 2500           # 0.25 m: one place of the line each, so that neighbouring places are nearly independent
+RUN_GAP_UNITS = 600            # 6 cm across without paint separate two runs ...
+MAX_WORN_LINE_WIDTH_UNITS = 2200        # ... unless together they are no wider than one worn line
+MAX_LINE_WIDTH_UNITS = 3600          # 36 cm: wider is no line, or it is a double line whose middle is hazy
+MAX_MIXED_WIDTH_UNITS = 6000          # 60 cm: where a mixed marking reaches farther across, it is hatching or a stop line there
+MIN_MIXED_STRAND = 2.0   # m of paint in a strand of a mixed marking
+MIN_MIXED_MARKING = 9.0  # m: no arrow or letter is this long; a longer mixed marking has a line in it
+MIN_POINTS_PER_RUN = 3             # points in a run
+MIN_STRAND_LENGTH = 0.8         # m of paint in a strand
+MAX_BIN_STEP = 3              # bins that a strand may leap: 1.5 m of wear
+LATERAL_STEP_UNITS, LATERAL_STEP_PER_BIN_UNITS = 600, 400 # units: 6 cm, and 4 cm more per bin, that a strand may move across
 
 
 @dataclass
@@ -75,14 +75,14 @@ def line_paint(records, markings, road):
     # of a marking of several parts the last one counts
     known, last = np.unique(markings.cluster[here][::-1], return_index=True)
     here = here[::-1][last]
-    ranks = np.full(len(known), len(LINES))
-    for k, name in enumerate(LINES):
+    ranks = np.full(len(known), len(LINE_KINDS))
+    for k, name in enumerate(LINE_KINDS):
         ranks[markings.keep[here] & (markings.kind[here] == name)] = k
-    mixed_ones = (ranks == len(LINES)) & (markings.length[here] > LONGER_THAN_SYMBOLS)
+    mixed_ones = (ranks == len(LINE_KINDS)) & (markings.length[here] > MIN_MIXED_MARKING)
     number = records["cluster"]
     place = np.clip(np.searchsorted(known, number), 0, len(known) - 1)
     listed, rank = known[place] == number, ranks[place]
-    is_line = listed & (rank < len(LINES))
+    is_line = listed & (rank < len(LINE_KINDS))
     mixed = listed & mixed_ones[place]
     keep = is_line | (mixed & _narrow_there(records, number, mixed))
     return records[keep], rank[keep]
@@ -94,12 +94,12 @@ def _narrow_there(records, number, mixed):
     result = np.zeros(len(records), bool)
     if not len(rows):
         return result
-    bins = records["s"][rows] // BIN
+    bins = records["s"][rows] // RUN_BIN_UNITS
     order = order_by(bins, number[rows])
     rows, bins = rows[order], bins[order]
     starts = np.flatnonzero(np.r_[True, (np.diff(bins) != 0) | (np.diff(number[rows]) != 0)])
     across = records["d"][rows].astype(np.int64)
-    narrow = np.maximum.reduceat(across, starts) - np.minimum.reduceat(across, starts) <= PARTED
+    narrow = np.maximum.reduceat(across, starts) - np.minimum.reduceat(across, starts) <= MAX_MIXED_WIDTH_UNITS
     owner, at = number[rows][starts], bins[starts]
     # the tip of a hatched area is narrow too: keep a metre away from what is wide
     beside = np.zeros(len(starts), bool)
@@ -111,7 +111,7 @@ def _narrow_there(records, number, mixed):
     return result
 
 
-def trace(records, rank):
+def trace_strands(records, rank):
     """Strands of painted line among the points of one road.
 
     Parameters
@@ -125,7 +125,7 @@ def trace(records, rank):
     """
     if not len(records):
         return []
-    across, bins = records["d"], records["s"] // BIN
+    across, bins = records["d"], records["s"] // RUN_BIN_UNITS
     order = order_by(across, bins)
     run = _without_thin(_runs(bins[order], across[order].astype(np.int64)))
     inside = np.flatnonzero(run >= 0)
@@ -134,7 +134,7 @@ def trace(records, rank):
     run, order = run[inside], order[inside]
     starts = np.flatnonzero(np.append(True, run[1:] != run[:-1]))
     node_d, width = _middle_and_width(across[order], starts)
-    label = _chains(bins[order[starts]], node_d, width <= WIDEST)
+    label = _chains(bins[order[starts]], node_d, width <= MAX_LINE_WIDTH_UNITS)
     of_point = np.repeat(label, np.diff(np.append(starts, len(run))))
     used = np.flatnonzero(of_point >= 0)
     order = order[used]
@@ -143,13 +143,13 @@ def trace(records, rank):
 
 def _runs(bins, across):
     """(N,) number of the run of paint each point belongs to; points sorted by bin, then across."""
-    cut = np.r_[True, (np.diff(bins) != 0) | (np.diff(across) > SPLIT)]
+    cut = np.r_[True, (np.diff(bins) != 0) | (np.diff(across) > RUN_GAP_UNITS)]
     starts = np.flatnonzero(cut)
     for _ in range(8):
         if len(starts) < 2:
             break
         last = np.r_[starts[1:], len(bins)] - 1
-        joins = (bins[starts[1:]] == bins[starts[:-1]]) & (across[last[1:]] - across[starts[:-1]] <= ONE_LINE)
+        joins = (bins[starts[1:]] == bins[starts[:-1]]) & (across[last[1:]] - across[starts[:-1]] <= MAX_WORN_LINE_WIDTH_UNITS)
         # one join at a time per neighbourhood: the first of a row of joins
         joins &= ~np.r_[False, joins[:-1]]
         if not joins.any():
@@ -168,7 +168,7 @@ def _part_hazy_doubles(bins, across, starts):
     cuts = []
     for k in wide:
         values = across[starts[k]:last[k] + 1]
-        if len(values) < 4 * FEWEST:
+        if len(values) < 4 * MIN_POINTS_PER_RUN:
             continue
         low, high = values[len(values) // 20], values[-1 - len(values) // 20]
         third = (high - low) / 3
@@ -183,7 +183,7 @@ def _part_hazy_doubles(bins, across, starts):
 
 def _without_thin(run):
     """-1 for the points of runs of too few points."""
-    return np.where(np.bincount(run)[run] >= FEWEST, run, -1)
+    return np.where(np.bincount(run)[run] >= MIN_POINTS_PER_RUN, run, -1)
 
 
 def _middle_and_width(across, starts):
@@ -199,14 +199,14 @@ def _chains(node_bin, node_d, good):
     count = len(node_bin)
     follows = np.full(count, -1)
     preceded = np.zeros(count, bool)
-    span = float(np.ptp(node_d)) + 10 * BIN
-    for leap in range(1, REACH + 1):
+    span = float(np.ptp(node_d)) + 10 * RUN_BIN_UNITS
+    for leap in range(1, MAX_BIN_STEP + 1):
         open_end = np.flatnonzero(good & (follows < 0))
         open_start = np.flatnonzero(good & ~preceded)
         if not len(open_end) or not len(open_start):
             break
         a, b = _mutual(node_bin, node_d, open_end, open_start, leap, span)
-        near = np.abs(node_d[a] - node_d[b]) <= STEP + SLANT * leap
+        near = np.abs(node_d[a] - node_d[b]) <= LATERAL_STEP_UNITS + LATERAL_STEP_PER_BIN_UNITS * leap
         follows[a[near]] = b[near]
         preceded[b[near]] = True
     linked = np.flatnonzero(follows >= 0)
@@ -227,7 +227,7 @@ def _mutual(node_bin, node_d, ends, starts, leap, span):
             away = np.abs(key_b[order][j] - key_a)
             closer = away < gap
             best[closer], gap[closer] = order[j][closer], away[closer]
-        best[gap > 4 * STEP] = -1
+        best[gap > 4 * LATERAL_STEP_UNITS] = -1
         return best
 
     there, back = nearest(ends, starts, leap), nearest(starts, ends, -leap)
@@ -238,7 +238,7 @@ def _mutual(node_bin, node_d, ends, starts, leap, span):
 
 def _strands(columns, label):
     """Strands of points that lie by bin, then across: columns rank, s, d, z and half width, (N,) each, and the chain of each point."""
-    place = columns[1] // PLACE
+    place = columns[1] // PLACE_STEP_UNITS
     # within a place points keep their order, which is across
     order = order_by(place, label)
     label, place, columns = label[order], place[order], [column[order] for column in columns]
@@ -247,7 +247,7 @@ def _strands(columns, label):
     for a, b in zip(bounds[:-1].tolist(), bounds[1:].tolist()):
         strand = _strand(place[a:b], *(column[a:b] for column in columns))
         mixed = strand.classes.get("mixed", 0.0) > 0.5 * strand.length
-        if strand.length >= (MIXED_SHORTEST if mixed else SHORTEST):
+        if strand.length >= (MIN_MIXED_STRAND if mixed else MIN_STRAND_LENGTH):
             found.append(strand)
     return sorted(found, key=lambda strand: (strand.first, strand.d[0]))
 
@@ -268,6 +268,6 @@ def _strand(place, rank, along, across, height, half_width):
     offset = across * COORDINATE_SCALE
     low, high = percentiles(offset - np.repeat(d, count), (2.5, 97.5))
     room = median(half_width * 1e-3 - np.abs(offset))
-    share = np.bincount(rank, minlength=len(LINES) + 1) / len(rank) * (last - first)
-    classes = {name: float(share[k]) for k, name in enumerate(LINES + ("mixed",)) if share[k] > 0}
+    share = np.bincount(rank, minlength=len(LINE_KINDS) + 1) / len(rank) * (last - first)
+    classes = {name: float(share[k]) for k, name in enumerate(LINE_KINDS + ("mixed",)) if share[k] > 0}
     return Strand(first, last, s, d, z, count.astype(float), (high - low) / 0.95, room, classes)

@@ -8,81 +8,62 @@ from scipy.sparse.csgraph import connected_components
 
 from ...common.errors import RoadExtractionError
 from ...survey.store.records import COORDINATE_SCALE
-from .dash_rows import in_rows
-from .near_pairs import near_pairs
-from .shape import ALONG
-
-# What is far paler than the paint about it: sealed seams, joints of bridges, gutters of islands.
-
-STRETCH = 100.0        # m of road, with as much before and after it, whose paint is compared
-FAINTEST, BRIGHT = 2, 90   # % of the bright points there: what only just was one, and paint
-BEST = 75              # % of a marking's points, whose brightness stands for it
-PALE, PALE_BAR = 0.20, 0.30  # of the way from one to the other: less is no paint, nor is a bar across the road, a joint as a rule
-PALE_EDGE = 0.10       # the same of a line where edge lines lie, which wear most and where seams are rare
-
-
-def too_pale(share, kind):
-    """Whether a cluster of such a contrast is no paint, by the class that its shape has."""
-    return share < {"stop": PALE_BAR, "edge": PALE_EDGE}.get(kind, PALE)
-
-
-def contrast(value, s, starts):
-    """How bright clusters are among the bright points of their road.
-
-    Parameters
-    ----------
-    value : (N,) brightness of points, cluster after cluster
-    s : (N,) their stations, units of 0.1 mm
-    starts : (K + 1,) where the clusters begin and the last one ends
-
-    Returns
-    -------
-    (K,) 0 for what only just is brighter than asphalt, 1 for bright paint
-    """
-    value, stretch = value[:starts[-1]], np.floor_divide(s[:starts[-1]], int(STRETCH / COORDINATE_SCALE))
-    if not len(value):
-        return np.empty(0)
-    order = np.argsort(stretch, kind="stable")
-    first, last = int(stretch.min()), int(stretch.max())
-    bounds = np.searchsorted(stretch[order], np.arange(first - 1, last + 3))
-    ends = np.array([np.percentile(value[order[a:b]], [FAINTEST, BRIGHT]) if b > a else (0.0, 1.0)
-                     for a, b in zip(bounds[:-3], bounds[3:])])
-    low, high = ends[stretch - first].T
-    share = (value - low) / np.maximum(high - low, 1e-6)
-    return np.array([np.percentile(share[a:b], BEST) for a, b in zip(starts[:-1], starts[1:])])
+from .dash_rows import rows_of_dashes
+from .near_pairs import overlapping_pairs
+from .shape import MAX_ANGLE_ALONG
 
 NOT_PAINT = ""
-LINES = ("edge", "lane", "centre")
-LANE = 2.0            # m: less room than this between a line and the road edge is no lane: the line is an edge line
-DOUBLE = 0.45         # m between the middles of a double line
-SOLID = 10.0          # m: longer than any dash in town; solid lines inside the road are centre lines
-STRIPE_WIDTH = (0.25, 0.80)
-STRIPE_LENGTH = (1.5, 10.0)
-STRIPE_PITCH = (0.5, 1.6)   # m from stripe to stripe of a zebra crossing
-STRIPES = 3
-ASKEW, PARALLEL = np.radians((35.0, 8.0))  # of the stripes of a crossing to the road, and to each other
-STOP_WIDTH = (0.18, 0.90)
-STOP_LENGTH = 1.5
-COVER = (0.30, 1.15)  # m, diameter of manhole covers
-ROUND = 1.7           # a cover is not longer for its width than this
-FILLED = 0.62         # of its length times its width: a stop line is a full bar, the outline of hatching with its bars is not
-SHAFT, HEAD = 0.20, 0.25  # of an arrow's length: its shaft at least, and at the other end the tip of its head at most
-TOUCHING = 0.3        # m from a bar of hatching to its outline
-BAR_APART, HATCHED_AREA = 3.0, 4.0  # m between bars of one hatching, m along the road: what is longer is more than one bar
-CORNER, SHORT_BAR = 0.30, 2.0  # m from the road edge, m: a lone bar so near and so short is the curb or gutter of a corner
-RIM = 0.60            # m from the road edge where verge, gutter and curb may look like paint
-BEYOND = 0.80         # m outside an edge line that strips are mistrusted
-AT_RIM, NO_LANE = 0.10, 3.0  # m: what lies this near the road edge is mistrusted as far out as no lane has room
-THIN = 0.10           # m: at the very rim a narrower strip is the top or the face of a curb
-THIN_ON_EDGE = 0.14   # m: likewise where it reaches the edge itself
-TOUCHING_EDGE = 0.02  # m between a strip and the road's edge: paint keeps more
-LONGER = 2.0          # times as long as them is the line that says so
-DASH = (0.75, 1.5)    # m: dashes of cycle lanes and bus bays, told from signs and specks by the row they stand in
-DASH_ELONGATED = 3.0  # times as long as wide they are at least
-BENEATH, CAR = 0.8, 6.0  # share of a marking's points, m: what lies so far beneath something and is no longer is the foot of a parked car
-SPECK = 0.30          # m: what is not longer than this and has no companion is no marking
-SPECK_AREA = 0.03     # m2
-ROW = 2.0             # m: points in a row of this length are no speck, however few scan lines met it
+LINE_KINDS = ("edge", "lane", "centre")
+
+# Contrast: sealed seams, joints of bridges and gutters of islands are far paler than the paint beside them
+CONTRAST_STRETCH = 100.0        # m of road, with as much before and after it, whose paint is compared
+FAINT_PERCENTILE, BRIGHT_PERCENTILE = 2, 90   # % of the bright points there: the faintest of them, and paint
+CONTRAST_PERCENTILE = 75        # % of a marking's points, whose brightness stands for it
+MIN_CONTRAST = 0.20             # of the way from the faintest to paint: what has less is no paint
+MIN_CONTRAST_OF_BARS = 0.30     # the same of a bar across the road, which is often a joint
+MIN_CONTRAST_OF_EDGE_LINES = 0.10  # the same of a line where edge lines lie, which wear most and where seams are rare
+
+# Lines
+LANE_CLEARANCE = 2.0            # m: with less between a line and the road edge there is no lane: it is an edge line
+MAX_DOUBLE_LINE_SPACING = 0.45  # m between the middles of a double line
+MIN_SOLID_LENGTH = 10.0         # m: longer than any dash in town; solid lines inside the road are centre lines
+SHORT_DASH_LENGTH = (0.75, 1.5)  # m: dashes of cycle lanes and bus bays, which only their row distinguishes from signs and specks
+MIN_DASH_ELONGATION = 3.0       # length by width of such dashes
+MIN_ROW_OF_POINTS = 2.0         # m: points in a row of this length are no speck, however few scan lines met it
+
+# Zebra crossings
+STRIPE_WIDTH = (0.25, 0.80)     # m
+STRIPE_LENGTH = (1.5, 10.0)     # m
+STRIPE_PITCH = (0.5, 1.6)       # m from stripe to stripe
+MIN_STRIPES = 3
+MAX_STRIPE_SKEW, MAX_STRIPE_TURN = np.radians((35.0, 8.0))  # of the stripes to the road, and to each other
+
+# Stop lines, hatching, arrows
+STOP_LINE_WIDTH = (0.18, 0.90)  # m
+MIN_STOP_LINE_LENGTH = 1.5      # m
+MIN_STOP_LINE_FILL = 0.62       # of length times width: a stop line is a full bar, the outline of hatching with its bars is not
+MAX_BAR_TO_OUTLINE = 0.3        # m from a bar of hatching to its outline
+MAX_HATCHING_PITCH = 3.0        # m between bars of one hatching
+MIN_HATCHING_LENGTH = 4.0       # m along the road: what is longer is more than one bar
+MIN_ARROW_SHAFT, MAX_ARROW_TIP = 0.20, 0.25  # of an arrow's length: its shaft at least, and at the other end the tip of its head at most
+
+# What is no paint
+COVER_DIAMETER = (0.30, 1.15)   # m, manhole covers
+MAX_COVER_ELONGATION = 1.7
+MAX_SPECK_SIZE = 0.30           # m
+MAX_SPECK_AREA = 0.03           # m2
+MIN_COVERED_SHARE = 0.8         # of a marking's points beneath or beside something that stands on the road,
+MAX_CAR_LENGTH = 6.0            # m: and no longer than this, it is the foot of a parked car
+CURB_CORNER_CLEARANCE = 0.30    # m from the road edge: a single bar so near,
+MAX_CURB_CORNER_LENGTH = 2.0    # m: and so short, is the curb or gutter of a corner
+RIM_CLEARANCE = 0.60            # m from the road edge where verge, gutter and curb may look like paint
+STRIP_REACH_BEYOND_EDGE_LINE = 0.80  # m outside an edge line where strips are taken for verge
+ROAD_EDGE_CLEARANCE = 0.10      # m: strips so near to the road edge are taken for verge
+STRIP_REACH_AT_ROAD_EDGE = 3.0  # m: as far outside an edge line as this, since no lane fits there
+MIN_STRIP_WIDTH_AT_RIM = 0.10   # m: at the road edge a narrower strip is the top or the face of a curb
+MIN_STRIP_WIDTH_ON_EDGE = 0.14  # m: likewise where it reaches the edge itself
+EDGE_CONTACT = 0.02             # m between a strip and the road edge: paint keeps more
+EDGE_LINE_LENGTH_RATIO = 2.0    # an edge line is so many times as long as the strips outside it
 
 
 @dataclass(frozen=True)
@@ -105,7 +86,38 @@ class ClassSettings:
                 f"A marking line is {self.min_width} to {self.max_width} m wide; the first must be above 0 m and below the second.")
 
 
-def classify(shapes, half_widths, settings=ClassSettings(), covered=0.0):
+def too_pale(share, kind):
+    """Whether a cluster of such a contrast is no paint, by the class that its shape has."""
+    return share < {"stop": MIN_CONTRAST_OF_BARS, "edge": MIN_CONTRAST_OF_EDGE_LINES}.get(kind, MIN_CONTRAST)
+
+
+def relative_contrast(value, s, starts):
+    """How bright clusters are among the bright points of their road.
+
+    Parameters
+    ----------
+    value : (N,) brightness of points, cluster after cluster
+    s : (N,) their stations, units of 0.1 mm
+    starts : (K + 1,) where the clusters begin and the last one ends
+
+    Returns
+    -------
+    (K,) 0 for what only just is brighter than asphalt, 1 for bright paint
+    """
+    value, stretch = value[:starts[-1]], np.floor_divide(s[:starts[-1]], int(CONTRAST_STRETCH / COORDINATE_SCALE))
+    if not len(value):
+        return np.empty(0)
+    order = np.argsort(stretch, kind="stable")
+    first, last = int(stretch.min()), int(stretch.max())
+    bounds = np.searchsorted(stretch[order], np.arange(first - 1, last + 3))
+    ends = np.array([np.percentile(value[order[a:b]], [FAINT_PERCENTILE, BRIGHT_PERCENTILE]) if b > a else (0.0, 1.0)
+                     for a, b in zip(bounds[:-3], bounds[3:])])
+    low, high = ends[stretch - first].T
+    share = (value - low) / np.maximum(high - low, 1e-6)
+    return np.array([np.percentile(share[a:b], CONTRAST_PERCENTILE) for a, b in zip(starts[:-1], starts[1:])])
+
+
+def classify_markings(shapes, half_widths, settings=ClassSettings(), covered=0.0):
     """Class of every cluster of one road.
 
     Parameters
@@ -130,9 +142,9 @@ def classify(shapes, half_widths, settings=ClassSettings(), covered=0.0):
     scrap = _beyond_the_edge_line(column, line, room)
     found = []
     doubles = _has_partner(column, line)
-    foot = (np.broadcast_to(covered, len(shapes)) > BENEATH) & ~(line & (column["length"] > CAR))
+    foot = (np.broadcast_to(covered, len(shapes)) > MIN_COVERED_SHARE) & ~(line & (column["length"] > MAX_CAR_LENGTH))
     for k, shape in enumerate(shapes):
-        no_paint = _speck(shape) and not (line[k] and shape.length >= ROW) or scrap[k] or foot[k] or curb[k] or _round_cover(shape)
+        no_paint = _speck(shape) and not (line[k] and shape.length >= MIN_ROW_OF_POINTS) or scrap[k] or foot[k] or curb[k] or _round_cover(shape)
         if room[k] < -settings.margin or no_paint or _gutter(shape, room[k], line[k], zebra[k]):
             kind = NOT_PAINT
         elif zebra[k]:
@@ -141,11 +153,11 @@ def classify(shapes, half_widths, settings=ClassSettings(), covered=0.0):
             kind = _line_kind(shape, room[k], doubles[k])
         else:
             kind = _other_kind(shape)
-        found.append((kind, "keep" if kind in LINES else "other"))
+        found.append((kind, "keep" if kind in LINE_KINDS else "other"))
     for k in _outlines(column, [kind for kind, _ in found]):
         found[k] = "hatch", "other"
-    for k in _lone_bars(column, [kind for kind, _ in found]):
-        found[k] = NOT_PAINT if room[k] < CORNER and shapes[k].length < SHORT_BAR else "symbol", "other"
+    for k in _single_bars(column, [kind for kind, _ in found]):
+        found[k] = NOT_PAINT if room[k] < CURB_CORNER_CLEARANCE and shapes[k].length < MAX_CURB_CORNER_LENGTH else "symbol", "other"
     return found
 
 
@@ -157,17 +169,17 @@ def columns_of(shapes):
 
 def _is_line(column, settings):
     # of a line far off each scan line may show one point only, and no width
-    width, thin = column["width"], column["length"] >= SOLID
+    width, thin = column["width"], column["length"] >= MIN_SOLID_LENGTH
     return column["along"] & ((width >= settings.min_width) | thin) & (width <= settings.max_width) \
         & (column["length"] >= settings.min_length) & (column["elongation"] >= settings.min_elongation)
 
 
 def _dashes_in_rows(shapes, column, room, settings):
     """Short dashes one after the other along the road, away from its rim, where the stones of a curb stand in rows, too."""
-    short = column["along"] & (column["length"] >= DASH[0]) & (column["length"] <= DASH[1]) & (room > RIM) \
-        & (column["width"] >= settings.min_width) & (column["width"] <= settings.max_width) & (column["elongation"] >= DASH_ELONGATED)
+    short = column["along"] & (column["length"] >= SHORT_DASH_LENGTH[0]) & (column["length"] <= SHORT_DASH_LENGTH[1]) & (room > RIM_CLEARANCE) \
+        & (column["width"] >= settings.min_width) & (column["width"] <= settings.max_width) & (column["elongation"] >= MIN_DASH_ELONGATION)
     result, rows = np.zeros(len(shapes), bool), np.flatnonzero(short)
-    for row in in_rows([shapes[k] for k in rows]):
+    for row in rows_of_dashes([shapes[k] for k in rows]):
         result[rows[row]] = True
     return result
 
@@ -177,30 +189,30 @@ def zebra_stripes(column, shortest=STRIPE_LENGTH[0]):
 
     column : dict of (N,) of the Shapes; shortest : m
     """
-    stripe = (np.abs(column["direction"]) <= ASKEW) & (column["width"] >= STRIPE_WIDTH[0]) & (column["width"] <= STRIPE_WIDTH[1]) \
+    stripe = (np.abs(column["direction"]) <= MAX_STRIPE_SKEW) & (column["width"] >= STRIPE_WIDTH[0]) & (column["width"] <= STRIPE_WIDTH[1]) \
         & (column["length"] >= shortest) & (column["length"] <= STRIPE_LENGTH[1])
     rows = np.flatnonzero(stripe)
     result = np.zeros(len(stripe), bool)
-    if len(rows) < STRIPES:
+    if len(rows) < MIN_STRIPES:
         return result
     s, d = ((column[low][rows] + column[high][rows]) / 2 for low, high in (("s0", "s1"), ("d0", "d1")))
     turn, length = column["direction"][rows], column["length"][rows]
     beside = [np.empty((0, 2), np.intp)]
-    for a, b in near_pairs(s, s, s, s, np.hypot(STRIPE_LENGTH[1], STRIPE_PITCH[1])):
+    for a, b in overlapping_pairs(s, s, s, s, np.hypot(STRIPE_LENGTH[1], STRIPE_PITCH[1])):
         ds, dd = s[b] - s[a], d[b] - d[a]
         # on a crossing askew each stripe begins somewhat farther than the one before
         middle = (turn[b] + turn[a]) / 2
         ahead, pitch = ds * np.cos(middle) + dd * np.sin(middle), np.abs(dd * np.cos(middle) - ds * np.sin(middle))
         shared = (length[b] + length[a]) / 2 - np.abs(ahead) > 0.5 * np.minimum(length[b], length[a])
         # the bars of hatching follow each other along the road
-        across = ((np.abs(dd) > np.abs(ds)) | (np.abs(middle) <= ALONG)) & (np.abs(turn[b] - turn[a]) <= PARALLEL)
+        across = ((np.abs(dd) > np.abs(ds)) | (np.abs(middle) <= MAX_ANGLE_ALONG)) & (np.abs(turn[b] - turn[a]) <= MAX_STRIPE_TURN)
         found = shared & across & (pitch >= STRIPE_PITCH[0]) & (pitch <= STRIPE_PITCH[1])
         beside.append(np.column_stack([a, b])[found])
     beside = np.concatenate(beside)
     graph = coo_matrix((np.ones(len(beside), bool), (beside[:, 0], beside[:, 1])), shape=(len(rows),) * 2)
     count, group = connected_components(graph, directed=False)
     size = np.bincount(group, minlength=count)
-    result[rows] = size[group] >= STRIPES
+    result[rows] = size[group] >= MIN_STRIPES
     return result
 
 
@@ -209,23 +221,23 @@ def _has_partner(column, line):
     rows = np.flatnonzero(line)
     result = np.zeros(len(line), bool)
     s0, s1, d = column["s0"][rows], column["s1"][rows], column["offset"][rows]
-    for a, b in near_pairs(s0, s1, s0, s1):
+    for a, b in overlapping_pairs(s0, s1, s0, s1):
         overlap = np.minimum(s1[a], s1[b]) - np.maximum(s0[a], s0[b])
-        result[rows[a[(a != b) & (np.abs(d[a] - d[b]) <= DOUBLE) & (overlap > 0.5 * (s1 - s0)[a])]]] = True
+        result[rows[a[(a != b) & (np.abs(d[a] - d[b]) <= MAX_DOUBLE_LINE_SPACING) & (overlap > 0.5 * (s1 - s0)[a])]]] = True
     return result
 
 
 def _beyond_the_edge_line(column, line, room):
     """Short strips between a line and the rim of the road: verge, gutter or curb, where nothing is painted."""
     short = column["along"] & (column["s1"] - column["s0"] > column["d1"] - column["d0"])
-    rows, lines = np.flatnonzero(short & (room < RIM)), np.flatnonzero(line)
+    rows, lines = np.flatnonzero(short & (room < RIM_CLEARANCE)), np.flatnonzero(line)
     result = np.zeros(len(short), bool)
     s0, s1, d, length = (column[name] for name in ("s0", "s1", "offset", "length"))
     # a double line is as long on either side
-    on_edge = room < column["width"] / 2 + TOUCHING_EDGE
-    longest = np.where(on_edge, 1.0, LONGER) * length
-    reach = np.where(room < AT_RIM, NO_LANE, BEYOND)
-    for a, b in near_pairs(s0[rows], s1[rows], s0[lines], s1[lines]):
+    on_edge = room < column["width"] / 2 + EDGE_CONTACT
+    longest = np.where(on_edge, 1.0, EDGE_LINE_LENGTH_RATIO) * length
+    reach = np.where(room < ROAD_EDGE_CLEARANCE, STRIP_REACH_AT_ROAD_EDGE, STRIP_REACH_BEYOND_EDGE_LINE)
+    for a, b in overlapping_pairs(s0[rows], s1[rows], s0[lines], s1[lines]):
         a, b = rows[a], lines[b]
         outward = np.sign(d[a]) * (d[a] - d[b])
         overlap = np.minimum(s1[a], s1[b]) - np.maximum(s0[a], s0[b])
@@ -238,51 +250,51 @@ def _outlines(column, kinds):
     kinds = np.array(kinds, dtype=object)
     bars, rows = np.flatnonzero(kinds == "hatch"), np.flatnonzero(kinds == "symbol")
     touched = np.zeros(len(kinds), bool)
-    for a, b in near_pairs(column["s0"][rows], column["s1"][rows], column["s0"][bars], column["s1"][bars], TOUCHING):
+    for a, b in overlapping_pairs(column["s0"][rows], column["s1"][rows], column["s0"][bars], column["s1"][bars], MAX_BAR_TO_OUTLINE):
         a, b = rows[a], bars[b]
         touch = np.ones(len(a), bool)
         for low, high in (("s0", "s1"), ("d0", "d1")):
-            touch &= (column[low][a] < column[high][b] + TOUCHING) & (column[high][a] > column[low][b] - TOUCHING)
+            touch &= (column[low][a] < column[high][b] + MAX_BAR_TO_OUTLINE) & (column[high][a] > column[low][b] - MAX_BAR_TO_OUTLINE)
         touched[a[touch]] = True
     return np.flatnonzero(touched)
 
 
-def _lone_bars(column, kinds):
+def _single_bars(column, kinds):
     """What looked like a bar of hatching and has no other bar near it."""
     rows = np.flatnonzero(np.array([kind == "hatch" for kind in kinds], bool))
     first, last = column["s0"][rows], column["s1"][rows]
-    single = last - first < HATCHED_AREA
-    for a, b in near_pairs(first, last, first, last, BAR_APART):
+    single = last - first < MIN_HATCHING_LENGTH
+    for a, b in overlapping_pairs(first, last, first, last, MAX_HATCHING_PITCH):
         away = np.zeros(len(a))
         for low, high in (("s0", "s1"), ("d0", "d1")):
             low, high = column[low][rows], column[high][rows]
             away = np.maximum(away, np.maximum(low[a], low[b]) - np.minimum(high[a], high[b]))
-        single[a[(a != b) & (away < BAR_APART)]] = False
+        single[a[(a != b) & (away < MAX_HATCHING_PITCH)]] = False
     return rows[single]
 
 
 def _line_kind(shape, room, double):
-    if room < LANE and not double:
+    if room < LANE_CLEARANCE and not double:
         return "edge"
-    return "centre" if double or shape.length > SOLID else "lane"
+    return "centre" if double or shape.length > MIN_SOLID_LENGTH else "lane"
 
 
 def _speck(shape):
-    return shape.area < SPECK_AREA or max(shape.length, shape.width) < SPECK
+    return shape.area < MAX_SPECK_AREA or max(shape.length, shape.width) < MAX_SPECK_SIZE
 
 
 def _round_cover(shape):
     along, across = shape.s1 - shape.s0, shape.d1 - shape.d0
     longer, shorter = max(along, across), min(along, across)
     # a dash askew fills a square, too
-    return COVER[0] <= longer <= COVER[1] and shorter > 0.7 * longer and shape.closed_area > 0.5 * along * across \
-        and shape.elongation < ROUND
+    return COVER_DIAMETER[0] <= longer <= COVER_DIAMETER[1] and shorter > 0.7 * longer and shape.closed_area > 0.5 * along * across \
+        and shape.elongation < MAX_COVER_ELONGATION
 
 
 def _curb(shape, room):
     """A hair of brightness along the very edge of the road."""
-    on_edge = room < shape.width / 2 + TOUCHING_EDGE / 2
-    return shape.along and room < AT_RIM and shape.width < (THIN_ON_EDGE if on_edge else THIN)
+    on_edge = room < shape.width / 2 + EDGE_CONTACT / 2
+    return shape.along and room < ROAD_EDGE_CLEARANCE and shape.width < (MIN_STRIP_WIDTH_ON_EDGE if on_edge else MIN_STRIP_WIDTH_AT_RIM)
 
 
 def _gutter(shape, room, line, zebra):
@@ -292,12 +304,12 @@ def _gutter(shape, room, line, zebra):
 
 def _other_kind(shape):
     turn = abs(shape.direction)
-    if shape.across and STOP_WIDTH[0] <= shape.width <= STOP_WIDTH[1] and shape.length >= STOP_LENGTH \
-            and shape.closed_area >= FILLED * shape.length * shape.width:
+    if shape.across and STOP_LINE_WIDTH[0] <= shape.width <= STOP_LINE_WIDTH[1] and shape.length >= MIN_STOP_LINE_LENGTH \
+            and shape.closed_area >= MIN_STOP_LINE_FILL * shape.length * shape.width:
         return "stop"
     along, across = shape.s1 - shape.s0, shape.d1 - shape.d0
     if 1.5 <= along <= 8.0 and 0.3 <= across <= 1.8 and shape.area < 0.7 * along * across and turn < np.radians(25):
-        return "arrow" if max(shape.stems) >= SHAFT and min(shape.stems) <= HEAD else "symbol"
+        return "arrow" if max(shape.stems) >= MIN_ARROW_SHAFT and min(shape.stems) <= MAX_ARROW_TIP else "symbol"
     if (np.radians(20) < turn <= np.radians(75) and shape.elongation > 2) or (along > 4 and across > 0.8):
         return "hatch"
     return "symbol"

@@ -17,19 +17,20 @@ from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...curves.robust import median
 from ...survey.store.records import COORDINATE_SCALE, Points, join_columns
-from .classify import LINES, NOT_PAINT, ClassSettings, classify, contrast, too_pale
+from .classify import LINE_KINDS, NOT_PAINT, ClassSettings, classify_markings, relative_contrast, too_pale
 from .connected_cells import components, occupied
-from .marking_objects import marking_objects
+from .marking_objects import make_marking_objects
 from .outline import band, cell_outline, painted_cells, parts, to_local
-from .shape import CELL, measure
+from .road_grid import CELL_UNITS
+from .shape import measure
 from .split_merge import join_fragments, split_compounds
 
-WINDOW = 1250    # cells of 4 cm: 50 m of station are linked at a time
-FRAGMENT = 1     # points: the smallest worn rest that a line may be joined from
-STRIPS = LINES + ("zebra", "stop")  # drawn as even strips, the others cell by cell
-SQUARE_TO_ROAD = np.radians(5.0)  # stripes of a crossing that is more askew end askew to their run
-STRETCH = 2.5    # neighbours may be this times the distance apart along the road,
-SQUEEZE = 2.0    # and across it the distance over this
+LINKING_WINDOW_CELLS = 1250    # cells of 4 cm: 50 m of station are linked at a time
+MIN_FRAGMENT_POINTS = 1     # points: the smallest worn rest that a line may be joined from
+STRIP_KINDS = LINE_KINDS + ("zebra", "stop")  # drawn as even strips, the others cell by cell
+MAX_SKEW_OF_EVEN_STRIPES = np.radians(5.0)  # stripes of a crossing that is more askew end askew to their run
+REACH_ALONG_FACTOR = 2.5    # neighbours may be this times the distance apart along the road,
+REACH_ACROSS_DIVISOR = 2.0    # and across it the distance over this
 
 
 @dataclass(frozen=True)
@@ -69,8 +70,8 @@ def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress
     roads = marking_points.roads()
     for k, road in enumerate(roads):
         part = progress.part(k / len(roads), (k + 1) / len(roads))
-        records, labels = group(marking_points, road, settings.distance, part.part(0, 0.4))
-        order, starts, _ = _by_cluster(split_compounds(records, labels), FRAGMENT)
+        records, labels = connected_points(marking_points, road, settings.distance, part.part(0, 0.4))
+        order, starts, _ = _by_cluster(split_compounds(records, labels), MIN_FRAGMENT_POINTS)
         records = records.take(order)
         s, d = records["s"], records["d"]
         pieces = [measure(s[a:b], d[a:b]) for a, b in zip(starts[:-1].tolist(), starts[1:].tolist())]
@@ -84,9 +85,9 @@ def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress
         half_width, hidden = records["half_width"].astype(float), records["covered"]
         half_widths = [median(half_width[a:b]) * 1e-3 for a, b in bounds]
         covered = [float(np.count_nonzero(hidden[a:b])) / (b - a) for a, b in bounds]
-        kinds = classify(shapes, half_widths, settings.classes, covered)
+        kinds = classify_markings(shapes, half_widths, settings.classes, covered)
         if marking_points.has_corrected:
-            bright = contrast(Points(records).value, records["s"], starts)
+            bright = relative_contrast(Points(records).value, records["s"], starts)
             kinds = [(NOT_PAINT, "other") if too_pale(share, kind) else (kind, use) for share, (kind, use) in zip(bright.tolist(), kinds)]
         cluster = np.zeros(len(records), np.int32)
         for i in sorted(range(len(bounds)), key=lambda i: (shapes[i].s0, shapes[i].d0, shapes[i].s1)):
@@ -103,7 +104,7 @@ def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress
         _put(clustered.store, road, cluster, marking_points)
     progress.info(f"Markings: {number} found; {refused} clusters were left out as gutters, seams, covers, specks or the feet of what "
                  "stands on the road.")
-    return marking_objects(rows, polygons, frame, marking_points.crs), clustered
+    return make_marking_objects(rows, polygons, frame, marking_points.crs), clustered
 
 
 def _put(store, road, cluster, points):
@@ -128,7 +129,7 @@ def _relabelled(records, starts, number):
     return np.r_[labels, len(number) + np.arange(rest)]
 
 
-def group(marking_points, road, distance, progress=Progress()):
+def connected_points(marking_points, road, distance, progress=Progress()):
     """Connected components of the points of one road.
 
     Returns
@@ -144,14 +145,16 @@ def group(marking_points, road, distance, progress=Progress()):
     window nor section length shows in the result.
     """
     start, end = marking_points.store.span(road)
-    reach = int(np.ceil(distance * STRETCH / (CELL * COORDINATE_SCALE))) + 1
+    reach = int(np.ceil(distance * REACH_ALONG_FACTOR / (CELL_UNITS * COORDINATE_SCALE))) + 1
     records, labels, links = [], [], []
     shared_cells, shared_labels, count = np.empty((0, 2), np.int64), np.empty(0, np.int64), 0
-    windows = range(int(np.floor(start / COORDINATE_SCALE / CELL / WINDOW)), int(np.floor(end / COORDINATE_SCALE / CELL / WINDOW)) + 1)
+    first_window, last_window = (int(np.floor(s / COORDINATE_SCALE / CELL_UNITS / LINKING_WINDOW_CELLS)) for s in (start, end))
+    windows = range(first_window, last_window + 1)
     for step, window in enumerate(windows):
-        first, last = window * WINDOW, (window + 1) * WINDOW
-        found = marking_points.window(road, (first - 1) * CELL * COORDINATE_SCALE, (last + reach + 1) * CELL * COORDINATE_SCALE).records
-        column = found["s"] // CELL
+        first, last = window * LINKING_WINDOW_CELLS, (window + 1) * LINKING_WINDOW_CELLS
+        bounds = (row * CELL_UNITS * COORDINATE_SCALE for row in (first - 1, last + reach + 1))
+        found = marking_points.window(road, *bounds).records
+        column = found["s"] // CELL_UNITS
         found = found[(column >= first) & (column < last + reach)]
         cells, member, component = _components(found, distance)
         component = component + count
@@ -159,7 +162,7 @@ def group(marking_points, road, distance, progress=Progress()):
         links.append(_shared(shared_cells, shared_labels, cells, component))
         beyond = cells[:, 0] >= last
         shared_cells, shared_labels = cells[beyond], component[beyond]
-        own = found["s"] // CELL < last
+        own = found["s"] // CELL_UNITS < last
         records.append(found[own])
         labels.append(component[member[own]])
         progress.report((step + 1) / len(windows))
@@ -174,12 +177,13 @@ def group(marking_points, road, distance, progress=Progress()):
 
 def _components(records, distance):
     """Occupied cells, the cell of each point, and the component of each cell."""
-    cells, member = occupied(records["s"] // CELL, records["d"] // CELL)
+    cells, member = occupied(records["s"] // CELL_UNITS, records["d"] // CELL_UNITS)
     size = np.bincount(member, minlength=len(cells))
     # sums of integers are the same in any order
     s, d = (np.bincount(member, records[name], len(cells)) for name in ("s", "d"))
-    places = np.stack([s / size / STRETCH, d / size * SQUEEZE], axis=1) * COORDINATE_SCALE
-    return cells, member, components(cells, places, (CELL * COORDINATE_SCALE / STRETCH, CELL * COORDINATE_SCALE * SQUEEZE), distance)
+    places = np.stack([s / size / REACH_ALONG_FACTOR, d / size * REACH_ACROSS_DIVISOR], axis=1) * COORDINATE_SCALE
+    size_of_cell = CELL_UNITS * COORDINATE_SCALE / REACH_ALONG_FACTOR, CELL_UNITS * COORDINATE_SCALE * REACH_ACROSS_DIVISOR
+    return cells, member, components(cells, places, size_of_cell, distance)
 
 
 def _shared(cells, labels, others, other_labels):
@@ -210,7 +214,7 @@ def _by_cluster(labels, fewest):
 
 def _outline(records, shape, kind, road):
     """The polygons of one marking in local coordinates, from the road's start on."""
-    if kind in STRIPS and not (kind == "zebra" and abs(shape.direction) > SQUARE_TO_ROAD):
+    if kind in STRIP_KINDS and not (kind == "zebra" and abs(shape.direction) > MAX_SKEW_OF_EVEN_STRIPES):
         drawn = band(records["s"], records["d"], shape)
     else:
         drawn = cell_outline(*painted_cells(records["s"] * COORDINATE_SCALE, records["d"] * COORDINATE_SCALE))

@@ -9,17 +9,17 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-REACH = 3.0        # m between the middles of neighbours in a row
-SHORTEST = 0.25    # m between them at least
-BROADEST = 0.45    # m that a dash may reach across its row
-LATERAL = 0.12     # m off the line through its neighbours
-GAP = 3.0          # times the length of the longer dash: no gap of a row is longer
-UNEVEN = 2.5       # times: how much one step of a row may be longer than the next, a dash worn away between them
-TURN = np.cos(np.radians(12.0))   # by which a row may turn from dash to dash
-FEWEST = 4
+MAX_DASH_SPACING = 3.0        # m between the middles of neighbours in a row
+MIN_DASH_SPACING = 0.25    # m between them at least
+MAX_DASH_BREADTH = 0.45    # m that a dash may reach across its row
+MAX_DASH_OFFSET = 0.12     # m off the line through its neighbours
+MAX_GAP_PER_DASH = 3.0          # times the length of the longer dash: no gap of a row is longer
+MAX_STEP_RATIO = 2.5       # times: how much one step of a row may be longer than the next, a dash worn away between them
+MIN_STEP_COSINE = np.cos(np.radians(12.0))   # by which a row may turn from dash to dash
+MIN_DASHES_IN_ROW = 4
 
 
-def in_rows(shapes):
+def rows_of_dashes(shapes):
     """Pieces that stand in rows.
 
     Parameters
@@ -30,18 +30,18 @@ def in_rows(shapes):
     -------
     list of ascending int arrays, the pieces of each row; a piece where rows meet is in several
     """
-    if len(shapes) < FEWEST:
+    if len(shapes) < MIN_DASHES_IN_ROW:
         return []
     middle = np.array([((shape.s0 + shape.s1) / 2, (shape.d0 + shape.d1) / 2) for shape in shapes])
     length, width, turn = (np.array([getattr(shape, name) for shape in shapes]) for name in ("length", "width", "direction"))
-    pairs = cKDTree(middle).query_pairs(REACH, output_type="ndarray")
+    pairs = cKDTree(middle).query_pairs(MAX_DASH_SPACING, output_type="ndarray")
     pairs = np.concatenate([pairs, pairs[:, ::-1]])
     pairs = pairs[np.lexsort(pairs.T[::-1])]
     step = middle[pairs[:, 1]] - middle[pairs[:, 0]]
     apart = np.hypot(*step.T)
     ways = step / np.maximum(apart, 1e-9)[:, None]
-    links = _narrow(length, width, turn, pairs, ways) & (apart >= SHORTEST) \
-        & (apart - length[pairs].mean(axis=1) <= GAP * length[pairs].max(axis=1))
+    links = _narrow(length, width, turn, pairs, ways) & (apart >= MIN_DASH_SPACING) \
+        & (apart - length[pairs].mean(axis=1) <= MAX_GAP_PER_DASH * length[pairs].max(axis=1))
     return _chains(pairs[links], apart[links], ways[links])
 
 
@@ -51,7 +51,7 @@ def _narrow(length, width, turn, pairs, ways):
     narrow = np.ones(len(pairs), bool)
     for k in pairs.T:
         off = turn[k] - heading
-        narrow &= length[k] * np.abs(np.sin(off)) + width[k] * np.abs(np.cos(off)) <= BROADEST
+        narrow &= length[k] * np.abs(np.sin(off)) + width[k] * np.abs(np.cos(off)) <= MAX_DASH_BREADTH
     return narrow
 
 
@@ -63,13 +63,13 @@ def _chains(pairs, apart, ways):
     count = last - first
     before = np.repeat(np.arange(len(pairs)), count)
     after = order[np.arange(len(before)) - np.repeat(np.cumsum(count) - count - first, count)]
-    even = np.maximum(apart[before], apart[after]) <= UNEVEN * np.minimum(apart[before], apart[after])
-    straight = (ways[before] * ways[after]).sum(axis=1) >= TURN
+    even = np.maximum(apart[before], apart[after]) <= MAX_STEP_RATIO * np.minimum(apart[before], apart[after])
+    straight = (ways[before] * ways[after]).sum(axis=1) >= MIN_STEP_COSINE
     off = apart[after] * np.abs(ways[before, 0] * ways[after, 1] - ways[before, 1] * ways[after, 0])
-    joined = even & straight & (off <= LATERAL)
+    joined = even & straight & (off <= MAX_DASH_OFFSET)
     graph = coo_matrix((np.ones(joined.sum(), bool), (before[joined], after[joined])), shape=(len(pairs),) * 2)
     number, row = connected_components(graph, directed=False)
     # a row is found twice, forwards and backwards
     found = {tuple(np.unique(pairs[row == k]).tolist())
-             for k in np.flatnonzero(np.bincount(row, minlength=number) >= FEWEST - 1)}
-    return [np.array(members) for members in sorted(found) if len(members) >= FEWEST]
+             for k in np.flatnonzero(np.bincount(row, minlength=number) >= MIN_DASHES_IN_ROW - 1)}
+    return [np.array(members) for members in sorted(found) if len(members) >= MIN_DASHES_IN_ROW]

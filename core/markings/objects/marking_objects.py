@@ -112,11 +112,11 @@ class MarkingObjects:
 
 
 # Fields of the layer that hold one number each, by the attribute of MarkingObjects
-NUMBERS = dict(station="station_m", offset="offset_m", length="length_m", width="width_m", elongation="elongation",
+NUMBER_FIELDS = dict(station="station_m", offset="offset_m", length="length_m", width="width_m", elongation="elongation",
                scan_distance="scan_m", points="points")
 
 
-def marking_objects(rows: Sequence[dict[str, Any]], polygons: Sequence[Any], frame: RoadFrame, crs: str = "") -> MarkingObjects:
+def make_marking_objects(rows: Sequence[dict[str, Any]], polygons: Sequence[Any], frame: RoadFrame, crs: str = "") -> MarkingObjects:
     """MarkingObjects of rows with the fields of MARKINGS and of their outlines.
 
     Parameters
@@ -132,7 +132,7 @@ def marking_objects(rows: Sequence[dict[str, Any]], polygons: Sequence[Any], fra
     road, outlines = column("road", -1, int), Outlines.of(polygons)
     return MarkingObjects(
         road, column("cluster", -1, int), column("class", "", object), column("use", "", object) == "keep",
-        *(column(name, np.nan, float) for name in NUMBERS.values()), _extents(outlines, road, frame), outlines, crs)
+        *(column(name, np.nan, float) for name in NUMBER_FIELDS.values()), _extents(outlines, road, frame), outlines, crs)
 
 
 def _extents(outlines: Outlines, road: np.ndarray, frame: RoadFrame) -> np.ndarray:
@@ -161,7 +161,7 @@ def markings_to_features(markings: MarkingObjects, frame: RoadFrame) -> Features
     Features MARKINGS, one row an element, in the same order
     """
     shapes = markings.outlines.polygons(frame.origin)
-    numbers = {name: getattr(markings, attribute).tolist() for attribute, name in NUMBERS.items()}
+    numbers = {name: getattr(markings, attribute).tolist() for attribute, name in NUMBER_FIELDS.items()}
     rows = [dict(road=road, cluster=cluster, use="keep" if keep else "other", area_m2=area, **{"class": kind})
             for road, cluster, keep, kind, area in zip(markings.road.tolist(), markings.cluster.tolist(), markings.keep.tolist(),
                                                        markings.kind.tolist(), shapely.area(shapes).tolist())]
@@ -185,7 +185,7 @@ def markings_from_features(features: Features, frame: RoadFrame) -> MarkingObjec
     """
     local = [None if shape is None else shapely.transform(shape, lambda places: places - frame.origin[:places.shape[1]], include_z=shape.has_z)
              for shape in features.geometries]
-    return marking_objects(features.rows, local, frame, features.crs)
+    return make_marking_objects(features.rows, local, frame, features.crs)
 
 
 def with_kinds_of(features: Features, markings: MarkingObjects) -> Features:

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-PAIRS = 1 << 18  # about so many are handed out at a time
-HAIR = 1e-6      # m, more than coordinates are rounded by
+PAIRS_PER_BLOCK = 1 << 18  # about so many are handed out at a time
+ROUNDING_TOLERANCE = 1e-6      # m, more than coordinates are rounded by
 
 
-def near_pairs(first, last, other_first, other_last, apart=0.0):
+def overlapping_pairs(first, last, other_first, other_last, apart=0.0):
     """Pairs of stretches that overlap, touch or lie no farther apart than a distance.
 
     Parameters
@@ -20,7 +20,7 @@ def near_pairs(first, last, other_first, other_last, apart=0.0):
     a, b : (P,) int each, indices of the first and the second stretch of each pair. Every pair comes
         once, a stretch with itself too; some that lie a hair farther apart are among them.
     """
-    reach = apart + HAIR
+    reach = apart + ROUNDING_TOLERANCE
     order, other_order = np.argsort(first, kind="stable"), np.argsort(other_first, kind="stable")
     begins, other_begins = first[order], other_first[other_order]
     # of two that meet, one begins before the other has ended
@@ -36,7 +36,7 @@ def _ranges(starts, ends):
     """Blocks of pairs of each number and all that lie in its range."""
     count = np.maximum(ends - starts, 0)
     total = np.cumsum(count)
-    cuts = np.unique(np.searchsorted(total, np.arange(PAIRS, total[-1] if len(total) else 0, PAIRS), side="left"))
+    cuts = np.unique(np.searchsorted(total, np.arange(PAIRS_PER_BLOCK, total[-1] if len(total) else 0, PAIRS_PER_BLOCK), side="left"))
     for some in np.split(np.arange(len(count)), cuts):
         size = count[some]
         if size.any():

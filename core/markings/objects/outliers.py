@@ -17,13 +17,13 @@ from ...survey.store.road_points import RoadPoints
 
 # Which of many points cannot be far from their neighbours: told by the cells they lie in, before any neighbour is looked for.
 
-SIDE = 1.5     # times the usual distance: cells so large that three by three of them hold three times the neighbours asked for
-NOWHERE = 1e9  # m, where no distance is known
-ABOUT = 9      # cells about a point: where others are looked at to tell what is usual there
-CELLS = 8      # for every point at most about so many, however near to each other rounded or repeated points lie
+CELL_SIDE_FACTOR = 1.5     # times the usual distance: cells so large that three by three of them hold three times the neighbours asked for
+NO_DISTANCE = 1e9  # m, where no distance is known
+USUAL_DISTANCE_WINDOW = 9      # cells about a point: where others are looked at to tell what is usual there
+MAX_CELLS_PER_POINT = 8      # for every point at most about so many, however near to each other rounded or repeated points lie
 
 
-def may_be_lonely(records, k, looked, distances, limit, lonelier):
+def outlier_candidates(records, k, looked, distances, limit, lonelier):
     """The points that may lie farther from their k nearest others than a limit, and than is usual about them by a factor.
 
     Parameters
@@ -47,9 +47,9 @@ def may_be_lonely(records, k, looked, distances, limit, lonelier):
         n |p|² - 2 p · sum(q) + sum(|q|²)
 
     This holds for cells of any size. They follow the usual distance down to a size that
-    leaves no more than `CELLS` of them for every point.
+    leaves no more than `MAX_CELLS_PER_POINT` of them for every point.
     """
-    side = max(int(SIDE * np.median(distances) / COORDINATE_SCALE), _least_side(records["s"], records["d"]))
+    side = max(int(CELL_SIDE_FACTOR * np.median(distances) / COORDINATE_SCALE), _least_side(records["s"], records["d"]))
     (row, rows), (column, columns) = (_cells(records[name], side) for name in "sd")
     cell = row * np.int32(columns) + column
     places = [(records[name] - records[name][0]).astype(float) for name in "xyz"]
@@ -63,18 +63,19 @@ def may_be_lonely(records, k, looked, distances, limit, lonelier):
     squares = count * own + about(own)
     for place in places:
         squares -= 2.0 * place * about(place)
-    usual = np.full((rows, columns), NOWHERE, np.float32)
+    usual = np.full((rows, columns), NO_DISTANCE, np.float32)
     farthest_first = np.argsort(-distances, kind="stable")
     usual.ravel()[cell[looked[farthest_first]]] = distances[farthest_first]
-    usual = cv2.erode(usual, np.ones((ABOUT, ABOUT), np.uint8), borderType=cv2.BORDER_CONSTANT, borderValue=NOWHERE).ravel().take(cell)
-    most = np.maximum(np.where(usual < NOWHERE, lonelier * usual, 0.0), limit) / COORDINATE_SCALE
+    window = np.ones((USUAL_DISTANCE_WINDOW, USUAL_DISTANCE_WINDOW), np.uint8)
+    usual = cv2.erode(usual, window, borderType=cv2.BORDER_CONSTANT, borderValue=NO_DISTANCE).ravel().take(cell)
+    most = np.maximum(np.where(usual < NO_DISTANCE, lonelier * usual, 0.0), limit) / COORDINATE_SCALE
     return np.flatnonzero((count <= k) | (squares > (count - 1) * most**2))
 
 
 def _least_side(s, d):
-    """The smallest side of cells, in units, of which there are at most about `CELLS` for every point."""
+    """The smallest side of cells, in units, of which there are at most about `MAX_CELLS_PER_POINT` for every point."""
     along, across = (int(units.max()) - int(units.min()) for units in (s, d))
-    most = CELLS * len(s)
+    most = MAX_CELLS_PER_POINT * len(s)
     return max(math.ceil(math.sqrt(along * across / most)), math.ceil(max(along, across) / most), 1)
 
 
@@ -84,14 +85,14 @@ def _cells(units, side):
     number -= number.min()
     return number, int(number.max()) + 1
 
-PATCH = 11            # bits: points of one 0.2 m patch are asked for one after the other, in the processor's cache
-LEAF = 20             # points in a leaf of the tree
-EXACT = 1 << 24       # units (1.6 km): up to here float32 holds every integer
-TILE = 18             # bits: 26 m of map worked at together
-MARGIN = 10_000       # units: 1 m about a tile where neighbours are looked for
-COPIES = 32           # of points at one place are in a tree at least: more are left out where they cannot change a distance
-TOGETHER = 1 << 16    # points asked for at a time where only their distances are wanted
-SCATTER = np.uint32(2654435761)  # an odd number that scatters places over a table
+QUERY_PATCH_BITS = 11            # bits: points of one 0.2 m patch are asked for one after the other, in the processor's cache
+TREE_LEAF_POINTS = 20             # points in a leaf of the tree
+MAX_FLOAT32_UNITS = 1 << 24       # units (1.6 km): up to here float32 holds every integer
+NEIGHBOUR_TILE_BITS = 18             # bits: 26 m of map worked at together
+NEIGHBOUR_TILE_MARGIN = 10_000       # units: 1 m about a tile where neighbours are looked for
+MIN_COPIES_IN_TREE = 32           # of points at one place are in a tree at least: more are left out where they cannot change a distance
+QUERIES_PER_BLOCK = 1 << 16    # points asked for at a time where only their distances are wanted
+HASH_MULTIPLIER = np.uint32(2654435761)  # an odd number that scatters places over a table
 
 
 class Neighbours:
@@ -123,10 +124,10 @@ class Neighbours:
         at_place = points_at_place(self._units)
         self.most_at_place = int(at_place[0].max(initial=0))
         self._rows = _without_needless(self._units, self.k, at_place)
-        if self.k and self._units.max() < EXACT:
+        if self.k and self._units.max() < MAX_FLOAT32_UNITS:
             places = self._units if self._rows is None else self._units.take(self._rows, axis=0)
             self._places = places.astype(np.float32)  # the tree does not keep it alive
-            self._tree = cv2.flann_Index(self._places, dict(algorithm=4, leaf_max_size=LEAF))  # 4: one exact kd-tree
+            self._tree = cv2.flann_Index(self._places, dict(algorithm=4, leaf_max_size=TREE_LEAF_POINTS))  # 4: one exact kd-tree
 
     def __len__(self):
         return len(self._units)
@@ -145,7 +146,7 @@ class Neighbours:
             return np.full(len(rows), np.inf), np.full(len(rows), np.inf), np.empty((len(rows), 0), np.int32)
         if not len(rows):
             return np.empty(0), np.empty(0), np.empty((0, self.k), np.int32)
-        x, y = (self._units[:, axis].take(rows) >> PATCH for axis in (0, 1))
+        x, y = (self._units[:, axis].take(rows) >> QUERY_PATCH_BITS for axis in (0, 1))
         order = order_by(y, x)
         nearest, distances = self._ask(rows.take(order))
         back = np.empty_like(order)
@@ -157,14 +158,14 @@ class Neighbours:
     def distances(self, rows):
         """Mean distance of some points to their nearest others, and the distance to the last of these, as in `of`: (M,) metres each."""
         means, farthest = np.empty(len(rows)), np.empty(len(rows))
-        for first in range(0, len(rows), TOGETHER):
-            some = slice(first, first + TOGETHER)
+        for first in range(0, len(rows), QUERIES_PER_BLOCK):
+            some = slice(first, first + QUERIES_PER_BLOCK)
             means[some], farthest[some], _ = self.of(rows[some])
         return means, farthest
 
     def _ask(self, rows):
         asked = self._units.take(rows, axis=0)
-        if self._units.max() < EXACT:
+        if self._units.max() < MAX_FLOAT32_UNITS:
             nearest, squares = self._tree.knnSearch(asked.astype(np.float32), self.k + 1, params={})
             distances = np.sqrt(squares, out=squares)
         else:
@@ -192,7 +193,7 @@ def points_at_place(units):
     cell = np.zeros(len(units), np.uint32)
     for axis in range(units.shape[1]):
         cell ^= units[:, axis].astype(np.uint32)
-        cell *= SCATTER
+        cell *= HASH_MULTIPLIER
         cell ^= cell >> np.uint32(15)
     cell >>= np.uint32(max(32 - len(units).bit_length() - 2, 8))
     # only what shares a cell of the table can share a place
@@ -210,7 +211,7 @@ def points_at_place(units):
 
 def _without_needless(units, k, at_place=None):
     """Indices of points, ascending: of each place the first k + 1, or a few more; None where these are all of them."""
-    most = max(k + 1, COPIES)
+    most = max(k + 1, MIN_COPIES_IN_TREE)
     count, rank = points_at_place(units) if at_place is None else at_place
     return np.flatnonzero(rank < most) if count.max(initial=0) > most else None
 
@@ -235,7 +236,7 @@ def mean_distances(units, k, progress=Progress()):
     for (own, rows), (distances, farthest) in zip(tiles, asked):
         means[rows[:own]] = distances
         # beyond the margin there may be nearer ones
-        unsettled.append(rows[:own][~(farthest <= MARGIN * COORDINATE_SCALE) | (len(rows) <= k)])
+        unsettled.append(rows[:own][~(farthest <= NEIGHBOUR_TILE_MARGIN * COORDINATE_SCALE) | (len(rows) <= k)])
     unsettled = np.concatenate(unsettled)
     if len(unsettled):
         rows = _without_needless(units, k)
@@ -247,7 +248,7 @@ def mean_distances(units, k, progress=Progress()):
 def _tiles(units):
     """Of each tile of the map, how many points it has, and the rows of these and of those within the margin about it."""
     x, y = (units[:, axis] - units[:, axis].min() for axis in (0, 1))
-    column, row = x >> TILE, y >> TILE
+    column, row = x >> NEIGHBOUR_TILE_BITS, y >> NEIGHBOUR_TILE_BITS
     order = order_by(row, column)
     column, row = column[order], row[order]
     starts = np.flatnonzero(np.r_[True, (column[1:] != column[:-1]) | (row[1:] != row[:-1])])
@@ -263,18 +264,18 @@ def _tiles(units):
 
 
 def _within(values, tile):
-    return (values >= (tile << TILE) - MARGIN) & (values < (tile + 1 << TILE) + MARGIN)
+    return (values >= (tile << NEIGHBOUR_TILE_BITS) - NEIGHBOUR_TILE_MARGIN) & (values < (tile + 1 << NEIGHBOUR_TILE_BITS) + NEIGHBOUR_TILE_MARGIN)
 
 
 # Points far from their fellows: statistical outlier removal, exactly as PCL defines it.
 
-SCOPES = ("all", "windows")
-WINDOW = 20.0   # m of station that one limit is taken from
-BAND = 3.0      # m of offset likewise
-HALO = 2.0      # m of station beyond a window where neighbours are still looked for
-MOST = 1500     # points of a band from which its limit is taken; where there are twice as many, of evenly strewn ones
-FEWEST = 30     # points of a window that still have a spread worth the name
-LONELIER = 3.0  # times the distance that is usual among a point's own neighbours
+OUTLIER_SCOPES = ("all", "windows")
+OUTLIER_WINDOW = 20.0   # m of station that one limit is taken from
+OUTLIER_BAND = 3.0      # m of offset likewise
+NEIGHBOUR_HALO = 2.0      # m of station beyond a window where neighbours are still looked for
+MAX_LIMIT_SAMPLE = 1500     # points of a band from which its limit is taken; where there are twice as many, of evenly strewn ones
+MIN_POINTS_PER_BAND = 30     # points of a window that still have a spread worth the name
+SPARSENESS_FACTOR = 3.0  # times the distance that is usual among a point's own neighbours
 
 
 @dataclass(frozen=True)
@@ -294,8 +295,8 @@ class OutlierSettings:
 
     def __post_init__(self):
         check_limits(self)
-        if self.scope not in SCOPES:
-            raise RoadExtractionError(f"The scope {self.scope!r} is not known; use one of {', '.join(SCOPES)}.")
+        if self.scope not in OUTLIER_SCOPES:
+            raise RoadExtractionError(f"The scope {self.scope!r} is not known; use one of {', '.join(OUTLIER_SCOPES)}.")
 
 
 def within_spread(distances, std_ratio):
@@ -341,7 +342,7 @@ def remove_outliers(points, settings=OutlierSettings(), progress=Progress()):
 
 
 def _windows(start, end):
-    return range(int(np.floor(start / WINDOW)), int(np.ceil(end / WINDOW)))
+    return range(int(np.floor(start / OUTLIER_WINDOW)), int(np.ceil(end / OUTLIER_WINDOW)))
 
 
 def _put(kept, points, keep):
@@ -355,36 +356,36 @@ def _put(kept, points, keep):
 
 def _kept_of_window(points, road, number, settings):
     """(N,) bool of the points of a window, without those about it."""
-    records = points.window(road, number * WINDOW - HALO, (number + 1) * WINDOW + HALO).records
+    records = points.window(road, number * OUTLIER_WINDOW - NEIGHBOUR_HALO, (number + 1) * OUTLIER_WINDOW + NEIGHBOUR_HALO).records
     s = records["s"] * COORDINATE_SCALE
-    own = np.flatnonzero((s >= number * WINDOW) & (s < (number + 1) * WINDOW))
-    neighbours = _Known(Neighbours(_units(records), settings.neighbours))
-    band = np.floor(records["d"].take(own) * COORDINATE_SCALE / BAND)
+    own = np.flatnonzero((s >= number * OUTLIER_WINDOW) & (s < (number + 1) * OUTLIER_WINDOW))
+    neighbours = _DistanceCache(Neighbours(_units(records), settings.neighbours))
+    band = np.floor(records["d"].take(own) * COORDINATE_SCALE / OUTLIER_BAND)
     lonely = [np.empty(0, np.intp)]
     for value in np.unique(band):
         rows = own[band == value]
-        if len(rows) >= FEWEST:
-            lonely.append(_lonely(records, rows, neighbours, settings))
+        if len(rows) >= MIN_POINTS_PER_BAND:
+            lonely.append(_outliers_in_band(records, rows, neighbours, settings))
     lonely = np.concatenate(lonely)
-    lonely = lonely[neighbours.distances(lonely) > LONELIER * _usual(neighbours, lonely)]
+    lonely = lonely[neighbours.distances(lonely) > SPARSENESS_FACTOR * _usual(neighbours, lonely)]
     keep = np.ones(len(own), bool)
     keep[np.searchsorted(own, lonely)] = False
     return keep
 
 
-def _lonely(records, rows, neighbours, settings):
+def _outliers_in_band(records, rows, neighbours, settings):
     """Those of some rows of a window, ascending, that lie beyond the spread of all of them."""
-    looked = np.arange(0, len(rows), max(len(rows) // MOST, 1))
+    looked = np.arange(0, len(rows), max(len(rows) // MAX_LIMIT_SAMPLE, 1))
     distances = neighbours.distances(rows[looked])
     limit = distances.mean() + settings.std_ratio * distances.std(ddof=1)
     if len(looked) < len(rows):
         # beside places of so many points some are far nearer to their neighbours than the evenly strewn ones show
-        lonelier = LONELIER if neighbours.neighbours.most_at_place <= max(settings.neighbours // 2, 1) else 0.0
-        rows = rows[may_be_lonely(records.take(rows), settings.neighbours, looked, distances, limit, lonelier)]
+        lonelier = SPARSENESS_FACTOR if neighbours.neighbours.most_at_place <= max(settings.neighbours // 2, 1) else 0.0
+        rows = rows[outlier_candidates(records.take(rows), settings.neighbours, looked, distances, limit, lonelier)]
     return rows[neighbours.distances(rows) > limit]
 
 
-class _Known:
+class _DistanceCache:
     """Mean distances of rows to their neighbours, each asked for once."""
 
     def __init__(self, neighbours):

@@ -12,17 +12,17 @@ from scipy.spatial import cKDTree
 
 from ...curves.robust import row_medians
 from ...survey.store.records import COORDINATE_SCALE
-from .shape import fill_gaps, middle
+from .road_grid import CELL_SIZE
+from .shape import fill_gaps, middle_line
 
-CELL = 0.04          # m, in station and in offset
 CLOSE_ALONG = 0.40   # m of station over which a gap is closed
 CLOSE_ACROSS = 0.04  # m of offset likewise
-SMALLEST_HOLE = 0.02  # m2: smaller holes are wear, not shape
-STRAIGHT = 0.004     # m by which the outline of a strip may leave its middle line's curve
-SMALLEST_PART = 0.005  # m2: three cells
-OUTLINE = 0.025      # m by which a simplified outline may leave the cells
-VERTEX_SPACING = 1.0  # m of station between vertices: 2 mm of sagitta at R = 60 m
-HEIGHT_NEIGHBOURS = 8
+MIN_HOLE_AREA = 0.02  # m2: smaller holes are wear, not shape
+STRIP_TOLERANCE = 0.004     # m by which the outline of a strip may leave its middle line's curve
+MIN_PART_AREA = 0.005  # m2: three cells
+OUTLINE_TOLERANCE = 0.025      # m by which a simplified outline may leave the cells
+OUTLINE_VERTEX_SPACING = 1.0  # m of station between vertices: 2 mm of sagitta at R = 60 m
+OUTLINE_HEIGHT_NEIGHBOURS = 8
 
 
 def band(s, d, shape):
@@ -39,14 +39,14 @@ def band(s, d, shape):
     """
     c, n = (1.0, 0.0) if shape.along else (np.cos(shape.direction), np.sin(shape.direction))
     u, v = (s, d) if shape.along else (np.rint(s * c + d * n).astype(np.int64), np.rint(d * c - s * n).astype(np.int64))
-    nodes, offsets = middle(u, v)
+    nodes, offsets = middle_line(u, v)
     all_nodes = np.concatenate([[u.min()], nodes, [u.max()]])
     offsets, nodes = np.interp(all_nodes, nodes, offsets) * COORDINATE_SCALE, all_nodes * COORDINATE_SCALE
     keep = np.append(True, np.diff(nodes) > 1e-6)
     nodes, offsets = nodes[keep], offsets[keep]
     ring = np.stack([np.concatenate([nodes, nodes[::-1]]),
                      np.concatenate([offsets - shape.width / 2, offsets[::-1] + shape.width / 2])], axis=1)
-    return shapely.simplify(shapely.Polygon(ring @ np.array([[c, n], [-n, c]])), STRAIGHT)
+    return shapely.simplify(shapely.Polygon(ring @ np.array([[c, n], [-n, c]])), STRIP_TOLERANCE)
 
 
 def painted_cells(s, d):
@@ -61,12 +61,12 @@ def painted_cells(s, d):
     mask : (A, B) bool, first axis along the road, second across it
     first : (2,) int, the cell number of mask[0, 0]: it begins at first * CELL
     """
-    cells = np.floor(np.c_[s, d] / CELL).astype(np.int64)
+    cells = np.floor(np.c_[s, d] / CELL_SIZE).astype(np.int64)
     first = cells.min(axis=0) - 1
     mask = np.zeros(cells.max(axis=0) - first + 2, bool)
     mask[tuple((cells - first).T)] = True
-    mask = fill_gaps(mask, int(round(CLOSE_ALONG / CELL)), 0)
-    mask = fill_gaps(mask, int(round(CLOSE_ACROSS / CELL)), 1)
+    mask = fill_gaps(mask, int(round(CLOSE_ALONG / CELL_SIZE)), 0)
+    mask = fill_gaps(mask, int(round(CLOSE_ACROSS / CELL_SIZE)), 1)
     return _without_small_holes(mask), first
 
 
@@ -74,7 +74,7 @@ def _without_small_holes(mask):
     holes, count = ndimage.label(~mask)
     if count > 1:
         sizes = np.bincount(holes.ravel())
-        small = sizes * CELL**2 < SMALLEST_HOLE
+        small = sizes * CELL_SIZE**2 < MIN_HOLE_AREA
         small[0] = False
         mask = mask | small[holes]
     return mask
@@ -85,16 +85,16 @@ def cell_outline(mask, first):
     edges = np.diff(np.pad(mask, ((1, 1), (0, 0))).astype(np.int8), axis=0)
     column, start = np.nonzero(edges.T == 1)
     _, end = np.nonzero(edges.T == -1)
-    boxes = shapely.box((first[0] + start) * CELL, (first[1] + column) * CELL,
-                        (first[0] + end) * CELL, (first[1] + column + 1) * CELL)
+    boxes = shapely.box((first[0] + start) * CELL_SIZE, (first[1] + column) * CELL_SIZE,
+                        (first[0] + end) * CELL_SIZE, (first[1] + column + 1) * CELL_SIZE)
     # cells that touch at a corner only make one polygon after a hair of widening
     shape = shapely.union_all(boxes, grid_size=0.001)
-    return shape.simplify(OUTLINE, preserve_topology=True)
+    return shape.simplify(OUTLINE_TOLERANCE, preserve_topology=True)
 
 
 def parts(shape):
     """The polygons of an outline that are large enough to be drawn, from the road's start on."""
-    pieces = [piece for piece in getattr(shape, "geoms", [shape]) if piece.area >= SMALLEST_PART]
+    pieces = [piece for piece in getattr(shape, "geoms", [shape]) if piece.area >= MIN_PART_AREA]
     return sorted(pieces, key=lambda piece: piece.bounds)
 
 
@@ -111,10 +111,10 @@ def to_local(shape, road, places):
     -------
     shapely Polygon with Z: each vertex at the median height of the points nearest to it
     """
-    shape = shapely.segmentize(shape, VERTEX_SPACING)
+    shape = shapely.segmentize(shape, OUTLINE_VERTEX_SPACING)
     vertices = shapely.get_coordinates(shape)
     x, y = road.to_map(vertices[:, 0], vertices[:, 1])
-    k = min(HEIGHT_NEIGHBOURS, len(places))
+    k = min(OUTLINE_HEIGHT_NEIGHBOURS, len(places))
     _, nearest = cKDTree(places[:, :2], balanced_tree=False, compact_nodes=False).query(np.c_[x, y], k)
     z = row_medians(places[:, 2][nearest.reshape(len(x), k)])[:, 0]
     lifted = shapely.force_3d(shape)

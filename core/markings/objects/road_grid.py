@@ -8,7 +8,8 @@ from ...survey.store.records import COORDINATE_SCALE
 
 # A window of the road as an array: along the road and across it, so that a bend is straight.
 
-CELL = 400        # units of 0.1 mm: cells of 4 cm
+CELL_SIZE = 0.04   # m, along and across the road: the cells in which points and paint are put
+CELL_UNITS = 400   # the same in units of 0.1 mm
 
 
 class RoadGrid:
@@ -22,18 +23,18 @@ class RoadGrid:
         return self.last - self.first, self.high - self.low
 
     def stations(self):
-        return (np.arange(self.first, self.last) + 0.5) * CELL * COORDINATE_SCALE
+        return (np.arange(self.first, self.last) + 0.5) * CELL_UNITS * COORDINATE_SCALE
 
     def offsets(self):
-        return (np.arange(self.low, self.high) + 0.5) * CELL * COORDINATE_SCALE
+        return (np.arange(self.low, self.high) + 0.5) * CELL_UNITS * COORDINATE_SCALE
 
     def read(self, image, frame, road):
         """(rows, columns) float32 brightness, NaN where nothing was scanned."""
         x, y = frame.road(road).to_map(self.stations()[:, None], self.offsets())
         return np.asarray(image.sample(x.ravel(), y.ravel(), frame.origin), np.float32).reshape(self.shape)
 
-PIECE = 125        # cells: 5 m of road at a time
-AT_ONCE = 1 << 15  # points put into cells at a time: what fits the processor's cache
+ROWS_PER_PIECE = 125        # cells: 5 m of road at a time
+POINTS_PER_CELL_BLOCK = 1 << 15  # points put into cells at a time: what fits the processor's cache
 
 
 @dataclass(frozen=True)
@@ -58,7 +59,7 @@ class PieceOfRoad:
         """The points of rows `first` to before `last`; one of `step` tells the offsets."""
         records = points.records
         d = records["d"]
-        grid = RoadGrid(first, last, int(d.min()) // CELL - 1, int(d.max()) // CELL + 2)
+        grid = RoadGrid(first, last, int(d.min()) // CELL_UNITS - 1, int(d.max()) // CELL_UNITS + 2)
         number, occupied = np.empty(len(d), np.int32), np.zeros(grid.shape, bool)
         for some, cell in cell_numbers(records, grid):
             number[some] = cell
@@ -73,17 +74,17 @@ class PieceOfRoad:
     def points_on(self, mask):
         """Ascending indices of the points whose cells are on in (rows, columns) of a mask, and the numbers of their cells."""
         mask, rows, cells = mask.ravel(), [], []
-        for k in range(0, len(self.cell), AT_ONCE):
-            cell = self.cell[k:k + AT_ONCE]
+        for k in range(0, len(self.cell), POINTS_PER_CELL_BLOCK):
+            cell = self.cell[k:k + POINTS_PER_CELL_BLOCK]
             found = np.flatnonzero(mask.take(cell))
             rows.append(found + k)
             cells.append(cell.take(found))
         return np.concatenate(rows), np.concatenate(cells)
 
 
-def in_cells(road_points, road, first, last, step=1):
+def cells_of_road(road_points, road, first, last, step=1):
     """[PieceOfRoad] of the rows from `first` to before `last`."""
-    return [PieceOfRoad.of(points, begin, end, step) for begin, end, points in pieces(road_points, road, first, last)]
+    return [PieceOfRoad.of(points, begin, end, step) for begin, end, points in road_pieces(road_points, road, first, last)]
 
 
 @dataclass(frozen=True)
@@ -120,11 +121,11 @@ class RoadCells:
         return cls(RoadGrid(first, last, low + begin, low + end), np.ascontiguousarray(occupied[:, begin:end]), half_width)
 
 
-def pieces(road_points, road, first, last):
+def road_pieces(road_points, road, first, last):
     """Yield (first row, end, Points) of the rows of cells from `first` to before `last`, in order; those without points are left out."""
-    cuts = [first, *range((first // PIECE + 1) * PIECE, last, PIECE), last]
+    cuts = [first, *range((first // ROWS_PER_PIECE + 1) * ROWS_PER_PIECE, last, ROWS_PER_PIECE), last]
     for begin, end in zip(cuts[:-1], cuts[1:]):
-        points = road_points.window(road, begin * CELL * COORDINATE_SCALE, end * CELL * COORDINATE_SCALE)
+        points = road_points.window(road, begin * CELL_UNITS * COORDINATE_SCALE, end * CELL_UNITS * COORDINATE_SCALE)
         if len(points):
             yield begin, end, points
 
@@ -133,19 +134,19 @@ def cell_numbers(records, grid):
     """Yield (slice of the records, (n,) int32 flat numbers of their cells in a grid), some thousand at a time."""
     s, d = records["s"], records["d"]
     width = np.int32(grid.shape[1])
-    for k in range(0, len(s), AT_ONCE):
-        some = slice(k, k + AT_ONCE)
-        cell = s[some] // np.int32(CELL)
+    for k in range(0, len(s), POINTS_PER_CELL_BLOCK):
+        some = slice(k, k + POINTS_PER_CELL_BLOCK)
+        cell = s[some] // np.int32(CELL_UNITS)
         cell -= np.int32(grid.first)
         cell *= width
-        cell += d[some] // np.int32(CELL)
+        cell += d[some] // np.int32(CELL_UNITS)
         cell -= np.int32(grid.low)
         yield some, cell
 
 
 def _half_widths(records, first, last):
     """(2, rows) uint16 mm, the widest of each row of cells on the left and on the right."""
-    starts = np.searchsorted(records["s"], (np.arange(first, last + 1) * CELL).astype(np.int32))
+    starts = np.searchsorted(records["s"], (np.arange(first, last + 1) * CELL_UNITS).astype(np.int32))
     found = np.zeros((2, last - first), np.uint16)
     filled = np.flatnonzero(np.diff(starts))
     if len(filled):

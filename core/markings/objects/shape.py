@@ -9,15 +9,15 @@ from ...common.order_statistics import order_by
 from ...curves.robust import median, percentiles
 from ...survey.store.records import COORDINATE_SCALE
 from .connected_cells import occupied
+from .road_grid import CELL_UNITS
 
-CELL = 400          # units of 0.1 mm: 4 cm, the cells that areas and directions are taken from
-BIN = 5000          # units: 0.5 m of station that the run of a line is followed in
-RANGE = 95.0        # % of the points that the width spans; divided out again
-ALONG = np.radians(20.0)   # closer to the road's direction than this is "along" it
-ACROSS = np.radians(60.0)  # farther from it is "across"
-STEM, STEM_STEP = 9, 5  # cells: a stroke along the road is no broader (0.36 m), looked at every 20 cm
-BAR_GAPS = 10, 6    # cells along the road and across it: gaps between the scan lines on a bar
-SMALL, SMALL_GAPS = 1.2, (3, 1)  # m, and cells likewise of what is no longer than that: the strokes of a sign lie farther apart
+MIDDLE_LINE_STEP_UNITS = 5000          # units: 0.5 m of station that the run of a line is followed in
+WIDTH_PERCENT = 95.0        # % of the points that the width spans; divided out again
+MAX_ANGLE_ALONG = np.radians(20.0)   # closer to the road's direction than this is "along" it
+MIN_ANGLE_ACROSS = np.radians(60.0)  # farther from it is "across"
+STEM_BREADTH_CELLS, STEM_STEP_CELLS = 9, 5  # cells: a stroke along the road is no broader (0.36 m), looked at every 20 cm
+SCAN_GAPS_OF_BARS = 10, 6    # cells along the road and across it: gaps between the scan lines on a bar
+SMALL_MARKING_SIZE, SCAN_GAPS_OF_SMALL = 1.2, (3, 1)  # m, and cells likewise of what is no longer than that: the strokes of a sign lie farther apart
 
 
 @dataclass(frozen=True)
@@ -57,12 +57,12 @@ class Shape:
     @property
     def along(self):
         """Whether it runs along the road."""
-        return abs(self.direction) <= ALONG
+        return abs(self.direction) <= MAX_ANGLE_ALONG
 
     @property
     def across(self):
         """Whether it runs across the road."""
-        return abs(self.direction) > ACROSS
+        return abs(self.direction) > MIN_ANGLE_ACROSS
 
 
 def measure(s, d):
@@ -77,12 +77,12 @@ def measure(s, d):
     Width is the 95 % range across the local tangent, scaled to the full range of
     evenly strewn points: a principal axis would call every bend wide.
     """
-    cells, _ = occupied(s // CELL, d // CELL)
+    cells, _ = occupied(s // CELL_UNITS, d // CELL_UNITS)
     direction = _principal_direction(cells)
     s0, s1, d0, d1 = s.min(), s.max(), d.min(), d.max()
-    if abs(direction) <= ALONG and s1 - s0 > 2 * BIN:
+    if abs(direction) <= MAX_ANGLE_ALONG and s1 - s0 > 2 * MIDDLE_LINE_STEP_UNITS:
         length = (s1 - s0) * COORDINATE_SCALE
-        nodes, offsets = middle(s, d)
+        nodes, offsets = middle_line(s, d)
         across = d - np.interp(s, nodes, offsets)
         begin, finish = offsets[0] * COORDINATE_SCALE, offsets[-1] * COORDINATE_SCALE
     else:
@@ -91,13 +91,13 @@ def measure(s, d):
         length = np.ptp(along) * COORDINATE_SCALE
         across = d * c - s * n
         begin = finish = median(d) * COORDINATE_SCALE
-    if max(s1 - s0, d1 - d0) * COORDINATE_SCALE <= SMALL:
-        closed = _closed(cells, SMALL_GAPS)
+    if max(s1 - s0, d1 - d0) * COORDINATE_SCALE <= SMALL_MARKING_SIZE:
+        closed = _closed(cells, SCAN_GAPS_OF_SMALL)
     else:
-        closed = _closed(cells, BAR_GAPS) if abs(direction) > ACROSS else len(cells)
-    area, closed_area = (count * (CELL * COORDINATE_SCALE) ** 2 for count in (len(cells), closed))
+        closed = _closed(cells, SCAN_GAPS_OF_BARS) if abs(direction) > MIN_ANGLE_ACROSS else len(cells)
+    area, closed_area = (count * (CELL_UNITS * COORDINATE_SCALE) ** 2 for count in (len(cells), closed))
     return Shape(s0 * COORDINATE_SCALE, s1 * COORDINATE_SCALE, d0 * COORDINATE_SCALE, d1 * COORDINATE_SCALE, median(d) * COORDINATE_SCALE,
-                 float(length), spread(across) * COORDINATE_SCALE, direction, area, len(s), float(begin), float(finish), closed_area,
+                 float(length), full_width(across) * COORDINATE_SCALE, direction, area, len(s), float(begin), float(finish), closed_area,
                  _stems(cells))
 
 
@@ -127,19 +127,19 @@ def _closed(cells, gaps):
 
 def _stems(cells):
     """Shares of the length, from either end, over which cells reach no farther across than a stroke; wear parts none."""
-    step = (cells[:, 0] - cells[:, 0].min()) // STEM_STEP
+    step = (cells[:, 0] - cells[:, 0].min()) // STEM_STEP_CELLS
     count = int(step.max()) + 1
     low, high = np.full(count, np.inf), np.full(count, -np.inf)
     np.minimum.at(low, step, cells[:, 1])
     np.maximum.at(high, step, cells[:, 1])
-    broad = np.flatnonzero(high - low >= STEM)
+    broad = np.flatnonzero(high - low >= STEM_BREADTH_CELLS)
     return (float(broad[0]) / count, 1.0 - float(broad[-1] + 1) / count) if len(broad) else (1.0, 1.0)
 
 
-def spread(across):
+def full_width(across):
     """Full width of evenly strewn values from their 95 % range."""
-    low, high = percentiles(across, ((100 - RANGE) / 2, (100 + RANGE) / 2))
-    return (high - low) / (RANGE / 100)
+    low, high = percentiles(across, ((100 - WIDTH_PERCENT) / 2, (100 + WIDTH_PERCENT) / 2))
+    return (high - low) / (WIDTH_PERCENT / 100)
 
 
 def _principal_direction(cells):
@@ -151,7 +151,7 @@ def _principal_direction(cells):
     return float(angle)
 
 
-def middle(s, d):
+def middle_line(s, d):
     """The middle line of an elongated cluster.
 
     Parameters
@@ -162,7 +162,7 @@ def middle(s, d):
     -------
     stations, offsets : (K,) float, nodes every 0.5 m, smoothed over 2.5 m
     """
-    bins = (s - s.min()) // BIN
+    bins = (s - s.min()) // MIDDLE_LINE_STEP_UNITS
     order = order_by(d, bins)
     sorted_bins = bins[order]
     starts = np.flatnonzero(np.append(True, sorted_bins[1:] != sorted_bins[:-1]))
@@ -170,7 +170,7 @@ def middle(s, d):
     count = ends - starts
     # the middle between the outer eighths is steadier than a median where paint is worn on one side
     low, high = d[order[starts + count // 8]], d[order[ends - 1 - count // 8]]
-    nodes = s.min() + (sorted_bins[starts] + 0.5) * BIN
+    nodes = s.min() + (sorted_bins[starts] + 0.5) * MIDDLE_LINE_STEP_UNITS
     weight = np.minimum(count, 30).astype(float)
     return nodes, _smooth(nodes, (low + high) / 2, weight)
 
@@ -184,10 +184,10 @@ def _smooth(nodes, values, weight):
     inside = (rows >= 0) & (rows < len(values))
     rows = np.clip(rows, 0, len(values) - 1)
     x = nodes[rows] - nodes[:, None]
-    w = weight[rows] * inside * (np.abs(x) <= 2.6 * BIN)
+    w = weight[rows] * inside * (np.abs(x) <= 2.6 * MIDDLE_LINE_STEP_UNITS)
     y = values[rows]
     sw, sx, sy = w.sum(1), (w * x).sum(1), (w * y).sum(1)
     sxx, sxy = (w * x * x).sum(1), (w * x * y).sum(1)
     spread_x = sw * sxx - sx * sx
-    steady = spread_x > 1e-6 * sw * sw * BIN**2
+    steady = spread_x > 1e-6 * sw * sw * MIDDLE_LINE_STEP_UNITS**2
     return np.where(steady, (sxx * sy - sx * sxy) / np.where(steady, spread_x, 1.0), sy / sw)

@@ -15,18 +15,18 @@ from ...common.order_statistics import order_by
 from ...survey.store.records import COORDINATE_SCALE
 from .classify import STRIPE_WIDTH, columns_of, zebra_stripes
 from .connected_cells import occupied
-from .near_pairs import near_pairs
-from .shape import CELL
+from .near_pairs import overlapping_pairs
+from .road_grid import CELL_UNITS
 
-LEAST_ALONG = 5.0  # m of a strip
-LONG, BROADER = 9.0, 0.5  # m: no arrow or letter is so long; a line that is broader somewhere has something beside it
-RUN = 1.0          # m along the road that a strip does not break off; stop lines and hatching bars are shorter
-BAR = 2.0          # m across the road that a bar does not break off; no arrow or letter is as broad
-LEAST_BESIDE = 1.0  # m along the road: what is shorter is nothing but a bar
-PAINT_GAP = 0.24   # m across the road, closed; the stripes of a zebra crossing leave more
-SCAN_GAP = 0.40    # m between scan lines, closed
-CHUNK = 100.0      # m of road looked at together
-SMALLEST = 0.05    # m2: smaller left-overs are the frayed rim of the strip
+MIN_STRIP_LENGTH = 5.0  # m of a strip
+COMPOUND_LENGTH, COMPOUND_BREADTH = 9.0, 0.5  # m: no arrow or letter is so long; a line that is broader somewhere has something beside it
+MIN_RUN_ALONG = 1.0          # m along the road that a strip does not break off; stop lines and hatching bars are shorter
+MIN_RUN_ACROSS = 2.0          # m across the road that a bar does not break off; no arrow or letter is as broad
+MIN_LENGTH_BESIDE_BAR = 1.0  # m along the road: what is shorter is nothing but a bar
+MAX_PAINT_GAP = 0.24   # m across the road, closed; the stripes of a zebra crossing leave more
+MAX_SCAN_GAP = 0.40    # m between scan lines, closed
+MORPHOLOGY_CHUNK = 100.0      # m of road looked at together
+MIN_LEFTOVER_AREA = 0.05    # m2: smaller left-overs are the frayed rim of the strip
 
 
 def split_compounds(records, labels):
@@ -49,11 +49,11 @@ def split_compounds(records, labels):
     following = int(labels.max()) + 1
     along, across = records["s"].take(order), records["d"].take(order)
     ranges = [np.maximum.reduceat(values, starts).astype(np.int64) - np.minimum.reduceat(values, starts) for values in (along, across)]
-    large = (ranges[0] * COORDINATE_SCALE >= LONG) & (ranges[1] * COORDINATE_SCALE >= BROADER) \
-        | (ranges[0] * COORDINATE_SCALE >= LEAST_BESIDE) & (ranges[1] * COORDINATE_SCALE >= BAR)
+    large = (ranges[0] * COORDINATE_SCALE >= COMPOUND_LENGTH) & (ranges[1] * COORDINATE_SCALE >= COMPOUND_BREADTH) \
+        | (ranges[0] * COORDINATE_SCALE >= MIN_LENGTH_BESIDE_BAR) & (ranges[1] * COORDINATE_SCALE >= MIN_RUN_ACROSS)
     for a, b in zip(starts[large], np.r_[starts[1:], len(order)][large]):
         rows = order[a:b]
-        cells, member = occupied(along[a:b] // CELL, across[a:b] // CELL)
+        cells, member = occupied(along[a:b] // CELL_UNITS, across[a:b] // CELL_UNITS)
         parts, count = _parts(cells)
         if count > 1:
             labels[rows] = following + parts[member]
@@ -63,18 +63,19 @@ def split_compounds(records, labels):
 
 def _parts(cells):
     """(K,) the part of every cell, numbered from 0, and how many parts there are."""
-    size = CELL * COORDINATE_SCALE
+    size = CELL_UNITS * COORDINATE_SCALE
     parts, every = np.full(len(cells), -1), np.arange(len(cells))
-    count = _number_strips(parts, 0, cells, every[_in_runs(cells, SCAN_GAP, RUN)], SCAN_GAP, size, LEAST_ALONG)
+    count = _number_strips(parts, 0, cells, every[_in_runs(cells, MAX_SCAN_GAP, MIN_RUN_ALONG)], MAX_SCAN_GAP, size, MIN_STRIP_LENGTH)
     rest, turned = np.flatnonzero(parts < 0), cells[:, ::-1]
     # scan lines lie apart within a bar
-    count = _number_strips(parts, count, turned, rest[_in_runs(turned[rest], PAINT_GAP, BAR)], PAINT_GAP, SCAN_GAP, BAR)
+    bars = rest[_in_runs(turned[rest], MAX_PAINT_GAP, MIN_RUN_ACROSS)]
+    count = _number_strips(parts, count, turned, bars, MAX_PAINT_GAP, MAX_SCAN_GAP, MIN_RUN_ACROSS)
     if not count:
         return np.zeros(len(cells), np.int64), 1
     rest = np.flatnonzero(parts < 0)
-    pieces = _linked(cells[rest], SCAN_GAP / size, 3.0)
+    pieces = _linked(cells[rest], MAX_SCAN_GAP / size, 3.0)
     areas = np.bincount(pieces) * size**2 if len(pieces) else np.empty(0)
-    kept = areas >= SMALLEST
+    kept = areas >= MIN_LEFTOVER_AREA
     later = np.where(kept, count + np.cumsum(kept) - 1, -1)
     parts[rest] = later[pieces]
     lost = parts < 0
@@ -89,7 +90,7 @@ def _number_strips(parts, count, cells, rows, gap, gap_across, least):
 
     cells : (K, 2) along the strips and across them; gap, gap_across : m between cells of one; least : m, its length
     """
-    size = CELL * COORDINATE_SCALE
+    size = CELL_UNITS * COORDINATE_SCALE
     strips = _linked(cells[rows], gap / size, gap_across / size)
     number = strips.max(initial=-1) + 1
     first, last = np.full(number, np.inf), np.full(number, -np.inf)
@@ -104,9 +105,9 @@ def _in_runs(cells, longest_gap, shortest_run):
     """(K,) whether a cell lies in a run of paint along the first axis; gaps are closed."""
     if not len(cells):
         return np.zeros(0, bool)
-    size = CELL * COORDINATE_SCALE
+    size = CELL_UNITS * COORDINATE_SCALE
     # OpenCV moves what an even number of cells closes or opens
-    gap, run, chunk = round(longest_gap / size) // 2 * 2, round(shortest_run / size) | 1, int(CHUNK / size)
+    gap, run, chunk = round(longest_gap / size) // 2 * 2, round(shortest_run / size) | 1, int(MORPHOLOGY_CHUNK / size)
     halo = 2 * (gap + run)
     result = np.zeros(len(cells), bool)
     numbers = np.floor_divide(cells[:, 0], chunk)
@@ -135,11 +136,11 @@ def _linked(cells, along, across):
 
 # Pieces of one marking that wear has parted: lines along the road, stop lines across it, the stripes of a crossing.
 
-WORN_GAP, OVERLAP, SAME_LINE = 0.9, 0.2, 0.08  # m along, along, across
-BAR_THICK = 0.18, 0.90   # m along the road of a stop line's pieces
-BAR_PIECE, BAR_GAP = 0.8, 0.30  # m across: a row of shorter blocks is a give-way line, and its gaps are painted
-STRIPE_PIECE, STRIPE_GAP = 0.8, 0.7  # m along the road: what a stripe of a crossing has left at least, and what wear takes of it
-SAME_SIDES = 0.10        # m by which wear has moved an edge that two pieces share
+MAX_WORN_GAP, MAX_FRAGMENT_OVERLAP, MAX_FRAGMENT_OFFSET = 0.9, 0.2, 0.08  # m along, along, across
+STOP_LINE_PIECE_THICKNESS = 0.18, 0.90   # m along the road of a stop line's pieces
+MIN_STOP_LINE_PIECE, MAX_STOP_LINE_GAP = 0.8, 0.30  # m across: a row of shorter blocks is a give-way line, and its gaps are painted
+MIN_STRIPE_PIECE, MAX_STRIPE_GAP = 0.8, 0.7  # m along the road: what a stripe of a crossing has left at least, and what wear takes of it
+MAX_SIDE_SHIFT = 0.10        # m by which wear has moved an edge that two pieces share
 
 
 def join_fragments(shapes, max_width):
@@ -177,8 +178,8 @@ def _along(shapes, max_width):
     begins = np.array([(shapes[k].s0, shapes[k].begin) for k in narrow])
     ends = np.array([(shapes[k].s1, shapes[k].finish) for k in narrow])
     # a box of -0.2 to 0.9 m along and 8 cm either way across about each end
-    scale = np.array([(WORN_GAP + OVERLAP) / 2, SAME_LINE])
-    about = (ends + np.array([(WORN_GAP - OVERLAP) / 2, 0.0])) / scale
+    scale = np.array([(MAX_WORN_GAP + MAX_FRAGMENT_OVERLAP) / 2, MAX_FRAGMENT_OFFSET])
+    about = (ends + np.array([(MAX_WORN_GAP - MAX_FRAGMENT_OVERLAP) / 2, 0.0])) / scale
     near = cKDTree(begins / scale).query_ball_point(about, 1.0, p=np.inf)
     pairs = np.array([(a, b) for a, found in enumerate(near) for b in found if a != b], np.int64).reshape(-1, 2)
     return narrow[pairs]
@@ -192,25 +193,25 @@ def _bars(column):
     """(P, 2) neighbouring pieces of bars across the road."""
     s0, s1, d0, d1 = (column[name] for name in ("s0", "s1", "d0", "d1"))
     thick, broad = s1 - s0, d1 - d0
-    rows = np.flatnonzero((thick >= BAR_THICK[0]) & (thick <= BAR_THICK[1]) & (broad >= BAR_GAP))
+    rows = np.flatnonzero((thick >= STOP_LINE_PIECE_THICKNESS[0]) & (thick <= STOP_LINE_PIECE_THICKNESS[1]) & (broad >= MAX_STOP_LINE_GAP))
     if len(rows) < 2:
         return np.empty((0, 2), np.int64)
     # nearly the same front and rear
-    pairs = cKDTree(np.column_stack([s0, s1])[rows]).query_pairs(SAME_SIDES, p=np.inf, output_type="ndarray").reshape(-1, 2)
+    pairs = cKDTree(np.column_stack([s0, s1])[rows]).query_pairs(MAX_SIDE_SHIFT, p=np.inf, output_type="ndarray").reshape(-1, 2)
     a, b = rows[pairs].T
     gap = np.maximum(d0[a], d0[b]) - np.minimum(d1[a], d1[b])
-    return np.column_stack([a, b])[(gap <= BAR_GAP) & (np.maximum(broad[a], broad[b]) >= BAR_PIECE)]
+    return np.column_stack([a, b])[(gap <= MAX_STOP_LINE_GAP) & (np.maximum(broad[a], broad[b]) >= MIN_STOP_LINE_PIECE)]
 
 
 def _stripes(column):
     """(P, 2) the stripes of a crossing, and what lies before or after them between their sides."""
     s0, s1, d0, d1 = (column[name] for name in ("s0", "s1", "d0", "d1"))
     # of a stripe askew the sides are not those of its box
-    stripes = np.flatnonzero(zebra_stripes(column, STRIPE_PIECE) & (d1 - d0 <= STRIPE_WIDTH[1]))
+    stripes = np.flatnonzero(zebra_stripes(column, MIN_STRIPE_PIECE) & (d1 - d0 <= STRIPE_WIDTH[1]))
     found = [np.empty((0, 2), np.int64)]
-    for a, b in near_pairs(s0[stripes], s1[stripes], s0, s1, STRIPE_GAP):
+    for a, b in overlapping_pairs(s0[stripes], s1[stripes], s0, s1, MAX_STRIPE_GAP):
         a = stripes[a]
-        inside = (b != a) & (s1[b] >= s0[a] - STRIPE_GAP) & (s0[b] < s1[a] + STRIPE_GAP) \
-            & (d0[b] >= d0[a] - SAME_SIDES / 2) & (d1[b] <= d1[a] + SAME_SIDES / 2)
+        inside = (b != a) & (s1[b] >= s0[a] - MAX_STRIPE_GAP) & (s0[b] < s1[a] + MAX_STRIPE_GAP) \
+            & (d0[b] >= d0[a] - MAX_SIDE_SHIFT / 2) & (d1[b] <= d1[a] + MAX_SIDE_SHIFT / 2)
         found.append(np.column_stack([a, b])[inside])
     return np.concatenate(found)

@@ -17,7 +17,7 @@ from ...common.setting import check_limits, setting
 from ...intensity.saturation import saturation_of
 from ...survey.store.records import COORDINATE_SCALE, Points, join_columns, take_rows
 from ...survey.store.road_points import RoadPoints
-from ..objects.road_grid import CELL, RoadCells, RoadGrid, cell_numbers, in_cells
+from ..objects.road_grid import CELL_UNITS, RoadCells, RoadGrid, cell_numbers, cells_of_road
 from .asphalt_level import FEWEST, Levels, asphalt_bins, asphalt_profile, bin_edges, flatten, split_bins
 from .gutters import edge_distance, rim_distance
 from .mask import burn_points, marking_mask, painted_pixels
@@ -118,7 +118,7 @@ def _extract(road_points, image, frame, settings, progress, burn):
     roads = road_points.roads()
     windows = [(road, window) for road in roads for window in _windows(road_points, road)]
     scatter = Scatter.of(lambda road, window: _window(road_points, road, window), windows, progress.part(0.0, 0.1))
-    progress.info(scatter.line(WINDOW * CELL * COORDINATE_SCALE))
+    progress.info(scatter.line(WINDOW * CELL_UNITS * COORDINATE_SCALE))
     for k, road in enumerate(roads):
         part = progress.part(0.1 + 0.9 * k / len(roads), 0.1 + 0.9 * (k + 1) / len(roads))
         look = _Look(road_points, image, frame, road, settings, burn is not None, scatter.averaged(road))
@@ -135,12 +135,13 @@ def _extract(road_points, image, frame, settings, progress, burn):
 def _windows(road_points, road):
     """Numbers of the windows of a road."""
     start, end = road_points.store.span(road)
-    return range(int(np.floor(start / COORDINATE_SCALE / CELL / WINDOW)), int(np.floor(end / COORDINATE_SCALE / CELL / WINDOW)) + 1)
+    first, last = (int(np.floor(s / COORDINATE_SCALE / CELL_UNITS / WINDOW)) for s in (start, end))
+    return range(first, last + 1)
 
 
 def _window(road_points, road, window):
     """Points of a window."""
-    return road_points.window(road, window * WINDOW * CELL * COORDINATE_SCALE, (window + 1) * WINDOW * CELL * COORDINATE_SCALE)
+    return road_points.window(road, window * WINDOW * CELL_UNITS * COORDINATE_SCALE, (window + 1) * WINDOW * CELL_UNITS * COORDINATE_SCALE)
 
 
 class _Sections:
@@ -191,7 +192,7 @@ class _Look:
         return self.strokes(window) if window in self.averaged else self.paint(window)
 
     def _points(self, first, last):
-        return self.road_points.window(self.road, first * CELL * COORDINATE_SCALE, last * CELL * COORDINATE_SCALE)
+        return self.road_points.window(self.road, first * CELL_UNITS * COORDINATE_SCALE, last * CELL_UNITS * COORDINATE_SCALE)
 
     def _in_cells(self, window):
         """[PieceOfRoad] of a window's own points; they are kept until it is painted, for windows beside it look at them too."""
@@ -199,7 +200,7 @@ class _Look:
             if window not in self._pieces:
                 first, last = window * WINDOW, (window + 1) * WINDOW
                 step = max(len(self._points(first, last)) // MOST, 1)
-                self._pieces[window] = in_cells(self.road_points, self.road, first, last, step)
+                self._pieces[window] = cells_of_road(self.road_points, self.road, first, last, step)
             return self._pieces[window]
 
     def _look(self, window):
@@ -245,7 +246,7 @@ class _Look:
             if beside is not None:
                 # the thresholds of a window look at those beside it
                 known.update((w, self.bins(w)) for w in (beside, beside + step) if self.first <= w <= self.last and self.bins(w))
-        return Levels(known, WINDOW * CELL * COORDINATE_SCALE, self.settings)
+        return Levels(known, WINDOW * CELL_UNITS * COORDINATE_SCALE, self.settings)
 
     def _pixels(self, mask, grid):
         """Local x, y of the centres of the image's pixels that lie in painted cells of the window itself."""
@@ -273,7 +274,7 @@ class _Look:
         first, last = window * WINDOW, (window + 1) * WINDOW
         if not len(self._points(first, last)):
             return self._nothing()
-        parts = in_cells(self.road_points, self.road, first - HALO, last + HALO)
+        parts = cells_of_road(self.road_points, self.road, first - HALO, last + HALO)
         cells = RoadCells.of(parts, first - HALO, last + HALO)
         points = self._points(first - HALO, last + HALO)
         cell = np.concatenate([cell for _, cell in cell_numbers(points.records, cells.grid)])

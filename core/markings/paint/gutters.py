@@ -10,9 +10,9 @@ the brighter of the two.
 import cv2
 import numpy as np
 
+from ..objects.road_grid import CELL_SIZE
 from ..objects.shape import fill_gaps
 
-CELL = 0.04          # m
 BAND = 2             # cells: 8 cm bands inwards from the rim
 BANDS = 9            # 0.72 m: no gutter is wider
 COARSE = 5           # cells: shares are counted in squares of 20 cm
@@ -35,7 +35,7 @@ def rim_distance(occupied):
         occupied[:rows[0]] = occupied[rows[0]:rows[0] + GAP_ALONG].any(axis=0)
         occupied[rows[-1] + 1:] = occupied[max(rows[-1] + 1 - GAP_ALONG, 0):rows[-1] + 1].any(axis=0)
     road = fill_gaps(fill_gaps(occupied, GAP_ACROSS, 1), GAP_ALONG, 0)
-    return cv2.distanceTransform(road.view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE) * np.float32(CELL)
+    return cv2.distanceTransform(road.view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE) * np.float32(CELL_SIZE)
 
 
 def edge_distance(half_width, offsets):
@@ -54,7 +54,7 @@ def edge_distance(half_width, offsets):
         columns, known = np.flatnonzero(offsets * side > 0), np.flatnonzero(widest)
         if len(columns) and len(known):
             edge = np.interp(np.arange(len(distance)), known, widest[known] * 1e-3)
-            distance[:, columns[0]:columns[-1] + 1] = np.maximum(edge[:, None] - np.abs(offsets[columns]) + CELL / 2, CELL)
+            distance[:, columns[0]:columns[-1] + 1] = np.maximum(edge[:, None] - np.abs(offsets[columns]) + CELL_SIZE / 2, CELL_SIZE)
     return distance
 
 
@@ -70,12 +70,12 @@ def gutter_cells(z, distance):
     -------
     (rows, columns) bool
     """
-    near = (distance > 0) & (distance < np.float32((BANDS * BAND + 0.5) * CELL)) & np.isfinite(z)
+    near = (distance > 0) & (distance < np.float32((BANDS * BAND + 0.5) * CELL_SIZE)) & np.isfinite(z)
     row, column = np.nonzero(near)
     if not len(row):
         return np.zeros(z.shape, bool)
     value = z[row, column]
-    band = np.minimum(((distance[row, column] / np.float32(CELL) - np.float32(0.5)) / np.float32(BAND)).astype(np.int32), BANDS - 1)
+    band = np.minimum(((distance[row, column] / np.float32(CELL_SIZE) - np.float32(0.5)) / np.float32(BAND)).astype(np.int32), BANDS - 1)
     coarse = tuple(-(-n // COARSE) for n in z.shape)
     coarse_row, coarse_column = row.astype(np.int32) // np.int32(COARSE), column.astype(np.int32) // np.int32(COARSE)
     place = (coarse_row * np.int32(coarse[1]) + coarse_column) * np.int32(BANDS) + band
@@ -83,7 +83,7 @@ def gutter_cells(z, distance):
     bright = value > BRIGHT
     # in whole 64ths, which sum exactly in any order
     height = np.rint(64 * np.clip(value, 0.0, 100.0))
-    box = 2 * int(round(REACH / CELL / COARSE)) + 1
+    box = 2 * int(round(REACH / CELL_SIZE / COARSE)) + 1
 
     def around(counts):
         sums = cv2.boxFilter(counts.reshape(*coarse, BANDS), -1, (box, box), normalize=False, borderType=cv2.BORDER_CONSTANT)

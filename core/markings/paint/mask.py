@@ -6,7 +6,8 @@ import numpy as np
 
 from ...io.geotiff import new_geotiff
 from ...survey.store.records import COORDINATE_SCALE
-from ..objects.outline import CELL, CLOSE_ALONG, painted_cells
+from ..objects.outline import CLOSE_ALONG, painted_cells
+from ..objects.road_grid import CELL_SIZE
 
 BLOCK = 2048  # px: cells are burnt in blocks of the image, so that a window in a bend takes no more than it touches
 WINDOW = 500  # cells: 20 m of station burnt at a time
@@ -68,14 +69,14 @@ def painted_pixels(cells, first, image, origin, road):
     """
     row, column = np.nonzero(cells)
     # four places a cell: pixels may be smaller than cells and lie askew to them
-    quarter = np.array([[-0.25, -0.25], [-0.25, 0.25], [0.25, -0.25], [0.25, 0.25]]) * CELL
-    s = ((first[0] + row + 0.5)[:, None] * CELL + quarter[:, 0]).ravel()
-    d = ((first[1] + column + 0.5)[:, None] * CELL + quarter[:, 1]).ravel()
+    quarter = np.array([[-0.25, -0.25], [-0.25, 0.25], [0.25, -0.25], [0.25, 0.25]]) * CELL_SIZE
+    s = ((first[0] + row + 0.5)[:, None] * CELL_SIZE + quarter[:, 0]).ravel()
+    d = ((first[1] + column + 0.5)[:, None] * CELL_SIZE + quarter[:, 1]).ravel()
     x, y, near = pixel_centres(image, *road.to_map(s, d), origin)
     s, d = road.locate(x, y, s[near], np.inf)
     known = np.isfinite(s)
     x, y, s, d = x[known], y[known], s[known], d[known]
-    row, column = (np.floor(c / CELL).astype(np.int64) - f for c, f in ((s, first[0]), (d, first[1])))
+    row, column = (np.floor(c / CELL_SIZE).astype(np.int64) - f for c, f in ((s, first[0]), (d, first[1])))
     inside = (row >= 0) & (row < cells.shape[0]) & (column >= 0) & (column < cells.shape[1])
     inside[inside] = cells[row[inside], column[inside]]
     return x[inside], y[inside]
@@ -89,12 +90,12 @@ def burn_points(burn, points, image, frame):
     burn : of `marking_mask`
     points : RoadPoints on paint
     """
-    halo = int(np.ceil(CLOSE_ALONG / CELL)) + 1
+    halo = int(np.ceil(CLOSE_ALONG / CELL_SIZE)) + 1
     for road in points.roads():
         start, end = points.store.span(road)
-        for window in range(int(np.floor(start / CELL / WINDOW)), int(np.ceil(end / CELL / WINDOW))):
+        for window in range(int(np.floor(start / CELL_SIZE / WINDOW)), int(np.ceil(end / CELL_SIZE / WINDOW))):
             first, last = window * WINDOW, (window + 1) * WINDOW
-            found = points.window(road, (first - halo) * CELL, (last + halo) * CELL).records
+            found = points.window(road, (first - halo) * CELL_SIZE, (last + halo) * CELL_SIZE).records
             if not len(found):
                 continue
             cells, corner = painted_cells(found["s"] * COORDINATE_SCALE, found["d"] * COORDINATE_SCALE)

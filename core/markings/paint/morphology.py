@@ -4,7 +4,8 @@ import cv2
 import numpy as np
 
 from ...survey.store.records import COORDINATE_SCALE
-from ..objects.shape import CELL, fill_gaps
+from ..objects.road_grid import CELL_UNITS
+from ..objects.shape import fill_gaps
 
 WORN = 0.80  # m along the road: no gap is painted shorter, so what bright specks lead over is one worn line
 
@@ -16,8 +17,8 @@ def morphology(mask, settings):
     where either run through it is long enough. What wear has left of a line between
     two such runs stays, too.
     """
-    length = int(round(settings.shortest / (CELL * COORDINATE_SCALE)))
-    closed = fill_gaps(mask, int(round(settings.close / (CELL * COORDINATE_SCALE))), 0)
+    length = int(round(settings.shortest / (CELL_UNITS * COORDINATE_SCALE)))
+    closed = fill_gaps(mask, int(round(settings.close / (CELL_UNITS * COORDINATE_SCALE))), 0)
     long = mask & (long_runs(closed, length, 0) | long_runs(closed, length, 1))
     return mask & (long | _between(long, mask)) if long.any() else long
 
@@ -31,7 +32,7 @@ def _between(ends, specks):
     ends, specks = (cv2.dilate(mask.view(np.uint8), beside, borderValue=0).view(bool) for mask in (ends, specks))
     columns = np.flatnonzero(ends.any(axis=0))
     ends, specks = np.ascontiguousarray(ends[:, columns]), np.ascontiguousarray(specks[:, columns])
-    run = fill_gaps(specks, int(round(WORN / (CELL * COORDINATE_SCALE))), 0)
+    run = fill_gaps(specks, int(round(WORN / (CELL_UNITS * COORDINATE_SCALE))), 0)
     result[:, columns] = run & _met_since(ends, ~run) & _met_since(ends[::-1], ~run[::-1])[::-1]
     return result
 

@@ -12,13 +12,12 @@ import numpy as np
 from scipy import ndimage
 
 from ...survey.store.records import COORDINATE_SCALE
-from ..objects.dash_rows import FEWEST, in_rows
-from ..objects.shape import CELL as CELL_UNITS
+from ..objects.dash_rows import MIN_DASHES_IN_ROW, rows_of_dashes
+from ..objects.road_grid import CELL_SIZE, CELL_UNITS
 from ..objects.shape import Shape, measure
 
 # Noisy points seen through averages: how much brighter a spot is than the road about it, and how steep it lies.
 
-CELL = 0.04       # m
 SPOT = 1.25       # cells, sigma of the average that a spot is seen through
 AROUND_SPOT = 10.0     # cells, sigma of the average that this is compared with: tracks, patches and shadows are wider than strokes
 FEWEST_IN_SPOT = 0.05     # points a cell, so averaged, below which nothing is known
@@ -68,7 +67,7 @@ class Averages:
         asphalt = _mean(count * plain, total * plain, AROUND_SPOT)
         around = np.where(np.isfinite(asphalt), asphalt, around)
         contrast = (spot - around).astype(np.float32)
-        tilts = [np.gradient(_mean(count, risen, sigma), CELL) for sigma in (STEEP, GROUND)]
+        tilts = [np.gradient(_mean(count, risen, sigma), CELL_SIZE) for sigma in (STEEP, GROUND)]
         slope = np.stack([near - about for near, about in zip(*tilts)]).astype(np.float32)
         return cls(contrast, around, scatter_about(contrast), slope)
 
@@ -228,9 +227,9 @@ def stroke_cells(averages, rim, witnesses, threshold):
     dashes = [piece for piece in pieces(parted, averages, rim, FAINT * threshold)
               if piece.may_be_dash and np.hypot(*piece.slope) < STEEPER * FLAT]
     dashes = trusted(dashes, witnesses, rim.shape)
-    for row in in_rows([piece.shape for piece in dashes]):
+    for row in rows_of_dashes([piece.shape for piece in dashes]):
         plain = sum(dashes[k].z >= threshold for k in row)
-        if plain >= max(FEWEST, len(row) / 2) and np.hypot(*np.mean([dashes[k].slope for k in row], axis=0)) < FLAT:
+        if plain >= max(MIN_DASHES_IN_ROW, len(row) / 2) and np.hypot(*np.mean([dashes[k].slope for k in row], axis=0)) < FLAT:
             for k in row:
                 mask[dashes[k].cells] = True
     return mask
@@ -239,7 +238,7 @@ def stroke_cells(averages, rim, witnesses, threshold):
 def pieces(mask, averages, rim, threshold):
     """Connected pieces of a mask that reach the threshold away from the road's rim; the smallest are left out."""
     labels, count = ndimage.label(mask, np.ones((3, 3), bool))
-    large = np.bincount(labels.ravel(), minlength=count + 1) * CELL**2 >= DASH_AREA
+    large = np.bincount(labels.ravel(), minlength=count + 1) * CELL_SIZE**2 >= DASH_AREA
     z, found = averages.z, []
     for number, box in enumerate(ndimage.find_objects(labels), start=1):
         if not large[number]:
@@ -254,7 +253,7 @@ def pieces(mask, averages, rim, threshold):
         contrast = averages.contrast[row, column]
         top, highest = np.percentile(contrast, [USUAL, BRIGHTEST]).tolist()
         found.append(Piece((row, column), measure(row * CELL_UNITS, column * CELL_UNITS),
-                           2.0 * CELL * ndimage.distance_transform_edt(np.pad(inside, 1)).max(), tilt.mean(axis=1),
+                           2.0 * CELL_SIZE * ndimage.distance_transform_edt(np.pad(inside, 1)).max(), tilt.mean(axis=1),
                            float(np.median(rim[row, column])), top,
                            _beside(inside & (averages.contrast[box] > HALF * highest), box, averages.contrast) / highest, reached))
     return found

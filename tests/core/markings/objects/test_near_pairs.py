@@ -6,8 +6,17 @@ import numpy as np
 import pytest
 from lanewright.core.markings.objects import classify as classes
 from lanewright.core.markings.objects import near_pairs
-from lanewright.core.markings.objects.classify import ALONG, ASKEW, DOUBLE, PARALLEL, STRIPE_LENGTH, STRIPE_PITCH, STRIPE_WIDTH, STRIPES, classify
-from lanewright.core.markings.objects.shape import Shape
+from lanewright.core.markings.objects.classify import (
+    MAX_DOUBLE_LINE_SPACING,
+    MAX_STRIPE_SKEW,
+    MAX_STRIPE_TURN,
+    MIN_STRIPES,
+    STRIPE_LENGTH,
+    STRIPE_PITCH,
+    STRIPE_WIDTH,
+    classify_markings,
+)
+from lanewright.core.markings.objects.shape import MAX_ANGLE_ALONG, Shape
 from lanewright.core.markings.objects.split_merge import join_fragments
 from scipy.sparse.csgraph import connected_components
 
@@ -37,7 +46,7 @@ def crossings(count, seed=0):
 
 @pytest.fixture(params=[7, 1 << 18])
 def at_a_time(request, monkeypatch):
-    monkeypatch.setattr(near_pairs, "PAIRS", request.param)
+    monkeypatch.setattr(near_pairs, "PAIRS_PER_BLOCK", request.param)
 
 
 @pytest.mark.parametrize("apart", [0.0, 3.0])
@@ -46,7 +55,7 @@ def test_every_pair_that_meets_comes_once(at_a_time, apart, counts):
     one, other = (pieces(count, 50.0, 8.0, seed) for seed, count in enumerate(counts))
     # whole metres: many begin where others end
     bounds = [np.rint(column[name]) for column in (one, other) for name in ("s0", "s1")]
-    found = [np.column_stack(pair) for pair in near_pairs.near_pairs(*bounds, apart)]
+    found = [np.column_stack(pair) for pair in near_pairs.overlapping_pairs(*bounds, apart)]
     found = np.concatenate([np.empty((0, 2), int), *found])
     s0, s1, t0, t1 = bounds
     expected = np.argwhere((s0[:, None] <= t1 + apart) & (s1[:, None] >= t0 - apart))
@@ -57,7 +66,7 @@ def partners_among_all(column, line):
     rows = np.flatnonzero(line)
     s0, s1, d = (column[name][rows] for name in ("s0", "s1", "offset"))
     overlap = np.minimum(s1[:, None], s1) - np.maximum(s0[:, None], s0)
-    near = (np.abs(d[:, None] - d) <= DOUBLE) & (overlap > 0.5 * (s1 - s0)[:, None])
+    near = (np.abs(d[:, None] - d) <= MAX_DOUBLE_LINE_SPACING) & (overlap > 0.5 * (s1 - s0)[:, None])
     np.fill_diagonal(near, False)
     result = np.zeros(len(line), bool)
     result[rows] = near.any(axis=1)
@@ -75,17 +84,17 @@ def test_lines_of_a_double_line_are_those_among_all_pairs(at_a_time, count):
 
 def stripes_among_all(column):
     turn, length, width = (column[name] for name in ("direction", "length", "width"))
-    rows = np.flatnonzero((np.abs(turn) <= ASKEW) & (width >= STRIPE_WIDTH[0]) & (width <= STRIPE_WIDTH[1])
+    rows = np.flatnonzero((np.abs(turn) <= MAX_STRIPE_SKEW) & (width >= STRIPE_WIDTH[0]) & (width <= STRIPE_WIDTH[1])
                           & (length >= STRIPE_LENGTH[0]) & (length <= STRIPE_LENGTH[1]))
     s, d = ((column[low][rows] + column[high][rows]) / 2 for low, high in (("s0", "s1"), ("d0", "d1")))
     ds, dd, turn, length = s - s[:, None], d - d[:, None], turn[rows], length[rows]
     middle = (turn + turn[:, None]) / 2
     ahead, pitch = ds * np.cos(middle) + dd * np.sin(middle), np.abs(dd * np.cos(middle) - ds * np.sin(middle))
     shared = (length + length[:, None]) / 2 - np.abs(ahead) > 0.5 * np.minimum(length, length[:, None])
-    across = ((np.abs(dd) > np.abs(ds)) | (np.abs(middle) <= ALONG)) & (np.abs(turn - turn[:, None]) <= PARALLEL)
+    across = ((np.abs(dd) > np.abs(ds)) | (np.abs(middle) <= MAX_ANGLE_ALONG)) & (np.abs(turn - turn[:, None]) <= MAX_STRIPE_TURN)
     group = connected_components(shared & across & (pitch >= STRIPE_PITCH[0]) & (pitch <= STRIPE_PITCH[1]), directed=False)[1]
     result = np.zeros(len(width), bool)
-    result[rows] = np.bincount(group, minlength=1)[group] >= STRIPES
+    result[rows] = np.bincount(group, minlength=1)[group] >= MIN_STRIPES
     return result
 
 
@@ -99,12 +108,12 @@ def test_stripes_of_crossings_are_those_among_all_pairs(at_a_time, seed):
 
 def strips_beyond_lines_among_all(column, line, room):
     s0, s1, d, length = (column[name] for name in ("s0", "s1", "offset", "length"))
-    short = column["along"] & (s1 - s0 > column["d1"] - column["d0"]) & (room < classes.RIM)
+    short = column["along"] & (s1 - s0 > column["d1"] - column["d0"]) & (room < classes.RIM_CLEARANCE)
     found = np.zeros(len(line), bool)
     for k in np.flatnonzero(short):
         outward = np.sign(d[k]) * (d[k] - d)
-        times = 1.0 if room[k] < column["width"][k] / 2 + classes.TOUCHING_EDGE else classes.LONGER
-        reach = classes.NO_LANE if room[k] < classes.AT_RIM else classes.BEYOND
+        times = 1.0 if room[k] < column["width"][k] / 2 + classes.EDGE_CONTACT else classes.EDGE_LINE_LENGTH_RATIO
+        reach = classes.STRIP_REACH_AT_ROAD_EDGE if room[k] < classes.ROAD_EDGE_CLEARANCE else classes.STRIP_REACH_BEYOND_EDGE_LINE
         beside = (outward > 0.1) & (outward < reach) & (np.minimum(s1, s1[k]) - np.maximum(s0, s0[k]) > 0)
         found[k] = (line & beside & (length > times * length[k])).any()
     return found
@@ -115,7 +124,7 @@ def test_strips_beyond_an_edge_line_are_those_among_all_pairs(at_a_time):
     line, room = column["along"] & (column["length"] > 2.0), 4.0 - np.abs(column["offset"])
     found = classes._beyond_the_edge_line(column, line, room)
     np.testing.assert_array_equal(found, strips_beyond_lines_among_all(column, line, room))
-    assert 5 < found.sum() < (room < classes.RIM).sum()
+    assert 5 < found.sum() < (room < classes.RIM_CLEARANCE).sum()
 
 
 def away(column, k):
@@ -128,11 +137,11 @@ def test_bars_of_hatching_and_their_outlines_are_those_among_all_pairs(at_a_time
     column = pieces(300, 900.0, 8.0)
     kinds = np.where(np.arange(300) % 3 > 0, "hatch", "symbol")
     bars, symbols = kinds == "hatch", np.flatnonzero(kinds == "symbol")
-    outlines = [k for k in symbols if (bars & (away(column, k) < classes.TOUCHING)).any()]
+    outlines = [k for k in symbols if (bars & (away(column, k) < classes.MAX_BAR_TO_OUTLINE)).any()]
     np.testing.assert_array_equal(classes._outlines(column, kinds.tolist()), outlines)
-    others = [bars & (away(column, k) < classes.BAR_APART) & (np.arange(300) != k) for k in range(300)]
-    lone = [k for k in np.flatnonzero(bars) if not others[k].any() and (column["s1"] - column["s0"])[k] < classes.HATCHED_AREA]
-    np.testing.assert_array_equal(classes._lone_bars(column, kinds.tolist()), lone)
+    others = [bars & (away(column, k) < classes.MAX_HATCHING_PITCH) & (np.arange(300) != k) for k in range(300)]
+    lone = [k for k in np.flatnonzero(bars) if not others[k].any() and (column["s1"] - column["s0"])[k] < classes.MIN_HATCHING_LENGTH]
+    np.testing.assert_array_equal(classes._single_bars(column, kinds.tolist()), lone)
     assert 5 < len(outlines) < len(symbols) and 5 < len(lone) < bars.sum()
 
 
@@ -146,7 +155,7 @@ def test_memory_grows_with_the_number_of_dashes_and_not_with_its_square(width):
     shapes = [dash(12.0 * k, d, width) for k in range(5000) for d in (-3.5, -1.5, 1.5, 3.5)]
     tracemalloc.start()
     try:
-        found = classify(shapes, np.full(len(shapes), 6.0))
+        found = classify_markings(shapes, np.full(len(shapes), 6.0))
         joined = join_fragments(shapes, 0.35)
         peak = tracemalloc.get_traced_memory()[1]
     finally:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.markings.objects import outliers
-from lanewright.core.markings.objects.outliers import OutlierSettings, may_be_lonely, mean_distances, remove_outliers
+from lanewright.core.markings.objects.outliers import OutlierSettings, mean_distances, outlier_candidates, remove_outliers
 from painted_streets import assert_same_points, drive, paint, road_points, shuffled, strip
 from scipy.spatial.distance import cdist
 
@@ -68,7 +68,7 @@ def test_where_paint_crowds_the_same_points_go_as_when_every_point_is_asked(monk
     monkeypatch.setattr(outliers.Neighbours, "of", lambda self, rows: asked.append(len(rows)) or of(self, rows))
     few = remove_outliers(points)
     assert sum(asked) < len(records) / 2
-    monkeypatch.setattr(outliers, "MOST", len(records))
+    monkeypatch.setattr(outliers, "MAX_LIMIT_SAMPLE", len(records))
     every = remove_outliers(points)
     assert_same_points(few.all_points().records, every.all_points().records)
     assert 30 < len(records) - len(every) < 200
@@ -81,7 +81,7 @@ def test_no_point_beyond_the_limit_is_taken_for_one_among_many(neighbours):
     distances = mean_distances(units, neighbours)
     looked = np.arange(0, len(records), 7)
     limit = 2.5 * np.median(distances)
-    found = may_be_lonely(records, neighbours, looked, distances[looked], limit, 0.0)
+    found = outlier_candidates(records, neighbours, looked, distances[looked], limit, 0.0)
     assert set(np.flatnonzero(distances > limit)) <= set(found)
     assert len(found) < len(records) / 2
 
@@ -130,7 +130,7 @@ def test_where_points_are_rounded_or_repeated_windows_find_the_same_as_when_ever
     records = EXPORTS[export](with_stray(paint(FRAME, [LINE, strip(5, 60, -2.6, -2.45)], density=1500), 33.0, 0.4))
     points = road_points(records, FRAME)
     few = remove_outliers(points)
-    monkeypatch.setattr(outliers, "may_be_lonely", lambda records, *_: np.arange(len(records)))
+    monkeypatch.setattr(outliers, "outlier_candidates", lambda records, *_: np.arange(len(records)))
     assert_same_points(few.all_points().records, remove_outliers(points).all_points().records)
     # a point of which 25 lie at one place is not alone
     assert (abs(few.all_points().d - 0.4) < 0.01).any() == (export == "every point 25 times")
@@ -143,7 +143,7 @@ def test_among_rounded_and_repeated_points_none_beyond_the_limit_is_taken_for_on
     distances = mean_distances_of_all(records, neighbours)
     for limit in (0.0, distances.mean(), distances.mean() + distances.std(ddof=1)):
         looked = np.arange(0, len(records), 7)
-        found = may_be_lonely(records, neighbours, looked, distances[looked], limit, 0.0)
+        found = outlier_candidates(records, neighbours, looked, distances[looked], limit, 0.0)
         assert set(np.flatnonzero(distances > limit + 1e-9)) <= set(found)
 
 

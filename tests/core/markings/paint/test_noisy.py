@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.intensity.correction import correct_intensity
-from lanewright.core.markings.objects.dash_rows import in_rows
+from lanewright.core.markings.objects.dash_rows import rows_of_dashes
 from lanewright.core.markings.objects.shape import measure
 from lanewright.core.markings.paint.extract import extract_markings
 from spun_streets import spun
@@ -115,16 +115,16 @@ def shape_of(s, d, length=0.5, width=0.15):
 
 def test_four_dashes_in_line_are_a_row_and_three_are_none():
     shapes = [shape_of(s, 0.02 * s) for s in (0.0, 1.0, 2.0, 3.0)]
-    assert [row.tolist() for row in in_rows(shapes)] == [[0, 1, 2, 3]]
-    assert in_rows(shapes[:3]) == []
+    assert [row.tolist() for row in rows_of_dashes(shapes)] == [[0, 1, 2, 3]]
+    assert rows_of_dashes(shapes[:3]) == []
 
 
 def test_a_dash_worn_away_does_not_end_a_row_and_dashes_beside_each_other_are_none():
-    assert [len(row) for row in in_rows([shape_of(s, 0.0) for s in (0.0, 0.9, 2.7, 3.6, 4.5)])] == [5]
-    assert in_rows([shape_of(0.0, d) for d in (0.0, 1.0, 2.0, 3.0)]) == []
+    assert [len(row) for row in rows_of_dashes([shape_of(s, 0.0) for s in (0.0, 0.9, 2.7, 3.6, 4.5)])] == [5]
+    assert rows_of_dashes([shape_of(0.0, d) for d in (0.0, 1.0, 2.0, 3.0)]) == []
 
 
 def test_spots_strewn_about_are_no_row():
     rng = np.random.default_rng(3)
     places = rng.uniform(0, 12, (40, 2))
-    assert sum(len(row) for row in in_rows([shape_of(s, d) for s, d in places])) < 8
+    assert sum(len(row) for row in rows_of_dashes([shape_of(s, d) for s, d in places])) < 8
