@@ -2,16 +2,19 @@
 
 from pathlib import Path
 
-from qgis.core import Qgis, QgsApplication, QgsProject
-from qgis.PyQt.QtCore import QObject
-from qgis.PyQt.QtGui import QAction, QIcon
+from qgis.core import Qgis, QgsApplication, QgsProcessingModelAlgorithm, QgsProject
+from qgis.PyQt.QtCore import QObject, QUrl
+from qgis.PyQt.QtGui import QAction, QDesktopServices, QIcon
+from qgis.PyQt.QtWidgets import QMenu
 
+from ..processing_provider.reports import last_report
 from ..processing_provider.texts import tr
 from .layout_dialog import LayoutDialog, road_map_groups, shown_layers
 from .manual import ManualWindow
 from .map_layout import road_map_layout
 from .sample_run import SampleRun
 
+PROVIDER = "lanewright"
 ICON = Path(__file__).resolve().parents[1] / "resources" / "icon.svg"
 
 
@@ -22,7 +25,7 @@ class Menu(QObject):
         super().__init__()
         self.iface = iface
         self.actions = []
-        self.dialog = self.layout_dialog = None  # kept, or Python would collect the open windows
+        self.dialog = self.layout_dialog = self.designer = None  # kept, or Python would collect the open windows
         self.sample = SampleRun(iface)
         self.manual = ManualWindow(iface.mainWindow())
         theme = QgsApplication.getThemeIcon
@@ -31,6 +34,8 @@ class Menu(QObject):
                   theme("/mActionStart.svg"))
         self._add(tr("Print layout of the road map"), self.open_layout, tr("A map of the layers that Lanewright made"),
                   theme("/mActionNewLayout.svg"))
+        self._add(tr("Open the last report"), self.open_report, tr("The report of the run that ended last"), theme("/mIconHtml.svg"))
+        self._add_models()
         self._add(tr("Manual"), self.manual.open, tr("What every algorithm does, and a walk through a first survey"),
                   theme("/mActionHelpContents.svg"))
         # A toolbar of its own would take a row of the window for one button
@@ -43,6 +48,34 @@ class Menu(QObject):
         action.triggered.connect(lambda checked=False: what())
         self.iface.addPluginToMenu("Lanewright", action)
         self.actions.append(action)
+
+    def _add_models(self):
+        """A sub-menu that opens the models of the plugin in QGIS's model designer, each as a copy to be changed and saved."""
+        menu = QMenu(tr("Open a model in the designer"), self.iface.mainWindow())
+        menu.setIcon(QgsApplication.getThemeIcon("/processingModel.svg"))
+        provider = QgsApplication.processingRegistry().providerById(PROVIDER)
+        for algorithm in provider.algorithms() if provider else ():
+            if isinstance(algorithm, QgsProcessingModelAlgorithm):
+                menu.addAction(algorithm.displayName(), lambda checked=False, name=algorithm.id(): self.open_model(name))
+        self.models = menu
+        self.iface.addPluginToMenu("Lanewright", menu.menuAction())
+        self.actions.append(menu.menuAction())
+
+    def open_model(self, name):
+        """The designer with a copy of a model."""
+        from processing.modeler.ModelerDialog import ModelerDialog
+
+        self.designer = ModelerDialog.create(QgsApplication.processingRegistry().createAlgorithmById(name))
+        self.designer.show()
+
+    def open_report(self):
+        """The report written last, in the user's web browser."""
+        path = last_report()
+        if path:
+            QDesktopServices.openUrl(QUrl.fromLocalFile(path))
+        else:
+            self.iface.messageBar().pushMessage(
+                "Lanewright", tr("No report has been written since QGIS was started."), level=Qgis.MessageLevel.Info)
 
     def remove(self):
         self.iface.removeToolBarIcon(self.actions[0])

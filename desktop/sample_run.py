@@ -1,6 +1,9 @@
 """The sample survey through the whole chain, in the background, into the project."""
 
+import shutil
 import tempfile
+import time
+from functools import partial
 from pathlib import Path
 
 from qgis.core import (
@@ -28,10 +31,12 @@ class SampleRun:
 
     def start(self):
         if self.running:
-            self._say(tr("The sample survey is already on its way."), Qgis.MessageLevel.Info)
+            self._say(tr("The sample survey is already running."), Qgis.MessageLevel.Info)
             return
         self.running = True
         self.folder = Path(tempfile.mkdtemp(prefix="lanewright-sample-"))
+        # its layers stay in the project until then
+        QgsApplication.instance().aboutToQuit.connect(partial(shutil.rmtree, self.folder, ignore_errors=True))
         self._run("samplesurvey", dict(
             LENGTH=LENGTH, POINT_CLOUD=str(self.folder / "sample.laz"), TRAJECTORY=str(self.folder / "trajectory.gpkg")
         ), self._survey_made)
@@ -55,11 +60,14 @@ class SampleRun:
         ), self._mapped)
 
     def _mapped(self, algorithm, parameters):
+        from processing.core.ProcessingResults import resultsList
         from processing.gui.Postprocessing import handleAlgorithmResults
 
         self.running = False
         handleAlgorithmResults(algorithm, self.context, self.feedback, parameters)
-        self._say(tr("The road map of the sample survey is in the project; its files are in {folder}.").format(folder=self.folder),
+        resultsList.addResult(algorithm.icon(), algorithm.displayName(), time.localtime(), parameters["REPORT"])
+        self._say(tr("The road map of the sample survey is in the project, its report in the Results Viewer. Its files in {folder} "
+                     "are deleted when QGIS is closed: save the layers you want to keep.").format(folder=self.folder),
                   Qgis.MessageLevel.Success)
 
     def _failed(self):

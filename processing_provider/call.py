@@ -18,6 +18,7 @@ from ..core.common.errors import RoadExtractionError
 from .embedded_style import embed_style
 from .input_files import close_database, input_files, written_over
 from .layers import WKB_TYPES, QgisSource, crs_text, keeps_aliases, qgis_fields, write_features
+from .reports import note_report
 from .styling import group_of, style_on_load
 from .texts import tr
 
@@ -154,6 +155,7 @@ class QgisCall(Call):
         schemas = {name: features.schema for name, features in self._layers}
         group = group_of(self.surveyed())
         for name, dest in self._results.items():
+            note_report(dest)
             look = self.algorithm.LOOKS.get(name, name)
             embed_style(look, dest, self.label(name), schemas.get(name, ()))
             style_on_load(look, dest, self.label(name), self.context, schemas.get(name, ()), group)

@@ -4,7 +4,8 @@ import os
 import traceback
 from pathlib import Path
 
-from qgis.core import QgsApplication, QgsProject
+from lanewright.processing_provider.reports import last_report
+from qgis.core import QgsProject
 from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, Qt, QTimer
 from qgis.PyQt.QtGui import QAction, QGuiApplication, QImage
 from qgis.PyQt.QtWidgets import QDockWidget
@@ -104,6 +105,10 @@ def sample():
     ours.actions[1].trigger()
     needed(wait(400, lambda: not ours.sample.running), "the sample survey took longer than 400 s")
     wait(2)
+    from processing.core.ProcessingResults import resultsList
+
+    needed(any(Path(result.filename).is_file() for result in resultsList.getResults()), "the report is not in the Results Viewer")
+    needed(last_report(), "the menu knows no report")
     names = {layer.name() for layer in QgsProject.instance().mapLayers().values()}
     needed(len(names) >= 6, f"the sample left only {sorted(names)}")
     groups = [node.name() for node in QgsProject.instance().layerTreeRoot().findGroups()]
@@ -138,7 +143,7 @@ def layout():
 
 
 def manual():
-    plugins["lanewright"].menu.actions[3].trigger()
+    plugins["lanewright"].menu.actions[-1].trigger()
     window = plugins["lanewright"].menu.manual
     wait(1)
     needed(len(window.browser.toPlainText()) > 500, "the manual is empty")
@@ -148,12 +153,11 @@ def manual():
 
 def designer():
     """The chain as a model, in the model designer."""
-    from processing.modeler.ModelerDialog import ModelerDialog
-
-    model = QgsApplication.processingRegistry().createAlgorithmById("lanewright:Road map stages")
-    needed(model is not None, "the model is not listed")
-    window = ModelerDialog.create(model)
-    window.show()
+    ours = plugins["lanewright"].menu
+    action = next((action for action in ours.models.actions() if action.text() == "Road map stages"), None)
+    needed(action is not None, "the model is not in the menu")
+    action.trigger()
+    window = ours.designer
     window.resize(1380, 860)
     wait(1)
     window.findChild(QAction, "mActionZoomToItems").trigger()

@@ -645,11 +645,6 @@
         </message>
         <message>
             <location filename="../../algorithms/call.py" />
-            <source>Cancelled</source>
-            <translation>Abgebrochen</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/call.py" />
             <source>Not enough memory for this step; close other programs or process fewer files at once.</source>
             <translation>Der Arbeitsspeicher reicht für diesen Schritt nicht; andere Programme schließen oder weniger Dateien auf einmal verarbeiten.</translation>
         </message>
@@ -2775,6 +2770,16 @@
         </message>
         <message>
             <location filename="../../desktop/menu.py" />
+            <source>Open the last report</source>
+            <translation>Letzten Bericht öffnen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/menu.py" />
+            <source>The report of the run that ended last</source>
+            <translation>Der Bericht des zuletzt beendeten Laufs</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/menu.py" />
             <source>Manual</source>
             <translation>Handbuch</translation>
         </message>
@@ -2782,6 +2787,16 @@
             <location filename="../../desktop/menu.py" />
             <source>What every algorithm does, and a walk through a first survey</source>
             <translation>Was jeder Algorithmus tut, und ein Gang durch eine erste Vermessung</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/menu.py" />
+            <source>Open a model in the designer</source>
+            <translation>Ein Modell im Modelleditor öffnen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/menu.py" />
+            <source>No report has been written since QGIS was started.</source>
+            <translation>Seit dem Start von QGIS wurde noch kein Bericht geschrieben.</translation>
         </message>
         <message>
             <location filename="../../desktop/menu.py" />
@@ -2795,13 +2810,13 @@
         </message>
         <message>
             <location filename="../../desktop/sample_run.py" />
-            <source>The sample survey is already on its way.</source>
-            <translation>Die Beispielvermessung läuft bereits.</translation>
+            <source>The sample survey is already running.</source>
+            <translation>Die Beispielaufnahme läuft bereits.</translation>
         </message>
         <message>
             <location filename="../../desktop/sample_run.py" />
-            <source>The road map of the sample survey is in the project; its files are in {folder}.</source>
-            <translation>Die Straßenkarte der Beispielvermessung ist im Projekt; ihre Dateien liegen in {folder}.</translation>
+            <source>The road map of the sample survey is in the project, its report in the Results Viewer. Its files in {folder} are deleted when QGIS is closed: save the layers you want to keep.</source>
+            <translation>Die Straßenkarte der Beispielaufnahme ist im Projekt, ihr Bericht in der Ergebnisanzeige. Ihre Dateien in {folder} werden gelöscht, wenn QGIS beendet wird: Speichern Sie die Layer, die Sie behalten möchten.</translation>
         </message>
         <message>
             <location filename="../../desktop/sample_run.py" />
@@ -2812,6 +2827,11 @@
             <location filename="../../desktop/sample_run.py" />
             <source>cancelled</source>
             <translation>abgebrochen</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/algorithm.py" />
+            <source>Cancelled</source>
+            <translation>Abgebrochen</translation>
         </message>
         <message>
             <location filename="../../processing_provider/call.py" />
