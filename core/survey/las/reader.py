@@ -16,10 +16,10 @@ from .guard import find_damage, points_per_chunk
 
 POINTS_PER_BLOCK = 400_000  # points decoded at a time
 SUFFIXES = (".las", ".laz")
-MAX_SCALE, MAX_OFFSET = 1e3, 1e12  # m, of coordinates stored as integers; beyond them no place on earth is described
+MAX_HEADER_SCALE, MAX_HEADER_OFFSET = 1e3, 1e12  # m, of coordinates stored as integers; beyond them no place on earth is described
 NOT_FILE_ERRORS = (KeyboardInterrupt, SystemExit, GeneratorExit, Cancelled, MemoryError)  # they say nothing about the file
 
-Result = TypeVar("Result")
+ReadResult = TypeVar("ReadResult")
 
 
 @dataclass(frozen=True)
@@ -114,7 +114,7 @@ def read_header(path: str | os.PathLike[str]) -> CloudHeader:
     with open_cloud(path) as reader:
         header = reader.header
         names = set(header.point_format.dimension_names)
-        if not ((np.abs(header.scales) < MAX_SCALE).all() and (np.abs(header.offsets) < MAX_OFFSET).all() and np.all(header.scales)):
+        if not ((np.abs(header.scales) < MAX_HEADER_SCALE).all() and (np.abs(header.offsets) < MAX_HEADER_OFFSET).all() and np.all(header.scales)):
             raise RoadExtractionError(
                 f"{path} is damaged: its header says scales of {_listed(header.scales)} and offsets of {_listed(header.offsets)}, with which "
                 "points have no coordinates. Export the file again.")
@@ -239,7 +239,7 @@ def truncated_file_error(path: str | os.PathLike[str], promised: int, found: int
     return RoadExtractionError(f"{path} is cut off: its header promises {promised} points, {found} are there. Copy or export the file again.")
 
 
-def wrap_read_error(read: Callable[[], Result], path: str | os.PathLike[str], promised: int, first: int) -> Result:
+def wrap_read_error(read: Callable[[], ReadResult], path: str | os.PathLike[str], promised: int, first: int) -> ReadResult:
     """Call a function that reads points; errors of the file become one sentence.
 
     Parameters

@@ -65,10 +65,12 @@ class Columns:
 
     @property
     def shape(self) -> tuple[int]:
+        """(N,), as of an array."""
         return (self._length,)
 
     @property
     def nbytes(self) -> int:
+        """Bytes of all columns, whether or not they are in memory."""
         return self._length * self.dtype.itemsize
 
     @property

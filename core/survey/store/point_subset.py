@@ -53,13 +53,14 @@ class PointSubset(SectionStore):
             self._masks.put(road, section, Columns({"bits": np.packbits(mask)}, self._masks.dtype))
             self._own.put(road, section, Columns(columns, self._own.dtype))
 
-    def append(self, road, records):
+    def append(self, road: int, records: Any) -> None:
+        """Refused: the points are rows of another store."""
         raise TypeError("The points of this store are rows of another; points cannot be added.")
 
-    def roads(self):
+    def roads(self) -> list[int]:
         return self._own.roads()
 
-    def sections(self, road):
+    def sections(self, road: int) -> list[int]:
         return self._own.sections(road)
 
     def _read(self, road, section):
@@ -80,7 +81,7 @@ class PointSubset(SectionStore):
 
         return Columns({}, self.dtype, len(rows), load, load_rows=load_rows), True
 
-    def close(self):
+    def close(self) -> None:
         super().close()
         for store in (self._masks, self._own, self._points):
             store.close()

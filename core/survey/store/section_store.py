@@ -12,101 +12,19 @@ from typing import Any
 
 import numpy as np
 
-from ...common.memory import ScratchBuffers, column_buffers
+from ...common.memory import ScratchBuffers
 from ...common.order_statistics import bucket_argsort
 from ...common.parallel import check_cancelled
-from .canonical_order import canonical_order
 from .columns import Columns, columns_in_order
 from .records import COORDINATE_SCALE, Points
-from .spill_file import SpillFile, StoredColumn
+from .spill_file import SpillFile
+from .stored_section import StoredSection
 
 SECTION_LENGTH = 5.0       # m of station; results do not depend on it
 MEMORY_LIMIT = 64 * 2**20  # bytes of records in memory before they are spilled
 CACHE_LIMIT = 64 * 2**20   # bytes of spilled sections cached as last read: neighbouring windows ask for them again
 STRIPS_PER_SECTION = 16    # points wait strip by strip until a section is sorted, so that points sorted together lie together in memory
 SECTION_LOCKS = 16         # locks that the sections share while they are read
-
-
-class StoredSection:
-    """The points of one section: some parts in memory, others in the temporary file; one part once they are sorted.
-
-    Points are moved column by column, since a column that was just read is still in the processor's cache.
-
-    Attributes
-    ----------
-    dtype : structured dtype of the points
-    in_order : whether the points are in canonical order
-    parts : Columns of points in memory, and {name: StoredColumn} of points in the file
-    """
-
-    __slots__ = ("parts", "in_order", "dtype")
-
-    def __init__(self, dtype: np.dtype, in_order: bool):
-        self.dtype, self.in_order = dtype, in_order
-        self.parts: list[Columns | dict[str, StoredColumn]] = []
-
-    @property
-    def nbytes(self) -> int:
-        """Bytes in memory."""
-        return sum(part.nbytes for part in self.parts if isinstance(part, Columns))
-
-    def spill(self, file: SpillFile) -> None:
-        """Write the parts in memory to the file, as one part."""
-        waiting = [part for part in self.parts if isinstance(part, Columns)]
-        if waiting:
-            stored = {name: file.put(_concatenate_into_buffer([part[name] for part in waiting])) for name in self.dtype.names or ()}
-            self.parts = [part for part in self.parts if not isinstance(part, Columns)]
-            self.parts.append(stored)
-
-    def sort(self, file: SpillFile | None, finish: Callable[[Columns], np.ndarray | None] | None) -> None:
-        """Finish the points and sort them into one part, which is in the file if any of them were.
-
-        Parameters
-        ----------
-        file : holds the spilled parts
-        finish : function of Columns, in no order, which it may change; it returns a mask of the points to keep, or None for all
-        """
-        parts, count = self.parts, sum(map(self._count, self.parts))
-        names = self.dtype.names or ()
-        buffer = column_buffers.of(count)
-        records = Columns({}, self.dtype, count, lambda name: self._fill(file, name, buffer(name, self.dtype[name])))
-        mask = None if finish is None else finish(records)
-        order = canonical_order(records, mask)
-        spilled = [part for part in parts if not isinstance(part, Columns)]
-        arrays: dict[str, np.ndarray] = {}
-        stored: dict[str, StoredColumn] = {}
-        sorted_buffer = column_buffers.of(len(order))
-        for name in names if len(order) else ():
-            column = records[name]
-            if file is None or not spilled:
-                arrays[name] = column.take(order)
-                continue
-            for part in spilled:
-                file.release(part[name])
-            stored[name] = file.put(np.take(column, order, out=sorted_buffer("moved", column.dtype), mode="clip"))
-        self.parts, self.in_order = [], True
-        if len(order):
-            self.parts = [stored if spilled else Columns(arrays, self.dtype)]
-
-    def _count(self, part):
-        return len(part) if isinstance(part, Columns) else part[self.dtype.names[0]].packing.size
-
-    def _fill(self, file, name, column):
-        """Fill a column with the values of all parts."""
-        first = 0
-        for part in self.parts:
-            out = column[first:first + self._count(part)]
-            if isinstance(part, Columns):
-                out[:] = part[name]
-            else:
-                file.get(part[name], out)
-            first += len(out)
-        return column
-
-
-def _concatenate_into_buffer(columns):
-    """Arrays of a column one after the other, in a buffer of this thread that the next call overwrites."""
-    return np.concatenate(columns, out=column_buffers.of(sum(map(len, columns)))("column", columns[0].dtype))
 
 
 @dataclass(frozen=True)
@@ -366,13 +284,14 @@ class _ColumnOverlay(SectionStore):
         """Set the column of one section, (N,) in the order of its points."""
         self._column.put(road, section, Columns({self._name: records}, self._column.dtype))
 
-    def append(self, road, records):
+    def append(self, road: int, records: Any) -> None:
+        """Refused: the points are those of another store."""
         raise TypeError("The points of this store are those of another; a column can be put, points cannot be added.")
 
-    def roads(self):
+    def roads(self) -> list[int]:
         return self._points.roads()
 
-    def sections(self, road):
+    def sections(self, road: int) -> list[int]:
         return self._points.sections(road)
 
     def _read(self, road, section):
@@ -384,14 +303,14 @@ class _ColumnOverlay(SectionStore):
         return Columns({}, self.dtype, len(points), lambda name: of(name)[name],
                        load_rows=lambda name, rows: of(name).column_rows(name, rows)), False
 
-    def column(self, road, section, name, rows):
+    def column(self, road: int, section: int, name: str, rows: np.ndarray) -> np.ndarray:
         return self.section(road, section).take(rows)[name]
 
-    def clear_cache(self):
+    def clear_cache(self) -> None:
         self._column.clear_cache()
         self._points.clear_cache()
 
-    def close(self):
+    def close(self) -> None:
         super().close()
         self._column.close()
         self._points.close()

@@ -94,7 +94,7 @@ def align_time(time: np.ndarray, cloud_span: tuple[float, float], system: str = 
             if system == "automatic" else f"The trajectory was taken to count {TIME_SYSTEM_NAMES[system]}: set its time system to automatic"
         raise RoadExtractionError(
             f"The trajectory does not cover the scan in time. The scan was recorded from {cloud_first:.1f} s to {cloud_last:.1f} s"
-            f"{'' if not adjusted or cloud_last > SECONDS_PER_WEEK else ' (said to be adjusted GPS time)'}, "
+            f"{'' if not adjusted or cloud_last > SECONDS_PER_WEEK else ' (adjusted GPS time according to its header)'}, "
             f"the trajectory runs from {first:.1f} s to {last:.1f} s. {hint or tried + ' and run again.'}")
     if not offset:
         return 0.0, hint

@@ -48,7 +48,7 @@ def test_what_is_no_point_cloud_is_refused_in_one_sentence(tmp_path, name, conte
 
 
 @pytest.mark.parametrize("suffix", [".las", ".laz"])
-def test_too_little_memory_is_not_told_as_a_damaged_file(tmp_path, monkeypatch, suffix):
+def test_too_little_memory_is_not_reported_as_a_damaged_file(tmp_path, monkeypatch, suffix):
     import laspy
 
     def no_memory(*_):
@@ -143,7 +143,7 @@ def census(**fields):
 TIME = np.arange(1000.0)
 
 
-def test_two_scanners_that_measure_at_the_same_time_are_told_apart():
+def test_two_scanners_that_measure_at_the_same_time_are_distinguished():
     assert census(point_source_id=(np.arange(1000) % 2 + 1, TIME)).choose() == ("point_source_id", [1, 2])
 
 

@@ -100,7 +100,7 @@ def spinning(rate=10.0, beams=16, seconds=6.0):
     return np.broadcast_to(START + t[:, None], x.shape)[near], x[near], y[near], np.zeros(int(near.sum()))
 
 
-def test_a_spinning_head_of_many_beams_is_said_to_have_no_lines():
+def test_a_spinning_scanner_with_many_beams_has_no_scan_lines():
     time, x, y, z = spinning()
     told = []
 

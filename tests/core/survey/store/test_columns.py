@@ -12,7 +12,7 @@ def some(count=100):
     return records
 
 
-def test_rows_are_chosen_as_from_a_structured_array():
+def test_rows_are_taken_as_from_a_structured_array():
     records = some()
     columns = Columns.from_records(records)
     for which in (slice(5, 20), slice(None, None, 7), np.arange(100) % 3 == 0, np.array([7, 7, 2]), np.empty(0, int)):
@@ -20,7 +20,7 @@ def test_rows_are_chosen_as_from_a_structured_array():
     np.testing.assert_array_equal(columns[10:90][np.arange(80) % 3 == 0], records[10:90][np.arange(80) % 3 == 0])
 
 
-def test_rows_chosen_of_chosen_rows_are_the_right_ones():
+def test_rows_taken_from_rows_taken_before_are_the_right_ones():
     columns = Columns.from_records(some())
     np.testing.assert_array_equal(columns[np.array([9, 5, 3])][np.array([2, 0])]["s"], [3, 9])
 
@@ -30,7 +30,7 @@ def test_a_mask_of_another_length_is_refused():
         Columns.from_records(some())[np.ones(99, bool)]
 
 
-def test_what_was_chosen_may_be_changed_and_leaves_its_source_alone():
+def test_rows_that_were_taken_may_be_changed_without_changing_their_source():
     columns = Columns.from_records(some()).read_only()
     chosen = columns[np.array([1, 2])]
     chosen["s"] = 0
@@ -57,7 +57,7 @@ def test_a_row_beyond_joined_parts_is_refused():
         joined[np.array([3, 10])]["s"]
 
 
-def test_only_those_parts_are_read_that_chosen_rows_lie_in():
+def test_only_those_parts_are_read_that_the_rows_lie_in():
     def unread(name):
         raise AssertionError(f"{name} was read")
 
@@ -67,7 +67,7 @@ def test_only_those_parts_are_read_that_chosen_rows_lie_in():
     assert joined[120:130][np.array([1])]["s"].tolist() == [21]
 
 
-def test_few_rows_are_fetched_alone_and_where_they_grow_many_the_column_once():
+def test_few_rows_are_read_by_row_and_many_by_reading_the_column_once():
     records, fetched = some(), []
 
     def whole(name):

@@ -52,7 +52,7 @@ def test_a_window_of_a_subset_is_a_range_of_stations():
     assert window.s.min() >= 3.3 and window.s.max() < 21.7 and (np.diff(window.records["s"]) >= 0).all()
 
 
-def test_a_column_put_anew_leaves_the_other_columns_of_a_subset_as_they_are():
+def test_a_replaced_column_does_not_change_the_other_columns_of_a_subset():
     road = road_of(survey_store(0))
     bright = road.with_column("corrected")
     for number in road.sections(0):
@@ -64,7 +64,7 @@ def test_a_column_put_anew_leaves_the_other_columns_of_a_subset_as_they_are():
 
 
 @pytest.mark.parametrize("limit", [0, 10**9])
-def test_points_with_a_column_put_anew_give_memory_back_and_are_the_same_points_afterwards(limit):
+def test_points_with_a_replaced_column_are_the_same_after_their_cache_is_cleared(limit):
     store = survey_store(limit)
     bright = store.with_column("intensity")
     for number in store.sections(0):
@@ -108,7 +108,7 @@ def test_a_window_is_the_same_where_it_cuts_a_section_and_where_it_ends_with_one
         assert len(found) and found.tobytes() == everything[inside].tobytes()
 
 
-def test_chosen_points_take_no_others_and_close_the_store_with_them():
+def test_a_subset_refuses_further_points_and_closes_its_store():
     store = survey_store(0)
     road = road_of(store)
     with pytest.raises(TypeError, match="points cannot be added"):

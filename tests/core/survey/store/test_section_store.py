@@ -146,7 +146,7 @@ def test_points_at_one_place_are_ordered_by_time_intensity_and_the_rest(count):
     np.testing.assert_array_equal(canonical_order(made), expected)
 
 
-def test_points_that_do_not_stay_leave_the_order_of_the_others_alone():
+def test_points_that_are_removed_do_not_change_the_order_of_the_others():
     made = records(90_000, length=3.0)
     order, stay = canonical_order(made), made["d"] % 3 > 0
     np.testing.assert_array_equal(canonical_order(made, stay), order[stay[order]])

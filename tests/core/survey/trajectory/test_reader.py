@@ -120,7 +120,7 @@ def test_small_local_coordinates_without_names_keep_their_order(tmp_path):
     assert_same(read_trajectory(write(tmp_path / "t.csv", local, header="")), local)
 
 
-def test_columns_that_cannot_be_told_apart_are_refused_in_one_sentence(tmp_path):
+def test_columns_that_are_not_recognised_are_refused_in_one_sentence(tmp_path):
     trajectory = street()
     local = Trajectory(trajectory.time, trajectory.x - EAST, trajectory.y - NORTH, trajectory.z, trajectory.roll, trajectory.pitch)
     with pytest.raises(RoadExtractionError, match="Put a line of names above them"):
@@ -214,7 +214,7 @@ def test_one_crs_in_two_spellings_changes_no_coordinate():
     np.testing.assert_array_equal(same.x, trajectory.x)
 
 
-def test_degrees_said_to_be_metres_are_refused_by_name(tmp_path):
+def test_degrees_given_as_metres_are_refused_by_name(tmp_path):
     trajectory = street()
     lon, lat = geographic(trajectory)
     np.savetxt(tmp_path / "t.csv", np.c_[trajectory.time, lon, lat, trajectory.z], "%.10f", ",", header="time,x,y,z", comments="")

@@ -8,27 +8,27 @@ from lanewright.core.survey.trajectory.time_systems import SECONDS_PER_DAY, SECO
 from lanewright.core.survey.trajectory.trajectory import clean_trajectory
 
 GPS = 1_318_204_000.0  # a Wednesday in 2021, seconds since 1980
-CLOCKS = {"gps": GPS, "adjusted": GPS - 1e9, "week": GPS % SECONDS_PER_WEEK, "day": GPS % SECONDS_PER_DAY}
+TIMES = {"gps": GPS, "adjusted": GPS - 1e9, "week": GPS % SECONDS_PER_WEEK, "day": GPS % SECONDS_PER_DAY}
 
 
-@pytest.mark.parametrize("chosen", ["automatic", "named"])
-@pytest.mark.parametrize("cloud", CLOCKS)
-@pytest.mark.parametrize("trajectory", CLOCKS)
-def test_every_clock_is_brought_to_every_other(trajectory, cloud, chosen):
-    time = CLOCKS[trajectory] - 5.0 + STREET_TIME
-    offset, note = align_time(time, (CLOCKS[cloud], CLOCKS[cloud] + 40.0), "automatic" if chosen == "automatic" else trajectory)
-    assert CLOCKS[trajectory] + offset == pytest.approx(CLOCKS[cloud], abs=1e-6)
+@pytest.mark.parametrize("system", ["automatic", "named"])
+@pytest.mark.parametrize("cloud", TIMES)
+@pytest.mark.parametrize("trajectory", TIMES)
+def test_every_time_system_is_converted_to_every_other(trajectory, cloud, system):
+    time = TIMES[trajectory] - 5.0 + STREET_TIME
+    offset, note = align_time(time, (TIMES[cloud], TIMES[cloud] + 40.0), "automatic" if system == "automatic" else trajectory)
+    assert TIMES[trajectory] + offset == pytest.approx(TIMES[cloud], abs=1e-6)
     assert bool(note) == bool(offset), "the choice is reported where something was changed"
 
 
 @pytest.mark.parametrize("period, system", [(SECONDS_PER_WEEK, "week"), (SECONDS_PER_DAY, "day")])
 def test_a_drive_past_midnight_or_the_week_s_end_goes_on(period, system):
     time = (period - 30.0 + STREET_TIME) % period
-    carried = unwrap_time(time)
-    np.testing.assert_allclose(np.diff(carried), np.diff(STREET_TIME), atol=1e-6)
+    unwrapped = unwrap_time(time)
+    np.testing.assert_allclose(np.diff(unwrapped), np.diff(STREET_TIME), atol=1e-6)
     start = np.floor(GPS / period) * period - 1e9 + period - 20.0
     offset, note = align_time(time, (start, start + 40.0))
-    assert carried[0] + offset == pytest.approx(start - 10.0)
+    assert unwrapped[0] + offset == pytest.approx(start - 10.0)
     assert system in note
 
 
