@@ -7,7 +7,7 @@ from pathlib import Path
 
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.io.geotiff import IntensityImage
-from lanewright.core.markings.paint.extract import METHODS, extract_markings
+from lanewright.core.markings.paint.extract import MARKING_METHODS, extract_markings
 from lanewright.core.pipeline.road_map import RoadMapSettings
 from lanewright.core.road.detect_boundaries import draw_boundaries
 from lanewright.core.survey.open_survey import open_survey
@@ -77,7 +77,7 @@ def marking_methods(case, work):
     if "markings" not in case.truth.has:
         return {}
     found = {}
-    for method in METHODS:
+    for method in MARKING_METHODS:
         settings = set_in(DEFAULT, "markings", method=method)
         mask = work.scratch / f"{method}.tif"
         one = work.copy()

@@ -1,27 +1,36 @@
 """The mask of markings as a raster, in the pixels of the intensity image."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from os import PathLike
 
 import numpy as np
 
+from ...intensity.tiled_image import IntensityRaster
 from ...io.geotiff import new_geotiff
+from ...survey.frame.road_frame import Road, RoadFrame
 from ...survey.store.records import COORDINATE_SCALE
+from ...survey.store.road_points import RoadPoints
 from ..objects.outline import CLOSE_ALONG, painted_cells
 from ..objects.road_grid import CELL_SIZE
 
-BLOCK = 2048  # px: cells are burnt in blocks of the image, so that a window in a bend takes no more than it touches
-WINDOW = 500  # cells: 20 m of station burnt at a time
+BURN_BLOCK = 2048   # px: pixels are burnt in blocks of the image, so that a window in a bend reads only the blocks it touches
+BURN_WINDOW = 500   # cells: 20 m of station burnt at a time
+
+Burn = Callable[[np.ndarray, np.ndarray], None]   # burns (M,) local x, y
 
 
 @contextmanager
-def marking_mask(path, image, origin):
-    """A function that burns local places into a byte GeoTIFF: 1 where a marking is, no data elsewhere.
+def marking_mask(path: str | PathLike, image: IntensityRaster, origin: np.ndarray) -> Iterator[Burn]:
+    """Open a byte GeoTIFF, 1 where a marking is, no data elsewhere; gives a function that burns local x, y into it.
 
     Parameters
     ----------
     path : of the GeoTIFF; it appears when the block is left without an error
-    image : IntensityImage whose pixels the mask has
-    origin : what local coordinates leave out
+    image : IntensityRaster whose pixels the mask has
+    origin : map coordinates that local ones leave out, m
     """
     with new_geotiff(path, image.width, image.height, image.geotransform, image.crs, byte=True, nodata=0) as mask:
 
@@ -29,7 +38,7 @@ def marking_mask(path, image, origin):
             column, row = (np.floor(c).astype(np.int64) for c in image.pixel_of(x, y, origin))
             inside = (column >= 0) & (row >= 0) & (column < image.width) & (row < image.height)
             column, row = column[inside], row[inside]
-            block = row // BLOCK * (image.width // BLOCK + 1) + column // BLOCK
+            block = row // BURN_BLOCK * (image.width // BURN_BLOCK + 1) + column // BURN_BLOCK
             for number in np.unique(block):
                 c, r = column[block == number], row[block == number]
                 c0, r0, width, height = int(c.min()), int(r.min()), int(np.ptp(c)) + 1, int(np.ptp(r)) + 1
@@ -40,13 +49,19 @@ def marking_mask(path, image, origin):
         yield burn
 
 
-def pixel_centres(image, x, y, origin):
+def pixel_centres(image: IntensityRaster, x: np.ndarray, y: np.ndarray, origin: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The pixels that local places lie in.
+
+    Parameters
+    ----------
+    image : IntensityRaster
+    x, y : (N,) local coordinates, m
+    origin : map coordinates that local ones leave out, m
 
     Returns
     -------
     x, y : (M,) local centres of the pixels, each once
-    first : (M,) index of a place in each
+    first : (M,) index of a place in each pixel
     """
     column, row = (np.floor(c).astype(np.int64) for c in image.pixel_of(x, y, origin))
     _, first = np.unique(row * (image.width + 1) + column, return_index=True)
@@ -54,13 +69,16 @@ def pixel_centres(image, x, y, origin):
     return (left - origin[0]) + (column[first] + 0.5) * size, (top - origin[1]) - (row[first] + 0.5) * size, first
 
 
-def painted_pixels(cells, first, image, origin, road):
+def painted_pixels(cells: np.ndarray, first: tuple[int, int], image: IntensityRaster, origin: np.ndarray,
+                   road: Road) -> tuple[np.ndarray, np.ndarray]:
     """The image's pixels whose centres lie in painted cells of a road.
 
     Parameters
     ----------
     cells : (A, B) bool in (s, d), 4 cm each
     first : cell numbers of cells[0, 0]: it begins at first * 4 cm
+    image : IntensityRaster
+    origin : map coordinates that local ones leave out, m
     road : Road
 
     Returns
@@ -68,11 +86,12 @@ def painted_pixels(cells, first, image, origin, road):
     x, y : (M,) local centres of the pixels
     """
     row, column = np.nonzero(cells)
-    # four places a cell: pixels may be smaller than cells and lie askew to them
+    # four places a cell: pixels may be smaller than cells and rotated against them
     quarter = np.array([[-0.25, -0.25], [-0.25, 0.25], [0.25, -0.25], [0.25, 0.25]]) * CELL_SIZE
     s = ((first[0] + row + 0.5)[:, None] * CELL_SIZE + quarter[:, 0]).ravel()
     d = ((first[1] + column + 0.5)[:, None] * CELL_SIZE + quarter[:, 1]).ravel()
-    x, y, near = pixel_centres(image, *road.to_map(s, d), origin)
+    x, y = road.to_map(s, d)
+    x, y, near = pixel_centres(image, x, y, origin)
     s, d = road.locate(x, y, s[near], np.inf)
     known = np.isfinite(s)
     x, y, s, d = x[known], y[known], s[known], d[known]
@@ -82,19 +101,21 @@ def painted_pixels(cells, first, image, origin, road):
     return x[inside], y[inside]
 
 
-def burn_points(burn, points, image, frame):
+def burn_points(burn: Burn, points: RoadPoints, image: IntensityRaster, frame: RoadFrame) -> None:
     """Burn the cells that points lie in, gaps between scan lines closed.
 
     Parameters
     ----------
-    burn : of `marking_mask`
+    burn : function given by `marking_mask`
     points : RoadPoints on paint
+    image : IntensityRaster
+    frame : RoadFrame
     """
     halo = int(np.ceil(CLOSE_ALONG / CELL_SIZE)) + 1
     for road in points.roads():
         start, end = points.store.span(road)
-        for window in range(int(np.floor(start / CELL_SIZE / WINDOW)), int(np.ceil(end / CELL_SIZE / WINDOW))):
-            first, last = window * WINDOW, (window + 1) * WINDOW
+        for window in range(int(np.floor(start / CELL_SIZE / BURN_WINDOW)), int(np.ceil(end / CELL_SIZE / BURN_WINDOW))):
+            first, last = window * BURN_WINDOW, (window + 1) * BURN_WINDOW
             found = points.window(road, (first - halo) * CELL_SIZE, (last + halo) * CELL_SIZE).records
             if not len(found):
                 continue

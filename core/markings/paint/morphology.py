@@ -1,55 +1,70 @@
-"""What is bright and has the length of paint, along the road or across it."""
+"""Bright cells in runs as long as paint, along the road or across it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
 
-from ...survey.store.records import COORDINATE_SCALE
-from ..objects.road_grid import CELL_UNITS
+from ..objects.road_grid import CELL_SIZE
 from ..objects.shape import fill_gaps
 
-WORN = 0.80  # m along the road: no gap is painted shorter, so what bright specks lead over is one worn line
+if TYPE_CHECKING:
+    from .extract import MarkingSettings
+
+MAX_WORN_GAP = 0.80  # m along the road: no painted gap is shorter, so bright specks in it belong to one worn line
 
 
-def morphology(mask, settings):
-    """Close gaps along the road, then drop what is short both along and across it.
+def morphology(mask: np.ndarray, settings: MarkingSettings) -> np.ndarray:
+    """Close gaps along the road, then remove runs that are short both along and across it.
 
     A stop line is short along the road and a lane line across it: a cell stays
-    where either run through it is long enough. What wear has left of a line between
-    two such runs stays, too.
+    where either run through it is long enough. The remains of a worn line between
+    two such runs stay, too.
+
+    Parameters
+    ----------
+    mask : (rows, columns) bool, bright cells
+    settings : MarkingSettings, of which `close` and `shortest` are used
+
+    Returns
+    -------
+    (rows, columns) bool, a subset of `mask`
     """
-    length = int(round(settings.shortest / (CELL_UNITS * COORDINATE_SCALE)))
-    closed = fill_gaps(mask, int(round(settings.close / (CELL_UNITS * COORDINATE_SCALE))), 0)
+    length = int(round(settings.shortest / CELL_SIZE))
+    closed = fill_gaps(mask, int(round(settings.close / CELL_SIZE)), 0)
     long = mask & (long_runs(closed, length, 0) | long_runs(closed, length, 1))
     return mask & (long | _between(long, mask)) if long.any() else long
 
 
 def _between(ends, specks):
-    """Cells of runs along the road that lead from one end to another by specks no farther apart than wear takes a line away.
+    """Cells of runs along the road that connect two ends by specks, with gaps no longer than MAX_WORN_GAP.
 
-    A run may leave its column by one: the road's frame is not the paint's.
+    A run may deviate by one column: paint is not exactly parallel to the road's reference line.
     """
     beside, result = np.ones((1, 3), np.uint8), np.zeros(specks.shape, bool)
     ends, specks = (cv2.dilate(mask.view(np.uint8), beside, borderValue=0).view(bool) for mask in (ends, specks))
     columns = np.flatnonzero(ends.any(axis=0))
     ends, specks = np.ascontiguousarray(ends[:, columns]), np.ascontiguousarray(specks[:, columns])
-    run = fill_gaps(specks, int(round(WORN / (CELL_UNITS * COORDINATE_SCALE))), 0)
+    run = fill_gaps(specks, int(round(MAX_WORN_GAP / CELL_SIZE)), 0)
     result[:, columns] = run & _met_since(ends, ~run) & _met_since(ends[::-1], ~run[::-1])[::-1]
     return result
 
 
 def _met_since(ends, breaks):
-    """Cells from which, going back along the first axis, an end is met before a break."""
+    """Cells from which an end is reached before a break, going back along the first axis."""
     row = np.arange(1, len(ends) + 1, dtype=np.int16)[:, None]
     last_end, last_break = (np.maximum.accumulate(np.where(mask, row, np.int16(0)), axis=0) for mask in (ends, breaks))
     return last_end > last_break
 
 
-def long_runs(mask, length, axis):
-    """The on cells in runs of at least `length` cells along one axis."""
+def long_runs(mask: np.ndarray, length: int, axis: int) -> np.ndarray:
+    """The cells of a (rows, columns) bool mask that lie in runs of at least `length` cells along an axis."""
     if length < 2:
         return mask.copy()
     size, behind = ((1, length), (0, length - 1)) if axis == 0 else ((length, 1), (length - 1, 0))
     along = np.ones(size[::-1], np.uint8)
-    # off beyond the rim
+    # outside the window all cells are off
     begun = cv2.erode(mask.astype(np.uint8), along, anchor=(0, 0), borderType=cv2.BORDER_CONSTANT, borderValue=0)
     return cv2.dilate(begun, along, anchor=behind, borderType=cv2.BORDER_CONSTANT, borderValue=0).astype(bool)

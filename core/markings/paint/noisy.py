@@ -1,41 +1,68 @@
-"""Strokes of paint among noisy points: bright pieces that are long for their width, lie flat and are seen so from many places.
+"""Paint among noisy points: bright pieces in averages that are elongated, flat and bright from every viewpoint.
 
-What is bright on a road and no paint gives itself away: the face of a curb is
-steep, what shows beneath a parked car is covered by it, the arc of one beam is
-bright from one place only, a patch fades out where paint has a rim, and blotches
-have no length. A short dash is told from a blotch by the row it stands in.
+Single points are too noisy to be classified, so paint is searched for in averages over a decimetre. Other bright
+things on a road differ from paint: the face of a curb is steep, a surface beneath a parked car is covered by
+it, the arc of one beam is bright from one place only, a patch fades out where paint has a sharp rim, and spots
+are not elongated. A short dash is recognised by the row of dashes it belongs to. All rules are our own.
 """
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
 from scipy import ndimage
 
-from ...survey.store.records import COORDINATE_SCALE
+from ...survey.frame.road_frame import RoadFrame
+from ...survey.store.records import COORDINATE_SCALE, Points
 from ..objects.dash_rows import MIN_DASHES_IN_ROW, rows_of_dashes
 from ..objects.road_grid import CELL_SIZE, CELL_UNITS
 from ..objects.shape import Shape, measure
 
-# Noisy points seen through averages: how much brighter a spot is than the road about it, and how steep it lies.
+# averages
+SPOT_SIGMA = 1.25       # cells, of the average in which pieces are searched
+GROUND_SIGMA = 10.0     # cells, of the average it is compared with: wheel tracks, patches and shadows are wider than paint
+MIN_DENSITY = 0.05      # points per cell, averaged so, below which nothing is known
+SCATTER_BLOCK = 25      # cells: the scatter of averages is taken in squares of 1 m
+SCATTER_BLOCKS = 5      # squares in each direction: their median is the scatter of the one in the middle
+MIN_BLOCK_CELLS = 200
+SCATTER_QUANTILE = 0.30     # of a square's contrasts: dark rails are below it, paint is above the median
+SCATTER_SIGMAS = 0.5244     # standard deviations of a normal distribution that it lies below the median
+GROUND_CONTRAST = 2.0       # spreads: darker cells are no ground
+SLOPE_SIGMA, GROUND_SLOPE_SIGMA = 3.0, 12.0      # cells, of the averaged heights whose slopes are compared
+BRIGHTNESS_STEPS = 64   # brightness is summed in whole 64ths: their sums are exact in any order
 
-SPOT = 1.25       # cells, sigma of the average that a spot is seen through
-AROUND_SPOT = 10.0     # cells, sigma of the average that this is compared with: tracks, patches and shadows are wider than strokes
-FEWEST_IN_SPOT = 0.05     # points a cell, so averaged, below which nothing is known
-BLOCK = 25        # cells: the scatter of averages is taken in squares of 1 m
-BLOCKS = 5        # squares either way that have one scatter: the median of theirs
-FEWEST_IN_BLOCK = 200   # cells
-LOWER, SIGMAS = 0.30, 0.5244   # quantile that tells the scatter, and how far below the median: dark rails are below it
-PLAIN_ROAD = 2.0       # spreads either way that asphalt keeps to
-STEEP, GROUND = 3.0, 12.0      # cells, sigmas of the heights whose slopes are compared
+# pieces
+MIN_RIM_DISTANCE = 0.20     # m from the rim of the road: nearer pieces are curbs or plants
+FAINT_DASH = 0.75       # of the threshold: a dash may be so faint where as many of its row reach the threshold
+PIECE_BRIGHTNESS = 0.6  # of the threshold: brightness of all cells of a piece that reaches the threshold in places
+TOP_PERCENTILE = 90     # %: of a piece's cells; its brightness must reach the threshold
+USUAL_PERCENTILE = 75   # %: of a piece's cells; its contrast is that of the piece
+HALF_MAXIMUM = 0.5      # of the maximum contrast nearby: the rim of paint in a blurred image
+HALF_MAXIMUM_REACH = 7  # cells: where the maximum is taken
+MAX_FADING = 0.15       # of a piece's contrast: where as much is left just beside it, it has no sharp rim
+FADING_RING = 1.5, 3    # cells from a piece: where its fading is measured
+MAX_SLOPE = 0.020       # m per m against the ground around: the face of a curb is steeper
+DASH_SLOPE_FACTOR = 2.0     # a single dash may be so many times steeper where its row is flat on average
+MAX_COVERED = 1 / 3     # of a piece's points: covered by an object above, such as a parked car
+STROKE_AREA, STROKE_LENGTH, STROKE_ELONGATION = 0.12, 0.80, 3.5  # m2, m, length over width: least of an elongated piece
+CLEAR_BRIGHTNESS, CLEAR_LENGTH = 4 / 3, 2.0   # of the threshold, m: an elongated piece must be so bright or so long
+BRANCHED_LENGTH = 1.5   # m: least area over thickness of a branched piece
+DASH_AREA, DASH_LENGTH, DASH_WIDTH = 0.03, 0.25, 0.40    # m2, m: least, least and most of a dash in a row
+VIEW_RING = 3, 8        # cells from a piece: asphalt that it is compared with in each view
+VIEW_LENGTH = 0.5       # m of the vehicle's way: points measured from farther apart are different views
+MIN_VIEWS, MIN_VIEW_SIGMAS = 4, 3.0   # views, and standard errors by which a piece is brighter than its surroundings in the mean of them
 
 
 @dataclass(frozen=True)
-class Averages:
-    """A window of the road in cells, (rows, columns) each, NaN where nothing is known.
+class CellAverages:
+    """CellAverages over a window of the road in cells, NaN where nothing is known.
 
-    contrast : brightness above `ground`, that of the half metre about
-    spread : how much the contrast of asphalt scatters there
-    slope : tilt against the ground about, metres per metre: small on a road, large on the face of a curb
+    contrast : (rows, columns) float32 brightness above `ground`
+    ground : (rows, columns) brightness of asphalt in the half metre around
+    spread : (rows, columns) scatter of asphalt's contrast there, a standard deviation
+    slope : (2, rows, columns) along and across the road against the ground around, metres per metre: small on a road, large on
+        the face of a curb
     """
 
     contrast: np.ndarray
@@ -44,8 +71,8 @@ class Averages:
     slope: np.ndarray
 
     @classmethod
-    def of(cls, cell, value, height, shape):
-        """Averages of points.
+    def of(cls, cell: np.ndarray, value: np.ndarray, height: np.ndarray, shape: tuple[int, int]) -> CellAverages:
+        """CellAverages of points.
 
         Parameters
         ----------
@@ -54,39 +81,39 @@ class Averages:
         height : (N,) int, its height in units of 0.1 mm
         shape : (rows, columns)
         """
-        # in whole numbers, which sum exactly in any order
         count = np.bincount(cell, minlength=shape[0] * shape[1]).reshape(shape).astype(float)
-        total = np.bincount(cell, np.rint(value.astype(float) * 64), count.size).reshape(shape) / 64
+        total = np.bincount(cell, np.rint(value.astype(float) * BRIGHTNESS_STEPS), count.size).reshape(shape) / BRIGHTNESS_STEPS
         low = int(height.min(initial=0))
         risen = np.bincount(cell, (height - low).astype(float), count.size).reshape(shape) * COORDINATE_SCALE
-        spot, around = _mean(count, total, SPOT), _mean(count, total, AROUND_SPOT)
-        # paint, rails and drains are no ground: a spot beside them is compared with asphalt
+        spot, around = _mean(count, total, SPOT_SIGMA), _mean(count, total, GROUND_SIGMA)
+        # paint, rails and drains are no ground: cells beside them are compared with asphalt
         contrast = spot - around
         with np.errstate(invalid="ignore"):
-            plain = contrast > -PLAIN_ROAD * scatter_about(contrast)
-        asphalt = _mean(count * plain, total * plain, AROUND_SPOT)
+            plain = contrast > -GROUND_CONTRAST * local_scatter(contrast)
+        asphalt = _mean(count * plain, total * plain, GROUND_SIGMA)
         around = np.where(np.isfinite(asphalt), asphalt, around)
         contrast = (spot - around).astype(np.float32)
-        tilts = [np.gradient(_mean(count, risen, sigma), CELL_SIZE) for sigma in (STEEP, GROUND)]
+        tilts = [np.gradient(_mean(count, risen, sigma), CELL_SIZE) for sigma in (SLOPE_SIGMA, GROUND_SLOPE_SIGMA)]
         slope = np.stack([near - about for near, about in zip(*tilts)]).astype(np.float32)
-        return cls(contrast, around, scatter_about(contrast), slope)
+        return cls(contrast, around, local_scatter(contrast), slope)
 
     @property
-    def z(self):
-        """Contrast in spreads."""
+    def z(self) -> np.ndarray:
+        """(rows, columns) contrast in spreads."""
         return self.contrast / self.spread
 
 
 def _mean(count, total, sigma):
+    """Gaussian average, NaN where there are too few points."""
     near, near_total = (ndimage.gaussian_filter(a, sigma, mode="constant", truncate=3.0) for a in (count, total))
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.where(near > FEWEST_IN_SPOT, near_total / near, np.nan)
+        return np.where(near > MIN_DENSITY, near_total / near, np.nan)
 
 
-def scatter_about(contrast):
-    """How much asphalt's contrast scatters in the metres about each cell, as a standard deviation.
+def local_scatter(contrast: np.ndarray) -> np.ndarray:
+    """Scatter of asphalt's contrast in the metres around each cell, a standard deviation.
 
-    It is told by the values a little below the median: paint lies above them,
+    It is estimated from values a little below the median: paint lies above them,
     rails, covers and seams below.
 
     Parameters
@@ -95,58 +122,44 @@ def scatter_about(contrast):
 
     Returns
     -------
-    (rows, columns) float32; that of the whole window where too little is known near by, NaN where nowhere
+    (rows, columns) float32; that of the whole window where too little is known nearby, NaN where nothing is known
     """
-    rows, columns = (-(-n // BLOCK) for n in contrast.shape)
-    padded = np.full((rows * BLOCK, columns * BLOCK), np.nan, np.float32)
+    rows, columns = (-(-n // SCATTER_BLOCK) for n in contrast.shape)
+    padded = np.full((rows * SCATTER_BLOCK, columns * SCATTER_BLOCK), np.nan, np.float32)
     padded[:contrast.shape[0], :contrast.shape[1]] = contrast
-    blocks = np.sort(padded.reshape(rows, BLOCK, columns, BLOCK).transpose(0, 2, 1, 3).reshape(rows, columns, -1), axis=2)
+    blocks = np.sort(padded.reshape(rows, SCATTER_BLOCK, columns, SCATTER_BLOCK).transpose(0, 2, 1, 3).reshape(rows, columns, -1), axis=2)
     count = np.isfinite(blocks).sum(axis=2, keepdims=True)
     low, median = (np.take_along_axis(blocks, (share * np.maximum(count - 1, 0)).astype(np.int64), 2)[..., 0]
-                   for share in (LOWER, 0.5))
-    spread = np.where(count[..., 0] >= FEWEST_IN_BLOCK, (median - low) / SIGMAS, np.nan)
+                   for share in (SCATTER_QUANTILE, 0.5))
+    spread = np.where(count[..., 0] >= MIN_BLOCK_CELLS, (median - low) / SCATTER_SIGMAS, np.nan)
     known = spread[np.isfinite(spread)]
     if not len(known):
         return np.full(contrast.shape, np.nan, np.float32)
-    reach = BLOCKS // 2
-    about = np.lib.stride_tricks.sliding_window_view(np.pad(spread, reach, constant_values=np.nan), (BLOCKS, BLOCKS))
+    reach = SCATTER_BLOCKS // 2
+    about = np.lib.stride_tricks.sliding_window_view(np.pad(spread, reach, constant_values=np.nan), (SCATTER_BLOCKS, SCATTER_BLOCKS))
     ordered = np.sort(about.reshape(rows, columns, -1), axis=2)
     count = np.isfinite(ordered).sum(axis=2, keepdims=True)
     middle = np.take_along_axis(ordered, np.maximum(count - 1, 0) // 2, 2)[..., 0]
     middle = np.where(count[..., 0] > 0, middle, np.median(known))
-    places = [np.clip((np.arange(n) + 0.5) / BLOCK - 0.5, 0, m - 1) for n, m in zip(contrast.shape, middle.shape)]
+    places = [np.clip((np.arange(n) + 0.5) / SCATTER_BLOCK - 0.5, 0, m - 1) for n, m in zip(contrast.shape, middle.shape)]
     return ndimage.map_coordinates(middle, np.meshgrid(*places, indexing="ij"), order=1).astype(np.float32)
-
-RIM = 0.20            # m from the rim of the road: what hugs it is a curb or what grows over it
-FAINT = 0.75          # of the threshold: a dash may be so faint where as many of its row are plain
-RISE = 0.6          # of the threshold: how bright all of a piece is that reaches the threshold in places
-BRIGHTEST = 90        # %: of a piece's cells, whose brightness must reach the threshold
-USUAL = 75            # %: of a piece's cells, whose brightness above asphalt is that of the piece
-HALF, NEAR = 0.5, 7   # of the height above asphalt of what is brightest within 7 cells: where the average has blurred a rim to
-FADING = 0.15         # of its brightness: what is as bright as that beside it has no rim
-BESIDE = 1.5, 3         # cells from a piece
-FLAT = 0.020          # m per m against the ground about: what is steeper is the face of a curb
-STEEPER = 2.0         # times that: a single dash may seem to be so steep where the others of its row are not
-COVERED = 1 / 3       # of a piece's points, found beneath something: a parked car
-STROKE_AREA, STROKE_LENGTH, ELONGATED = 0.12, 0.80, 3.5  # m2, m: least of a stroke on its own
-PLAIN, LONG = 4 / 3, 2.0   # of the threshold, m: a stroke must be so plain or so long
-BRANCHED = 1.5        # m: least of a branched one
-DASH_AREA, DASH_LENGTH, DASH_WIDTH = 0.03, 0.25, 0.40    # m2, m: least, least and most of a dash in a row
-AROUND = 3, 8         # cells from a piece, where asphalt is again
-VIEW = 0.5            # m of the vehicle's way: from farther apart a place is seen anew
-FEWEST_VIEWS, SURE = 4, 3.0   # views, and standard errors by which a piece is brighter than what is around in the same view
 
 
 @dataclass(frozen=True)
-class Piece:
+class BrightPiece:
     """A connected bright piece of a window.
 
-    cells : its rows and columns; thickness : m, where it is thickest; slope : (2,) its mean tilt along and across the road
-    rim : m from the rim of the road; top : its brightness above asphalt; z : the same in spreads
-    fading : share of its brightness that is left just beside it
+    cells : rows and columns of its cells, (n,) int each
+    shape : Shape
+    thickness : m, where it is thickest
+    slope : (2,) mean slope along and across the road, m per m
+    rim : m from the rim of the road
+    top : contrast of its bright cells
+    fading : share of its contrast that is left just beside it
+    z : contrast in spreads of asphalt
     """
 
-    cells: tuple
+    cells: tuple[np.ndarray, np.ndarray]
     shape: Shape
     thickness: float
     slope: np.ndarray
@@ -156,52 +169,54 @@ class Piece:
     z: float
 
     @property
-    def is_stroke(self):
-        """Whether it is long for its width: as a whole, or branched as hatching is, area over thickness."""
-        if self.shape.area < STROKE_AREA or self.fading > FADING:
+    def is_elongated(self) -> bool:
+        """Whether it is long for its width: as a whole, or, branched like hatching, by its area over its thickness."""
+        if self.shape.area < STROKE_AREA or self.fading > MAX_FADING:
             return False
-        if self.shape.length >= STROKE_LENGTH and self.shape.elongation >= ELONGATED:
+        if self.shape.length >= STROKE_LENGTH and self.shape.elongation >= STROKE_ELONGATION:
             return True
-        return self.shape.area / self.thickness >= max(BRANCHED, ELONGATED * self.thickness)
+        return self.shape.area / self.thickness >= max(BRANCHED_LENGTH, STROKE_ELONGATION * self.thickness)
 
     @property
-    def may_be_dash(self):
+    def may_be_dash(self) -> bool:
         return self.shape.length >= DASH_LENGTH and self.shape.width <= DASH_WIDTH
 
 
 @dataclass(frozen=True)
-class Witnesses:
-    """The points of a window, one entry each.
+class ViewSamples:
+    """The points of a window, with the place from which each was measured.
 
-    cell : flat number of its cell; value : its brightness; covered : whether something stands above it
-    view : int, a number for where the vehicle was, or None where that is not known
+    cell : (N,) int, flat number of the point's cell
+    value : (N,) its brightness
+    covered : (N,) bool, whether an object is above it
+    view : (N,) int, the place of the vehicle, or None where it is not known
     """
 
     cell: np.ndarray
     value: np.ndarray
     covered: np.ndarray
-    view: np.ndarray = None
+    view: np.ndarray | None = None
 
 
-def views(points, frame):
-    """(N,) int, the half metre of its way in which the vehicle saw each point; None where times are not known."""
+def views(points: Points, frame: RoadFrame) -> np.ndarray | None:
+    """(N,) int, the half metre of its way from which the vehicle measured each point; None where times are not known."""
     if not frame.has_time:
         return None
     found = np.zeros(len(points), np.int64)
     for number in np.unique(points.pass_number):
         rows = np.flatnonzero(points.pass_number == number)
-        found[rows] = np.floor(frame.passes[number].station_at(points.time[rows]) / VIEW) + (int(number) << 32)
+        found[rows] = np.floor(frame.passes[number].station_at(points.time[rows]) / VIEW_LENGTH) + (int(number) << 32)
     return found
 
 
-def stroke_cells(averages, rim, witnesses, threshold):
+def noisy_paint_cells(averages: CellAverages, rim: np.ndarray, samples: ViewSamples, threshold: float) -> np.ndarray:
     """Cells of paint.
 
     Parameters
     ----------
-    averages : Averages of a window of the road
+    averages : CellAverages of a window of the road
     rim : (rows, columns) metres from the rim of the road
-    witnesses : Witnesses
+    samples : ViewSamples of the window
     threshold : spreads above asphalt that paint reaches
 
     Returns
@@ -210,33 +225,33 @@ def stroke_cells(averages, rim, witnesses, threshold):
     """
     z, contrast = averages.z, averages.contrast
     with np.errstate(invalid="ignore"):
-        bright = z > RISE * threshold
-        tops = ndimage.maximum_filter(np.where(bright, contrast, 0.0), 2 * NEAR + 1)
-        parted = bright & (contrast > HALF * tops)
+        bright = z > PIECE_BRIGHTNESS * threshold
+        tops = ndimage.maximum_filter(np.where(bright, contrast, 0.0), 2 * HALF_MAXIMUM_REACH + 1)
+        cut = bright & (contrast > HALF_MAXIMUM * tops)
     mask = np.zeros(rim.shape, bool)
-    strokes = [piece for piece in pieces(bright, averages, rim, threshold) if piece.is_stroke
-               and np.hypot(*piece.slope) < FLAT and (piece.z >= PLAIN * threshold or piece.shape.length >= LONG)]
-    for piece in trusted(strokes, witnesses, rim.shape):
+    elongated = [piece for piece in bright_pieces(bright, averages, rim, threshold) if piece.is_elongated
+               and np.hypot(*piece.slope) < MAX_SLOPE and (piece.z >= CLEAR_BRIGHTNESS * threshold or piece.shape.length >= CLEAR_LENGTH)]
+    for piece in without_artefacts(elongated, samples, rim.shape):
         row, column = piece.cells
-        # an average makes what is beside a broad stroke look darker than asphalt
-        inner = contrast[row, column] > HALF * piece.top * (1.0 + min(piece.fading, 0.0))
+        # beside a broad stroke the average is darker than asphalt
+        inner = contrast[row, column] > HALF_MAXIMUM * piece.top * (1.0 + min(piece.fading, 0.0))
         mask[row[inner], column[inner]] = True
-    # what noise took from the inside of strokes is theirs
+    # holes that noise left in strokes
     mask = ndimage.binary_closing(mask, np.ones((3, 3), bool), iterations=2)
-    # an average runs neighbouring dashes together: they are looked for where it has been cut at half height
-    dashes = [piece for piece in pieces(parted, averages, rim, FAINT * threshold)
-              if piece.may_be_dash and np.hypot(*piece.slope) < STEEPER * FLAT]
-    dashes = trusted(dashes, witnesses, rim.shape)
+    # the average joins neighbouring dashes: they are searched for in the mask cut at half maximum
+    dashes = [piece for piece in bright_pieces(cut, averages, rim, FAINT_DASH * threshold)
+              if piece.may_be_dash and np.hypot(*piece.slope) < DASH_SLOPE_FACTOR * MAX_SLOPE]
+    dashes = without_artefacts(dashes, samples, rim.shape)
     for row in rows_of_dashes([piece.shape for piece in dashes]):
-        plain = sum(dashes[k].z >= threshold for k in row)
-        if plain >= max(MIN_DASHES_IN_ROW, len(row) / 2) and np.hypot(*np.mean([dashes[k].slope for k in row], axis=0)) < FLAT:
+        clear = sum(dashes[k].z >= threshold for k in row)
+        if clear >= max(MIN_DASHES_IN_ROW, len(row) / 2) and np.hypot(*np.mean([dashes[k].slope for k in row], axis=0)) < MAX_SLOPE:
             for k in row:
                 mask[dashes[k].cells] = True
     return mask
 
 
-def pieces(mask, averages, rim, threshold):
-    """Connected pieces of a mask that reach the threshold away from the road's rim; the smallest are left out."""
+def bright_pieces(mask: np.ndarray, averages: CellAverages, rim: np.ndarray, threshold: float) -> list[BrightPiece]:
+    """Connected pieces of a (rows, columns) mask that reach the threshold away from the road's rim; the smallest are left out."""
     labels, count = ndimage.label(mask, np.ones((3, 3), bool))
     large = np.bincount(labels.ravel(), minlength=count + 1) * CELL_SIZE**2 >= DASH_AREA
     z, found = averages.z, []
@@ -247,61 +262,67 @@ def pieces(mask, averages, rim, threshold):
         row, column = (a + side.start for a, side in zip(np.nonzero(inside), box))
         tilt = averages.slope[:, row, column]
         tilt = tilt[:, np.isfinite(tilt[0])]
-        reached = float(np.percentile(z[row, column], BRIGHTEST))
-        if reached < threshold or np.median(rim[row, column]) <= RIM or not tilt.size:
+        reached = float(np.percentile(z[row, column], TOP_PERCENTILE))
+        if reached < threshold or np.median(rim[row, column]) <= MIN_RIM_DISTANCE or not tilt.size:
             continue
         contrast = averages.contrast[row, column]
-        top, highest = np.percentile(contrast, [USUAL, BRIGHTEST]).tolist()
-        found.append(Piece((row, column), measure(row * CELL_UNITS, column * CELL_UNITS),
+        top, highest = np.percentile(contrast, [USUAL_PERCENTILE, TOP_PERCENTILE]).tolist()
+        found.append(BrightPiece((row, column), measure(row * CELL_UNITS, column * CELL_UNITS),
                            2.0 * CELL_SIZE * ndimage.distance_transform_edt(np.pad(inside, 1)).max(), tilt.mean(axis=1),
                            float(np.median(rim[row, column])), top,
-                           _beside(inside & (averages.contrast[box] > HALF * highest), box, averages.contrast) / highest, reached))
+                           _beside(inside & (averages.contrast[box] > HALF_MAXIMUM * highest), box, averages.contrast) / highest, reached))
     return found
 
 
 def _beside(inside, box, contrast):
-    """Mean contrast a decimetre or two beside the bright half of a piece."""
-    far = BESIDE[1] + 1
+    """Mean contrast about a decimetre beside the bright half of a piece."""
+    far = FADING_RING[1] + 1
     window = tuple(slice(max(side.start - far, 0), side.stop + far) for side in box)
     piece = np.zeros(contrast[window].shape, bool)
     piece[tuple(slice(side.start - w.start, side.stop - w.start) for side, w in zip(box, window))] = inside
     apart = ndimage.distance_transform_edt(~piece)
-    values = contrast[window][(apart > BESIDE[0]) & (apart <= BESIDE[1])]
+    values = contrast[window][(apart > FADING_RING[0]) & (apart <= FADING_RING[1])]
     values = values[np.isfinite(values)]
     return float(values.mean()) if len(values) else 0.0
 
 
-def trusted(found, witnesses, shape):
-    """The pieces that nothing covers, and that are brighter than what is around them in whichever view is taken.
+def without_artefacts(found: list[BrightPiece], samples: ViewSamples, shape: tuple[int, ...]) -> list[BrightPiece]:
+    """The pieces that no object covers, and that are brighter than their surroundings in all views together.
 
-    The contrast of each view is one observation, weighed by its points; their
-    mean must be 3 of its standard errors above nothing.
+    The contrast of each view is one observation, weighted by its points; the
+    mean must be 3 of its standard errors above zero.
+
+    Parameters
+    ----------
+    found : pieces of a window
+    samples : ViewSamples of the window
+    shape : (rows, columns) of the window
     """
     if not found:
         return found
     number = np.full(shape, -1)
     for k, piece in enumerate(found):
         number[piece.cells] = k
-    of = number.ravel()[witnesses.cell]
+    of = number.ravel()[samples.cell]
     on = of >= 0
     points = np.bincount(of[on], minlength=len(found))
-    good = np.bincount(of[on], witnesses.covered[on], len(found)) <= COVERED * points
-    if witnesses.view is not None:
-        good &= _bright_in_all_views(number, witnesses, len(found))
+    good = np.bincount(of[on], samples.covered[on], len(found)) <= MAX_COVERED * points
+    if samples.view is not None:
+        good &= _bright_in_all_views(number, samples, len(found))
     return [piece for piece, kept in zip(found, good) if kept]
 
 
-def _bright_in_all_views(number, witnesses, count):
+def _bright_in_all_views(number, samples, count):
     apart, nearest = ndimage.distance_transform_edt(number < 0, return_indices=True)
     inner = number >= 0
-    used = inner | (apart >= AROUND[0]) & (apart <= AROUND[1])
-    rows = np.flatnonzero(used.ravel()[witnesses.cell])
-    cell, value = witnesses.cell[rows], np.rint(witnesses.value[rows].astype(float) * 64)
-    view, at = np.unique(witnesses.view[rows], return_inverse=True)
+    used = inner | (apart >= VIEW_RING[0]) & (apart <= VIEW_RING[1])
+    rows = np.flatnonzero(used.ravel()[samples.cell])
+    cell, value = samples.cell[rows], np.rint(samples.value[rows].astype(float) * BRIGHTNESS_STEPS)
+    view, at = np.unique(samples.view[rows], return_inverse=True)
     key = number[tuple(nearest)].ravel()[cell] * len(view) + at
     inside = inner.ravel()[cell]
     (n, total), (around, around_total) = (
-        (np.bincount(key[side], minlength=count * len(view)), np.bincount(key[side], value[side], count * len(view)) / 64)
+        (np.bincount(key[side], minlength=count * len(view)), np.bincount(key[side], value[side], count * len(view)) / BRIGHTNESS_STEPS)
         for side in (inside, ~inside))
     with np.errstate(invalid="ignore", divide="ignore"):
         weight = np.where((n > 1) & (around > 1), n * around / (n + around), 0.0).reshape(count, -1)
@@ -309,4 +330,4 @@ def _bright_in_all_views(number, witnesses, count):
         views, whole = (weight > 0).sum(axis=1), weight.sum(axis=1)
         mean = (weight * above).sum(axis=1) / whole
         error = np.sqrt(((weight * (above - mean[:, None])) ** 2).sum(axis=1) * views / (views - 1)) / whole
-        return (views >= FEWEST_VIEWS) & (mean > SURE * error)
+        return (views >= MIN_VIEWS) & (mean > MIN_VIEW_SIGMAS * error)

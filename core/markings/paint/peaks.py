@@ -1,11 +1,14 @@
-"""Paint as peaks of intensity in profiles across the road, chained along it: linear markings only.
+"""Paint as peaks of intensity in profiles across the road, in_chains along it: linear markings only.
 
-The road is sliced by the trajectory; in every profile a painted line stands out as a
-narrow peak of I(d), and what is paint goes on as a peak in the profiles before and
-after. What runs across the road or is broad (stop lines, zebra crossings, most of an
-arrow) is no narrow peak and is not found: the method was made for lines.
+The road is cut into profiles across the trajectory. In every profile a painted line is a
+narrow peak of I(d), which continues in the profiles before and after. Markings across the
+road and broad ones (stop lines, zebra crossings, most of an arrow) are no narrow peaks and
+are not found: the method is made for lines.
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,15 +20,18 @@ from scipy.spatial import cKDTree
 
 from ...common.errors import RoadExtractionError
 from ...common.parallel import ordered_map
+from ...common.progress import Progress
 from ...common.setting import check_limits, setting
+from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, Points, take_rows
+from ...survey.store.road_points import RoadPoints
 
-WINDOW = 20.0     # m of station looked at together
-CELL = 200        # units of 0.1 mm: a profile has one value every 2 cm
-SMOOTH = 5        # cells of the running median
-UNSEEN = 5        # cells without points that are bridged; beyond them the profile is taken for asphalt
-FLATTEST = 0.005  # of the profile's level: intensities in whole numbers can have a deviation of 0
-TOLD = 0.6        # of the profiles along a chain that must show the peak
+PEAK_WINDOW = 20.0     # m of station processed together
+PROFILE_CELL = 200        # units of 0.1 mm: a profile has one value every 2 cm
+MEDIAN_CELLS = 5        # cells of the running median
+MAX_EMPTY_CELLS = 5   # without points that are interpolated; beyond them the profile is taken for asphalt
+MIN_DEVIATION = 0.005   # of the profile's level: the deviation of integer intensities can be 0
+MIN_CHAIN_SHARE = 0.6   # of the profiles along a chain: must have the peak
 
 
 @dataclass(frozen=True)
@@ -36,7 +42,7 @@ class PeakSettings:
     prominence : deviations (MAD of the profile) that a peak must rise above both its feet
     narrowest, widest : m, width of a peak at half its height
     jump : m across that the peak may move from profile to profile
-    gap : m along without a peak that a chain goes on over
+    gap : m along the road without a peak that a chain continues over
     shortest : m, least length of a chain
     """
 
@@ -48,16 +54,16 @@ class PeakSettings:
     gap: float = setting(0.60, 0.02, 10.0, "The gap along a line", "m")
     shortest: float = setting(1.0, 0.0, 50.0, "The shortest line", "m")
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_limits(self)
         if not self.narrowest < self.widest:
             raise RoadExtractionError(f"Peaks are {self.narrowest} to {self.widest} m wide; the first must be below the second.")
         if self.gap < self.profile_length:
-            raise RoadExtractionError(f"Peaks are chained over {self.gap} m along the road; it must be at least the length of a "
+            raise RoadExtractionError(f"Peaks are in_chains over {self.gap} m along the road; it must be at least the length of a "
                                       f"profile ({self.profile_length} m).")
 
 
-def points_on_peaks(road_points, road, settings, progress):
+def points_on_peaks(road_points: RoadPoints, road: int, settings: PeakSettings, progress: Progress) -> Iterator[Columns]:
     """Yield the records of one road's points that lie on painted lines, window by window.
 
     Parameters
@@ -65,27 +71,36 @@ def points_on_peaks(road_points, road, settings, progress):
     road_points : RoadPoints, corrected or not
     road : its number
     settings : PeakSettings
+    progress : Progress
 
     Notes
     -----
-    Profile-based after Chen et al. (2009) as the driving-line thesis sums it up:
-    I(d) of each profile under a running median of 5, peaks of a least prominence
-    and of the width of a line, chained along the road. The numbers, and that
-    a chain must show in three of five of its profiles, are ours: they leave a road without paint empty.
+    Profile-based after Chen et al. (2009) as summarised in the driving-line thesis:
+    I(d) of each profile is smoothed by a running median of 5; peaks of a minimum prominence
+    and of the width of a line are in_chains along the road. The numbers, and the rule that
+    a chain needs a peak in three of five of its profiles, are our own: they leave a road without paint empty.
     """
     profile = int(round(settings.profile_length / COORDINATE_SCALE))
-    count = max(1, int(round(WINDOW / settings.profile_length)))
+    count = max(1, int(round(PEAK_WINDOW / settings.profile_length)))
     start, end = road_points.store.span(road)
     windows = list(range(int(np.floor(start / COORDINATE_SCALE / profile / count)), int(np.floor(end / COORDINATE_SCALE / profile / count)) + 1))
 
     def records_of(window):
         return _window(road_points, road, window * count, (window + 1) * count, profile)
 
-    found = list(ordered_map(lambda window: peaks_of(*records_of(window), settings), windows, progress.part(0.0, 0.6)))
+    def peaks_in(window: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        records, profiles = records_of(window)
+        return profile_peaks(records, profiles, settings)
+
+    def paint_in(window: int) -> Columns:
+        records, profiles = records_of(window)
+        return _between(records, profiles, row, left, right)
+
+    found = list(ordered_map(peaks_in, windows, progress.part(0.0, 0.6)))
     row, left, right = (np.concatenate([f[k] for f in found]) for k in range(3))
-    kept = chained(row, (left + right) / 2, settings)
+    kept = in_chains(row, (left + right) / 2, settings)
     row, left, right = row[kept], left[kept], right[kept]
-    yield from ordered_map(lambda window: _between(*records_of(window), row, left, right), windows, progress.part(0.6, 1.0))
+    yield from ordered_map(paint_in, windows, progress.part(0.6, 1.0))
 
 
 def _window(road_points, road, first, last, profile):
@@ -96,13 +111,14 @@ def _window(road_points, road, first, last, profile):
     return take_rows(records, inside), row[inside]
 
 
-def peaks_of(records, row, settings):
+def profile_peaks(records: Columns, row: np.ndarray, settings: PeakSettings) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Peaks of I(d) in the profiles of one window.
 
     Parameters
     ----------
-    records : (N,) ROAD_POINT
+    records : (N,) columns of road points
     row : (N,) int, the profile that each lies in
+    settings : PeakSettings
 
     Returns
     -------
@@ -111,17 +127,17 @@ def peaks_of(records, row, settings):
     none = np.empty(0, np.int64)
     if not len(records):
         return none, none, none
-    first, low = row.min(), (records["d"] // CELL).min()
-    z = _profiles(Points(records).value, row - first, records["d"] // CELL - low)
-    reach = int(np.ceil(2 * settings.widest / (CELL * COORDINATE_SCALE)))
-    # asphalt's level between the rows: a peak's feet are sought in its own profile
+    first, low = row.min(), (records["d"] // PROFILE_CELL).min()
+    z = _profiles(Points(records).value, row - first, records["d"] // PROFILE_CELL - low)
+    reach = int(np.ceil(2 * settings.widest / (PROFILE_CELL * COORDINATE_SCALE)))
+    # asphalt's level between the rows: the feet of a peak lie in its own profile
     padded = np.pad(z, ((0, 0), (reach, reach)))
-    limits = np.array([settings.narrowest, settings.widest]) / (CELL * COORDINATE_SCALE)
-    # a least height besides: asphalt itself is full of small peaks
+    limits = np.array([settings.narrowest, settings.widest]) / (PROFILE_CELL * COORDINATE_SCALE)
+    # a minimum height excludes the many small peaks of asphalt
     _, found = find_peaks(padded.ravel(), height=1e-9, prominence=settings.prominence, width=limits, wlen=2 * reach + 1)
     place = np.stack([found["left_ips"], found["right_ips"]])
     number = (place[0] // padded.shape[1]).astype(np.int64)
-    borders = np.rint((place - number * padded.shape[1] - reach + low + 0.5) * CELL).astype(np.int64)
+    borders = np.rint((place - number * padded.shape[1] - reach + low + 0.5) * PROFILE_CELL).astype(np.int64)
     return number + first, borders[0], borders[1]
 
 
@@ -130,45 +146,46 @@ def _profiles(value, row, column):
     shape = int(row.max()) + 1, int(column.max()) + 1
     cell, size = row * shape[1] + column, shape[0] * shape[1]
     count = np.bincount(cell, minlength=size)
-    # brightness in whole 64ths sums exactly, in any order
+    # in whole 64ths: their sums are exact in any order
     total = np.bincount(cell, np.rint(value.astype(float) * 64), size) / 64
     seen = np.flatnonzero(count)
     places = np.arange(size)
     after = np.minimum(np.searchsorted(seen, places), len(seen) - 1)
     before = np.maximum(np.searchsorted(seen, places, side="right") - 1, 0)
     level = np.interp(places, seen, total[seen] / count[seen]).reshape(shape)
-    unseen = (np.maximum(np.abs(seen[after] - places), np.abs(places - seen[before])) > UNSEEN).reshape(shape)
-    level = ndimage.median_filter(level, (1, SMOOTH), mode="nearest")
+    unseen = (np.maximum(np.abs(seen[after] - places), np.abs(places - seen[before])) > MAX_EMPTY_CELLS).reshape(shape)
+    level = ndimage.median_filter(level, (1, MEDIAN_CELLS), mode="nearest")
     level[unseen] = np.nan
     empty = unseen.all(axis=1)
     level[empty] = 0.0
     median = np.nanmedian(level, axis=1, keepdims=True)
     deviation = np.nanmedian(np.abs(level - median), axis=1, keepdims=True)
-    z = (level - median) / np.maximum(deviation, np.maximum(FLATTEST * np.abs(median), 1e-9))
+    z = (level - median) / np.maximum(deviation, np.maximum(MIN_DEVIATION * np.abs(median), 1e-9))
     return np.where(unseen, 0.0, z)
 
 
-def chained(row, middle, settings):
-    """(P,) bool, the peaks that go on from profile to profile for long enough.
+def in_chains(row: np.ndarray, middle: np.ndarray, settings: PeakSettings) -> np.ndarray:
+    """(P,) bool, the peaks that belong to a chain of sufficient length.
 
     Parameters
     ----------
     row : (P,) int, profile of each peak
     middle : (P,) its offset, units of 0.1 mm
+    settings : PeakSettings
     """
     if not len(row):
         return np.zeros(0, bool)
     steps = max(1, int(round(settings.gap / settings.profile_length)))
     pairs = cKDTree(np.c_[row / (steps + 0.5), middle * COORDINATE_SCALE / settings.jump]).query_pairs(1.0, p=np.inf, output_type="ndarray")
-    pairs = pairs[row[pairs[:, 0]] != row[pairs[:, 1]]]  # two lines side by side are not one
+    pairs = pairs[row[pairs[:, 0]] != row[pairs[:, 1]]]  # two peaks of one profile are two lines
     graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(len(row), len(row)))
     number, chain = connected_components(graph, directed=False)
     first, last = np.full(number, np.iinfo(np.int64).max), np.full(number, np.iinfo(np.int64).min)
     np.minimum.at(first, chain, row)
     np.maximum.at(last, chain, row)
     profiles = last - first + 1
-    told = np.bincount(np.unique(np.c_[chain, row], axis=0)[:, 0], minlength=number)
-    good = (profiles * settings.profile_length >= settings.shortest) & (told >= TOLD * profiles)
+    supporting = np.bincount(np.unique(np.c_[chain, row], axis=0)[:, 0], minlength=number)
+    good = (profiles * settings.profile_length >= settings.shortest) & (supporting >= MIN_CHAIN_SHARE * profiles)
     return good[chain]
 
 

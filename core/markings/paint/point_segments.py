@@ -1,24 +1,31 @@
-"""Paint by thresholds on the points themselves, segment by segment across the road, and by density.
+"""Paint by thresholds on the points of segments across the road, and by density.
 
-No image is made: road points are split across the direction of travel, so that each
-segment is scanned alike, Otsu's threshold is taken of the points of each, and
-bright points that have few bright points about them are noise.
+No image is used: road points are split across the direction of travel, so that a
+segment has one point density and one range; Otsu's threshold is taken for each, and
+bright points with few bright neighbours are noise.
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from ...common.parallel import ordered_map
+from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...intensity.asphalt_model import asphalt_statistics
+from ...survey.store.columns import Columns
 from ...survey.store.records import COORDINATE_SCALE, Points, take_rows
+from ...survey.store.road_points import RoadPoints
 from ..objects.connected_cells import occupied
-from .asphalt_level import otsu
+from .threshold_bins import otsu
 
-FEWEST = 200  # points of a segment that has a threshold of its own
-RIM = 0.5     # of the neighbours usual inside of paint: what a point on its rim has
+MIN_SEGMENT_POINTS = 200    # of a segment, below which it has no threshold and no paint
+RIM_NEIGHBOUR_SHARE = 0.5    # of the neighbours usual inside of paint: a point on its rim has half of them
+HISTOGRAM_RANGE = 6.0, 60.0     # spreads below and above the median of asphalt: the range of Otsu's histogram
 
 
 @dataclass(frozen=True)
@@ -35,11 +42,11 @@ class SegmentSettings:
     separation: float = setting(3.0, 0.0, 50.0, "The distance of paint from asphalt", "spreads")
     radius: float = setting(0.12, 0.01, 1.0, "The radius in which neighbours are counted", "m")
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_limits(self)
 
 
-def points_in_segments(road_points, road, settings, progress):
+def points_in_segments(road_points: RoadPoints, road: int, settings: SegmentSettings, progress: Progress) -> Iterator[Columns]:
     """Yield the records of one road's points that are paint, segment row by segment row.
 
     Parameters
@@ -47,14 +54,15 @@ def points_in_segments(road_points, road, settings, progress):
     road_points : RoadPoints, corrected or not
     road : its number
     settings : SegmentSettings
+    progress : Progress
 
     Notes
     -----
     Point-based after Yu et al. (2015) without its learned part (small
-    markings), as the driving-line thesis sums it up: Otsu's threshold per segment
-    across the road, then a threshold after Otsu on the counts of neighbours. Ours
-    are the sizes, the guard that leaves a segment without paint empty, and that
-    half of what is usual inside of paint is enough neighbours: its rim has no more.
+    markings), as summarised in the driving-line thesis: Otsu's threshold per segment
+    across the road, then a threshold after Otsu on the counts of neighbours. Our own
+    are the sizes, the rule that leaves a segment without paint empty, and the rule
+    that half of the neighbours usual inside of paint are enough, as its rim has no more.
     """
     length = int(round(settings.length / COORDINATE_SCALE))
     start, end = road_points.store.span(road)
@@ -87,8 +95,8 @@ def _segments(records, settings):
     return (records["d"] // int(round(settings.width / COORDINATE_SCALE))).astype(np.int64)
 
 
-def segment_thresholds(records, settings):
-    """dict of segment number to the least intensity of paint, infinite where there is none."""
+def segment_thresholds(records: Columns, settings: SegmentSettings) -> dict[int, float]:
+    """The least intensity of paint by number of the segment across the road, infinite where there is none."""
     value, segment = Points(records).value, _segments(records, settings)
     order = np.argsort(segment, kind="stable")
     numbers, starts = np.unique(segment[order], return_index=True)
@@ -97,13 +105,14 @@ def segment_thresholds(records, settings):
 
 
 def _threshold(values, separation):
-    if len(values) < FEWEST:
+    if len(values) < MIN_SEGMENT_POINTS:
         return np.inf
     median, spread = asphalt_statistics(values)
-    # a few glints must not stretch the histogram
-    limited = np.clip(values, median - 6.0 * spread, median + 60.0 * spread)
+    # a few specular reflections must not stretch the histogram
+    below, above = HISTOGRAM_RANGE
+    limited = np.clip(values, median - below * spread, median + above * spread)
     threshold, below, above, share = otsu(limited)
-    # the larger class is asphalt: what is split off from a road without paint can be its dark end
+    # the larger class is asphalt: on a road without paint Otsu may split off its dark end
     return threshold if above - below > separation * spread and share <= 0.5 else np.inf
 
 
@@ -121,14 +130,25 @@ def _bright(records, length, limits, settings):
     return take_rows(records, Points(records).value > table[window - first[0], segment - first[1]])
 
 
-def dense_enough(records, own, settings):
-    """(N,) bool, points with as many bright neighbours as paint has; only those that are `own` are judged, by segment."""
+def dense_enough(records: Columns, own: np.ndarray, settings: SegmentSettings) -> np.ndarray:
+    """Points with as many bright neighbours as paint has.
+
+    Parameters
+    ----------
+    records : (N,) columns of bright road points
+    own : (N,) bool, the points to decide on; the others only count as neighbours
+    settings : SegmentSettings
+
+    Returns
+    -------
+    (N,) bool, a subset of `own`
+    """
     keep = np.zeros(len(records), bool)
     if not own.any():
         return keep
     places = np.c_[records["s"], records["d"]] * COORDINATE_SCALE
     rows = np.flatnonzero(own)
-    # points at one place have the same neighbours: of a cloud with every point many times each place is asked for once
+    # points at one place have the same neighbours: where a cloud holds points several times, each place is searched once
     asked, member = occupied(records["s"].take(rows), records["d"].take(rows))
     count = cKDTree(places).query_ball_point(asked * COORDINATE_SCALE, settings.radius, return_length=True).take(member) - 1
     segment = _segments(records, settings)[rows]
@@ -137,5 +157,5 @@ def dense_enough(records, own, settings):
         # sorted, so that sums do not depend on the order of the points
         counts = np.sort(count[here]).astype(float)
         threshold, _, above, share = otsu(counts)
-        keep[rows[here]] = count[here] >= (min(threshold, RIM * above) if share > 0 else 0.0)
+        keep[rows[here]] = count[here] >= (min(threshold, RIM_NEIGHBOUR_SHARE * above) if share > 0 else 0.0)
     return keep

@@ -189,7 +189,7 @@ def test_where_points_crowd_some_of_them_tell_how_all_lie(tmp_path, monkeypatch)
     line = strip(5, 75, 1.0, 1.15)
     records = street(FRAME, [line], density=1500)
     usual = found_on(records, tmp_path)
-    monkeypatch.setattr(extraction, "MOST", 60_000)
+    monkeypatch.setattr(extraction, "MAX_OFFSET_POINTS", 60_000)
     some = found_on(records, tmp_path)
     assert_same_points(some.records, found_on(shuffled(records), tmp_path, section_length=7.3).records)
     assert abs(len(some) - len(usual)) < 0.01 * len(usual)
@@ -254,7 +254,7 @@ def found_and_said(tiles, frame, folder):
     write_intensity_image(points, folder / "image.tif")
     found = extract_markings(points, IntensityImage.open(folder / "image.tif"), frame, progress=listener)
     paint = found.window(0, 0, 55)
-    return paint, [text for text in listener.said if "scatter about asphalt" in text]
+    return paint, [text for text in listener.said if "on asphalt scatter" in text]
 
 
 @pytest.mark.parametrize("noisy", [True, False], ids=["noisy", "quiet"])
@@ -298,7 +298,7 @@ def test_a_noisy_scanner_that_measured_forty_metres_of_a_quiet_street_is_known_t
     assert BAR(paint.s, paint.d).mean() > 0.75
 
 
-@pytest.mark.parametrize("method", extraction.METHODS)
+@pytest.mark.parametrize("method", extraction.MARKING_METHODS)
 def test_points_without_a_corrected_intensity_among_corrected_ones_hide_no_paint(tmp_path, method):
     line = strip(10, 70, 1.0, 1.15)
     records = street(FRAME, [line])

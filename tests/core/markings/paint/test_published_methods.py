@@ -9,7 +9,7 @@ from lanewright.core.intensity.image import write_intensity_image
 from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.paint import point_segments
 from lanewright.core.markings.paint.extract import MarkingSettings, extract_markings
-from lanewright.core.markings.paint.peaks import PeakSettings, chained, peaks_of
+from lanewright.core.markings.paint.peaks import PeakSettings, in_chains, profile_peaks
 from lanewright.core.markings.paint.point_segments import SegmentSettings, dense_enough, segment_thresholds
 from painted_streets import ASPHALT, PAINT, assert_same_points, drive, records_at, road_points, shuffled, street, strip
 
@@ -33,19 +33,19 @@ def profile(*paint, noise=0.03, seed=3):
 
 
 def test_one_profile_shows_its_lines_as_peaks_of_their_width():
-    _, left, right = peaks_of(*profile((-3.5, -3.35), (0.0, 0.12), (3.2, 3.5)), PeakSettings())
+    _, left, right = profile_peaks(*profile((-3.5, -3.35), (0.0, 0.12), (3.2, 3.5)), PeakSettings())
     np.testing.assert_allclose(np.c_[left, right] * 1e-4, [[-3.5, -3.35], [0.0, 0.12], [3.2, 3.5]], atol=0.03)
 
 
 @pytest.mark.parametrize("paint", [(), ((1.0, 1.04),)])
 def test_asphalt_and_a_filled_crack_are_no_peaks(paint):
-    assert len(peaks_of(*profile(*paint), PeakSettings())[0]) == 0
+    assert len(profile_peaks(*profile(*paint), PeakSettings())[0]) == 0
 
 
 def test_a_profile_with_a_shadow_in_it_has_the_same_peak():
     records, row = profile((2.0, 2.15))
     seen = (records["d"] < -10_000) | (records["d"] > 5_000)
-    _, left, right = peaks_of(records[seen], row[seen], PeakSettings())
+    _, left, right = profile_peaks(records[seen], row[seen], PeakSettings())
     np.testing.assert_allclose(np.c_[left, right] * 1e-4, [[2.0, 2.15]], atol=0.03)
 
 
@@ -53,14 +53,14 @@ def test_peaks_chain_along_the_road_and_not_across_it():
     line = np.arange(0, 50)
     drifting = np.rint(20_000 + 300.0 * line).astype(np.int64)     # 3 cm a profile
     scattered = np.array([3, 17, 31]), np.array([-30_000, 5_000, -12_000])
-    kept = chained(np.r_[line, scattered[0]], np.r_[drifting, scattered[1]], PeakSettings())
+    kept = in_chains(np.r_[line, scattered[0]], np.r_[drifting, scattered[1]], PeakSettings())
     np.testing.assert_array_equal(kept, np.r_[np.ones(50, bool), np.zeros(3, bool)])
 
 
 def test_a_chain_with_more_holes_than_peaks_is_chance():
     row = np.arange(0, 60, 2)
-    assert not chained(row, np.full(len(row), 10_000), PeakSettings()).any()
-    assert chained(row // 2, np.full(len(row), 10_000), PeakSettings()).all()
+    assert not in_chains(row, np.full(len(row), 10_000), PeakSettings()).any()
+    assert in_chains(row // 2, np.full(len(row), 10_000), PeakSettings()).all()
 
 
 @pytest.mark.parametrize("method", METHODS)
