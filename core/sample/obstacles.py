@@ -1,4 +1,10 @@
-"""Things that stand on the street and hide what lies behind: cars, trees, poles."""
+"""Objects on the street that hide the ground behind them: cars, trees and poles.
+
+Every class has `hits(origin, direction, rng)`: distance (m; inf where the ray passes), cosine of incidence and brightness,
+(N,) each, for rays with (3, N) local origins in m and (3, N) unit directions. `rng` is a numpy Generator.
+"""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 
@@ -9,32 +15,47 @@ from .street import LABEL
 
 @dataclass(frozen=True)
 class Body:
-    """A convex body: points p with normals @ p <= limits, in its own frame (x ahead, y left, z up)."""
+    """A convex body: the points p with normals @ p <= limits, in the frame of the object (x ahead, y left, z up).
+
+    Attributes
+    ----------
+    normals : (F, 3) outward unit normals of the faces
+    limits : (F,) m
+    brightness : 0 to 1, reflectance
+    transparency : 0 to 1, share of the pulses without a return (glass)
+    """
 
     normals: np.ndarray
     limits: np.ndarray
     brightness: float
-    transparency: float = 0.0  # share of the pulses that give no return (glass)
+    transparency: float = 0.0
 
 
 @dataclass(frozen=True)
 class Car:
-    """A parked car at x, y, z (the road below its middle), seen from `reach` at most."""
+    """A parked car.
+
+    Attributes
+    ----------
+    x, y, z : m, local place of the ground below its middle
+    heading : radians counter-clockwise from east
+    bodies : Body parts of the car
+    reach : m, radius of the circle around it
+    top : m above the ground
+    label : of its points
+    """
 
     x: float
     y: float
     z: float
     heading: float
-    bodies: tuple
+    bodies: tuple[Body, ...]
     reach: float = 2.6
     top: float = 1.6
     label: int = LABEL["car"]
 
-    def hits(self, origin, direction, rng):
-        """Distance, cosine of incidence and brightness per ray; inf where it passes.
-
-        `rng` decides only which pulses are lost in glass.
-        """
+    def hits(self, origin: np.ndarray, direction: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Distance, cosine of incidence and brightness of each ray; `rng` decides which pulses pass through glass."""
         cos, sin = np.cos(self.heading), np.sin(self.heading)
         turn = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
         o = turn @ (origin - np.array([[self.x], [self.y], [self.z]]))
@@ -51,18 +72,18 @@ class Car:
 
 
 def _enter(body, o, v):
-    """Where rays enter a convex body: the last of the planes met from outside."""
+    """Distance and cosine of incidence where rays enter a convex body: the last of the planes crossed inward."""
     toward = body.normals @ v
-    room = body.limits[:, None] - body.normals @ o
+    clearance = body.limits[:, None] - body.normals @ o
     with np.errstate(divide="ignore", invalid="ignore"):
-        t = room / toward
+        t = clearance / toward
     incoming, outgoing = toward < 0, toward > 0
     enter = np.where(incoming, t, -np.inf)
     plane = np.argmax(enter, axis=0)
     each = np.arange(v.shape[1])
     start = enter[plane, each]
     leave = np.where(outgoing, t, np.inf).min(axis=0)
-    outside = ((~incoming) & (~outgoing) & (room < 0)).any(axis=0)
+    outside = ((~incoming) & (~outgoing) & (clearance < 0)).any(axis=0)
     hit = (start > 0) & (start <= leave) & ~outside
     return np.where(hit, start, np.inf), np.where(hit, -toward[plane, each], 0.0)
 
@@ -74,8 +95,18 @@ def _body(faces, brightness, transparency=0.0):
     return Body(normals, np.sum(normals * faces[:, 3:], axis=1), brightness, transparency)
 
 
-def car_bodies(length, width, height, brightness):
-    """Bodywork with rounded corners, a cabin with raked screens, four wheels."""
+def car_bodies(length: float, width: float, height: float, brightness: float) -> tuple[Body, ...]:
+    """Body parts of a car: a shell with rounded corners, a cabin with inclined screens, a roof and four wheels.
+
+    Parameters
+    ----------
+    length, width, height : m
+    brightness : 0 to 1, reflectance of the paint
+
+    Returns
+    -------
+    tuple of Body
+    """
     a, b, waist, floor = length / 2, width / 2, 0.58 * height, 0.19
     shell = [(1, 0, 0, a, 0, 0), (-1, 0, 0, -a, 0, 0), (0, 1, 0, 0, b, 0), (0, -1, 0, 0, -b, 0),
              (0, 0, 1, 0, 0, waist), (0, 0, -1, 0, 0, floor)]
@@ -101,7 +132,16 @@ def car_bodies(length, width, height, brightness):
 
 @dataclass(frozen=True)
 class Post:
-    """An upright cylinder from the ground at `z` to the height `top`: a pole, a trunk."""
+    """A vertical cylinder: a pole or a trunk.
+
+    Attributes
+    ----------
+    x, y, z : m, local place of its foot
+    top : m, local z of its upper end
+    radius : m
+    label : of its points
+    brightness : 0 to 1, reflectance
+    """
 
     x: float
     y: float
@@ -112,10 +152,12 @@ class Post:
     brightness: float
 
     @property
-    def reach(self):
+    def reach(self) -> float:
+        """m, radius of the circle around it."""
         return self.radius
 
-    def hits(self, origin, direction, rng):
+    def hits(self, origin: np.ndarray, direction: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Distance, cosine of incidence and brightness of each ray."""
         dx, dy = origin[0] - self.x, origin[1] - self.y
         square = direction[0] ** 2 + direction[1] ** 2
         half = dx * direction[0] + dy * direction[1]
@@ -123,16 +165,27 @@ class Post:
         with np.errstate(divide="ignore", invalid="ignore"):
             t = (-half - np.sqrt(inside)) / square
         height = origin[2] + t * direction[2]
-        # The ground itself is not computed outside the surveyed stretch, so the foot is checked here.
+        # outside the surveyed stretch the ground is not computed, so the foot is checked here
         hit = (inside > 0) & (t > 0) & (height <= self.top) & (height >= self.z - 0.03)
-        # Across the post the surface turns away; along it the ray meets it at its elevation.
+        # the incidence angle grows from the middle of the post to its rim
         cosine = np.sqrt(np.maximum(inside, 0.0)) / self.radius
         return np.where(hit, t, np.inf), np.where(hit, cosine, 0.0), np.full(len(t), self.brightness)
 
 
 @dataclass(frozen=True)
 class Crown:
-    """The leaves of a tree: an ellipsoid in which a pulse meets a leaf after a random way."""
+    """The leaves of a tree: an ellipsoid in which a pulse travels a random distance before it meets a leaf.
+
+    Attributes
+    ----------
+    x, y, z : m, local place of its middle
+    reach : m, horizontal radius
+    half_height : m, vertical radius
+    top : m, local z of its upper end
+    free_way : m, mean distance that a pulse travels between leaves
+    label : of its points
+    brightness : 0 to 1, reflectance
+    """
 
     x: float
     y: float
@@ -140,11 +193,12 @@ class Crown:
     reach: float
     half_height: float
     top: float
-    free_way: float = 0.8  # m, mean way of a pulse between leaves
+    free_way: float = 0.8
     label: int = LABEL["tree"]
     brightness: float = 0.34
 
-    def hits(self, origin, direction, rng):
+    def hits(self, origin: np.ndarray, direction: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Distance, cosine of incidence and brightness of each ray; `rng` decides where a pulse meets a leaf."""
         scale = np.array([[1 / self.reach], [1 / self.reach], [1 / self.half_height]])
         o = (origin - np.array([[self.x], [self.y], [self.z]])) * scale
         v = direction * scale

@@ -1,14 +1,32 @@
-"""What is painted on the made road, in stations and offsets."""
+"""Markings of the simulated road, in stations and offsets."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass, field
 from statistics import NormalDist
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from .street import Texture
 
 
 @dataclass(frozen=True)
 class PaintedLine:
-    """A line along the road; `dash` is (painted, gap) in metres, None for solid."""
+    """A line along the road.
+
+    Attributes
+    ----------
+    kind : class of the marking
+    line : number of the line
+    offset, width : m
+    start, end : m, stations
+    dash : (painted, gap) in m, None for a solid line
+    wear : 0 to 1, share of the paint that is worn off
+    """
 
     kind: str
     line: int
@@ -16,35 +34,46 @@ class PaintedLine:
     width: float
     start: float
     end: float
-    dash: tuple = None
+    dash: tuple[float, float] | None = None
     wear: float = 0.1
 
-    def pieces(self):
-        """Start and end stations of its painted pieces."""
+    def pieces(self) -> list[tuple[float, float]]:
+        """Start and end stations of its painted pieces, m."""
         if self.dash is None:
             return [(self.start, self.end)]
         painted, gap = self.dash
         starts = np.arange(self.start, self.end, painted + gap)
         return [(s, min(s + painted, self.end)) for s in starts]
 
-    def covers(self, s, d):
+    def covers(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
+        """(N,) bool, places within the marking, at (N,) stations and offsets."""
         there = (np.abs(d - self.offset) <= self.width / 2) & (s >= self.start) & (s <= self.end)
         if self.dash is not None:
             there &= (s - self.start) % sum(self.dash) <= self.dash[0]
         return there
 
-    def outlines(self):
+    def outlines(self) -> list[np.ndarray]:
+        """Outlines of its painted pieces, (n, 2) m of station and offset each."""
         low, high = self.offset - self.width / 2, self.offset + self.width / 2
         return [np.array([(s0, low), (s1, low), (s1, high), (s0, high)]) for s0, s1 in self.pieces()]
 
 
 @dataclass(frozen=True)
 class PaintedFigure:
-    """Polygons that belong together: a zebra crossing, an arrow, a hatched area."""
+    """Polygons of one marking: a zebra crossing, an arrow or a hatched area.
+
+    Attributes
+    ----------
+    kind : class of the marking
+    line : None
+    polygons : (n, 2) m of station and offset each, not overlapping
+    wear : 0 to 1, share of the paint that is worn off
+    start, end : m, stations
+    """
 
     kind: str
-    line: int
-    polygons: tuple  # of (n, 2) arrays of station, offset; not overlapping
+    line: int | None
+    polygons: tuple[np.ndarray, ...]
     wear: float = 0.1
     start: float = field(init=False)
     end: float = field(init=False)
@@ -54,7 +83,8 @@ class PaintedFigure:
         object.__setattr__(self, "start", float(stations.min()))
         object.__setattr__(self, "end", float(stations.max()))
 
-    def covers(self, s, d):
+    def covers(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
+        """(N,) bool, places within the marking, at (N,) stations and offsets."""
         there = np.zeros(len(s), dtype=bool)
         near = np.flatnonzero((s >= self.start) & (s <= self.end))
         for polygon in self.polygons:
@@ -63,12 +93,13 @@ class PaintedFigure:
             there[local] |= _inside(polygon, s[local], d[local])
         return there
 
-    def outlines(self):
+    def outlines(self) -> list[np.ndarray]:
+        """Outlines of its painted pieces, (n, 2) m of station and offset each."""
         return list(self.polygons)
 
 
 def _inside(polygon, s, d):
-    """Even-odd rule, points against all edges at once."""
+    """Even-odd rule for (N,) places in a polygon."""
     a, b = polygon, np.roll(polygon, -1, axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
         crosses = (a[:, 1] > d[:, None]) != (b[:, 1] > d[:, None])
@@ -76,27 +107,27 @@ def _inside(polygon, s, d):
     return (np.sum(crosses & (s[:, None] < at), axis=1) % 2).astype(bool)
 
 
-def rectangle(start, end, right, left):
-    """A polygon between two stations and two offsets."""
+def rectangle(start: float, end: float, right: float, left: float) -> np.ndarray:
+    """(4, 2) polygon between two stations and two offsets, m."""
     return np.array([(start, right), (end, right), (end, left), (start, left)])
 
 
-def zebra_bars(start, end, right, left, bar=0.45, gap=0.60):
-    """Bars along the road, evenly set between two offsets."""
+def zebra_bars(start: float, end: float, right: float, left: float, bar: float = 0.45, gap: float = 0.60) -> tuple[np.ndarray, ...]:
+    """Bars along the road between two stations, evenly distributed between two offsets, m."""
     count = int((left - right + gap) // (bar + gap))
     first = (left + right) / 2 - (count * (bar + gap) - gap) / 2
     return tuple(rectangle(start, end, d, d + bar) for d in first + np.arange(count) * (bar + gap))
 
 
-def straight_arrow(tail, offset, direction, length=4.5):
-    """An arrow whose tail lies at station `tail`, pointing along (1) or against (-1) the road."""
+def straight_arrow(tail: float, offset: float, direction: int, length: float = 4.5) -> np.ndarray:
+    """(7, 2) outline of an arrow from station `tail`, along (1) or against (-1) the road, m."""
     shaft, head, neck = 0.10, 0.40, length - 1.6
     shape = np.array([(0, -shaft), (neck, -shaft), (neck, -head), (length, 0), (neck, head), (neck, shaft), (0, shaft)])
     return np.column_stack([tail + direction * shape[:, 0], offset + direction * shape[:, 1]])
 
 
-def turn_arrow(tail, offset, direction, length=4.5):
-    """An arrow for straight on and right: the straight one with a branch to its right."""
+def turn_arrow(tail: float, offset: float, direction: int, length: float = 4.5) -> np.ndarray:
+    """(15, 2) outline of an arrow for straight on and right turn, m."""
     shaft, neck, root = 0.10, length - 1.6, 1.3
     shape = np.array([
         (0, -shaft), (root, -shaft), (root + 0.45, -0.38), (root + 0.20, -0.38), (root + 0.75, -0.80), (root + 1.30, -0.38),
@@ -104,25 +135,37 @@ def turn_arrow(tail, offset, direction, length=4.5):
     return np.column_stack([tail + direction * shape[:, 0], offset + direction * shape[:, 1]])
 
 
-def hatching(start, end, right, left, bar=0.45, gap=1.0):
-    """Bars aslant at 45 degrees across a strip of road."""
+def hatching(start: float, end: float, right: float, left: float, bar: float = 0.45, gap: float = 1.0) -> tuple[np.ndarray, ...]:
+    """Bars at 45 degrees across a strip between two stations and two offsets, m."""
     width = left - right
     starts = np.arange(start, end - width - bar, bar + gap)
     return tuple(np.array([(s, right), (s + bar, right), (s + bar + width, left), (s + width, left)]) for s in starts)
 
 
 class Paint:
-    """All markings of a road; answers which of them, if any, covers a place."""
+    """All markings of a road.
 
-    def __init__(self, markings, texture):
+    Parameters
+    ----------
+    markings : PaintedLine and PaintedFigure
+    texture : Texture of the wear
+    """
+
+    def __init__(self, markings: Sequence[PaintedLine | PaintedFigure], texture: Texture):
         self.markings = list(markings)
         self._texture = texture
 
-    def at(self, s, d):
-        """What is painted at stations and offsets.
+    def at(self, s: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Paint at places on the road.
 
-        Returns the number of the marking at each place, -1 for none, and
-        whether its paint is still there, False where it is worn away.
+        Parameters
+        ----------
+        s, d : (N,) m, stations and offsets
+
+        Returns
+        -------
+        number : (N,) int16, index of the marking, -1 where there is none
+        fresh : (N,) bool, whether the paint is not worn off
         """
         number = np.full(len(s), -1, dtype=np.int16)
         if len(s) == 0:

@@ -1,12 +1,20 @@
-"""What is true about the made street, as layers in map coordinates."""
+"""The truth of the simulated street, as layers in map coordinates."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..common.features import Features, Field
 from ..common.schemas import DRIVING_LINES, END, HEIGHT, LENGTH, PART, ROAD, SIDE, STATION, WIDTH
 
+if TYPE_CHECKING:
+    from .street import Scene
+
 _VERTEX_STEP = 0.25      # m between vertices along the road
-_DROPPED = 0.05   # m, a curb lower than this is a dropped one
+_DROPPED = 0.05   # m: lower curbs are of the kind "dropped"
 
 TRUE_BOUNDARIES = [ROAD, SIDE, PART, Field("kind", str, "Kind (curb/dropped)"), STATION, END, HEIGHT, LENGTH]
 TRUE_MARKINGS = [ROAD, Field("class", str, "Class"), Field("line", int, "Line"), Field("pattern", str, "Pattern"),
@@ -25,8 +33,19 @@ def _coordinates(scene, origin, s, d):
     return np.column_stack([x + origin[0], y + origin[1], z + origin[2]])
 
 
-def true_boundaries(scene, origin, crs):
-    """Curb bottoms and tops, in pieces of one kind; nothing where there is no curb."""
+def true_boundaries(scene: Scene, origin: Sequence[float], crs: str) -> Features:
+    """Bottoms and tops of the curbs, in pieces of one kind; nothing where there is no curb.
+
+    Parameters
+    ----------
+    scene : Scene
+    origin : (3,) m, map coordinates of the local origin
+    crs : WKT
+
+    Returns
+    -------
+    Features TRUE_BOUNDARIES, LineStringZ
+    """
     from shapely import LineString
 
     layer = Features("LineStringZ", TRUE_BOUNDARIES, crs=crs)
@@ -50,8 +69,19 @@ def _curb_pieces(side, length):
     return [(s[a], s[b], "dropped" if dropped[a] else "curb") for a, b in zip(cuts[:-1], cuts[1:]) if b > a]
 
 
-def true_markings(scene, origin, crs):
-    """Every painted piece as it was painted, worn places included."""
+def true_markings(scene: Scene, origin: Sequence[float], crs: str) -> Features:
+    """Every marking as it was painted, including worn places.
+
+    Parameters
+    ----------
+    scene : Scene
+    origin : (3,) m, map coordinates of the local origin
+    crs : WKT
+
+    Returns
+    -------
+    Features TRUE_MARKINGS, PolygonZ
+    """
     from shapely import Polygon
 
     layer = Features("PolygonZ", TRUE_MARKINGS, crs=crs)
@@ -74,8 +104,19 @@ def _densified(outline):
     return np.vstack([*sides, outline[:1]])
 
 
-def true_driving_lines(scene, origin, crs):
-    """The middle of every lane, in its direction of travel; radius_m is that of its sharpest bend."""
+def true_driving_lines(scene: Scene, origin: Sequence[float], crs: str) -> Features:
+    """Middles of the lanes, in their direction of travel.
+
+    Parameters
+    ----------
+    scene : Scene
+    origin : (3,) m, map coordinates of the local origin
+    crs : WKT
+
+    Returns
+    -------
+    Features TRUE_DRIVING_LINES, LineStringZ; `radius_m` is that of the sharpest bend
+    """
     from shapely import LineString
 
     layer = Features("LineStringZ", TRUE_DRIVING_LINES, crs=crs)
@@ -92,8 +133,19 @@ def true_driving_lines(scene, origin, crs):
     return layer
 
 
-def true_surface(scene, origin, crs):
-    """The carriageway between its edges, over the surveyed stretch."""
+def true_surface(scene: Scene, origin: Sequence[float], crs: str) -> Features:
+    """The carriageway between its edges, over the surveyed stretch.
+
+    Parameters
+    ----------
+    scene : Scene
+    origin : (3,) m, map coordinates of the local origin
+    crs : WKT
+
+    Returns
+    -------
+    Features TRUE_SURFACE, PolygonZ
+    """
     from shapely import Polygon
 
     s = _stations(0.0, scene.length)

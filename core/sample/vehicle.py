@@ -1,10 +1,16 @@
-"""How the survey vehicle moved: one pass along the made road."""
+"""The motion of the survey vehicle: passes along the simulated road."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-SENSOR_HEIGHT = 2.6  # m, the trajectory's point above the ground
+if TYPE_CHECKING:
+    from .street import Scene
+
+SENSOR_HEIGHT = 2.6  # m from the ground to the reference point of the trajectory
 _RUN_OUT = 15.0      # m driven before and after the surveyed stretch
 
 
@@ -14,14 +20,15 @@ class Drive:
 
     Attributes
     ----------
+    scene : Scene
     direction : 1 along the axis, -1 against it
-    offset : m, where in the cross-section the vehicle keeps
+    offset : m, mean offset of the vehicle
     speed : m/s, mean
-    start_time : gps time of its first moment, s
-    phase : radians, sets the wobble of this pass
+    start_time : s, GPS time of its first moment
+    phase : radians, phase of the sway of this pass
     """
 
-    scene: object
+    scene: Scene
     direction: int
     offset: float
     speed: float
@@ -29,12 +36,12 @@ class Drive:
     phase: float
 
     @property
-    def duration(self):
-        """Seconds, whole trajectory intervals of 5 ms."""
-        return np.ceil((self.scene.length + 2 * _RUN_OUT) / self.speed * 200.0) / 200.0
+    def duration(self) -> float:
+        """Duration, s, a whole number of trajectory intervals of 5 ms."""
+        return float(np.ceil((self.scene.length + 2 * _RUN_OUT) / self.speed * 200.0) / 200.0)
 
-    def station(self, t):
-        """Station of the vehicle; its speed swings by 3 percent."""
+    def station(self, t: np.ndarray) -> np.ndarray:
+        """Station of the vehicle, m, at times t; its speed varies by 3 percent."""
         swing = 0.03 * 17.0 / (2 * np.pi)
         way = self.speed * (t + swing * (np.cos(self.phase) - np.cos(2 * np.pi * t / 17.0 + self.phase)))
         return way - _RUN_OUT if self.direction > 0 else self.scene.length + _RUN_OUT - way
@@ -45,11 +52,18 @@ class Drive:
         x, y = self.scene.axis.to_map(s, d)
         return s, d, x, y
 
-    def pose(self, t):
-        """x, y, z (m, local), roll, pitch, heading (radians) at times since the start.
+    def pose(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Position and attitude of the vehicle.
 
-        Roll is positive with the right side down, pitch with the nose up;
-        heading counts clockwise from grid north.
+        Parameters
+        ----------
+        t : (N,) s since the start
+
+        Returns
+        -------
+        x, y, z : (N,) m, local
+        roll, pitch, heading : (N,) radians; roll is positive with the right side down, pitch with the nose up, heading
+            clockwise from grid north
         """
         s, d, x, y = self._ground_track(t)
         *_, ahead_x, ahead_y = self._ground_track(t + 0.01)
@@ -57,7 +71,7 @@ class Drive:
         heading = np.arctan2(ahead_x - behind_x, ahead_y - behind_y)
         sway = self.phase
         z = self.scene.carriageway(s, d) + SENSOR_HEIGHT + 0.010 * np.sin(2 * np.pi * t / 1.3 + sway)
-        # A road falling to the left (negative slope) lowers the left side: negative roll.
+        # a road that falls to the left has a negative slope and a negative roll
         roll = (self.direction * np.arctan(self.scene.cross_slope(d))
                 + np.radians(0.35) * np.sin(2 * np.pi * t / 1.9 + sway) + np.radians(0.08) * np.sin(2 * np.pi * t / 0.7))
         pitch = (self.direction * np.arctan(self.scene.grade(s))
@@ -66,8 +80,17 @@ class Drive:
         return x, y, z, roll, pitch, heading % (2 * np.pi)
 
 
-def attitude(roll, pitch, heading):
-    """(N, 3, 3) rotations from the vehicle (x ahead, y left, z up) to the map."""
+def attitude(roll: np.ndarray, pitch: np.ndarray, heading: np.ndarray) -> np.ndarray:
+    """Rotations from the frame of the vehicle (x ahead, y left, z up) to the map.
+
+    Parameters
+    ----------
+    roll, pitch, heading : (N,) radians, as of `Drive.pose`
+
+    Returns
+    -------
+    (N, 3, 3)
+    """
     turn = np.pi / 2 - heading
     cr, sr, cp, sp, ct, st = np.cos(roll), np.sin(roll), np.cos(pitch), np.sin(pitch), np.cos(turn), np.sin(turn)
     ahead = np.stack([ct * cp, st * cp, sp])
