@@ -1,12 +1,16 @@
-"""The made street as a UAV sees it: asphalt, paint, sidewalks, grass, cars and trees with their shadows.
+"""The simulated street as a UAV sees it, and its ground control points.
 
-The image has no place on the map: that is for georeferencing to find. Its
-pixels are what the true distortion puts there, with noise and the blur of a lens.
+The image shows asphalt, paint, sidewalks, grass, and cars and trees with their shadows. It has no position on the map,
+because that is the task of georeferencing. Its pixels follow a known distortion, with noise and the blur of a lens.
+Control points are corners of markings, and signalised plates beside the road.
 """
+
+from __future__ import annotations
 
 import os
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
@@ -17,45 +21,77 @@ from ..common.progress import Progress
 from ..common.schemas import CONTROL_POINTS
 from ..io.gdal_errors import gdal_exceptions
 from .obstacles import Car, Crown, Post
-from .street import LABEL
+from .street import LABEL, Scene
 
-# Where the pixels of the made UAV image lie on the map: an image along the road, with lens-like distortion.
+if TYPE_CHECKING:
+    from .survey import SampleSurvey
 
-MAX_IMAGE_LENGTH = 150.0    # m of road that one image shows
-IMAGE_MARGIN = 7.0       # m of ground shown beyond the edges of the carriageway
-GROUND_PIXEL = 0.04  # m
-_END = 2.0         # m of ground before and after the road
-_TILT = (0.022, -0.013)   # share of the half diagonal: what a camera not quite upright does
-_LENS = (0.0016, -0.0009)  # of the third and fifth power of the distance from the middle
+MAX_IMAGE_LENGTH = 150.0  # m of road in an image
+IMAGE_MARGIN = 7.0   # m of ground beyond the edges of the carriageway
+GROUND_PIXEL = 0.04  # m, size of a pixel on the ground
+_END = 2.0           # m of ground before and after the road
+_TILT = (0.022, -0.013)     # change of scale per half diagonal, along and across: a camera that is not quite vertical
+_LENS = (0.0016, -0.0009)   # distortion with the second and fourth power of the distance from the middle
+PLATE_SIDE = 0.6     # m, side of a signalised plate
+_PLATE_EVERY = 40.0  # m between plates along each border of the image
+_CORNERS = 18        # corners of markings
+_CLEAR = 0.4         # m from a corner to an obstacle
+_SURVEYED = 0.008    # m, standard deviation of the map coordinates
+_POINTED = 0.25      # pixels, standard deviation of the places in the image
+_EVERY_CHECK = 3     # every third corner of a marking is a check point; plates, near the borders, never
+_TILE = 256          # pixels, side of a tile of the file
+_HALO = 3            # pixels rendered around a tile for the blur
+_BLUR = 0.65         # pixels, standard deviation
+_NOISE = 4.0         # of 255, standard deviation
+_SUN = np.array([0.55, 0.35, 0.80])  # direction to the sun: east, north, up
+_SHADE = 0.52        # share of the light that remains in a shadow
+_RGB = {"road": (112, 112, 114), "worn paint": (150, 150, 147), "paint": (232, 231, 224), "manhole": (72, 70, 68),
+        "gutter": (152, 150, 145), "curb face": (120, 118, 112), "curb stone": (172, 168, 160), "sidewalk": (158, 151, 142),
+        "shoulder": (146, 132, 108), "verge": (94, 114, 66)}
+_COLOURS = np.zeros((len(LABEL), 3))
+for _name, _colour in _RGB.items():
+    _COLOURS[LABEL[_name]] = _colour
+_LACQUERS = np.array([(228, 228, 226), (176, 180, 184), (44, 46, 52), (124, 26, 30), (38, 62, 108), (92, 96, 98)])
+_GLASS = np.array([40.0, 46.0, 54.0])
+_LEAVES = np.array([62.0, 92.0, 44.0])
 
 
 @dataclass(frozen=True)
 class Camera:
-    """A picture of width by height pixels, its rows along the road's chord, its columns across.
+    """A vertical image whose rows lie along the chord of the road.
 
     Attributes
     ----------
-    middle : (2,) local map coordinates of the image's middle
+    middle : (2,) m, local coordinates of the middle of the image
     heading : radians, direction of the rows, counter-clockwise from east
     width, height : pixels
-    stations : (start, end) of the road that is shown
+    stations : (start, end) m, of the road in the image
     """
 
     middle: np.ndarray
     heading: float
     width: int
     height: int
-    stations: tuple
+    stations: tuple[float, float]
 
     @property
-    def half_diagonal(self):
-        return np.hypot(self.width, self.height) / 2.0
+    def half_diagonal(self) -> float:
+        """Half the diagonal of the image, pixels."""
+        return float(np.hypot(self.width, self.height)) / 2.0
 
-    def to_map(self, pixel, line):
-        """x, y (local) of places in the image; 0, 0 is the outer corner of the first pixel.
+    def to_map(self, pixel: np.ndarray, line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Ground coordinates of places in the image.
 
-        With u, v the place relative to the middle in half diagonals, and r its distance, the ground lies
-        at (u, v)(1 + a u + b v + c r² + d r⁴): tilt and lens.
+        With u, v the place relative to the middle in half diagonals, and r its distance from the middle, the ground lies at
+        (u, v)(1 + a u + b v + c r² + d r⁴): tilt and lens distortion.
+
+        Parameters
+        ----------
+        pixel, line : (N,); 0, 0 is the outer corner of the first pixel
+
+        Returns
+        -------
+        x, y : (N,) m, local
         """
         u, v = (pixel - self.width / 2) / self.half_diagonal, (line - self.height / 2) / self.half_diagonal
         square = u * u + v * v
@@ -64,31 +100,59 @@ class Camera:
         cos, sin = np.cos(self.heading), np.sin(self.heading)
         return self.middle[0] + along * cos - across * sin, self.middle[1] + along * sin + across * cos
 
-    def to_pixel(self, x, y):
-        """Pixel and line of places on the ground (local x, y), to a millionth of a pixel."""
+    def to_pixel(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Places in the image of ground coordinates, to a millionth of a pixel.
+
+        Parameters
+        ----------
+        x, y : (N,) m, local
+
+        Returns
+        -------
+        pixel, line : (N,)
+        """
         cos, sin = np.cos(self.heading), np.sin(self.heading)
         dx, dy = np.asarray(x) - self.middle[0], np.asarray(y) - self.middle[1]
         goal = (dx * cos + dy * sin) / GROUND_PIXEL + self.width / 2, -(dy * cos - dx * sin) / GROUND_PIXEL + self.height / 2
         pixel, line = goal
         for _ in range(20):
-            # The distortion is a few percent, so that correcting by what is left converges fast
+            # the distortion is a few percent, so this iteration converges fast
             at_x, at_y = self.to_map(pixel, line)
             dx, dy = np.asarray(x) - at_x, np.asarray(y) - at_y
             pixel, line = pixel + (dx * cos + dy * sin) / GROUND_PIXEL, line - (dy * cos - dx * sin) / GROUND_PIXEL
         return pixel, line
 
-    def to_road(self, scene, x, y):
-        """Station and offset of local places in the image."""
+    def to_road(self, scene: Scene, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Station and offset of places in the image.
+
+        Parameters
+        ----------
+        scene : Scene
+        x, y : (N,) m, local
+
+        Returns
+        -------
+        s, d : (N,) m
+        """
         stations = np.arange(max(scene.axis.start, -30.0), min(scene.axis.end, self.stations[1] + 30.0), 1.0)
         axis_x, axis_y = scene.axis.to_map(stations, np.zeros(len(stations)))
         cos, sin = np.cos(self.heading), np.sin(self.heading)
-        # Heading turns less than a right angle from the chord, so that the way along it only grows
+        # the heading stays within a right angle of the chord, so the station increases along it
         s, d, *_ = scene.axis.locate(x, y, np.interp(x * cos + y * sin, axis_x * cos + axis_y * sin, stations), steps=4)
         return s, d
 
 
-def camera_over(scene):
-    """The Camera that shows the beginning of a road, 150 m of it at most."""
+def camera_over(scene: Scene) -> Camera:
+    """The Camera over the first 150 m of a road.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    Camera
+    """
     length = min(scene.length, MAX_IMAGE_LENGTH)
     s = np.linspace(0.0, length, 200)
     x, y = scene.axis.to_map(s, np.zeros(200))
@@ -104,24 +168,23 @@ def camera_over(scene):
     return Camera(np.array([a * cos - b * sin, a * sin + b * cos]), heading, width, height, (0.0, length))
 
 
-# The ground control points of the made UAV image: corners of paint, and plates laid out beside the road.
+def plates(scene: Scene, camera: Camera) -> list[tuple[float, float, float]]:
+    """Signalised plates along both borders of the image, off the carriageway.
 
-PLATE_SIDE = 0.6            # m, side of a plate
-_PLATE_EVERY = 40.0    # m along each rim of the image
-_CORNERS = 18          # corners of paint
-_CLEAR = 0.4           # m between a corner and what stands on the street
-_SURVEYED = 0.008      # m, noise of the measured map coordinates
-_POINTED = 0.25        # px, noise of pointing in the image
-_EVERY_CHECK = 3       # each third corner of paint judges only; plates, which hold the rims, never
+    Parameters
+    ----------
+    scene : Scene
+    camera : Camera
 
-
-def plates(scene, camera):
-    """[(x, y, turn)] of the plates, local coordinates: along both rims of the image, off the carriageway."""
+    Returns
+    -------
+    list of (x, y, rotation): m, local, and radians
+    """
     count = max(3, int(round(camera.width * GROUND_PIXEL / _PLATE_EVERY)) + 1)
     found = []
     for share in np.linspace(0.025, 0.975, count):
         for inward in (1, -1):
-            # From the rim inwards, until nothing stands there
+            # from the border inward to the first place without an obstacle
             down = 0.05 + 0.04 * np.arange(8)
             x, y = camera.to_map(np.full(8, share * camera.width), (down if inward > 0 else 1.0 - down) * camera.height)
             s, d = camera.to_road(scene, x, y)
@@ -133,7 +196,7 @@ def plates(scene, camera):
 
 
 def _is_free(scene, x, y, around):
-    """Which local places are not under a car, a tree or a pole."""
+    """(N,) bool, places that are not under a car, a tree or a pole."""
     free = np.ones(len(x), dtype=bool)
     for obstacle in scene.obstacles:
         reach = obstacle.reach if isinstance(obstacle, Crown) else min(obstacle.reach, 2.4)
@@ -142,7 +205,7 @@ def _is_free(scene, x, y, around):
 
 
 def _paint_corners(scene, camera):
-    """(kinds, x, y) of the corners of paint within the image, thinned to those that lie apart."""
+    """(kinds, x, y) of corners of markings within the image, a subset of distant ones."""
     kinds, s, d = [], [], []
     for marking in scene.paint.markings:
         for outline in marking.outlines():
@@ -154,24 +217,33 @@ def _paint_corners(scene, camera):
         return [], np.empty(0), np.empty(0)
     x, y = scene.axis.to_map(np.concatenate(s), np.concatenate(d))
     free = np.flatnonzero(_is_free(scene, x, y, _CLEAR))
-    kept = free[_apart(x[free], y[free], _CORNERS)] if len(free) else free
-    return [kinds[k] for k in kept], x[kept], y[kept]
+    corners = free[_apart(x[free], y[free], _CORNERS)] if len(free) else free
+    return [kinds[k] for k in corners], x[corners], y[corners]
 
 
 def _apart(x, y, count):
-    """Indices of places chosen one after the other, each the farthest from those before it."""
-    chosen = [0]
+    """Indices of places by farthest-point sampling."""
+    sampled = [0]
     distance = np.hypot(x - x[0], y - y[0])
-    while len(chosen) < min(count, len(x)) and distance.max() > 1.0:
-        chosen.append(int(np.argmax(distance)))
-        distance = np.minimum(distance, np.hypot(x - x[chosen[-1]], y - y[chosen[-1]]))
-    return np.array(chosen)
+    while len(sampled) < min(count, len(x)) and distance.max() > 1.0:
+        sampled.append(int(np.argmax(distance)))
+        distance = np.minimum(distance, np.hypot(x - x[sampled[-1]], y - y[sampled[-1]]))
+    return np.array(sampled)
 
 
-def uav_control_points(survey):
-    """The points as a surveyor hands them over: Features in map coordinates with pixel and line.
+def uav_control_points(survey: SampleSurvey) -> Features:
+    """Ground control points as a surveyor measures them.
 
-    Map coordinates are measured to 8 mm, places in the image to a quarter of a pixel; every third corner of paint is a check.
+    Map coordinates have a standard deviation of 8 mm, places in the image one of a quarter of a pixel. Every third corner of a
+    marking is a check point.
+
+    Parameters
+    ----------
+    survey : SampleSurvey
+
+    Returns
+    -------
+    Features CONTROL_POINTS, PointZ in map coordinates
     """
     from shapely import Point
 
@@ -187,39 +259,29 @@ def uav_control_points(survey):
     random = np.random.default_rng([survey.settings.seed, 4])
     surveyed, pointed = _SURVEYED * random.standard_normal((2, len(x))), _POINTED * random.standard_normal((2, len(x)))
     layer = Features("PointZ", CONTROL_POINTS, crs=survey.crs)
-    judges = set(order[[k < len(x) - len(laid) for k in order]][::_EVERY_CHECK].tolist())
+    checks = set(order[[k < len(x) - len(laid) for k in order]][::_EVERY_CHECK].tolist())
     for number, k in enumerate(order, 1):
         place = np.array([x[k] + surveyed[0, k], y[k] + surveyed[1, k], z[k]]) + origin
-        layer.add(Point(place), point=str(number), role="check" if k in judges else "control",
+        layer.add(Point(place), point=str(number), role="check" if k in checks else "control",
                   pixel=float(pixel[k] + pointed[0, k]), line=float(line[k] + pointed[1, k]), kind=kinds[k])
     return layer
 
-_TILE = 256        # px of columns that are rendered at a time
-_HALO = 3          # px rendered around them for the blur
-_BLUR = 0.65       # px
-_NOISE = 4.0       # of 255
-_SUN = np.array([0.55, 0.35, 0.80])  # towards the sun: east, north, up
-_SHADE = 0.52      # of the light is left in the shadow
-_RGB = {"road": (112, 112, 114), "worn paint": (150, 150, 147), "paint": (232, 231, 224), "manhole": (72, 70, 68),
-        "gutter": (152, 150, 145), "curb face": (120, 118, 112), "curb stone": (172, 168, 160), "sidewalk": (158, 151, 142),
-        "shoulder": (146, 132, 108), "verge": (94, 114, 66)}
-_COLOURS = np.zeros((len(LABEL), 3))
-for _name, _colour in _RGB.items():
-    _COLOURS[LABEL[_name]] = _colour
-_LACQUERS = np.array([(228, 228, 226), (176, 180, 184), (44, 46, 52), (124, 26, 30), (38, 62, 108), (92, 96, 98)])
-_GLASS = np.array([40.0, 46.0, 54.0])
-_LEAVES = np.array([62.0, 92.0, 44.0])
+class StreetColours:
+    """Colours of the ground and of the objects on it.
 
+    Parameters
+    ----------
+    scene : Scene
+    camera : Camera
+    seed : of the random numbers
+    """
 
-class StreetSeen:
-    """The colours of the ground and of what stands on it."""
-
-    def __init__(self, scene, camera, seed):
+    def __init__(self, scene: Scene, camera: Camera, seed: int):
         self.scene, self.camera, self.seed = scene, camera, seed
         self._plates = plates(scene, camera)
 
-    def colours(self, x, y):
-        """(N, 3) float colours of local places, seen from straight above."""
+    def colours(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """(N, 3) colours, 0 to 255, of (N,) local places seen from vertically above."""
         s, d = self.camera.to_road(self.scene, x, y)
         colours = self._ground(s, d)
         self._lay_plates(colours, x, y)
@@ -231,6 +293,7 @@ class StreetSeen:
         return colours
 
     def _ground(self, s, d):
+        """Colours of the ground without objects."""
         scene, texture = self.scene, self.scene.texture
         label = np.empty(len(s), dtype=np.uint8)
         on_road = (d <= scene.left.edge) & (d >= -scene.right.edge)
@@ -248,13 +311,13 @@ class StreetSeen:
         for start, end, right, left, factor in scene.repairs:
             there = (s >= start) & (s <= end) & (d >= right) & (d <= left) & (label == LABEL["road"])
             light[there] *= 1.0 - 0.35 * (1.0 - factor)
-        # Slabs of a metre, with joints between them
+        # joints between slabs of one metre
         walk = np.flatnonzero(label == LABEL["sidewalk"])
         light[walk[(s[walk] % 1.0) < 0.03]] *= 0.80
         return colours * np.maximum(light, 0.3)[:, None]
 
     def _lay_plates(self, colours, x, y):
-        """Signalised points: plates in black and white quarters, their middle the point."""
+        """Draw the signalised plates: black and white quarters, whose common corner is the point."""
         for at_x, at_y, turn in self._plates:
             near = _within(x, y, at_x, at_y, PLATE_SIDE)
             a = (x[near] - at_x) * np.cos(turn) + (y[near] - at_y) * np.sin(turn)
@@ -263,7 +326,7 @@ class StreetSeen:
             colours[near[on]] = np.where((a * b > 0)[on, None], 236.0, 26.0)
 
     def _shade(self, colours, obstacle, x, y, z):
-        """Darken the ground from which an obstacle hides the sun."""
+        """Darken the ground where an obstacle hides the sun."""
         top = obstacle.z + obstacle.top if isinstance(obstacle, Car) else obstacle.top
         throw = (top - z.min()) / _SUN[2] * _SUN[:2]
         middle = obstacle.x - throw[0] / 2, obstacle.y - throw[1] / 2
@@ -275,7 +338,7 @@ class StreetSeen:
         colours[near[np.isfinite(hit)]] *= _SHADE
 
     def _cover(self, colours, number, obstacle, x, y):
-        """Paint what is seen of an obstacle from above."""
+        """Draw an obstacle as seen from above."""
         near = _within(x, y, obstacle.x, obstacle.y, obstacle.reach)
         if len(near) == 0:
             return
@@ -298,20 +361,21 @@ class StreetSeen:
 
 
 def _within(x, y, at_x, at_y, reach):
-    """Indices of the places within `reach` of one."""
+    """Indices of the places within `reach` of a place."""
     if x.min() > at_x + reach or x.max() < at_x - reach or y.min() > at_y + reach or y.max() < at_y - reach:
         return np.empty(0, dtype=np.intp)
     return np.flatnonzero((x - at_x) ** 2 + (y - at_y) ** 2 < reach**2)
 
 
 @gdal_exceptions()
-def write_uav_image(survey, path, progress=None):
-    """Write the UAV image of a made survey: an RGB TIFF without a place on the map.
+def write_uav_image(survey: SampleSurvey, path: str | os.PathLike[str], progress: Progress | None = None) -> None:
+    """Write the UAV image of a simulated survey, an RGB TIFF without a position on the map.
 
     Parameters
     ----------
     survey : SampleSurvey
     path : of the TIFF, which appears when it is complete
+    progress : Progress
 
     Raises
     ------
@@ -322,7 +386,7 @@ def write_uav_image(survey, path, progress=None):
 
     progress = progress or Progress()
     camera = survey.camera
-    seen = StreetSeen(survey.scene, camera, survey.settings.seed)
+    seen = StreetColours(survey.scene, camera, survey.settings.seed)
     unfinished = Path(path).with_name(Path(path).name + ".unfinished.tif")
     dataset = None
     try:

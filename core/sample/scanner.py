@@ -1,110 +1,77 @@
-"""Where laser pulses meet the made street: the ground by its strips, obstacles by their shapes.
+"""Two rotating line scanners, and the intersection of their pulses with the simulated street.
 
-Ground. A pulse is followed to the carriageway continued beyond its edges
-(three Newton steps). If it arrives beyond an edge, the borders of the strips
-there (curb bottom, curb top, ...) are passed one after the other; the first
-strip whose outer border the pulse reaches from below holds the hit, which
-the secant rule then finds. So curb faces are hit where they are, and a
-raised sidewalk hides what lies behind it.
+A pulse is traced to the carriageway, continued beyond its edges, by three Newton steps. If it arrives beyond an edge, the
+borders of the strips there (curb bottom, curb top and so on) are passed one after the other. The pulse hits the first strip
+whose outer border it reaches below the ground, at a place found by the secant rule. So the faces of curbs are hit,
+and a raised sidewalk hides the ground behind it. Obstacles are intersected by their shapes, and the nearest hit counts.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .street import LABEL
-from .vehicle import attitude
+from .vehicle import Drive, attitude
 
-# How strong the pulses come back.
+if TYPE_CHECKING:
+    from .street import Scene
 
-# Share of near-infrared light sent back by each ground.
+# Reflectance of each ground in the near infrared.
 _REFLECTANCE = {"road": 0.100, "worn paint": 0.125, "paint": 0.46, "manhole": 0.30, "gutter": 0.21, "curb face": 0.21,
                "curb stone": 0.22, "sidewalk": 0.17, "shoulder": 0.16, "verge": 0.30, "stray": 0.05}
 _REFLECTANCE_OF_LABEL = np.zeros(len(LABEL))
 for _name, _value in _REFLECTANCE.items():
     _REFLECTANCE_OF_LABEL[LABEL[_name]] = _value
-_FULL_SCALE = 64000.0  # counts from a white surface met head-on at no distance
-_HALF_RANGE = 11.0     # m, where the strength has fallen to one half
-
-
-def label_hits(scene, hits, found):
-    """Label of the hits at indices `found`."""
-    strip, label = hits.strip[found], hits.label[found]
-    road = strip == 0
-    label[road] = scene.carriageway_labels(hits.station[found[road]], hits.offset[found[road]])
-    for side in (scene.left, scene.right):
-        names = np.array([0] + [LABEL[name] for name in side.strips], dtype=np.uint8)
-        beside = (strip * side.sign > 0) & (strip != OBSTACLE)
-        label[beside] = names[np.abs(strip[beside])]
-    return label
-
-
-def brightness_of(scene, label, s, d, own):
-    """Reflectance of hits: by ground, with the patchiness of asphalt, repairs and wheel tracks.
-
-    `own` is the brightness of hits on obstacles.
-    """
-    texture = scene.texture
-    bright = np.where(_REFLECTANCE_OF_LABEL[label] > 0, _REFLECTANCE_OF_LABEL[label], own)
-    asphalt = np.flatnonzero((label == LABEL["road"]) | (label == LABEL["worn paint"]))
-    at_s, at_d = s[asphalt], d[asphalt]
-    patchy = 1.0 + 0.07 * texture.at(at_s, at_d, 1.7) + 0.08 * texture.at(at_s, at_d, 0.06)
-    if len(at_s):
-        near = (scene.repairs[:, 1] > at_s.min()) & (scene.repairs[:, 0] < at_s.max())
-        for start, end, right, left, factor in scene.repairs[near]:
-            patchy[(at_s >= start) & (at_s <= end) & (at_d >= right) & (at_d <= left)] *= factor
-    bright[asphalt] *= np.maximum(patchy, 0.4)
-    other = np.flatnonzero((label == LABEL["paint"]) | (label >= LABEL["gutter"]))
-    bright[other] *= np.maximum(1.0 + 0.10 * texture.at(s[other], d[other], 0.05), 0.4)
-    return bright
-
-
-def received(brightness, distance, cosine, gain):
-    """Strength in counts, without noise.
-
-    A diffuse surface gives brightness * cosine (the power below 1, as
-    rough asphalt does); the range law 1 / (1 + (R / R0)^2) is the inverse square
-    far away and levels off near the scanner, where a receiver sees only part of
-    the spot.
-    """
-    return _FULL_SCALE * gain * brightness * np.maximum(cosine, 0.0) ** 0.7 / (1.0 + (distance / _HALF_RANGE) ** 2)
-
-OBSTACLE = 99      # the `strip` of a hit on an obstacle
-_LONGEST = 70.0    # m, no pulse is followed further
-_GRAZING = 0.02    # sine of the flattest way down that is followed
-_MARGIN = 1.0      # m around the surveyed stretch within which the ground is computed
+_FULL_SCALE = 64000.0  # counts of a white surface at perpendicular incidence and range 0
+_HALF_RANGE = 11.0     # m, at which the strength is one half
+OBSTACLE = 99      # `strip` of a hit on an obstacle
+_LONGEST = 70.0    # m, range of the scanners
+_GRAZING = 0.02    # sine of the flattest downward direction that is traced
+_MARGIN = 1.0      # m around the surveyed stretch, within which the ground is computed
+_HIGHEST = np.sin(np.radians(50.0))  # steeper upward pulses meet nothing on this street
 
 
 @dataclass
 class Hits:
-    """What each pulse met; arrays of one length, `distance` inf where it met nothing.
+    """The first intersection of each of N pulses.
 
-    `strip` is 0 for the carriageway, +k or -k for the k-th strip beyond the left
-    or right edge, OBSTACLE for what stands on the ground (see `label`).
+    Attributes
+    ----------
+    distance : (N,) m, inf where a pulse meets nothing
+    station, offset : (N,) m
+    cosine : (N,) of the incidence angle
+    strip : (N,) int8, 0 for the carriageway, k or -k for the k-th strip beyond the left or right edge, OBSTACLE for obstacles
+    label : (N,) uint8 of obstacles, 0 for the ground
+    brightness : (N,) 0 to 1, of obstacles
     """
 
     distance: np.ndarray
     station: np.ndarray
     offset: np.ndarray
-    cosine: np.ndarray   # of the incidence angle
+    cosine: np.ndarray
     strip: np.ndarray
-    label: np.ndarray    # of obstacles; 0 where the ground was hit
+    label: np.ndarray
     brightness: np.ndarray
 
 
-def cast(scene, origin, direction, station, rng, reach):
-    """Send pulses into the scene; the nearest hit wins.
+def cast(scene: Scene, origin: np.ndarray, direction: np.ndarray, station: float, rng: np.random.Generator, reach: float) -> Hits:
+    """Intersect pulses with the scene; the nearest hit of each counts.
 
     Parameters
     ----------
-    origin, direction : (3, N) local coordinates, m; unit vectors
-    station : float, rough station of the scanner, true within 15 m
-    rng : decides among a tree's leaves and in a car's glass only
-    reach : float, ground further than this from the axis is left out, m
+    scene : Scene
+    origin : (3, N) m, local
+    direction : (3, N) unit vectors
+    station : m, of the scanner, accurate to 15 m
+    rng : Generator for the leaves of trees and the glass of cars
+    reach : m; ground farther from the axis is left out
 
     Returns
     -------
-    Hits with N entries
+    Hits
     """
     hits = cast_ground(scene, origin, direction, station, reach)
     flat = np.hypot(direction[0], direction[1])
@@ -131,8 +98,17 @@ def cast(scene, origin, direction, station, rng, reach):
     return hits
 
 
-def cast_ground(scene, origin, direction, station, reach):
-    """The same for the bare ground."""
+def cast_ground(scene: Scene, origin: np.ndarray, direction: np.ndarray, station: float, reach: float) -> Hits:
+    """Intersect pulses with the ground alone.
+
+    Parameters
+    ----------
+    scene, origin, direction, station, reach : as in `cast`
+
+    Returns
+    -------
+    Hits
+    """
     count = direction.shape[1]
     hits = Hits(np.full(count, np.inf), np.full(count, station), np.zeros(count), np.zeros(count),
                 np.zeros(count, dtype=np.int8), np.zeros(count, dtype=np.uint8), np.zeros(count))
@@ -140,12 +116,12 @@ def cast_ground(scene, origin, direction, station, reach):
     rays = _Rays(scene.axis, origin[:, down], direction[:, down])
     t = (rays.oz - scene.grade_line(station)) / -rays.vz
     s, d = rays.at(t, np.full(len(t), station), steps=2)
-    # Only pulses that come down on the surveyed stretch are followed further.
+    # only pulses that reach the ground on the surveyed stretch are traced further
     there = (t < _LONGEST) & (s > -4.0) & (s < scene.length + 4.0)
     there &= np.abs(d) < reach + 25.0
     rays, down, t, s, d = rays.some(there), down[there], t[there], s[there], d[there]
     for _ in range(3):
-        # Newton's step, the road's slope along the ray from its grade and fall.
+        # Newton step; the slope of the road along the ray follows from its grade and cross slope
         error = rays.oz + t * rays.vz - scene.carriageway(s, d)
         ahead = rays.vx * rays.cos + rays.vy * rays.sin
         aside = rays.vy * rays.cos - rays.vx * rays.sin
@@ -165,10 +141,9 @@ def cast_ground(scene, origin, direction, station, reach):
 
 
 def _beyond_edge(scene, side, rays, t, s, d):
-    """Hits on the strips of one side, for pulses that pass its edge above the ground.
+    """Hits on the strips of one side, of pulses that pass its edge above the ground.
 
-    Returns t, s, d and the signed number of the strip; t is inf where the pulse
-    leaves over the last border.
+    Returns t, s, d and the signed number of the strip; t is inf where a pulse passes the last border above the ground.
     """
     found_t, found_s, found_d = np.full(len(t), np.inf), s.copy(), d.copy()
     found_strip = np.zeros(len(t), dtype=np.int8)
@@ -181,7 +156,7 @@ def _beyond_edge(scene, side, rays, t, s, d):
     above = ray.oz + t * ray.vz - scene.edge_height(side, s)
     for k in range(1, len(side.borders)):
         next_t, next_s, next_away = ray.reach(side, side.borders[k], t, s, away, times=2 if k < 3 else 3)
-        # In a bend a few pulses run along a border and never pass it; they are left out.
+        # in a bend a few pulses run along a border without passing it; they are left out
         passed = (next_t >= t) & (np.abs(next_away - side.borders[k]) < 0.01)
         ground = scene.edge_height(side, next_s) + side.border_rise(k, next_s)
         next_above = ray.oz + next_t * ray.vz - ground
@@ -200,10 +175,10 @@ def _beyond_edge(scene, side, rays, t, s, d):
 
 
 def _within_strip(scene, side, strip, rays, near, far, s):
-    """Where pulses meet one strip, between a place above and a place below it.
+    """Hits of pulses on one strip, between a place above it and a place below it.
 
-    Secant steps kept inside the bracket: the strip is plane but for the road's
-    bend and a curb being lowered, so four of them leave less than 0.1 mm.
+    The strip is plane except for the bend of the road and a lowered curb, so four secant steps inside the bracket leave an
+    error below 0.1 mm.
     """
     (low, f0), (high, f1) = near, far
     t0, t = high, low + (high - low) * f0 / np.where(f0 > f1, f0 - f1, 1.0)
@@ -222,7 +197,7 @@ def _within_strip(scene, side, strip, rays, near, far, s):
 
 
 def _incidence(scene, rays, s, d, strip):
-    """Cosine between the pulse and the normal of the ground it meets."""
+    """Cosine of the angle between a pulse and the normal of the ground."""
     slope = scene.cross_slope(d)
     for side in (scene.left, scene.right):
         beyond = np.flatnonzero(strip * side.sign > 0)
@@ -234,7 +209,7 @@ def _incidence(scene, rays, s, d, strip):
 
 
 class _Rays:
-    """Pulses with the direction of the road below where they were last followed to."""
+    """Pulses, with the direction of the road below the place to which they were traced last."""
 
     def __init__(self, axis, origin, direction, cos=None, sin=None):
         self.axis, self.cos, self.sin = axis, cos, sin
@@ -242,18 +217,19 @@ class _Rays:
         self.vx, self.vy, self.vz = direction
 
     def some(self, which):
+        """Some of the pulses, by indices or a mask."""
         if isinstance(which, np.ndarray) and which.dtype == bool:
             which = np.flatnonzero(which)
         return _Rays(self.axis, (self.ox[which], self.oy[which], self.oz[which]),
                      (self.vx[which], self.vy[which], self.vz[which]), self.cos[which], self.sin[which])
 
     def at(self, t, s, steps):
-        """Station and offset after a way t, from stations nearby."""
+        """Station and offset at the distance t, from approximate stations."""
         s, d, self.cos, self.sin = self.axis.locate(self.ox + t * self.vx, self.oy + t * self.vy, s, steps)
         return s, d
 
     def reach(self, side, distance, t, s, away, times):
-        """Way, station and distance from the axis where pulses pass a border, from a place before or after it."""
+        """Distance, station and distance from the axis where pulses pass a border, from a place near it."""
         for _ in range(times):
             outward = side.sign * (self.vy * self.cos - self.vx * self.sin)
             t = t + (distance - away) / np.maximum(outward, 0.01)
@@ -262,24 +238,19 @@ class _Rays:
         return t, s, away
 
 
-# Two rotating line scanners on the roof, their planes crossed like the wings of a butterfly.
-
-_HIGHEST = np.sin(np.radians(50.0))  # pulses steeper upwards meet nothing on this street
-
-
 @dataclass(frozen=True)
 class Scanner:
-    """A line scanner: one pulse after the other around its axis.
+    """A rotating line scanner.
 
     Attributes
     ----------
     number : point_source_id
-    rotation_rate : turns per second
-    pulse_rate : pulses per second
-    yaw : degrees, the axis turned from straight ahead, counter-clockwise
-    tilt : degrees, negative leans the lower half of the scan plane backwards
-    lever_arm : m ahead, left and up of the trajectory's point
-    gain : its sensitivity beside the other's
+    rotation_rate : Hz
+    pulse_rate : Hz
+    yaw : degrees, rotation of its axis from straight ahead, counter-clockwise
+    tilt : degrees; negative values tilt the lower half of the scan plane backward
+    lever_arm : m ahead, left and up from the reference point of the trajectory
+    gain : sensitivity relative to the other scanner
     """
 
     number: int
@@ -287,11 +258,11 @@ class Scanner:
     pulse_rate: float
     yaw: float
     tilt: float
-    lever_arm: tuple
+    lever_arm: tuple[float, float, float]
     gain: float
 
-    def line(self):
-        """Share of the turn and direction in the vehicle's frame, (N,) and (3, N), of the pulses of one line."""
+    def line(self) -> tuple[np.ndarray, np.ndarray]:
+        """Share of the turn, (N,), and direction in the frame of the vehicle, (3, N), of the pulses of one line."""
         count = int(round(self.pulse_rate / self.rotation_rate))
         share = np.arange(count) / count
         angle = 2 * np.pi * share
@@ -303,13 +274,26 @@ class Scanner:
         used = directions[2] < _HIGHEST
         return share[used], directions[:, used]
 
-    def pulses(self, drive, lines):
-        """Origins, directions ((3, N), local), times since the start and scan angles of some turns."""
+    def pulses(self, drive: Drive, lines: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """The N pulses of some turns.
+
+        Parameters
+        ----------
+        drive : Drive
+        lines : (L,) int, consecutive numbers of turns
+
+        Returns
+        -------
+        origin : (3, N) m, local
+        direction : (3, N) unit vectors
+        times : (N,) s since the start of the drive
+        angle : (N,) degrees, scan angle
+        """
         share, along = self.line()
         x, y, z, roll, pitch, heading = drive.pose(np.append(lines, lines[-1] + 1) / self.rotation_rate)
         turn = attitude(roll, pitch, heading)
         place = np.stack([x, y, z], axis=1) + turn @ np.array(self.lever_arm)
-        # Within one turn (5 ms) the vehicle moves straight and turns evenly, to a few micrometres.
+        # within one turn (5 ms) motion and rotation are linear to a few micrometres
         change, moved = np.diff(turn, axis=0), np.diff(place, axis=0)
         direction = np.einsum("lij,jn->iln", turn[:-1], along) + np.einsum("lij,jn->iln", change, along * share)
         origin = place[:-1].T[:, :, None] + moved.T[:, :, None] * share
@@ -318,10 +302,90 @@ class Scanner:
         return origin.reshape(3, -1), direction.reshape(3, -1), times.ravel(), np.tile(angle, len(lines))
 
 
-def butterfly(rotation_rate, pulse_rate, yaw):
-    """Left and right scanner behind and above the trajectory's point, as on a roof-mounted two-scanner system.
+def butterfly(rotation_rate: float, pulse_rate: float, yaw: float) -> list[Scanner]:
+    """Left and right scanner behind the reference point of the trajectory, their planes crossed, as on the roof of a survey vehicle.
 
-    yaw : degrees by which their planes are turned from straight across, one either way
+    Parameters
+    ----------
+    rotation_rate, pulse_rate : Hz
+    yaw : degrees, rotation of their planes from straight across, one either way
+
+    Returns
+    -------
+    list of two Scanner
     """
     return [Scanner(1, rotation_rate, pulse_rate, -yaw, -20.0, (-2.45, 0.32, 0.0), 1.0),
             Scanner(2, rotation_rate, pulse_rate, yaw, -20.0, (-2.45, -0.32, 0.0), 0.94)]
+
+
+def label_hits(scene: Scene, hits: Hits, found: np.ndarray) -> np.ndarray:
+    """Labels of hits.
+
+    Parameters
+    ----------
+    scene : Scene
+    hits : Hits
+    found : (M,) int, indices of hits
+
+    Returns
+    -------
+    (M,) uint8
+    """
+    strip, label = hits.strip[found], hits.label[found]
+    road = strip == 0
+    label[road] = scene.carriageway_labels(hits.station[found[road]], hits.offset[found[road]])
+    for side in (scene.left, scene.right):
+        names = np.array([0] + [LABEL[name] for name in side.strips], dtype=np.uint8)
+        beside = (strip * side.sign > 0) & (strip != OBSTACLE)
+        label[beside] = names[np.abs(strip[beside])]
+    return label
+
+
+def brightness_of(scene: Scene, label: np.ndarray, s: np.ndarray, d: np.ndarray, own: np.ndarray) -> np.ndarray:
+    """Reflectance of hits: that of the ground, with patchy asphalt and repairs.
+
+    Parameters
+    ----------
+    scene : Scene
+    label : (M,) uint8
+    s, d : (M,) m, stations and offsets
+    own : (M,) reflectance of hits on obstacles
+
+    Returns
+    -------
+    (M,) 0 to 1
+    """
+    texture = scene.texture
+    bright = np.where(_REFLECTANCE_OF_LABEL[label] > 0, _REFLECTANCE_OF_LABEL[label], own)
+    asphalt = np.flatnonzero((label == LABEL["road"]) | (label == LABEL["worn paint"]))
+    at_s, at_d = s[asphalt], d[asphalt]
+    patchy = 1.0 + 0.07 * texture.at(at_s, at_d, 1.7) + 0.08 * texture.at(at_s, at_d, 0.06)
+    if len(at_s):
+        near = (scene.repairs[:, 1] > at_s.min()) & (scene.repairs[:, 0] < at_s.max())
+        for start, end, right, left, factor in scene.repairs[near]:
+            patchy[(at_s >= start) & (at_s <= end) & (at_d >= right) & (at_d <= left)] *= factor
+    bright[asphalt] *= np.maximum(patchy, 0.4)
+    other = np.flatnonzero((label == LABEL["paint"]) | (label >= LABEL["gutter"]))
+    bright[other] *= np.maximum(1.0 + 0.10 * texture.at(s[other], d[other], 0.05), 0.4)
+    return bright
+
+
+def received(brightness: np.ndarray, distance: np.ndarray, cosine: np.ndarray, gain: float) -> np.ndarray:
+    """Strength of returns without noise.
+
+    The strength is proportional to the brightness and to a power of the cosine below 1, as of rough asphalt. The range law
+    1 / (1 + (R / R0)^2) is the inverse square at long range and levels off near the scanner, where the receiver sees
+    only a part of the spot.
+
+    Parameters
+    ----------
+    brightness : (M,) 0 to 1
+    distance : (M,) m
+    cosine : (M,) of the incidence angle
+    gain : of the scanner
+
+    Returns
+    -------
+    (M,) counts
+    """
+    return _FULL_SCALE * gain * brightness * np.maximum(cosine, 0.0) ** 0.7 / (1.0 + (distance / _HALF_RANGE) ** 2)

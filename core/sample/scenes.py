@@ -1,4 +1,6 @@
-"""The three made streets: an ordinary one, a country road and a wide city street."""
+"""The three simulated streets: an ordinary street, a country road and a wide city street."""
+
+from __future__ import annotations
 
 import numpy as np
 
@@ -6,24 +8,42 @@ from .obstacles import Car, Crown, Post, car_bodies
 from .paint import Paint, PaintedFigure, PaintedLine, hatching, rectangle, straight_arrow, turn_arrow, zebra_bars
 from .street import LABEL, Lane, RoadAxis, Scene, Texture, ditch, sidewalk, winding_road
 
-_MODULE = 120.0  # m after which a street's furniture repeats
+_MODULE = 120.0  # m, length after which the objects of a street repeat
 _RUN_IN = 70.0   # m of road before station 0
 
 
-def build_scene(name, length, seed, radius, curb_height, gutter):
-    """The scene of a name (`street`, `rural` or `urban`)."""
+def build_scene(name: str, length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:
+    """Build a scene.
+
+    Parameters
+    ----------
+    name : street, rural or urban
+    length : m of road
+    seed : of all random numbers
+    radius : m, of the bends
+    curb_height : m
+    gutter : m, width of a concrete gutter along the curbs
+
+    Returns
+    -------
+    Scene
+    """
     return {"street": _street, "rural": _rural, "urban": _urban}[name](length, seed, radius, curb_height, gutter)
 
 
-class _Furnishing:
-    """Collects what stands and is painted along one road; everything follows from the seed."""
+class _SceneBuilder:
+    """Collects markings and objects of one road; everything follows from the seed."""
 
-    def __init__(self, length, seed, radius):
+    def __init__(self, length: float, seed: int, radius: float):
         self.length = length
         self.random = np.random.default_rng([seed, 1])
         self.axis = RoadAxis(winding_road(length, radius, run_in=_RUN_IN), -_RUN_IN, np.radians(68.0))
         self.texture = Texture(seed)
-        self.markings, self.manholes, self.repairs, self.standing, self.lanes = [], [], [], [], []
+        self.markings: list[PaintedLine | PaintedFigure] = []
+        self.manholes: list[tuple[float, float, float]] = []
+        self.repairs: list[tuple[float, float, float, float, float]] = []
+        self.objects: list[tuple[str, float, float, tuple[float, ...]]] = []
+        self.lanes: list[Lane] = []
 
     def modules(self):
         return np.arange(0.0, self.length, _MODULE)
@@ -39,14 +59,14 @@ class _Furnishing:
             self.markings.append(PaintedFigure(kind, None, inside, self.random.uniform(0.08, 0.25)))
 
     def lane(self, number, direction, *places):
-        """A lane through (station, offset) places, cut at the end of the road."""
+        """Add a lane through (station, offset) places, cut at the end of the road."""
         stations, offsets = np.array(places, dtype=float).T
         end = min(stations[-1], self.length)
         if end - stations[0] < 2.0:
             return
-        kept = stations < end
-        self.lanes.append(Lane(number, direction, np.append(stations[kept], end),
-                               np.append(offsets[kept], np.interp(end, stations, offsets))))
+        before = stations < end
+        self.lanes.append(Lane(number, direction, np.append(stations[before], end),
+                               np.append(offsets[before], np.interp(end, stations, offsets))))
 
     def manhole(self, station, offset, radius=0.35):
         if station < self.length:
@@ -56,31 +76,31 @@ class _Furnishing:
         self.repairs.append((start, end, right, left, factor))
 
     def parked_cars(self, start, end, curb_offset, taken=0.75):
-        """A row beside the curb at `curb_offset`, some places empty."""
+        """Add a row of cars beside the curb at `curb_offset`, with some places empty."""
         sign, at = np.sign(curb_offset), start
         while at + 5.2 < min(end, self.length):
             length, width = self.random.uniform(3.9, 4.8), self.random.uniform(1.70, 1.86)
             gap, brightness, height = self.random.uniform(0.15, 0.40), self.random.uniform(0.10, 0.55), self.random.uniform(1.42, 1.62)
             if self.random.random() < taken:
-                self.standing.append(("car", at + 2.6, curb_offset - sign * (gap + width / 2), (length, width, height, brightness)))
+                self.objects.append(("car", at + 2.6, curb_offset - sign * (gap + width / 2), (length, width, height, brightness)))
             at += length + self.random.uniform(0.8, 2.0)
 
     def trees(self, start, end, offset, spacing, crown=(1.5, 2.2)):
         for station in np.arange(start, min(end, self.length), spacing):
             place = offset + self.random.uniform(-0.2, 0.2)
             shape = (self.random.uniform(0.10, 0.17), self.random.uniform(*crown), self.random.uniform(1.2, 1.7), self.random.uniform(3.6, 4.4))
-            self.standing.append(("tree", station + self.random.uniform(-1.0, 1.0), place, shape))
+            self.objects.append(("tree", station + self.random.uniform(-1.0, 1.0), place, shape))
 
     def poles(self, start, end, offset, spacing, height=6.0):
         for station in np.arange(start, min(end, self.length), spacing):
-            self.standing.append(("pole", station, offset, (0.09, height)))
+            self.objects.append(("pole", station, offset, (0.09, height)))
 
     def scene(self, name, left, right, passes, gutter):
         paint = Paint(self.markings, self.texture)
         scene = Scene(name, self.axis, self.length, left, right, paint, self.texture, [], self.lanes, passes, gutter_width=gutter)
         scene.manholes = np.array(self.manholes).reshape(-1, 3)
         scene.repairs = np.array(self.repairs).reshape(-1, 5)
-        for kind, s, d, shape in self.standing:
+        for kind, s, d, shape in self.objects:
             x, y, z = (float(value[0]) for value in scene.to_map(np.array([s]), np.array([d])))
             if kind == "car":
                 scene.obstacles.append(Car(x, y, z, float(self.axis.heading(np.array([s]))[0]), car_bodies(*shape)))
@@ -94,8 +114,8 @@ class _Furnishing:
 
 
 def _street(length, seed, radius, curb_height, gutter):
-    """Two lanes, parked cars on the right; from 72 m of each module a third lane instead of the cars."""
-    road = _Furnishing(length, seed, radius)
+    """Two lanes, parked cars on the right; from 72 m of each module on a third lane replaces the cars."""
+    road = _SceneBuilder(length, seed, radius)
     left_edge, right_edge, zebra = 4.0, 6.0, (24.0, 28.0)
     lowered_left, lowered_right = [], []
     for base in road.modules():
@@ -139,7 +159,7 @@ def _street(length, seed, radius, curb_height, gutter):
 
 
 def _through_lane(road, direction, beside_double, beside_single, zebra):
-    """The left lane, through every crossing; its inner line changes from double to single there and back."""
+    """The left lane, through all crossings; the line beside it changes between double and single."""
     places = [(0.0, beside_double)]
     for base in road.modules():
         places += [(base + 4.0, beside_double), (base + zebra[0] - 2.0, beside_double),
@@ -149,7 +169,7 @@ def _through_lane(road, direction, beside_double, beside_single, zebra):
 
 def _rural(length, seed, radius, curb_height, gutter):
     """A country road: edge lines only, a shoulder and a ditch on both sides."""
-    road = _Furnishing(length, seed, 1.5 * radius)
+    road = _SceneBuilder(length, seed, 1.5 * radius)
     road.line("edge line", 1, 3.10, 0.0, length, width=0.12)
     road.line("edge line", 2, -3.10, 0.0, length, width=0.12)
     road.lane(1, -1, (0.0, 1.55), (length, 1.55))
@@ -166,7 +186,7 @@ def _rural(length, seed, radius, curb_height, gutter):
 
 def _urban(length, seed, radius, curb_height, gutter):
     """Four lanes with a double centre line, driven in both directions; parked cars on the right."""
-    road = _Furnishing(length, seed, radius)
+    road = _SceneBuilder(length, seed, radius)
     left_edge, right_edge, zebra = 7.0, 9.2, (52.0, 57.0)
     lowered = []
     for base in road.modules():

@@ -337,7 +337,7 @@ class Scene:
     manholes: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
     repairs: np.ndarray = field(default_factory=lambda: np.zeros((0, 5)))
 
-    def grade_line(self, s: np.ndarray) -> np.ndarray:
+    def grade_line(self, s: np.ndarray | float) -> np.ndarray:
         """Height of the axis at stations, m: a steady climb with gentle waves."""
         return 0.006 * s + 0.25 * np.sin(s / 60.0)
 

@@ -1,13 +1,15 @@
-"""A made mobile laser scanning survey with known truth: for the demo, the tests and for trying settings.
+"""A simulated mobile laser scanning survey with known truth, for the demo, the tests and for trying settings.
 
-The street, the drive and the scanners are simulated: every pulse of two
-rotating line scanners is followed to what it meets first. Figures measured
-on such a survey are figures on simulated data.
+The street, the vehicle and the scanners are simulated: every pulse of two rotating line scanners is traced to the first
+object it meets. Accuracy measured on such a survey is accuracy on simulated data.
 """
+
+from __future__ import annotations
 
 import os
 from collections import deque
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from datetime import date, datetime, timedelta
 
@@ -19,7 +21,7 @@ from ..common.setting import check_limits, setting
 from ..sample import truth
 from ..survey.trajectory.trajectory import Trajectory
 from .orthophoto import camera_over
-from .scanner import OBSTACLE, brightness_of, butterfly, cast, label_hits, received
+from .scanner import OBSTACLE, Scanner, brightness_of, butterfly, cast, label_hits, received
 from .scenes import build_scene
 from .street import LABEL
 from .vehicle import Drive
@@ -29,10 +31,13 @@ _SURVEY_DAY = datetime(2025, 5, 14, 2, 30)
 # Adjusted standard GPS time: seconds since 1980-01-06, leap seconds (18) not taken out, minus 1e9.
 _START_TIME = (_SURVEY_DAY - datetime(1980, 1, 6)) / timedelta(seconds=1) + 18.0 - 1e9
 _PAUSE = 55.0        # s between two passes
-_PULSES = 50_000     # per block
-_RANGE_NOISE = 0.005
-_VERGE_NOISE = 0.02  # blades of grass above the ground
-_LOST, _STRAY = 0.004, 0.00015
+_PULSES = 50_000     # in a block
+_RANGE_NOISE = 0.005  # m, standard deviation
+_VERGE_NOISE = 0.02  # m, standard deviation of the height of grass
+_LOST, _STRAY = 0.004, 0.00015  # of the pulses: without a return, and with a wrong range
+_WEAK_SIGNAL = 150.0  # counts: at 0 half of the pulses are lost, at each such step half as many
+_SPECKLE, _COUNT_NOISE = 0.07, 25.0  # standard deviation of the intensity: share of it, and counts
+_LAS_ANGLE = 0.006    # degrees, unit of the scan angle in LAS 1.4
 
 SAMPLE_POINT = np.dtype([("x", "f8"), ("y", "f8"), ("z", "f8"), ("time", "f8"), ("intensity", "u2"), ("scanner", "u1"),
                   ("scan_angle", "f4"), ("label", "u1"), ("pass", "u1"), ("range", "f4"), ("station", "f8"), ("offset", "f8")])
@@ -40,31 +45,53 @@ SAMPLE_POINT = np.dtype([("x", "f8"), ("y", "f8"), ("z", "f8"), ("time", "f8"), 
 
 @dataclass(frozen=True)
 class SampleSettings:
-    """What is surveyed and how densely."""
+    """What is surveyed, and how densely.
 
-    scene: str = "street"          # street, rural or urban
-    length: float = setting(120.0, 20.0, 20000.0, "Sample survey: length", "m")  # m of road
+    Attributes
+    ----------
+    scene : street, rural or urban
+    length : m of road
+    seed : of all random numbers
+    speed_kmh : km/h, of the vehicle
+    pulse_rate : Hz, pulses per second of each scanner
+    rotation_rate : Hz, scan lines per second of each scanner
+    mount_yaw : degrees, rotation of the planes of the scanners from straight across, one either way
+    radius : m, of the bends
+    curb_height : m
+    gutter : m, width of a concrete gutter along the curbs
+    reach : m; points farther from the axis of the road are left out
+    crs : of the map
+    origin : map coordinates of the beginning of the road, whole metres
+    """
+
+    scene: str = "street"
+    length: float = setting(120.0, 20.0, 20000.0, "Sample survey: length", "m")
     seed: int = setting(1, 0, 2**31 - 1, "Sample survey: seed")
-    speed_kmh: float = setting(50.0, 5.0, 120.0, "Sample survey: speed", "km/h")  # of the vehicle
-    pulse_rate: float = setting(300_000.0, 5000.0, 2000000.0, "Sample survey: pulse rate", "Hz")  # pulses per second of each scanner
-    rotation_rate: float = setting(200.0, 10.0, 400.0, "Sample survey: rotation rate", "Hz")  # lines per second of each scanner
-    # of the scanners' planes from straight across, one turned either way
+    speed_kmh: float = setting(50.0, 5.0, 120.0, "Sample survey: speed", "km/h")
+    pulse_rate: float = setting(300_000.0, 5000.0, 2000000.0, "Sample survey: pulse rate", "Hz")
+    rotation_rate: float = setting(200.0, 10.0, 400.0, "Sample survey: rotation rate", "Hz")
     mount_yaw: float = setting(45.0, 0.0, 60.0, "Sample survey: mount yaw", "°")
-    radius: float = setting(120.0, 60.0, 5000.0, "Sample survey: radius", "m")  # of the bends
+    radius: float = setting(120.0, 60.0, 5000.0, "Sample survey: radius", "m")
     curb_height: float = setting(0.13, 0.04, 0.3, "Sample survey: curb height", "m")
-    gutter: float = setting(0.0, 0.0, 1.0, "Sample survey: gutter", "m")  # width of a concrete gutter along the curbs
-    reach: float = setting(18.0, 12.0, 24.0, "Sample survey: reach", "m")  # points further from the road's axis are left out
+    gutter: float = setting(0.0, 0.0, 1.0, "Sample survey: gutter", "m")
+    reach: float = setting(18.0, 12.0, 24.0, "Sample survey: reach", "m")
     crs: str = "EPSG:32650"
-    origin: tuple = (610400.0, 2710200.0, 20.0)  # map coordinates of the road's beginning, whole metres
+    origin: tuple[float, float, float] = (610400.0, 2710200.0, 20.0)
 
     def __post_init__(self):
+        """Check the limits of all settings, and the name of the scene."""
         check_limits(self)
         if self.scene not in SCENES:
             raise RoadExtractionError(f"There is no sample scene {self.scene!r}. Choose one of: {', '.join(SCENES)}.")
 
 
-def make_sample_survey(settings=None, progress=None):
-    """Build the street and its truth; points are made when they are asked for.
+def make_sample_survey(settings: SampleSettings | None = None, progress: Progress | None = None) -> SampleSurvey:
+    """Simulate a street and its truth; points are computed on demand.
+
+    Parameters
+    ----------
+    settings : SampleSettings
+    progress : Progress
 
     Returns
     -------
@@ -73,7 +100,7 @@ def make_sample_survey(settings=None, progress=None):
     Raises
     ------
     RoadExtractionError
-        If the CRS is not understood, geographic or not in metres.
+        If the CRS is not recognised, is geographic or not in metres.
     """
     from ..io.crs import check_metric, parse_crs
 
@@ -85,25 +112,28 @@ def make_sample_survey(settings=None, progress=None):
 
 
 class SampleSurvey:
-    """The made survey.
+    """The simulated survey.
 
     Attributes
     ----------
+    settings : SampleSettings
+    crs : WKT
     scene : Scene, in local coordinates (map minus settings.origin)
     camera : Camera of the UAV image, in local coordinates
-    trajectory : Trajectory at 200 Hz, 2.6 m above the road, all passes
+    scanners, drives : lists of Scanner and Drive
+    trajectory : Trajectory of all passes at 200 Hz, 2.6 m above the road
     truth_boundaries, truth_markings, truth_driving_lines, truth_surface : Features in map coordinates
-    crs : WKT
     """
 
-    def __init__(self, settings, crs, progress):
+    def __init__(self, settings: SampleSettings, crs: str, progress: Progress):
         self.settings, self.crs = settings, crs
         self.scene = build_scene(settings.scene, float(settings.length), settings.seed, settings.radius,
                                  settings.curb_height, settings.gutter)
         self.camera = camera_over(self.scene)
         self.scanners = butterfly(settings.rotation_rate, settings.pulse_rate, settings.mount_yaw)
         phases = np.random.default_rng([settings.seed, 2]).uniform(0, 2 * np.pi, len(self.scene.passes))
-        self.drives, start = [], _START_TIME
+        self.drives: list[Drive] = []
+        start = _START_TIME
         for (direction, offset, haste), phase in zip(self.scene.passes, phases):
             drive = Drive(self.scene, direction, offset, settings.speed_kmh / 3.6 * haste, start, float(phase))
             self.drives.append(drive)
@@ -117,6 +147,7 @@ class SampleSurvey:
         progress.report(1.0)
 
     def _trajectory(self):
+        """Trajectory of all passes, in map coordinates and degrees."""
         columns = []
         for drive in self.drives:
             t = np.arange(int(round(drive.duration * 200)) + 1) / 200.0
@@ -125,8 +156,8 @@ class SampleSurvey:
                                      z + self.settings.origin[2], *np.degrees([roll, pitch, heading])]))
         return Trajectory(*np.concatenate(columns, axis=1), crs=self.crs)
 
-    def _blocks(self):
-        """Pass, scanner and turns of each block, in the order they are written."""
+    def _blocks(self) -> Iterator[tuple[int, Drive, Scanner, np.ndarray]]:
+        """Pass, drive, scanner and turns of each block, in the order of writing."""
         turns = max(1, int(_PULSES * self.settings.rotation_rate / self.settings.pulse_rate))
         for number, drive in enumerate(self.drives):
             lines = np.arange(int(drive.duration * self.settings.rotation_rate))
@@ -134,16 +165,22 @@ class SampleSurvey:
                 for scanner in self.scanners:
                     yield number, drive, scanner, lines[start:start + turns]
 
-    def blocks(self, noise=True, progress=None):
-        """The points in blocks of time and scanner, as SAMPLE_POINT arrays in map coordinates; some may be empty.
+    def blocks(self, noise: bool = True, progress: Progress | None = None) -> Iterator[np.ndarray]:
+        """Points in blocks of time and scanner.
 
-        Without `noise` every point lies where its pulse met the street, none is
-        lost and intensities have no speckle.
+        Parameters
+        ----------
+        noise : whether ranges and intensities are noisy and pulses are lost; else every point lies where its pulse met the street
+        progress : Progress
+
+        Yields
+        ------
+        SAMPLE_POINT arrays in map coordinates, some of them empty
         """
         progress = progress or Progress()
         jobs = list(self._blocks())
         with ThreadPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as pool:
-            waiting = deque()
+            waiting: deque[Future[np.ndarray]] = deque()
             try:
                 for done, job in enumerate(jobs):
                     waiting.append(pool.submit(self._measure, *job, noise))
@@ -153,14 +190,24 @@ class SampleSurvey:
                 while waiting:
                     yield waiting.popleft().result()
             finally:
-                for job in waiting:
-                    job.cancel()
+                for future in waiting:
+                    future.cancel()
 
-    def points(self, noise=True, progress=None):
-        """All points in memory: a SAMPLE_POINT array with labels (see scene.LABELS), true station and offset."""
+    def points(self, noise: bool = True, progress: Progress | None = None) -> np.ndarray:
+        """All points at once.
+
+        Parameters
+        ----------
+        noise, progress : as in `blocks`
+
+        Returns
+        -------
+        SAMPLE_POINT array in map coordinates, with labels (see street.LABELS), true range, station and offset
+        """
         return np.concatenate(list(self.blocks(noise, progress)))
 
     def _measure(self, number, drive, scanner, lines, noise):
+        """The points of some turns of one scanner."""
         settings, scene = self.settings, self.scene
         rng = np.random.default_rng([settings.seed, 3, number, scanner.number, int(lines[0])])
         origin, direction, times, angles = scanner.pulses(drive, lines)
@@ -175,7 +222,7 @@ class SampleSurvey:
         place = start[:, standing] + distance[standing] * way[:, standing]
         s[standing], d[standing], *_ = scene.axis.locate(place[0], place[1], np.full(len(standing), station), steps=3)
         strength = received(brightness_of(scene, label, s, d, hits.brightness[found]), distance, cosine, scanner.gain)
-        kept = (s >= 0) & (s <= settings.length) & (np.abs(d) <= settings.reach)
+        inside = (s >= 0) & (s <= settings.length) & (np.abs(d) <= settings.reach)
         true_range = distance
         if noise:
             normal = rng.standard_normal((3, len(found)), dtype=np.float32)
@@ -184,28 +231,40 @@ class SampleSurvey:
             stray = chance[0] < _STRAY
             distance[stray] = 1.5 + (distance[stray] - 1.5) * chance[2][stray]
             label[stray] = LABEL["stray"]
-            strength = strength * (1.0 + 0.07 * normal[1]) + 25.0 * normal[2]
-            # Weak returns are missed: half of those near 150 counts.
-            kept &= chance[1] > _LOST + 0.5 * np.exp2(-np.maximum(strength, 0.0) / 150.0)
+            strength = strength * (1.0 + _SPECKLE * normal[1]) + _COUNT_NOISE * normal[2]
+            inside &= chance[1] > _LOST + 0.5 * np.exp2(-np.maximum(strength, 0.0) / _WEAK_SIGNAL)
         place = start + distance * way
         if noise:
             grass = np.flatnonzero(label == LABEL["verge"])
             place[2, grass] += _VERGE_NOISE * np.abs(normal[2, grass])
-        points = np.zeros(int(kept.sum()), dtype=SAMPLE_POINT)
+        points = np.zeros(int(inside.sum()), dtype=SAMPLE_POINT)
         for axis, name in enumerate("xyz"):
-            points[name] = place[axis, kept] + settings.origin[axis]
-        points["time"] = drive.start_time + times[found][kept]
-        points["intensity"] = np.clip(np.rint(strength[kept]), 1, 65535)
-        points["scan_angle"] = angles[found][kept]
+            points[name] = place[axis, inside] + settings.origin[axis]
+        points["time"] = drive.start_time + times[found][inside]
+        points["intensity"] = np.clip(np.rint(strength[inside]), 1, 65535)
+        points["scan_angle"] = angles[found][inside]
         points["scanner"], points["pass"] = scanner.number, number + 1
-        points["label"], points["range"] = label[kept], true_range[kept]
-        points["station"], points["offset"] = s[kept], d[kept]
+        points["label"], points["range"] = label[inside], true_range[inside]
+        points["station"], points["offset"] = s[inside], d[inside]
         return points
 
-    def write_cloud(self, path, progress=None, noise=True):
-        """Write the survey as LAS 1.4, point format 6 (LAZ where the name says so), in blocks.
+    def write_cloud(self, path: str | os.PathLike[str], progress: Progress | None = None, noise: bool = True) -> int:
+        """Write the survey as LAS 1.4, point format 6, in blocks; the file appears when it is complete.
 
-        Returns the number of points. The file appears when it is complete.
+        Parameters
+        ----------
+        path : of the file; LAZ where it ends in .laz
+        progress : Progress
+        noise : as in `blocks`
+
+        Returns
+        -------
+        number of points
+
+        Raises
+        ------
+        RoadExtractionError
+            If the file cannot be written.
         """
         import laspy
 
@@ -249,7 +308,6 @@ def _las_record(laspy, points, header):
         record[name.upper()] = np.rint((points[name] - header.offsets[axis]) / 0.001).astype(np.int32)
     record["intensity"], record["gps_time"] = points["intensity"], points["time"]
     record["point_source_id"] = points["scanner"]
-    record["scan_angle"] = np.rint(points["scan_angle"] / 0.006).astype(np.int16)
+    record["scan_angle"] = np.rint(points["scan_angle"] / _LAS_ANGLE).astype(np.int16)
     record["return_number"] = record["number_of_returns"] = np.ones(len(points), dtype=np.uint8)
     return record
-
