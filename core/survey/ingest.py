@@ -204,7 +204,7 @@ class BlockProjector:
     def __init__(self, frame, corridor, has_time, week_ends=False):
         self.frame, self.corridor, self.has_time, self.week_ends = frame, corridor, has_time, week_ends
         self.dtype = point_dtype(SURVEY_POINT, frame.farthest)
-        self.placing = RoadProjection(frame, corridor) if has_time else None
+        self.projection = RoadProjection(frame, corridor) if has_time else None
         self.roads = np.array([p.road for p in frame.passes] + [-1])
         self._kept = ScratchBuffers()
 
@@ -292,9 +292,9 @@ class BlockProjector:
         return int(np.count_nonzero(passes < 0))
 
     def _located(self, x, y, time, s, d):
-        """The same of points that may all be used, as `RoadProjection.put` has it."""
+        """The same of points that may all be used, as `RoadProjection.project_units` has it."""
         if self.has_time:
-            return self.placing.put(x, y, time, s, d)
+            return self.projection.project_units(x, y, time, s, d)
         road, along, across = self.frame.locate_nearest(x * COORDINATE_SCALE, y * COORDINATE_SCALE, self.corridor)
         fill_units(along, s)
         fill_units(across, d)

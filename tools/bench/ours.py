@@ -57,7 +57,7 @@ def placing(size):
     def place(block):
         x, y = (block.array[name] * scale + (offset - origin)
                 for name, scale, offset, origin in zip("XY", block.scales, block.offsets, frame.origin))
-        _, _, d = places.place(x, y, np.ascontiguousarray(block.array["gps_time"]))
+        _, _, d = places.project(x, y, np.ascontiguousarray(block.array["gps_time"]))
         return int(np.isfinite(d).sum())
 
     places = RoadProjection(frame, CORRIDOR)

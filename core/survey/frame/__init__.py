@@ -1,4 +1,8 @@
 """The road frame: passes, roads and their reference lines.
 
-In: a `Trajectory`. Out: a `RoadFrame` that gives station and offset of any place, and the map coordinates of any station and offset.
+In: a `Trajectory`. Out: a `RoadFrame` that gives the station and offset of any position, and map coordinates of any station and offset.
 """
+
+from ...lazy import public
+
+__getattr__, __all__ = public(__name__, {"build_frame": "road_frame", "RoadFrame": "road_frame", "Road": "road_frame", "Pass": "passes"})

@@ -1,30 +1,43 @@
-"""The drive cut into passes: one run along a carriageway each."""
+"""Passes: the drive split into single runs along a carriageway, and the position of the vehicle on each.
+
+The trajectory is split where it pauses, turns back, crosses itself or returns to its own track.
+"""
+
+from __future__ import annotations
 
 from bisect import bisect_left
 from dataclasses import dataclass, field
 from math import hypot
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-TRACK_STEP = 2.0          # m between the positions that are compared
-SAME_CARRIAGEWAY = 12.0         # m: closer than this and parallel is the same carriageway
-LEVEL_SEPARATION = 3.0         # m of height: farther above is another level of a ramp or bridge
+if TYPE_CHECKING:
+    from ..trajectory.trajectory import Trajectory
+
+TRACK_STEP = 2.0           # m between the positions that are compared
+SAME_CARRIAGEWAY = 12.0    # m: parallel tracks closer than this run on the same carriageway
+LEVEL_SEPARATION = 3.0     # m of height: tracks farther apart run on different levels of a ramp or bridge
 PARALLEL_ANGLE = np.radians(30.0)
-MIN_LOOP_LENGTH = 60.0  # m of driving before coming near one's own track counts as a return
-MIN_PASS_LENGTH = 10.0     # m: shorter pieces are not worth a pass of their own
-MAX_ROAD_LENGTH = 200_000.0  # m of one road: its stations have 32 bits; what is longer becomes several roads
-STANDSTILL_RADIUS = 0.5    # m that a standing vehicle's position may tremble
-TURN_ANGLE = np.radians(75.0)   # off the apex's heading: where a turn on the spot begins and ends
-TURN_REACH = 40.0   # m either side of its apex
+MIN_LOOP_LENGTH = 60.0     # m driven before coming near the own track again counts as a return
+MIN_PASS_LENGTH = 10.0     # m: shorter pieces do not become a pass
+MAX_ROAD_LENGTH = 200_000.0  # m: stations have 32 bits of 0.1 mm; a longer road becomes several
+STANDSTILL_RADIUS = 0.5    # m: position noise of a standing vehicle
+TURN_ANGLE = np.radians(75.0)  # from the heading at the apex: where a turn on the spot begins and ends
+TURN_REACH = 40.0          # m either side of the apex of a turn on the spot
+TIME_TICK = 0.005          # s between the entries of the lookup tables by time
+MAX_TICKS = 20_000_000     # entries of a lookup table at most
 
 
 @dataclass(frozen=True)
 class DrivenPath:
-    """A stretch of the trajectory: rows `first` to `last` (exclusive), `length` metres driven.
+    """A stretch of the trajectory.
 
-    Rows `line_first` to `line_last` leave out the halves of turns on the spot at
-    its ends: the vehicle turned there, the road does not.
+    first, last : trajectory rows, `last` exclusive
+    length : metres driven
+    line_first, line_last : rows without the halves of turns on the spot at the ends, where the vehicle turns but the
+        road does not; `line_last` exclusive
     """
 
     first: int
@@ -34,8 +47,18 @@ class DrivenPath:
     line_last: int
 
 
-def decimate_by_distance(x, y, step):
-    """Indices of positions at least `step` metres of driving apart; first and last are kept."""
+def decimate_by_distance(x: np.ndarray, y: np.ndarray, step: float) -> np.ndarray:
+    """Indices of positions at least `step` metres of driving apart, with the first and the last.
+
+    Parameters
+    ----------
+    x, y : (N,) metres
+    step : metres
+
+    Returns
+    -------
+    (M,) int
+    """
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))]
     if driven[-1] < step:
         return np.unique([0, len(x) - 1])
@@ -46,17 +69,26 @@ def decimate_by_distance(x, y, step):
     return keep
 
 
-def moving_rows(x, y, step=STANDSTILL_RADIUS):
-    """Indices of rows that lie at least `step` metres from the one kept before: trembling adds no length to the road.
+def moving_rows(x: np.ndarray, y: np.ndarray, step: float = STANDSTILL_RADIUS) -> np.ndarray:
+    """Indices of positions at least `step` metres from the previous one, so that position noise adds no length.
 
-    First and last row are kept (the last in place of the one before where that is nearer than `step`).
+    The first and the last row are included (the last replaces the one before it if that is nearer than `step`).
+
+    Parameters
+    ----------
+    x, y : (N,) metres
+    step : metres
+
+    Returns
+    -------
+    (M,) int
     """
     count = len(x)
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x), np.diff(y)))].tolist()
     px, py = x.tolist(), y.tolist()
     keep, last = [0], 0
     while True:
-        # Nothing nearer than `step` along the track can be `step` away from it
+        # a position less than `step` along the track is also less than `step` away
         row = bisect_left(driven, driven[last] + step, last + 1)
         reach = 64
         while row < count and hypot(px[row] - px[last], py[row] - py[last]) < step:
@@ -74,8 +106,14 @@ def moving_rows(x, y, step=STANDSTILL_RADIUS):
     return np.array(keep)
 
 
-def split_into_passes(trajectory):
-    """Cut the trajectory where it pauses, turns back, crosses itself or returns to its own track, and what is longer than MAX_ROAD_LENGTH.
+def split_into_passes(trajectory: Trajectory) -> list[DrivenPath]:
+    """Split the trajectory where it pauses, turns back, crosses itself or returns to its own track.
+
+    Pieces longer than MAX_ROAD_LENGTH are split into equal parts.
+
+    Parameters
+    ----------
+    trajectory : Trajectory in metres
 
     Returns
     -------
@@ -92,7 +130,7 @@ def _split_at_pauses(trajectory):
     gaps = np.diff(trajectory.time)
     jump = np.hypot(np.diff(trajectory.x), np.diff(trajectory.y))
     usual = np.median(gaps)
-    # A position jump of more than 60 m/s in a gap is another drive even when little time is missing.
+    # a jump in position of more than 60 m/s starts another drive, even if little time is missing
     pause = (gaps > max(5.0, 20 * usual)) if trajectory.has_time else jump > max(50.0, 20 * np.median(jump))
     pause |= (jump > 100.0) & (jump > 60.0 * gaps) if trajectory.has_time else False
     cuts = np.r_[0, np.flatnonzero(pause) + 1, len(trajectory)]
@@ -120,7 +158,7 @@ def _split_at_returns(trajectory, first, last):
 
 
 def _drop_short_pieces(cuts, driven):
-    """The cuts without those that leave a piece too short for a pass: its rows stay with the piece before."""
+    """The cuts without those that would leave too short a piece; its rows stay with the piece before."""
     kept, begins = [], 0.0
     for cut in cuts:
         if driven[cut[0]] - begins >= MIN_PASS_LENGTH:
@@ -132,7 +170,7 @@ def _drop_short_pieces(cuts, driven):
 
 
 def _split_long_pieces(cuts, driven):
-    """The cuts with further ones, by which pieces longer than MAX_ROAD_LENGTH become equal parts."""
+    """The cuts with additional ones that split pieces longer than MAX_ROAD_LENGTH into equal parts."""
     ends = [0, *(row for row, _, _ in cuts), len(driven) - 1]
     found = []
     for first, last in zip(ends[:-1], ends[1:]):
@@ -144,7 +182,7 @@ def _split_long_pieces(cuts, driven):
 
 
 def _turn_ends(heading, along, apex):
-    """Indices before and after the apex of a turn on the spot at which the vehicle is back in its lane's direction."""
+    """Indices before and after the apex of a turn on the spot where the vehicle drives in the direction of its lane."""
     off = np.abs(heading - heading[apex])
     straight = (off >= TURN_ANGLE) & (np.abs(along - along[apex]) <= TURN_REACH)
     before, after = np.flatnonzero(straight[:apex]), np.flatnonzero(straight[apex:])
@@ -152,13 +190,13 @@ def _turn_ends(heading, along, apex):
 
 
 def _apex(px, py, heading, a, b):
-    """Index of the position farthest out between two that face opposite ways: of an arc or of a reversal alike."""
+    """Index of the farthest position between two with opposite headings, in a U-turn or a reversal."""
     out_x, out_y = np.cos(heading[a]) - np.cos(heading[b]), np.sin(heading[a]) - np.sin(heading[b])
     return a + int(np.argmax(px[a:b + 1] * out_x + py[a:b + 1] * out_y))
 
 
 def _return_cuts(px, py, along, heading):
-    """[(index, is it a turn on the spot)] of the positions at which a new pass begins."""
+    """[(index, whether it is a turn on the spot)] of the positions at which a new pass begins."""
     pairs = cKDTree(np.c_[px, py]).query_pairs(SAME_CARRIAGEWAY, output_type="ndarray")
     if not len(pairs):
         return []
@@ -174,8 +212,8 @@ def _return_cuts(px, py, along, heading):
     for a, b, is_back, joins, path in zip(i[order].tolist(), j[order].tolist(), back[order], (back | again)[order], apart[order]):
         if a < start:
             continue
-        # A turn on the spot is cut at its apex, a return from elsewhere where it comes back, and a loop that crosses
-        # itself half way round: neither part then has two stations at the crossing, on whatever levels they meet
+        # Split a turn on the spot at its apex, a return where the track is met again, and a loop that crosses itself half way
+        # round, so that neither part has two stations at the crossing, also where it crosses on another level
         is_turn = bool(is_back and path < MIN_LOOP_LENGTH + 20)
         if is_turn:
             start = _apex(px, py, heading, a, b)
@@ -185,18 +223,18 @@ def _return_cuts(px, py, along, heading):
     return cuts
 
 
-# One run of the vehicle along a road: where it was at any time, and at any station.
-
-TIME_TICK = 0.005       # s between the times at which a pass is looked up
-MAX_TICKS = 20_000_000
-
 
 @dataclass
 class Pass:
     """One run of the vehicle along a road.
 
-    time, x, y, z (local), s, d: (N,) the vehicle's own samples in the road's frame.
-    direction: +1 along the reference line, -1 against it. attitude: (3, N) roll, pitch, heading (radians), 0 where unknown, or None.
+    number : of the pass, in order of time
+    road : number of its road
+    direction : +1 along the reference line, -1 against it
+    time : (N,) s, ascending
+    x, y, z : (N,) local coordinates of the vehicle, m
+    s, d : (N,) station and offset of the vehicle on the road, m
+    attitude : (3, N) roll, pitch and heading in radians, 0 where unknown; None without attitude
     """
 
     number: int
@@ -208,15 +246,24 @@ class Pass:
     z: np.ndarray
     s: np.ndarray
     d: np.ndarray
-    attitude: np.ndarray = field(default=None, repr=False)
-    _by_station: tuple = field(default=None, repr=False)
-    _progress: np.ndarray = field(default=None, repr=False)
+    attitude: np.ndarray | None = field(default=None, repr=False)
+    _by_station: tuple[np.ndarray, np.ndarray, np.ndarray] | None = field(default=None, repr=False)
+    _progress: np.ndarray | None = field(default=None, repr=False)
     _by_tick: dict = field(default_factory=dict, repr=False)
 
-    def at(self, time, *names):
-        """What the vehicle did at (N,) times: (N,) values of each of "x", "y", "z", "s", "d", as at its ends beyond them.
+    def at(self, time: np.ndarray, *names: str) -> list[np.ndarray]:
+        """The state of the vehicle at given times, constant before the first and after the last sample.
 
-        Values lie on a line between ticks of 5 ms, so that many times in any order cost little.
+        Interpolated linearly in tables with a step of 5 ms, so that many times in any order are fast.
+
+        Parameters
+        ----------
+        time : (N,) s
+        names : of "x", "y", "z", "s", "d"
+
+        Returns
+        -------
+        list of (N,) metres, one per name
         """
         if not self._by_tick:
             span = self.time[-1] - self.time[0]
@@ -240,37 +287,37 @@ class Pass:
             found.append(here)
         return found
 
-    def position(self, time):
-        """Local x, y, z of the vehicle at the given times."""
+    def position(self, time: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Local x, y, z of the vehicle, (N,) m each, at (N,) times."""
         return tuple(self.at(time, "x", "y", "z"))
 
-    def station_at(self, time):
-        """Road station of the vehicle at the given times."""
+    def station_at(self, time: np.ndarray) -> np.ndarray:
+        """Station of the vehicle, (N,) m, at (N,) times."""
         return self.at(time, "s")[0]
 
-    def progress_at(self, time):
-        """Metres of road gained since the pass began: stands still while the vehicle waits, trembles or backs up."""
+    def progress_at(self, time: np.ndarray) -> np.ndarray:
+        """Metres of road driven since the pass began, at (N,) times; never decreases, also where the vehicle reverses."""
         if self._progress is None:
             self._progress = np.maximum.accumulate(self.direction * self.s) - self.direction * self.s[0]
         return np.interp(time, self.time, self._progress)
 
-    def at_station(self, s):
-        """Offset and height of the vehicle's track where it passes station s."""
+    def at_station(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Offset and local height of the track, (N,) m each, at (N,) stations."""
         stations, d, z = self._track_by_station()
         return np.interp(s, stations, d), np.interp(s, stations, z)
 
-    def height_at_station(self, s):
-        """Height of the vehicle's track where it passes station s."""
+    def height_at_station(self, s: np.ndarray) -> np.ndarray:
+        """Local height of the track, (N,) m, at (N,) stations."""
         stations, _, z = self._track_by_station()
         return np.interp(s, stations, z)
 
-    def _track_by_station(self):
+    def _track_by_station(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         if self._by_station is None:
             order = np.argsort(self.s, kind="stable")
             self._by_station = self.s[order], self.d[order], self.z[order]
         return self._by_station
 
     @property
-    def span(self):
-        """(first, last) station driven."""
+    def span(self) -> tuple[float, float]:
+        """(first, last) station of the pass, m."""
         return float(self.s.min()), float(self.s.max())

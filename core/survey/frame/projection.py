@@ -1,9 +1,14 @@
-"""A road's reference line by node, for the feet of many places at once.
+"""Station and offset of many points at once: a lookup by time along the trajectory, then the nearest point on the reference line.
 
-Within one node the foot follows in closed form, as the line between nodes is straight and its direction turns evenly.
-Places are whole units, so what lies between a place and a node is exact in whole numbers, and of single precision less
-than a hundredth of a millimetre is lost: half the memory of double is moved.
+Between two nodes the reference line is straight and its direction turns evenly, so the nearest point follows in closed
+form. Coordinates are integers in units of 0.1 mm, so differences to a node are exact; single precision then loses less
+than 0.01 mm and needs half the memory bandwidth of double precision.
 """
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,60 +17,71 @@ from ..store.records import COORDINATE_SCALE, to_units
 from .passes import MAX_TICKS, TIME_TICK
 from .reference_line import NODE_SPACING
 
-NODE_UNITS = round(NODE_SPACING / COORDINATE_SCALE)  # units from node to node
-NODE_FRACTION_BITS = 4              # bits that places of nodes have beyond the unit
-MAX_NODE_STEPS = 3        # from node to node for the few places that one step from the vehicle's node leaves beside their own
-MAX_NODE_LEAP = 300.0      # nodes that a step leads on
-NODE_TOLERANCE = 1e-3         # of a node beyond its ends: the direction there is that of the next one to 1e-6
-CLOSED_FORM_BEND = 0.55          # of a bend's radius to its inner side, as far as the closed form is trusted
-BEND_STRETCH = (0.4, 2.5)    # metres that a metre ahead may be along a bend, at the least and the most
+if TYPE_CHECKING:
+    from .passes import Pass
+    from .road_frame import Road, RoadFrame
+
+Buffers = Callable[..., np.ndarray]   # what `ScratchBuffers.of` returns
+
+NODE_UNITS = round(NODE_SPACING / COORDINATE_SCALE)  # units of 0.1 mm from node to node
+NODE_FRACTION_BITS = 4              # bits by which coordinates of nodes are finer than the unit
+MAX_NODE_STEPS = 3        # from node to node, for the few points whose node is not found in one step from the node of the vehicle
+MAX_NODE_LEAP = 300.0      # nodes per step at most
+NODE_TOLERANCE = 1e-3         # of a node spacing beyond the ends: the direction differs from that of the next node by less than 1e-6
+CLOSED_FORM_BEND = 0.55          # of the radius of a bend, to its inner side: validity of the closed form
+BEND_STRETCH = (0.4, 2.5)    # limits of the ratio of along-track distance to station difference in a bend
 
 
 class LineLookup:
-    """A road's reference line in tables by node.
+    """The reference line of a road in tables by node.
 
-    Lengths are in nodes (NODE_SPACING metres) here, and `bend` is a place's metres left of the line over the radius there.
+    Lengths are in nodes (NODE_SPACING metres). `bend` is the offset of a point times the curvature of the line.
+
+    Parameters
+    ----------
+    road : Road
     """
 
-    def __init__(self, road):
-        self.road, self.last, self._few = road, len(road.x) - 2, ScratchBuffers()
+    def __init__(self, road: Road):
+        self.road, self.last, self._scratch = road, len(road.x) - 2, ScratchBuffers()
         self.start = round(road.start / COORDINATE_SCALE)
         self.end = self.start + NODE_UNITS * (len(road.x) - 1)
-        # where places have 64 bits, 32 of them tell them apart within the box about the line
+        # coordinates of 64 bits are cut to 32, which is unique within the bounding box of the line
         self._box = [(int(v.min() / COORDINATE_SCALE), int(v.max() / COORDINATE_SCALE)) for v in (road.x, road.y)]
-        # 32 bits of fine units reach 13 km: what lies nearer to a node is told right wherever both are, for differences wrap as places do
+        # 32 bits of fine units span 13 km; shorter differences are exact, because they wrap around as the coordinates do
         self.x, self.y = (np.rint(v / COORDINATE_SCALE * 2**NODE_FRACTION_BITS).astype(np.int64).astype(np.int32) for v in (road.x, road.y))
         c, n = road._cos, road._sin
         dx, dy, dc, dn = (np.diff(v, append=v[-1:]) / NODE_SPACING for v in (road.x, road.y, c, n))
         self.cos, self.sin = ((v / (NODE_UNITS * 2**NODE_FRACTION_BITS)).astype(np.float32) for v in (c, n))
         self.turn, self.sag = (c * dn * NODE_SPACING - n * dc * NODE_SPACING).astype(np.float32), (dx * n - dy * c).astype(np.float32)
 
-    def feet(self, x, y, start, corridor, s, d, kept):
-        """Put stations and offsets of places near whose foot node `start` lies into s and d.
+    def project(self, x: np.ndarray, y: np.ndarray, start: np.ndarray, corridor: float, s: np.ndarray, d: np.ndarray,
+                buffers: Buffers) -> np.ndarray | None:
+        """Write stations and offsets of points into s and d, starting the search at node `start`.
 
         Parameters
         ----------
         x, y : (N,) int32 or int64 local units of 0.1 mm
-        start : (N,) intp
+        start : (N,) intp, node near the wanted point on the line
         corridor : metres either side
-        s, d : (N,) int32 units, where there is no foot anything
-        kept : of ScratchBuffers, for N
+        s, d : (N,) int32 units of 0.1 mm, overwritten; undefined outside the frame
+        buffers : of `ScratchBuffers.of` for N values
 
         Returns
         -------
-        (N,) bool: which have a foot, as `Road.locate` tells it; None where all have
+        (N,) bool: which points lie in the frame, as by `Road.locate`; None if all do
         """
-        seen = [np.left_shift(places.astype(np.int32, copy=False), NODE_FRACTION_BITS, out=kept(name, np.int32))
-                for places, name in ((x, "x"), (y, "y"))]
-        ahead, _, _, bend = self._seen_from(start, *seen, kept)
-        k = self._moved(start, ahead, bend, kept)
-        found = share, offset, left, bend, _ = self._foot(k, *seen, kept)
+        fine_x, fine_y = (np.left_shift(values.astype(np.int32, copy=False), NODE_FRACTION_BITS, out=buffers(name, np.int32))
+                          for values, name in ((x, "x"), (y, "y")))
+        ahead, _, _, bend = self._seen_from(start, fine_x, fine_y, buffers)
+        k = self._moved(start, ahead, bend, buffers)
+        found = share, offset, left, bend, _ = self._nearest_point(k, fine_x, fine_y, buffers)
         if not _all_within(share, -NODE_TOLERANCE, 1.0 + NODE_TOLERANCE):
-            self._carry_on(k, *seen, found)
+            self._carry_on(k, fine_x, fine_y, found)
         near = None
         if not (_all_within(share, -NODE_TOLERANCE, 1.0 + NODE_TOLERANCE) and _all_within(bend, -CLOSED_FORM_BEND, CLOSED_FORM_BEND)):
             near = _beside(share) & (np.abs(bend) < CLOSED_FORM_BEND)
-        with np.errstate(invalid="ignore"):  # of what has no foot
+        with np.errstate(invalid="ignore"):  # points outside the frame
             share *= NODE_UNITS
             np.copyto(s, np.rint(share, out=share), casting="unsafe")
             offset *= NODE_UNITS
@@ -87,50 +103,50 @@ class LineLookup:
         return inside
 
     def _about(self, x, y, reach):
-        """(N,) bool: which places lie in the box about the line, `reach` units wider; a road is too short for two that 32 bits do not tell apart."""
+        """(N,) bool: which points lie in the bounding box of the line, extended by `reach` units, where 32 bits are unique."""
         (left, right), (bottom, top) = self._box
         return (x >= left - reach) & (x <= right + reach) & (y >= bottom - reach) & (y <= top + reach)
 
-    def _away(self, places, nodes, k, kept, name):
-        """(N,) float32 fine units from nodes to places, along one axis."""
-        step = _of_nodes(nodes, k, kept("step", np.int32))
-        np.subtract(places, step, out=step)
-        away = kept(name, np.float32)
+    def _away(self, values, nodes, k, buffers, name):
+        """(N,) float32 fine units from nodes to points along one axis."""
+        step = _of_nodes(nodes, k, buffers("step", np.int32))
+        np.subtract(values, step, out=step)
+        away = buffers(name, np.float32)
         np.copyto(away, step)
         return away
 
-    def _seen_from(self, k, x, y, kept):
-        """How far places lie ahead of node k and to its left, how the line turns from there to the next, and their bend."""
-        east, north = self._away(x, self.x, k, kept, "east"), self._away(y, self.y, k, kept, "north")
-        c, n = (_of_nodes(table, k, kept(name, np.float32)) for table, name in ((self.cos, "c"), (self.sin, "n")))
-        ahead = np.multiply(east, c, out=kept("ahead", np.float32))
-        north_n = np.multiply(north, n, out=kept("bend", np.float32))
+    def _seen_from(self, k, x, y, buffers):
+        """Distances ahead of node k and to its left, the turn of the line to the next node, and the bend; (N,) each."""
+        east, north = self._away(x, self.x, k, buffers, "east"), self._away(y, self.y, k, buffers, "north")
+        c, n = (_of_nodes(table, k, buffers(name, np.float32)) for table, name in ((self.cos, "c"), (self.sin, "n")))
+        ahead = np.multiply(east, c, out=buffers("ahead", np.float32))
+        north_n = np.multiply(north, n, out=buffers("bend", np.float32))
         ahead += north_n
         left = np.multiply(north, c, out=north)
         left -= np.multiply(east, n, out=east)
         turn = _of_nodes(self.turn, k, c)
         return ahead, left, turn, np.multiply(turn, left, out=north_n)
 
-    def _moved(self, k, ahead, bend, kept):
-        """The node beside places that node k sees so far ahead, and with such a bend."""
-        on = np.subtract(np.float32(1.0), bend, out=kept("n", np.float32))
+    def _moved(self, k, ahead, bend, buffers):
+        """The node beside points that lie `ahead` of node k."""
+        on = np.subtract(np.float32(1.0), bend, out=buffers("n", np.float32))
         if not _all_within(on, *BEND_STRETCH):
             np.clip(on, *BEND_STRETCH, out=on)
         np.divide(ahead, on, out=on)
         if not _all_within(on, -MAX_NODE_LEAP, MAX_NODE_LEAP):
             np.clip(on, -MAX_NODE_LEAP, MAX_NODE_LEAP, out=on)
-        moved = kept("moved", np.intp)
+        moved = buffers("moved", np.intp)
         np.copyto(moved, np.floor(on, out=on), casting="unsafe")
         moved += k
         return moved if _all_within(moved, 0, self.last) else np.clip(moved, 0, self.last, out=moved)
 
-    def _foot(self, k, x, y, kept):
-        """Share of node k at which the foot of each place lies, its offset, how far left of the node it lies, its bend, and how far ahead."""
-        ahead, left, turn, bend = self._seen_from(k, x, y, kept)
+    def _nearest_point(self, k, x, y, buffers):
+        """Fraction from node k to the next of the nearest point, its offset, and `left`, `bend` and `ahead` as seen from node k."""
+        ahead, left, turn, bend = self._seen_from(k, x, y, buffers)
         # (E - f D) . (T + f T') = 0 for the share f of the node; T' is the turn to the left, and D . T' nothing beside D . T
-        part = np.subtract(np.float32(1.0), bend, out=kept("n", np.float32))
+        part = np.subtract(np.float32(1.0), bend, out=buffers("n", np.float32))
         with np.errstate(divide="ignore", invalid="ignore"):  # at the centre of the bend
-            share = np.divide(ahead, part, out=kept("share", np.float32))
+            share = np.divide(ahead, part, out=buffers("share", np.float32))
         # (E - f D) . (N + f N'), to the second order of the turn
         offset = np.multiply(turn, bend, out=turn)
         offset *= np.subtract(share, np.float32(0.5), out=part)
@@ -140,7 +156,7 @@ class LineLookup:
         return share, offset, left, bend, ahead
 
     def _carry_on(self, k, x, y, found):
-        """Step on with the places whose foot lies beyond node k, and put what is found of them in its place."""
+        """Step to further nodes with the points whose nearest point lies beyond node k, and update `found`."""
         share, _, _, bend, ahead = found
         rows = np.flatnonzero(~_beside(share))
         bend, ahead = bend.take(rows), ahead.take(rows)
@@ -148,20 +164,20 @@ class LineLookup:
         for _ in range(MAX_NODE_STEPS):
             if not len(rows):
                 break
-            few = self._few.of(len(rows))
+            few = self._scratch.of(len(rows))
             moved = self._moved(k.take(rows), ahead, bend, few)
             k[rows] = moved
-            again = self._foot(moved, x, y, few)
+            again = self._nearest_point(moved, x, y, few)
             for whole, part in zip(found[:4], again):
                 whole[rows] = part
             on = np.flatnonzero(~_beside(again[0]))
             rows, x, y, bend, ahead = (values.take(on) for values in (rows, x, y, again[3], again[4]))
 
     def _follow(self, x, y, start, rows, corridor, s, d, inside):
-        """Put down what `Road.locate` finds of some rows, which the closed form does not reach."""
+        """Use `Road.locate` for rows outside the validity of the closed form."""
         if not len(rows):
             return
-        road, (x, y) = self.road, (places.take(rows) for places in (x, y))
+        road, (x, y) = self.road, (values.take(rows) for values in (x, y))
         k = start.take(rows)
         ahead = (x * COORDINATE_SCALE - road.x[k]) * road._cos[k] + (y * COORDINATE_SCALE - road.y[k]) * road._sin[k]
         s_there, d_there = road.locate(x * COORDINATE_SCALE, y * COORDINATE_SCALE, road.start + k * NODE_SPACING + ahead, corridor)
@@ -172,28 +188,26 @@ class LineLookup:
 
 
 def _of_nodes(table, k, out):
-    # nodes are within bounds here; numpy makes sure of it faster so than with "clip", and needs no buffer as with "raise"
+    # nodes are within bounds; "wrap" is faster than "clip" and needs no buffer as "raise" does
     return table.take(k, out=out, mode="wrap")
 
 
 def _all_within(values, least, most):
-    """Whether all numbers lie between two others; NaN does not."""
+    """Whether all values lie between two limits; False with NaN."""
     return values.min() >= least and values.max() <= most
 
 
 def _beside(share):
-    """Whether feet lie within their node, or so little beyond that it serves them too."""
+    """Whether nearest points lie between their node and the next, within a tolerance."""
     return (share >= -NODE_TOLERANCE) & (share <= 1.0 + NODE_TOLERANCE)
 
 
-# Station and offset of many points at once: a lookup along the trajectory, then the foot on the reference line.
-
 POINTS_PER_PROJECTION = 100_000   # fewer points spend more time on Python's interpreter lock, many more on memory access
-CLOCK_SLACK = 1.0     # s that a cloud may begin before or end after the trajectory
+CLOCK_SLACK = 1.0                 # s that a cloud may begin before or end after the trajectory
 
 
 class RoadProjection:
-    """Places points of a survey with times in its road frame.
+    """Station and offset of points with times.
 
     Parameters
     ----------
@@ -201,40 +215,49 @@ class RoadProjection:
     corridor : metres either side
     """
 
-    def __init__(self, frame, corridor):
+    def __init__(self, frame: RoadFrame, corridor: float):
         self.frame, self.corridor = frame, corridor
         self.starts = np.array([p.time[0] for p in frame.passes])
         self.ends = np.array([p.time[-1] for p in frame.passes])
         self._lines = [LineLookup(road) for road in frame.roads]
-        self._kept = ScratchBuffers()
+        self._scratch = ScratchBuffers()
         self._ticks = [_PassClock(p, frame.road(p.road)) for p in frame.passes]
 
-    def place(self, x, y, time):
-        """Pass, station and offset of local places, to the unit of 0.1 mm in which points are kept.
+    def project(self, x: np.ndarray, y: np.ndarray, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Pass, station and offset of local positions, rounded to 0.1 mm.
 
         Parameters
         ----------
-        x, y, time : (N,) float64
+        x, y : (N,) local metres
+        time : (N,) s
 
         Returns
         -------
         pass_number : (N,) int16; -1 where no pass was driven at the point's time
-        s, d : (N,) float64; NaN beyond the corridor or the road's ends, as `Road.locate` tells them
+        s, d : (N,) metres; NaN beyond the corridor or the ends of the road, as by `Road.locate`
         """
         s, d = np.empty((2, len(x)), np.int32)
-        passes, inside = self.put(*(np.rint(np.asarray(v) / COORDINATE_SCALE).astype(np.int64) for v in (x, y)), time, s, d)
+        units_x, units_y = (np.rint(np.asarray(v) / COORDINATE_SCALE).astype(np.int64) for v in (x, y))
+        passes, inside = self.project_units(units_x, units_y, time, s, d)
         s, d = s * COORDINATE_SCALE, d * COORDINATE_SCALE
         if inside is not None:
             s[~inside] = d[~inside] = np.nan
         return passes, s, d
 
-    def put(self, x, y, time, s, d):
-        """Put stations and offsets of local places into s and d, (N,) int32 in units of 0.1 mm; places are int32 or int64.
+    def project_units(self, x: np.ndarray, y: np.ndarray, time: np.ndarray, s: np.ndarray,
+                      d: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
+        """Write stations and offsets of local positions into s and d, all in units of 0.1 mm.
+
+        Parameters
+        ----------
+        x, y : (N,) int32 or int64
+        time : (N,) s
+        s, d : (N,) int32, overwritten; undefined where `inside` is False
 
         Returns
         -------
-        pass_number : (N,) int16; -1 where no pass was driven at the point's time
-        inside : (N,) bool: which have a place; None where all have. Stations and offsets of the others mean nothing.
+        pass_number : (N,) int16; -1 where no pass was driven at the time of the point
+        inside : (N,) bool, which points lie in the road frame; None if all do
         """
         passes, inside = self._owner(time), None
         for first in range(0, len(x), POINTS_PER_PROJECTION):
@@ -248,18 +271,18 @@ class RoadProjection:
     def _part(self, owner, x, y, time, s, d):
         lowest = int(owner[0]) if owner.strides[0] == 0 else int(owner.min())
         if lowest >= 0 and (owner.strides[0] == 0 or lowest == owner.max()):
-            return self._feet(lowest, x, y, time, s, d)
+            return self._project_pass(lowest, x, y, time, s, d)
         inside = np.zeros(len(x), bool)
         for number in np.unique(owner[owner >= 0]).tolist():
             rows = np.flatnonzero(owner == number)
             own_s, own_d = np.empty((2, len(rows)), np.int32)
-            there = self._feet(number, x[rows], y[rows], time[rows], own_s, own_d)
+            there = self._project_pass(number, x[rows], y[rows], time[rows], own_s, own_d)
             s[rows], d[rows] = own_s, own_d
             inside[rows] = True if there is None else there
         return inside
 
     def _owner(self, time):
-        """Pass that drove at each time: within it, or within a second of its ends; -1 where none did."""
+        """Pass driven at each time, or within CLOCK_SLACK of it; -1 where none was."""
         if not len(time):
             return np.empty(0, np.int16)
         low, high = time.min(), time.max()
@@ -267,31 +290,31 @@ class RoadProjection:
         if k >= 0 and high <= self.ends[k] and (k + 1 == len(self.starts) or high < self.starts[k + 1] - CLOCK_SLACK):
             return np.broadcast_to(np.int16(k), len(time))
         k = np.clip(np.searchsorted(self.starts, time + CLOCK_SLACK, side="right") - 1, 0, None)
-        # between two passes that follow on each other the earlier one ends where the later begins
+        # within the slack of two passes, the time of the earlier one takes precedence
         k = np.where((k > 0) & (time < self.starts[k]) & (time <= self.ends[np.maximum(k - 1, 0)]), k - 1, k)
         inside = (time >= self.starts[k] - CLOCK_SLACK) & (time <= self.ends[k] + CLOCK_SLACK)
         return np.where(inside, k, -1).astype(np.int16)
 
-    def _feet(self, number, x, y, time, s, d):
-        kept = self._kept.of(len(x))
+    def _project_pass(self, number, x, y, time, s, d):
+        buffers = self._scratch.of(len(x))
         line = self._lines[self.frame.passes[number].road]
-        return line.feet(x, y, self._ticks[number].node(time, kept), self.corridor, s, d, kept)
+        return line.project(x, y, self._ticks[number].node(time, buffers), self.corridor, s, d, buffers)
 
 
 class _PassClock:
-    """The node of the reference line beside the vehicle, tick by tick of a pass."""
+    """Lookup table by time of the node of the reference line beside the vehicle."""
 
-    def __init__(self, driven, road):
+    def __init__(self, driven: Pass, road: Road):
         self.first, span = driven.time[0], driven.time[-1] - driven.time[0]
         self.tick = max(TIME_TICK, span / MAX_TICKS)
         times = self.first + self.tick * np.arange(int(span / self.tick) + 2)
         self.nodes = np.clip((np.interp(times, driven.time, driven.s) - road.start) / NODE_SPACING, 0, len(road.x) - 2).astype(np.int32)
 
-    def node(self, time, kept):
-        """(N,) intp node numbers; the ends serve times before and after the pass."""
-        at = np.subtract(time, self.first, out=kept("at"))
+    def node(self, time, buffers):
+        """(N,) intp node numbers; those of the ends before and after the pass."""
+        at = np.subtract(time, self.first, out=buffers("at"))
         at *= 1.0 / self.tick
-        k = kept("start", np.intp)
+        k = buffers("start", np.intp)
         np.copyto(k, at, casting="unsafe")
-        np.copyto(k, self.nodes.take(k, out=kept("node", np.int32), mode="clip"))
+        np.copyto(k, self.nodes.take(k, out=buffers("node", np.int32), mode="clip"))
         return k

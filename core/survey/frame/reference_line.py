@@ -1,4 +1,6 @@
-"""A road's reference line: the smoothed track of its longest pass, and its continuation by others."""
+"""The reference line of a road: the smoothed track of its longest pass, continued by other passes."""
+
+from __future__ import annotations
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -8,24 +10,32 @@ from scipy.spatial import cKDTree
 from ...common.errors import RoadExtractionError
 from .passes import LEVEL_SEPARATION, SAME_CARRIAGEWAY, moving_rows
 
-NODE_SPACING = 0.1         # m between nodes of the reference line: 0.02 mm of sagitta at R = 60 m
-LINE_SMOOTHING = 2.0    # m, sigma: takes jitter out of the heading; d is measured from the result anyway
-FRAME_EXTENSION = 10.0   # m that the frame reaches beyond the driven part: scanners look ahead and behind
-SPARSE_TRACK_SPACING = 2.0       # m between rows beyond which chords would cut the bends
+NODE_SPACING = 0.1     # m between nodes of the reference line: 0.02 mm of sagitta at R = 60 m
+LINE_SMOOTHING = 2.0   # m, sigma: removes noise from the heading; offsets are measured from the smoothed line
+FRAME_EXTENSION = 10.0  # m beyond the driven part: scanners measure ahead and behind
+SPARSE_TRACK_SPACING = 2.0  # m between rows: beyond it, chords would cut the bends, so a spline is used
 JUNCTION_GAP = 15.0    # m between the end of one pass and the start of the next that continues the road
-MAX_LATERAL_JUMP = 6.0        # m to the side: another lane of the same carriageway
+MAX_LATERAL_JUMP = 6.0  # m to the side: another lane of the same carriageway
 MAX_JUNCTION_ANGLE = np.radians(30.0)
-LANE_BLEND_LENGTH = 40.0       # m over which a continuing pass in another lane is led over to the line
+LANE_BLEND_LENGTH = 40.0  # m over which a continuing pass in another lane is blended into the line
 
 
-def track_line(x, y, z):
-    """(N, 3) places at least half a metre apart along a driven track."""
+def track_line(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """(M, 3) positions at least half a metre apart along a track of (N,) x, y and z in metres."""
     rows = moving_rows(x, y)
     return np.c_[x, y, z][rows]
 
 
-def reference_nodes(line):
-    """Nodes of the reference line, NODE_SPACING apart and FRAME_EXTENSION beyond both ends, of (N, 2+) track places.
+def reference_nodes(line: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes of the reference line, NODE_SPACING apart, extended by FRAME_EXTENSION at both ends.
+
+    Parameters
+    ----------
+    line : (N, 2) or (N, 3) positions of the track, m
+
+    Returns
+    -------
+    x, y : (M,) m
 
     Raises
     ------
@@ -50,7 +60,7 @@ def reference_nodes(line):
 
 
 def _smooth(values):
-    """Gaussian along the line, mirrored through its end points so that these stay."""
+    """Gaussian smoothing along the line, point-reflected at the end points so that these stay."""
     pad = min(int(4 * LINE_SMOOTHING / NODE_SPACING), len(values) - 1)
     head = 2 * values[0] - values[1:pad + 1][::-1]
     tail = 2 * values[-1] - values[-pad - 1:-1][::-1]
@@ -71,16 +81,16 @@ def _extend(x, y):
     return np.r_[hx[::-1], x, tx], np.r_[hy[::-1], y, ty]
 
 
-def continue_line(line, track):
-    """A line lengthened by a track that goes on where it ends, either way driven; None where it does not.
+def continue_line(line: np.ndarray, track: np.ndarray) -> np.ndarray | None:
+    """A line lengthened by a track that continues it at either end, driven in either direction.
 
     Parameters
     ----------
-    line, track : (N, 3) places as `track_line` gives them
+    line, track : (N, 3) positions as returned by `track_line`
 
     Returns
     -------
-    (M, 3) places, the direction of `line` kept, or None
+    (M, 3) positions in the direction of `line`; None if the track does not continue it
     """
     for way in (track, track[::-1]):
         found = _append_track(line, way)
@@ -116,7 +126,7 @@ def _append_track(line, track):
 
 
 def _comes_back(line, beyond, driven):
-    """Whether a continuation comes near the line elsewhere than at its end: one place would have two stations."""
+    """Whether a continuation approaches the line anywhere but at its end: a position would have two stations."""
     left = np.r_[0.0, np.cumsum(np.hypot(*np.diff(line[::-1, :2], axis=0).T))][::-1]
     for old, new in ((line[left > 3 * SAME_CARRIAGEWAY], beyond), (line, beyond[driven > 3 * SAME_CARRIAGEWAY])):
         if len(old) and len(new) and cKDTree(old[:, :2]).query(new[:, :2])[0].min() < SAME_CARRIAGEWAY:
@@ -125,7 +135,7 @@ def _comes_back(line, beyond, driven):
 
 
 def _direction(line):
-    """Unit vector in which a line sets out, over its first five metres."""
+    """Unit vector of the first five metres of a line."""
     far = np.hypot(*(line[:, :2] - line[0, :2]).T) > 5.0
     step = line[int(np.argmax(far)) if far.any() else -1, :2] - line[0, :2]
     return step / max(np.hypot(*step), 1e-9)

@@ -1,35 +1,43 @@
-"""The road frame: station and offset of any place, and the way back to the map.
+"""The road frame: station and offset of any position, and the conversion back to map coordinates.
 
-A road's reference line is the smoothed track of its longest pass, kept as nodes
-0.1 m apart. Position and heading are interpolated between nodes, and a point's
-station is where the normal of the line passes through it: the frame that both
-published methods speak, and in which every stage works.
+The reference line of a road is the smoothed track of its longest pass, stored as nodes 0.1 m apart. Position and
+heading are interpolated between nodes. The station of a point is where the normal of the line passes through it. Both
+published methods use this frame, and every stage works in it.
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..trajectory.trajectory import clean_trajectory
+from ..trajectory.trajectory import Trajectory, clean_trajectory
 from .passes import LEVEL_SEPARATION, MAX_ROAD_LENGTH, TURN_REACH, Pass, decimate_by_distance, moving_rows, split_into_passes
 from .reference_line import FRAME_EXTENSION, JUNCTION_GAP, NODE_SPACING, continue_line, reference_nodes, track_line
 
-CORRIDOR = 25.0    # m either side
-MAX_POINT_DISTANCE = 200.0     # m beyond the track that no point with a place lies: the widest corridor, and the ends of a road
-MAX_PASS_DISTANCE = 12.0          # m between two passes over one carriageway
-MAX_LANE_DISTANCE = 15.0             # m at most, where the lanes of one drift apart
+CORRIDOR = 25.0               # m either side of the reference line
+MAX_POINT_DISTANCE = 200.0    # m from the track: exceeds the widest corridor and the extension at the ends of a road
+MAX_PASS_DISTANCE = 12.0      # m between two passes over one carriageway (median)
+MAX_LANE_DISTANCE = 15.0      # m between two passes over one carriageway at most
 MAX_PASS_ANGLE = np.radians(30.0)
-MIN_SHARED_LENGTH = 20.0            # m that two passes must share
+MIN_SHARED_LENGTH = 20.0      # m of road that two passes over it must share
 
 
 class Road:
-    """One carriageway's reference line in local coordinates.
+    """The reference line of one carriageway in local coordinates.
 
-    Station 0 is where the line begins, in the direction of the longest pass; offset is left positive.
+    Stations increase in the direction of the longest pass, which begins at station 0; offsets are left positive.
+
+    Parameters
+    ----------
+    number : of the road
+    nodes_x, nodes_y : (N,) m, NODE_SPACING apart
+    start : station of the first node, m
     """
 
-    def __init__(self, number, nodes_x, nodes_y, start):
+    def __init__(self, number: int, nodes_x: np.ndarray, nodes_y: np.ndarray, start: float):
         self.number = number
         self.start = start
         self.x, self.y = nodes_x, nodes_y
@@ -39,7 +47,7 @@ class Road:
         self._curvature = np.gradient(self._heading, NODE_SPACING)
         self.end = start + NODE_SPACING * (len(nodes_x) - 1)
         self.length = self.end - FRAME_EXTENSION
-        self._tree = None
+        self._tree: cKDTree | None = None
 
     def _at(self, s):
         u = np.clip((np.asarray(s, float) - self.start) / NODE_SPACING, 0, len(self.x) - 1)
@@ -55,36 +63,37 @@ class Road:
         n = self._sin[k] + f * (self._sin[k + 1] - self._sin[k])
         return x, y, c, n
 
-    def heading(self, s):
-        """Direction of the reference line, radians counter-clockwise from east."""
+    def heading(self, s: np.ndarray) -> np.ndarray:
+        """Direction of the reference line at (N,) stations, radians counter-clockwise from east."""
         k, f = self._at(s)
         return self._heading[k] + f * (self._heading[k + 1] - self._heading[k])
 
-    def curvature(self, s):
-        """1/m, positive where the road turns left."""
+    def curvature(self, s: np.ndarray) -> np.ndarray:
+        """Curvature at (N,) stations, 1/m, positive in a left bend."""
         k, f = self._at(s)
         return self._curvature[k] + f * (self._curvature[k + 1] - self._curvature[k])
 
-    def to_map(self, s, d):
-        """Local x, y of station s and offset d (straight on beyond the ends)."""
+    def to_map(self, s: np.ndarray, d: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
+        """Local x, y of stations s and offsets d, metres; straight on beyond the ends."""
         s, d = np.asarray(s, float), np.asarray(d, float)
         x, y, c, n = self._line(s)
         beyond = s - np.clip(s, self.start, self.end)
         return x + beyond * c - d * n, y + beyond * n + d * c
 
-    def locate(self, x, y, start=None, corridor=CORRIDOR):
-        """Station and offset of local places.
+    def locate(self, x: np.ndarray, y: np.ndarray, start: np.ndarray | None = None,
+               corridor: float = CORRIDOR) -> tuple[np.ndarray, np.ndarray]:
+        """Station and offset of local positions, by Newton iteration on the along-track component.
 
         Parameters
         ----------
         x, y : (N,) local metres
-        start : (N,) a station near the right foot (from gps_time), or None for the nearest foot
+        start : (N,) initial stations near the wanted nearest point (from gps_time); None for the nearest node
         corridor : largest |offset|, metres
 
         Returns
         -------
-        s, d : (N,) metres; NaN beyond the frame's ends, outside the corridor, or at the
-            inner side of a bend beyond 0.9 of its radius, where normals cross.
+        s, d : (N,) metres; NaN beyond the ends of the frame, outside the corridor, or on the inner side of a bend beyond
+            0.9 of its radius, where normals cross
         """
         x, y = np.asarray(x, float), np.asarray(y, float)
         if start is None:
@@ -94,7 +103,7 @@ class Road:
         s[lost] = self.start
         d = np.empty(len(s))
         active = np.arange(len(s))
-        # Newton on the along-track component; most points settle in three steps
+        # most points converge in three steps
         for _ in range(12):
             px, py, c, n = self._line(s[active])
             ex, ey = x[active] - px, y[active] - py
@@ -113,8 +122,8 @@ class Road:
         d[~inside] = np.nan
         return s, d
 
-    def nearest_station(self, x, y, corridor=CORRIDOR):
-        """Station of the nearest node of the line, NaN where none is within the corridor."""
+    def nearest_station(self, x: np.ndarray, y: np.ndarray, corridor: float = CORRIDOR) -> np.ndarray:
+        """Station of the nearest node of the line, (N,) m; NaN where none is within the corridor."""
         if self._tree is None:
             self._tree = cKDTree(np.c_[self.x[::5], self.y[::5]])
         distance, index = self._tree.query(np.c_[x, y], distance_upper_bound=corridor * 1.05 + 1.0)
@@ -123,41 +132,59 @@ class Road:
 
 @dataclass
 class RoadFrame:
-    """All roads and passes of a survey; `origin` is what local coordinates leave out."""
+    """All roads and passes of a survey.
+
+    origin : (3,) map coordinates of the local origin, m
+    roads : list of Road, by number
+    passes : list of Pass, by number
+    crs : WKT, "" where unknown
+    has_time : whether points are assigned to passes by their time
+    notes : remarks on the trajectory, for the log
+    """
 
     origin: np.ndarray
-    roads: list
-    passes: list
+    roads: list[Road]
+    passes: list[Pass]
     crs: str = ""
     has_time: bool = True
-    notes: tuple = ()
+    notes: Sequence[str] = ()
 
-    def road(self, number):
+    def road(self, number: int) -> Road:
+        """The road of a number."""
         return self.roads[number]
 
-    def passes_of(self, road):
+    def passes_of(self, road: int) -> list[Pass]:
+        """The passes over a road."""
         return [p for p in self.passes if p.road == road]
 
     @property
-    def farthest(self):
-        """Metres of x or y from the origin beyond which no point can have a place."""
+    def farthest(self) -> float:
+        """The largest |local x| or |local y| that a point in the frame can have, m."""
         return max(max(np.abs(p.x).max(), np.abs(p.y).max()) for p in self.passes) + MAX_POINT_DISTANCE
 
-    def to_local(self, x, y, z=None):
-        """Map coordinates to local ones."""
+    def to_local(self, x: np.ndarray, y: np.ndarray, z: np.ndarray | None = None) -> tuple[np.ndarray, ...]:
+        """Local coordinates of map coordinates: x, y, and z if given."""
         local = np.asarray(x, float) - self.origin[0], np.asarray(y, float) - self.origin[1]
         return local if z is None else local + (np.asarray(z, float) - self.origin[2],)
 
-    def to_map(self, road, s, d, z=None):
-        """Map coordinates of station and offset on a road (number)."""
+    def to_map(self, road: int, s: np.ndarray, d: np.ndarray | float, z: np.ndarray | None = None) -> tuple[np.ndarray, ...]:
+        """Map coordinates of stations and offsets on a road: x, y, and z if a local z is given."""
         x, y = self.roads[road].to_map(s, d)
         found = x + self.origin[0], y + self.origin[1]
         return found if z is None else found + (np.asarray(z, float) + self.origin[2],)
 
-    def track_height(self, road, s, below=None):
-        """(N,) local z of the trajectory at stations of a road: the mean of the passes that were there.
+    def track_height(self, road: int, s: np.ndarray, below: dict[int, float] | None = None) -> np.ndarray:
+        """Height of the trajectory at stations of a road: the mean of the passes there, else the nearest pass.
 
-        `below` maps pass numbers to metres that are taken off each pass first.
+        Parameters
+        ----------
+        road : number
+        s : (N,) stations, m
+        below : {pass number: metres to subtract}, such as the sensor heights
+
+        Returns
+        -------
+        (N,) local z, m
         """
         s = np.asarray(s, float)
         below = below or {}
@@ -169,22 +196,22 @@ class RoadFrame:
             total += np.where(there, p.height_at_station(s) - below.get(p.number, 0.0), 0.0)
             count += there
         if not count.all():
-            # beyond the driven part, and where the road goes on between two passes: the pass that ends nearest
+            # beyond the driven part and between two passes: the pass that ends nearest
             nearest = np.argmin([np.maximum(np.maximum(p.span[0] - s, s - p.span[1]), 0.0) for p in passes], axis=0)
             for k, p in enumerate(passes):
                 alone = (count == 0) & (nearest == k)
                 total[alone], count[alone] = p.height_at_station(s[alone]) - below.get(p.number, 0.0), 1
         return total / count
 
-    def nearest_pass(self, road, s, d):
-        """(N,) number of the pass whose track runs nearest to stations and offsets of a road, of those that were there."""
+    def nearest_pass(self, road: int, s: np.ndarray, d: np.ndarray) -> np.ndarray:
+        """(N,) number of the pass whose track is nearest to (N,) stations and offsets, of those that drove there."""
         s, d = np.asarray(s, float), np.asarray(d, float)
         passes = self.passes_of(road)
         away = [np.where((s >= p.span[0]) & (s <= p.span[1]), 0.0, 1e6) + np.abs(p.at_station(s)[0] - d) for p in passes]
         return np.array([p.number for p in passes])[np.argmin(away, axis=0)]
 
-    def locate_nearest(self, x, y, corridor=CORRIDOR):
-        """Road number, s and d of local places by the nearest foot; road is -1 where there is none."""
+    def locate_nearest(self, x: np.ndarray, y: np.ndarray, corridor: float = CORRIDOR) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Road number, station and offset of the nearest point on any road, (N,) each; -1 and NaN where there is none."""
         x, y = np.asarray(x, float), np.asarray(y, float)
         best_road = np.full(len(x), -1)
         best_s, best_d = np.full(len(x), np.nan), np.full(len(x), np.nan)
@@ -195,13 +222,25 @@ class RoadFrame:
         return best_road, best_s, best_d
 
 
-def build_frame(trajectory):
+def build_frame(trajectory: Trajectory) -> RoadFrame:
     """Roads and passes of a trajectory.
 
-    The drive is cut into passes; the longest becomes the reference of the first
-    road, lengthened by passes that go on where it ends, up to MAX_ROAD_LENGTH; what runs within 12 m of
-    it and parallel, either way, is a further pass over the same road; what is
-    left makes the next road.
+    The drive is split into passes. The longest becomes the reference line of the first road, lengthened by passes that
+    continue it, up to MAX_ROAD_LENGTH. Passes parallel to it within 12 m, in either direction, are further passes over
+    the same road. The remaining passes make the next road.
+
+    Parameters
+    ----------
+    trajectory : Trajectory in a projected CRS in metres
+
+    Returns
+    -------
+    RoadFrame
+
+    Raises
+    ------
+    RoadExtractionError
+        If the trajectory does not move.
     """
     trajectory = clean_trajectory(trajectory)
     origin = np.floor([trajectory.x.min(), trajectory.y.min(), trajectory.z.min()])
@@ -215,7 +254,8 @@ def build_frame(trajectory):
     driven = np.r_[0.0, np.cumsum(np.hypot(*np.diff(track[moved, :2], axis=0).T))]
     driven = driven[np.searchsorted(moved, np.arange(len(track)), side="right") - 1]
     waiting = [(piece.first, piece.last) for piece in pieces]
-    roads, passes = [], []
+    roads: list[Road] = []
+    passes: list[Pass] = []
     while waiting:
         waiting = _longest_first(waiting, driven)
         longest = waiting[0]
@@ -241,7 +281,7 @@ def _longest_first(ranges, driven):
 
 
 def _line_of(track, turning, rows):
-    """The track of rows as a line, without a turn on the spot at its ends."""
+    """The track of a range of rows as a line, without turns on the spot at its ends."""
     straight = np.flatnonzero(~turning[rows[0]:rows[1]])
     if len(straight) > 1:
         rows = rows[0] + straight[0], rows[0] + straight[-1] + 1
@@ -249,7 +289,7 @@ def _line_of(track, turning, rows):
 
 
 def _grow_road(number, track, turning, moved, driven, waiting):
-    """(Road, row ranges of its passes, row ranges left over), beginning with the first of the ranges waiting."""
+    """(Road, row ranges of its passes, remaining row ranges), starting with the first of the ranges."""
     longest, line = waiting[0], _line_of(track, turning, waiting[0])
     while True:
         road = Road(number, *reference_nodes(line), -FRAME_EXTENSION)
@@ -269,19 +309,19 @@ def _grow_road(number, track, turning, moved, driven, waiting):
 
 
 def _ends_near(line, track, rows):
-    """Whether a range of rows begins or ends where a line does, turns on the spot allowed for."""
+    """Whether a range of rows begins or ends near an end of a line, within the reach of a turn on the spot."""
     ends = track[[rows[0], rows[1] - 1], None, :2] - line[None, [0, -1], :2]
     return bool((np.hypot(ends[..., 0], ends[..., 1]) < JUNCTION_GAP + TURN_REACH).any())
 
 
 def _away(line, places):
-    """Whether places lie wholly outside the box about a line."""
+    """Whether positions lie wholly outside the bounding box of a line."""
     return bool((places.min(axis=0) > line.max(axis=0) + MAX_LANE_DISTANCE).any()
                 or (places.max(axis=0) < line.min(axis=0) - MAX_LANE_DISTANCE).any())
 
 
 def _shared_with(road, line, track, moved, rows):
-    """The parts of a driven piece that run along a road, and the parts that do not."""
+    """The row ranges that run along a road, and those that do not."""
     a, b = rows
     if _away(line[:, :2], track[a:b, :2]):
         return [], [rows]
@@ -307,14 +347,14 @@ def _shared_with(road, line, track, moved, rows):
         if not along[i]:
             left.append(tuple(ends))
             continue
-        # Where a round begins again the station starts anew: the next pass
+        # on a circuit, each round is a pass: split where the station jumps back
         cuts = [int(kept[i + k]) for k in _jumps(s[i:j])]
         shared += list(zip([ends[0], *cuts], [*cuts, ends[1]]))
     return shared, left
 
 
 def _jumps(s):
-    """Indices at which the station leaps, at least MIN_SHARED_LENGTH from the ends and each other."""
+    """Indices at which the station jumps, at least half of MIN_SHARED_LENGTH from the ends and from each other."""
     found = np.flatnonzero(np.abs(np.diff(s)) > 10.0) + 1
     shortest, kept, last = int(MIN_SHARED_LENGTH / 2), [], 0
     for k in found:
@@ -340,7 +380,7 @@ def _fill_runs(mask, shortest):
 
 
 def _make_pass(road, time, x, y, z):
-    """A pass with the vehicle's own feet on the road, found by walking so that they never leap."""
+    """A Pass; stations are propagated from row to row, so that they do not jump to another part of the road."""
     kept = moving_rows(x, y)
     driven = np.r_[0.0, np.cumsum(np.hypot(np.diff(x[kept]), np.diff(y[kept])))]
     s, _ = road.locate(x[kept], y[kept], corridor=2 * MAX_PASS_DISTANCE)
@@ -364,7 +404,7 @@ def _make_pass(road, time, x, y, z):
 
 
 def _longest_run(s):
-    """(first, end) of the longest stretch whose stations are known and do not leap; None where none is known."""
+    """(first, end) of the longest run of known stations without jumps; None where none is known."""
     broken = ~np.isfinite(s[1:]) | ~np.isfinite(s[:-1]) | (np.abs(np.diff(s)) > 30.0)
     cuts = np.r_[0, np.flatnonzero(broken) + 1, len(s)]
     runs = [(int(i), int(j)) for i, j in zip(cuts[:-1], cuts[1:]) if np.isfinite(s[i])]

@@ -33,7 +33,7 @@ def test_places_are_those_of_the_exact_foot_in_bends_of_any_radius(radius):
     path = chain(ahead(60), *([] if radius is None else [bend(radius, 70)]), ahead(60))
     frame = build_frame(drive(path))
     places = around(frame)
-    passes, s, d = RoadProjection(frame, CORRIDOR).place(*places)
+    passes, s, d = RoadProjection(frame, CORRIDOR).project(*places)
     expected_s, expected_d = exactly(frame, *places)
     both = np.isfinite(s) & np.isfinite(expected_s)
     assert (passes == 0).all()
@@ -49,9 +49,9 @@ def test_how_points_are_grouped_does_not_show():
     frame = build_frame(drive(chain(ahead(60), bend(40, 80), ahead(60))))
     x, y, time = around(frame)
     placing = RoadProjection(frame, CORRIDOR)
-    _, s, d = placing.place(x, y, time)
+    _, s, d = placing.project(x, y, time)
     for rows in np.array_split(np.random.default_rng(2).permutation(len(x)), 7):
-        _, some_s, some_d = placing.place(x[rows], y[rows], time[rows])
+        _, some_s, some_d = placing.project(x[rows], y[rows], time[rows])
         np.testing.assert_array_equal(some_s, s[rows])
         np.testing.assert_array_equal(some_d, d[rows])
 
@@ -60,11 +60,11 @@ def test_a_time_of_no_pass_and_no_time_at_all_have_no_place():
     frame = build_frame(drive(chain(ahead(100))))
     x, y, time = around(frame, 6)
     time[:3] = np.nan, time[0] - 500.0, time[0] + 500.0
-    passes, s, d = RoadProjection(frame, CORRIDOR).place(x, y, time)
+    passes, s, d = RoadProjection(frame, CORRIDOR).project(x, y, time)
     assert passes.tolist() == [-1, -1, -1, 0, 0, 0]
     assert np.isnan(s[:3]).all() and np.isnan(d[:3]).all()
 
 
 def test_no_points_have_no_places():
     frame = build_frame(drive(chain(ahead(100))))
-    assert [len(found) for found in RoadProjection(frame, CORRIDOR).place(*np.empty((3, 0)))] == [0, 0, 0]
+    assert [len(found) for found in RoadProjection(frame, CORRIDOR).project(*np.empty((3, 0)))] == [0, 0, 0]
