@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .model import Country, DashPattern
+from .model import Country, Dashes
 from .neutral import NEUTRAL
 
 CHINA = Country(
@@ -12,7 +12,7 @@ CHINA = Country(
     usual_lane=3.5,
     longest_dash=7.5,
     line_widths=(0.10, 0.15, 0.20),
-    dash_patterns=(DashPattern(2.0, 4.0, "below 60 km/h"), DashPattern(6.0, 9.0, "60 km/h and more")),
+    dash_patterns=(Dashes(2.0, 4.0, "below 60 km/h"), Dashes(6.0, 9.0, "60 km/h and more")),
     design_code=NEUTRAL.design_code,
     design_speeds=NEUTRAL.design_speeds,
     sources=(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .model import Country, DashPattern, DesignSpeed
+from .model import Country, Dashes, DesignSpeed
 
 GERMANY = Country(
     name="germany",
@@ -11,7 +11,7 @@ GERMANY = Country(
     usual_lane=3.5,
     longest_dash=7.5,
     line_widths=(0.12, 0.15, 0.25, 0.30),
-    dash_patterns=(DashPattern(3.0, 6.0, "town"), DashPattern(4.0, 8.0, "country road"), DashPattern(6.0, 12.0, "motorway")),
+    dash_patterns=(Dashes(3.0, 6.0, "town"), Dashes(4.0, 8.0, "country road"), Dashes(6.0, 12.0, "motorway")),
     design_code="RAA 2008",
     design_speeds=(DesignSpeed(80, 280.0), DesignSpeed(100, 470.0), DesignSpeed(120, 720.0), DesignSpeed(130, 900.0)),
     sources=(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .model import Country, DashPattern, DesignSpeed
+from .model import Country, Dashes, DesignSpeed
 
 JAPAN = Country(
     name="japan",
@@ -11,7 +11,7 @@ JAPAN = Country(
     usual_lane=3.25,
     longest_dash=9.0,
     line_widths=(0.15, 0.20),
-    dash_patterns=(DashPattern(5.0, 5.0, "ordinary road"), DashPattern(8.0, 12.0, "expressway")),
+    dash_patterns=(Dashes(5.0, 5.0, "ordinary road"), Dashes(8.0, 12.0, "expressway")),
     design_code="Road Structure Ordinance",
     design_speeds=(DesignSpeed(20, 15.0), DesignSpeed(30, 30.0), DesignSpeed(40, 60.0), DesignSpeed(50, 100.0), DesignSpeed(60, 150.0),
                    DesignSpeed(80, 280.0)),

@@ -20,7 +20,7 @@ class DesignSpeed:
 
 
 @dataclass(frozen=True)
-class DashPattern:
+class Dashes:
     """Length of a dash and of the gap behind it, metres, and where it is used."""
 
     dash: float
@@ -49,7 +49,7 @@ class Country:
     usual_lane: float
     longest_dash: float
     line_widths: tuple[float, ...]
-    dash_patterns: tuple[DashPattern, ...]
+    dash_patterns: tuple[Dashes, ...]
     design_code: str
     design_speeds: tuple[DesignSpeed, ...]
     sources: tuple[str, ...]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .model import Country, DashPattern, DesignSpeed
+from .model import Country, Dashes, DesignSpeed
 
 NEUTRAL = Country(
     name="neutral",
@@ -11,7 +11,7 @@ NEUTRAL = Country(
     usual_lane=3.5,
     longest_dash=10.5,
     line_widths=(0.10, 0.12, 0.15, 0.20, 0.25, 0.30),
-    dash_patterns=(DashPattern(3.0, 6.0, "town"), DashPattern(6.0, 9.0, "country road"), DashPattern(6.0, 12.0, "motorway")),
+    dash_patterns=(Dashes(3.0, 6.0, "town"), Dashes(6.0, 9.0, "country road"), Dashes(6.0, 12.0, "motorway")),
     design_code="CJJ 37-2012",
     design_speeds=(DesignSpeed(30, 85.0, 25.0), DesignSpeed(40, 150.0, 35.0), DesignSpeed(50, 200.0, 40.0),
                    DesignSpeed(60, 300.0, 50.0), DesignSpeed(80, 400.0, 70.0)),

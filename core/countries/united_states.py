@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .model import Country, DashPattern, DesignSpeed
+from .model import Country, Dashes, DesignSpeed
 
 FOOT = 0.3048            # m
 MILE = 1.609344          # km
@@ -17,7 +17,7 @@ UNITED_STATES = Country(
     usual_lane=12 * FOOT,
     longest_dash=4.5,
     line_widths=(4 * FOOT / 12, 6 * FOOT / 12, 8 * FOOT / 12, 12 * FOOT / 12),
-    dash_patterns=(DashPattern(10 * FOOT, 30 * FOOT, "lane and centre lines"), DashPattern(3 * FOOT, 9 * FOOT, "line extensions")),
+    dash_patterns=(Dashes(10 * FOOT, 30 * FOOT, "lane and centre lines"), Dashes(3 * FOOT, 9 * FOOT, "line extensions")),
     design_code="AASHTO Green Book, 8 % superelevation",
     design_speeds=tuple(DesignSpeed(round(speed * MILE), speed**2 / (15 * (SUPERELEVATION + friction)) * FOOT)
                         for speed, friction in SIDE_FRICTION),
