@@ -74,7 +74,7 @@ def _find_curb_points(decimation, settings, progress):
     survey, both, found = decimation.survey, settings.method == "both", {}
     if settings.method != "scanlines":
         part = progress.part(0.0, PROFILES_PROGRESS) if both else progress
-        found["profiles"] = detect_curbs(survey, settings.curbs, part, turned=not both, decimation=decimation)
+        found["profiles"] = detect_curbs(survey, settings.curbs, part, include_returns=not both, decimation=decimation)
     if settings.method != "profiles":
         part = progress.part(PROFILES_PROGRESS if both else 0.0, 1.0)
         source = SurveyScanlines(survey, settings.planes, settings.scanlines.sensor_height, progress=part.part(0.0, LATTICE_PROGRESS),

@@ -1,7 +1,10 @@
-"""Curb points: where the road ends against a raised edge, nearest the driven track on each side."""
+"""Curb points: where the road ends at a raised edge, nearest to the driven track on each side."""
+
+from __future__ import annotations
 
 from contextlib import closing
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
@@ -17,32 +20,48 @@ from ..common.decimation import POINTS_PER_LEVEL_CELL, PointDecimation
 from ..common.nearest_pass import assign_nearest_pass
 from ..common.occlusion import HIDDEN_POINT_SPACING, OcclusionGrid
 from ..common.pseudo_scanlines import SPREAD_PROFILES
-from ..common.sides import BLOCK_SECTION_LENGTH, MAX_CURB_OFFSET, SIDE_SIGNS, OutermostTrack, expected_height, side_profiles, work_sections
+from ..common.sides import (
+    BLOCK_SECTION_LENGTH,
+    MAX_CURB_OFFSET,
+    SIDE_SIGNS,
+    OutermostTrack,
+    expected_height,
+    side_profiles,
+    work_sections,
+)
 from ..common.tracking import NOISY_SHARE, curb_chains, drop_short_curbs, link_steps, select_along_road
 from ..curb_returns.detect import add_curb_returns
-from .steps import AVERAGING_LENGTH, find_averaged_steps, find_steps
+from .averaged_steps import AVERAGING_LENGTH, find_averaged_steps
+from .steps import find_steps
 
-MIN_TRACK_DISTANCE = 0.6      # m from the track: no curb nearer
-PASS_MERGE_ACROSS = 0.12     # m between the same step seen in two passes
-PASS_MERGE_HEIGHT = 0.10
-LOW_CURB_SHARE = 0.5           # a lower curb counts where it continues a full one: share of MIN_HEIGHT
-MAX_BLOCK_LENGTH, MIN_BLOCK_LENGTH = 2.0, 0.5  # m
-MAX_BLOCK_TURN = np.radians(1.0)        # a block of road turns no more than this
-MAX_BLOCK_BEND = 0.015            # m off its own straight line beyond which a block is cut shorter
+if TYPE_CHECKING:
+    from ...survey.frame.road_frame import Road
+    from ...survey.open_survey import Survey
+
+MIN_TRACK_DISTANCE = 0.6      # m from the track: no curb is nearer
+PASS_MERGE_ACROSS = 0.12      # m across, and
+PASS_MERGE_HEIGHT = 0.10      # m of height between the same step seen in two passes
+LOW_CURB_SHARE = 0.5          # share of the least curb height from which a lower curb that continues a full one is used
+MAX_BLOCK_LENGTH = 2.0        # m, automatic blocks on straight road, and
+MIN_BLOCK_LENGTH = 0.5        # m, in sharp bends
+MAX_BLOCK_TURN = np.radians(1.0)   # turn of the road within a block
+MAX_BLOCK_BEND = 0.015        # m off its own straight line above which a block is divided
 CHAIN_END_STEPS = 3           # profiles that give the end point of a chain
-MAIN_CURB_PROGRESS = 0.6        # of the work
-MAX_HIDDEN_GAP = 25.0     # m between curbs within which hidden curb is reported
+MAIN_CURB_PROGRESS = 0.6      # share of the work
+MAX_HIDDEN_GAP = 25.0         # m between curbs within which hidden curb is reported
 
 
 @dataclass(frozen=True)
 class CurbSettings:
     """How curbs are recognised.
 
+    Attributes
+    ----------
     block_length : m of road per curb point; 0 = 0.5 to 2.0, shorter in sharp bends
     profile_width : m of road per profile
-    point_spacing : m, cells of the pseudo scan-lines
-    layer_jump : m of height that parts ground from what is above it
-    slope : degrees, least steepness of a curb face
+    point_spacing : m, width of the cells of the pseudo scan-lines
+    layer_jump : m of height between ground and what is above it
+    slope : degrees, least slope of a curb face
     min_height, max_height : m, road to top of curb
     """
 
@@ -54,31 +73,34 @@ class CurbSettings:
     min_height: float = setting(0.05, 0.01, 0.95, "The minimum curb height", "m")
     max_height: float = setting(0.35, 0.02, 1.0, "The maximum curb height", "m")
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_limits(self)
         if not self.min_height < self.max_height:
             raise RoadExtractionError(f"Curbs from {self.min_height} m to {self.max_height} m were asked for; the maximum "
                                       "must be above the minimum.")
 
 
-def detect_curbs(survey, settings=CurbSettings(), progress=Progress(), turned=True, decimation=None):
+def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progress: Progress = Progress(),
+                 include_returns: bool = True, decimation: PointDecimation | None = None) -> Features:
     """Bottom corners of the curb on each side of every road, one per block.
 
     Parameters
     ----------
     survey : Survey
-    turned : whether corners, side streets and islands are looked for too
+    settings : CurbSettings
+    progress : Progress
+    include_returns : are corners, side streets and islands looked for too?
     decimation : PointDecimation of the survey, where it is used again
 
     Returns
     -------
     Features CURB_POINTS: PointZ in map coordinates. Rows of status `measured` are
-    vertices of the road edge; rows of status `occluded` say where something hides
-    it, at the place where it is expected.
+    vertices of the road edge; rows of status `occluded` lie where the curb is
+    expected and something hides it.
     """
     if decimation is None:
         with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as own:
-            return detect_curbs(survey, settings, progress, turned, own)
+            return detect_curbs(survey, settings, progress, include_returns, own)
     found = Features("PointZ", list(CURB_POINTS), crs=survey.crs)
     roads = survey.store.roads()
     for i, road in enumerate(roads):
@@ -87,7 +109,7 @@ def detect_curbs(survey, settings=CurbSettings(), progress=Progress(), turned=Tr
         for side in SIDE_SIGNS:
             _report_side(found, survey, road, side, steps[side], occlusion[side], settings)
     measured = sum(row["status"] == "measured" for row in found.rows)
-    if turned:
+    if include_returns:
         add_curb_returns(found, decimation, settings, progress.part(MAIN_CURB_PROGRESS, 1.0))
     assign_nearest_pass(found, survey.frame)
     progress.info(f"Curb points: {measured:,} measured, {len(found) - measured:,} hidden by something in front.")
@@ -106,10 +128,10 @@ def _steps_of_road(decimation, road, settings, progress):
     def work(section):
         found = {side: [] for side in SIDE_SIGNS}
         wide = section[0] - around, section[1] + around
-        most = None if decimation.mostly_uneven(road, sum(section) // 2) else POINTS_PER_LEVEL_CELL
-        seen = list(side_profiles(decimation, road, wide, tracks, settings, most))
-        # where averages are wanted every point counts
-        if most and any((lines.part(*section).spread > NOISY_SHARE * settings.min_height).any() for *_, lines in seen):
+        limit = None if decimation.mostly_uneven(road, sum(section) // 2) else POINTS_PER_LEVEL_CELL
+        seen = list(side_profiles(decimation, road, wide, tracks, settings, limit))
+        # averages need every point
+        if limit and any((lines.part(*section).spread > NOISY_SHARE * settings.min_height).any() for *_, lines in seen):
             seen = side_profiles(decimation, road, wide, tracks, settings, points_per_cell=None)
         for side, _, beside, lines in seen:
             occlusion[side].add_points(*beside, section, lines.part(*section))
@@ -125,15 +147,15 @@ def _steps_of_road(decimation, road, settings, progress):
 
 
 def _steps_by_noise(lines, section, settings):
-    """Steps of a section's profiles: of each by itself, or averaged with its neighbours where noise would hide a curb."""
+    """Steps of a section's profiles: on each profile alone, or averaged with its neighbours where noise would hide a curb."""
     own = lines.part(*section)
-    least, noisy = LOW_CURB_SHARE * settings.min_height, own.spread > NOISY_SHARE * settings.min_height
-    sharp = find_steps(own, least, settings.max_height)
+    min_height, noisy = LOW_CURB_SHARE * settings.min_height, own.spread > NOISY_SHARE * settings.min_height
+    single = find_steps(own, min_height, settings.max_height)
     if not noisy.any():
-        return sharp
-    blurred = find_averaged_steps(lines, least, settings.max_height, settings.layer_jump)
-    blurred = blurred[(blurred.profile >= section[0]) & (blurred.profile < section[1])]
-    return CurbSteps.join([sharp[~noisy[sharp.profile - own.first]], blurred[noisy[blurred.profile - own.first]]])
+        return single
+    averaged = find_averaged_steps(lines, min_height, settings.max_height, settings.layer_jump)
+    averaged = averaged[(averaged.profile >= section[0]) & (averaged.profile < section[1])]
+    return CurbSteps.join([single[~noisy[single.profile - own.first]], averaged[noisy[averaged.profile - own.first]]])
 
 
 def _merge_passes(found):
@@ -162,13 +184,13 @@ def _report_side(found, survey, road, side, steps, occlusion, settings):
     track = OutermostTrack(frame, road, sign)
     label = link_steps(steps, settings.profile_width)
     chains = curb_chains(steps, label, settings.profile_width, settings.min_height, np.radians(settings.slope))
-    chosen = drop_short_curbs(select_along_road(chains, steps, track), chains, steps)
-    edges = block_bounds(frame.road(road), *survey.store.span(road), settings.block_length)
+    selected = drop_short_curbs(select_along_road(chains, steps, track), chains, steps)
+    bounds = block_bounds(frame.road(road), *survey.store.span(road), settings.block_length)
     rows = []
-    for number, (chain, a, b) in enumerate(chosen):
+    for number, (chain, a, b) in enumerate(selected):
         members = chains[chain].steps
         members = members[(steps.s[members] >= a) & (steps.s[members] <= b)]
-        rows += _block_points(steps[members], edges, number)
+        rows += _block_points(steps[members], bounds, number)
     measured = np.array([(r["s"], r["u"], r["h"]) for r in rows]).reshape(-1, 3)
     rows += hidden_points(measured, occlusion, track)
     rows.sort(key=lambda r: r["s"])
@@ -181,28 +203,38 @@ def _report_side(found, survey, road, side, steps, occlusion, settings):
                   part="bottom", kind="main", **row["fields"])
 
 
-def block_bounds(road, start, end, block_length):
+def block_bounds(road: Road, start: float, end: float, block_length: float) -> np.ndarray:
     """Stations at which blocks begin and end, counted from station 0.
 
-    Automatic blocks are 0.5 to 2.0 m long, so that the road turns no more than a
-    degree within one; the length is decided for every 20 m of road.
+    Automatic blocks are MIN_BLOCK_LENGTH to MAX_BLOCK_LENGTH long, so that the road turns no
+    more than MAX_BLOCK_TURN within one; the length is decided for every 20 m of road.
+
+    Parameters
+    ----------
+    road : Road
+    start, end : m, stations that the blocks cover
+    block_length : m, 0 for automatic
+
+    Returns
+    -------
+    (K,) m, ascending
     """
-    edges = []
+    bounds = []
     first, last = int(np.floor(start / BLOCK_SECTION_LENGTH)), int(np.ceil(end / BLOCK_SECTION_LENGTH))
     if block_length:
         return np.arange(np.floor(start / block_length), np.ceil(end / block_length) + 1) * block_length
     for k in range(first, last):
         bend = np.abs(road.curvature(np.arange(k * BLOCK_SECTION_LENGTH, (k + 1) * BLOCK_SECTION_LENGTH, 0.5))).max()
         length = np.clip(MAX_BLOCK_TURN / max(bend, 1e-9), MIN_BLOCK_LENGTH, MAX_BLOCK_LENGTH)
-        edges.append(np.linspace(k * BLOCK_SECTION_LENGTH, (k + 1) * BLOCK_SECTION_LENGTH, int(np.ceil(BLOCK_SECTION_LENGTH / length)) + 1)[:-1])
-    return np.r_[np.concatenate(edges), last * BLOCK_SECTION_LENGTH] if edges else np.array([start, end])
+        bounds.append(np.linspace(k * BLOCK_SECTION_LENGTH, (k + 1) * BLOCK_SECTION_LENGTH, int(np.ceil(BLOCK_SECTION_LENGTH / length)) + 1)[:-1])
+    return np.r_[np.concatenate(bounds), last * BLOCK_SECTION_LENGTH] if bounds else np.array([start, end])
 
 
-def _block_points(steps, edges, chain):
-    """One point per block from the steps of a chain: their line, read at the middle of what was seen."""
+def _block_points(steps, bounds, chain):
+    """One point per block from the steps of a chain: their mean place."""
     if not len(steps):
         return []
-    names, member = np.unique(block_numbers(steps, edges), return_inverse=True)
+    names, member = np.unique(block_numbers(steps, bounds), return_inverse=True)
     n = np.bincount(member)
 
     def mean(v):
@@ -216,27 +248,50 @@ def _block_points(steps, edges, chain):
                              residual_m=round(float(residual[k]), 4), support=int(support[k]))) for k in range(len(names))]
 
 
-def block_numbers(steps, edges):
-    """(M,) number of the block of each step of a chain; blocks in which the curb bends are cut in four, and the ends are their own."""
-    block = np.searchsorted(edges, steps.s, side="right")
+def block_numbers(steps: CurbSteps, bounds: np.ndarray) -> np.ndarray:
+    """The block of each step of a chain.
+
+    Blocks in which the curb bends are divided into four, and both ends of a chain are blocks of their own.
+
+    Parameters
+    ----------
+    steps : M CurbSteps of one chain, by station
+    bounds : (K,) m, result of `block_bounds`
+
+    Returns
+    -------
+    (M,) numbers, ascending along the road
+    """
+    block = np.searchsorted(bounds, steps.s, side="right")
     names, member = np.unique(block, return_inverse=True)
     n = np.bincount(member)
     ds = steps.s - (np.bincount(member, steps.s) / n)[member]
     du = steps.u - (np.bincount(member, steps.u) / n)[member]
     slope = np.bincount(member, ds * du) / (np.bincount(member, ds * ds) + 1e-3)
     off = np.sqrt(np.bincount(member, (du - slope[member] * ds) ** 2) / n)
-    start, length = edges[names - 1], np.diff(edges)[np.minimum(names, len(edges) - 1) - 1]
+    start, length = bounds[names - 1], np.diff(bounds)[np.minimum(names, len(bounds) - 1) - 1]
     quarter = np.clip(np.floor(4 * (steps.s - start[member]) / length[member]), 0, 3).astype(np.int64)
-    block = 8 * block + 2 * np.where(off[member] > MAX_BLOCK_BEND, quarter, 0)  # even numbers, so that there is room for the ends
-    # a chain's ends stand for themselves, not for the middle of their blocks
+    block = 8 * block + 2 * np.where(off[member] > MAX_BLOCK_BEND, quarter, 0)  # even numbers leave odd ones for the ends
+    # the ends of a chain keep their own place instead of the middle of their blocks
     if len(steps) > 2 * CHAIN_END_STEPS:
         block[:CHAIN_END_STEPS] = block[0] - 1
         block[-CHAIN_END_STEPS:] = block[-1] + 1
     return block
 
 
-def hidden_points(measured, occlusion, track):
-    """Places in the gaps between curb points where something hides the curb."""
+def hidden_points(measured: np.ndarray, occlusion: OcclusionGrid, track: OutermostTrack) -> list[dict]:
+    """Places in the gaps between curb points where something hides the curb.
+
+    Parameters
+    ----------
+    measured : (N, 3) m, station, outward offset and height above the expected road of the measured points
+    occlusion : OcclusionGrid of the side
+    track : OutermostTrack of the side
+
+    Returns
+    -------
+    list of dict: s, u, h as above, and `fields`, the attributes of the row
+    """
     if len(measured) < 2:
         return []
     measured = measured[np.argsort(measured[:, 0], kind="stable")]

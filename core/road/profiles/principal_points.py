@@ -1,6 +1,10 @@
-"""The principal points of every profile as a layer: what the curbs were looked for on."""
+"""The principal points of every profile as a layer: the ground on which curbs are looked for."""
 
+from __future__ import annotations
+
+from collections.abc import Iterator
 from contextlib import closing
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,20 +15,25 @@ from ...common.schemas import HEIGHT, OFFSET, PASS, ROAD, SIDE, STATION
 from ..common.decimation import PointDecimation
 from ..common.sides import SIDE_SIGNS, OutermostTrack, expected_height, side_profiles, work_sections
 
+if TYPE_CHECKING:
+    from ...survey.open_survey import Survey
+    from .detect import CurbSettings
+
 PRINCIPAL_POINTS = [ROAD, PASS, SIDE, STATION, OFFSET, HEIGHT]
 
 
-def principal_points(survey, settings, progress=Progress()):
+def find_principal_points(survey: Survey, settings: CurbSettings, progress: Progress = Progress()) -> Features:
     """One point per occupied cell of every profile.
 
     Parameters
     ----------
     survey : Survey
     settings : CurbSettings
+    progress : Progress
 
     Returns
     -------
-    Features: PointZ at the middle of the cell, in map coordinates; `height_m` is
+    Features PRINCIPAL_POINTS: PointZ at the middle of the cell, in map coordinates; `height_m` is
     the height above the expected road
     """
     import shapely
@@ -44,7 +53,8 @@ def principal_points(survey, settings, progress=Progress()):
     return found
 
 
-def _points_of_road(survey, road, settings, progress):
+def _points_of_road(survey: Survey, road: int, settings: CurbSettings,
+                    progress: Progress) -> Iterator[tuple[int, str, np.ndarray, np.ndarray, np.ndarray]]:
     """(pass, side, stations, outward offsets, heights) of one section and side after the other."""
     tracks = {side: OutermostTrack(survey.frame, road, sign) for side, sign in SIDE_SIGNS.items()}
 

@@ -1,0 +1,252 @@
+"""Steps where the scanner's noise hides a curb in a single profile: measured in the average of several profiles.
+
+The heights of a spinning multi-beam scanner scatter by centimetres, and positions
+that drift between one view and the next blur a face sideways. A curb of 5 cm is then
+no higher than the scatter of one profile, but it continues along the road and noise
+does not. So profiles are averaged over AVERAGING_LENGTH metres in every direction that
+a curb may have. The level of the road and of the ground behind are fitted separately.
+The step between the two must be higher than the uncertainty of both levels, and must
+rise within the width of a blurred face, so that ramps and banks are not taken for curbs.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from ..common.corners import MAX_ROAD_SLOPE, MIN_STEP_SIGMAS, CurbSteps
+from ..common.pseudo_scanlines import PseudoScanLines, seen_from
+
+AVERAGING_LENGTH = 1.25       # m of road that are averaged
+SKEW_STEP = 0.125             # m outward per m along between the directions tried: 4 cm at the ends of the average
+SKEW_STEPS = 8                # such steps on either side of the road's direction
+OBLIQUE_FACTOR = 1.15         # how much higher a rise must be in a direction farther from the road's own
+MIN_PROFILE_SHARE = 0.5       # share of the averaged profiles that must have ground in a cell
+ROAD_FIT_LENGTH = 0.35        # m of road to which a level is fitted
+BEHIND_FIT_LENGTH = 0.25      # m of ground behind: a hedge may stand close
+BLURRED_FACE_HALF_WIDTH = 0.09    # m on either side of a step left out of both levels: the blurred face
+STEEP_HALF_WIDTH = 0.07       # m on either side of a step within which most of the rise must lie
+MIN_STEEP_SHARE = 0.65        # share of the height; an even rise from level to level has less
+MIN_FILLED_SHARE = 0.6        # share of the cells of a level that must hold ground
+MIN_STEP_SPACING = 0.12       # m across within which one step is reported
+ALL_VIEWS_SIGMAS = 2.0        # sigmas of single heights that a step must rise in all views together, and
+SINGLE_VIEW_SIGMAS = 2.5      # in a single view
+SAME_STEP_DISTANCE = 0.25     # m across within which a step seen from one side only is the one already found
+MAX_NETWORK_ROWS = 9          # profiles that are sorted element by element; for more, numpy's sort is faster
+MAX_AVERAGED_SCATTER = 0.008  # m, scatter of averaged heights about their level: verges and banks have more
+
+
+def find_averaged_steps(lines: PseudoScanLines, min_height: float, max_height: float, layer_jump: float) -> CurbSteps:
+    """Steps on the averaged profiles of one side.
+
+    They are looked for in all points together, and where those show none, in the points seen
+    ahead of the vehicle and behind it separately: positions that drifted between the two views
+    blur a face that each of them shows.
+
+    Parameters
+    ----------
+    lines : PseudoScanLines; the first and last AVERAGING_LENGTH / 2 metres serve the averages of the others
+    min_height, max_height : m, of a step
+    layer_jump : m of height between two layers
+
+    Returns
+    -------
+    CurbSteps, sorted by profile, then outward. The offset is that of half the height, since a
+    blurred face does not separate its bottom from its top.
+    """
+    found = _steps_in(lines, np.maximum(min_height, ALL_VIEWS_SIGMAS * lines.spread)[:, None], max_height)
+    for nearest, farthest in ((0.0, np.inf), (-np.inf, 0.0)):
+        # a single view averages few rings of a multi-beam scanner, each with an error of its own
+        single = _steps_in(seen_from(lines, nearest, farthest, layer_jump),
+                           np.maximum(min_height, SINGLE_VIEW_SIGMAS * lines.spread)[:, None], max_height)
+        found = CurbSteps.join([found, single[~_beside(single, found)]])
+    return found[np.lexsort((found.u, found.profile))]
+
+
+def _beside(steps, others):
+    """(M,) bool: does one of the others lie within SAME_STEP_DISTANCE metres across in the same profile?"""
+    if not len(others):
+        return np.zeros(len(steps), bool)
+    order = np.lexsort((others.u, others.profile))
+    key = others.profile[order] * 1000.0 + others.u[order]
+    wanted = steps.profile * 1000.0 + steps.u
+    right = np.searchsorted(key, wanted)
+    return np.minimum(np.abs(key[np.clip(right, 0, len(key) - 1)] - wanted),
+                      np.abs(key[np.clip(right - 1, 0, len(key) - 1)] - wanted)) < SAME_STEP_DISTANCE
+
+
+def _steps_in(lines, min_height, max_height):
+    """Steps of averaged profiles; `min_height` is (P, 1)."""
+    best = {name: np.zeros(lines.shape) for name in ("height", "doubt", "scatter", "before", "behind", "shift", "bottom", "skew")}
+    best["rise"] = np.full(lines.shape, -np.inf)
+    sums = _RunningSums(lines.shape, lines.spacing)
+    for skew in sorted(np.arange(-SKEW_STEPS, SKEW_STEPS + 1) * SKEW_STEP, key=abs):
+        sums.add(_averaged(lines, skew))
+        cells, seen = _rises(sums, OBLIQUE_FACTOR * best["rise"])
+        for name, values in seen.items():
+            best[name].flat[cells] = values
+        best["skew"].flat[cells] = skew
+    good = ((best["height"] >= min_height) & (best["height"] <= max_height) & (best["height"] >= MIN_STEP_SIGMAS * best["doubt"])
+            & (best["rise"] >= MIN_STEEP_SHARE * best["height"]) & (best["scatter"] <= MAX_AVERAGED_SCATTER)
+            & (np.abs(best["before"]) <= MAX_ROAD_SLOPE) & (np.abs(best["behind"]) <= MAX_ROAD_SLOPE))
+    score = np.where(good, best["rise"], -np.inf)
+    rows, cells = np.nonzero(good & (score >= _largest_near(score, int(round(MIN_STEP_SPACING / lines.spacing)))))
+    pick = {name: values[rows, cells] for name, values in best.items()}
+    count = np.diff(lines.starts).reshape(lines.shape)
+    reach = int(round((BLURRED_FACE_HALF_WIDTH + ROAD_FIT_LENGTH) / lines.spacing))
+    total = np.concatenate([np.zeros((len(count), 1), np.int64), np.cumsum(count, axis=1)], axis=1)
+    first, last = np.maximum(cells - reach, 0), np.minimum(cells + reach + 1, lines.shape[1])
+    return CurbSteps(profile=lines.first + rows, s=(lines.first + rows + 0.5) * lines.width,
+                 u=lines.offset(cells) + pick["shift"], h=pick["bottom"], skew=pick["skew"], height=pick["height"],
+                 run=np.zeros(len(rows)), noise=pick["scatter"], scanner_noise=lines.spread[rows],
+                 support=total[rows, cells] - total[rows, first], behind=total[rows, last] - total[rows, cells])
+
+
+def _averaged(lines, skew):
+    """(P, C) median heights of AVERAGING_LENGTH metres of road about every profile, along one direction."""
+    half = max(int(round(0.5 * AVERAGING_LENGTH / lines.width)), 1)
+    low = np.where(np.isnan(lines.low), np.inf, lines.low)
+    stack = [_shifted(low, k, int(round(skew * k * lines.width / lines.spacing))) for k in range(-half, half + 1)]
+    count = np.zeros(low.shape, np.int8)
+    for row in stack:
+        count += row < np.inf
+    return _median(stack, count, max(MIN_PROFILE_SHARE * len(stack), 2))
+
+
+def _rises(sums, min_rise):
+    """(M,) indices of cells at which the ground rises by more than `min_rise`, (P, C) m, and a dict of (M,) measures of each rise."""
+    spacing = sums.spacing
+    gap, fit, short = (int(round(v / spacing)) for v in (BLURRED_FACE_HALF_WIDTH, ROAD_FIT_LENGTH, BEHIND_FIT_LENGTH))
+    near = int(round(STEEP_HALF_WIDTH / spacing))
+    before, behind = sums.line(-gap - fit, -gap), sums.line(gap, gap + short)
+    smooth = sums.mean(-1, 1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        height = behind.level - before.level
+        rise = _moved(smooth, near) - _moved(smooth, -near) - near * spacing * (before.slope + behind.slope)
+        cells = np.flatnonzero((rise > min_rise) & (before.n >= MIN_FILLED_SHARE * (fit + 1)) & (behind.n >= MIN_FILLED_SHARE * (short + 1))
+                               & (sums.mean(gap, gap + fit) - before.level > 0.5 * height) & np.isfinite(rise))
+        height = height.take(cells)
+        rough, uneven = before.scatter(cells), behind.scatter(cells)
+        doubt = 2.0 * np.sqrt(rough**2 / before.n.take(cells) + uneven**2 / behind.n.take(cells))
+        bottom = before.level.take(cells)
+        # where the profile crosses half the height: mean height of the face tells how far from this cell
+        shift = (0.5 - (sums.mean(-gap, gap).take(cells) - bottom) / height) * (2 * gap + 1) * spacing
+        shift = np.nan_to_num(np.clip(shift, -BLURRED_FACE_HALF_WIDTH, BLURRED_FACE_HALF_WIDTH))
+    return cells, dict(rise=rise.take(cells), height=height, doubt=doubt, scatter=np.maximum(rough, uneven), shift=shift, bottom=bottom,
+                       before=before.slope.take(cells), behind=behind.slope.take(cells))
+
+
+class _RunningSums:
+    """Running sums over the cells of every profile; differences of them give the line through any range of cells."""
+
+    def __init__(self, shape, spacing):
+        self.cells, self.spacing, self.u = shape[1], spacing, np.arange(shape[1]) * spacing
+        # a window may reach beyond the first and the last cell
+        self.pad = int(round((BLURRED_FACE_HALF_WIDTH + ROAD_FIT_LENGTH) / spacing)) + 2
+        self.totals = np.zeros((6, shape[0], self.cells + 2 * self.pad))
+
+    def add(self, value):
+        """Sum the heights of cells, (P, C), NaN where there is none."""
+        there = np.isfinite(value)
+        h, u = np.where(there, value, 0.0), there * self.u
+        own = slice(self.pad, self.pad + self.cells)
+        for total, v in zip(self.totals, (there * 1.0, h, h * h, u, u * u, u * h)):
+            np.cumsum(v, axis=1, out=total[:, own])
+            total[:, own.stop:] = total[:, own.stop - 1:own.stop]
+
+    def window(self, which, first, last):
+        """Sum of the cells from `first` to `last` beside every cell."""
+        total, start, end = self.totals[which], self.pad - 1 + first, self.pad + last
+        return total[:, end:end + self.cells] - total[:, start:start + self.cells]
+
+    def window_at(self, which, first, last, cells):
+        """The same at some cells."""
+        row, cell = np.divmod(cells, self.cells)
+        total = self.totals[which]
+        return total[row, cell + self.pad + last] - total[row, cell + self.pad - 1 + first]
+
+    def mean(self, first, last):
+        """Mean of the occupied cells from `first` to `last` beside every cell."""
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return self.window(1, first, last) / self.window(0, first, last)
+
+    def line(self, first, last):
+        """Line through the cells from `first` to `last` beside every cell."""
+        return _SideLines(self, first, last)
+
+
+class _SideLines:
+    """Lines through the cells beside every cell: height at the cell (`level`), slope, number of cells (`n`), each (P, C)."""
+
+    def __init__(self, sums, first, last):
+        self.n, sz, su, suu, suz = (sums.window(k, first, last) for k in (0, 1, 3, 4, 5))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            mu, self.mz = su / self.n, sz / self.n
+            vuu, self.vuz = suu / self.n - mu * mu, suz / self.n - mu * self.mz
+            self.slope = np.where(vuu > 1e-4, self.vuz / vuu, 0.0)
+            self.level = self.mz + self.slope * (sums.u - mu)
+        self._squares = partial(sums.window_at, 2, first, last)
+
+    def scatter(self, cells):
+        """(M,) scatter of heights about the line at some cells."""
+        n, mz = self.n.take(cells), self.mz.take(cells)
+        vzz = self._squares(cells) / n - mz * mz
+        return np.sqrt(np.maximum(vzz - self.slope.take(cells) * self.vuz.take(cells), 0.0) * n / np.maximum(n - 2, 1))
+
+
+def _median(rows, count, min_count):
+    """Median of heights at every cell, (P, C), where there are `min_count` or more; NaN elsewhere.
+
+    rows : list of (P, C), infinite where there is none; they are overwritten
+    count : (P, C) of those that are not
+    """
+    if len(rows) > MAX_NETWORK_ROWS:
+        rows = np.sort(rows, axis=0)
+    else:
+        # odd-even transposition sort of the layers
+        spare = np.empty_like(rows[0])
+        for turn in range(len(rows)):
+            for k in range(turn % 2, len(rows) - 1, 2):
+                np.minimum(rows[k], rows[k + 1], out=spare)
+                np.maximum(rows[k], rows[k + 1], out=rows[k + 1])
+                rows[k], spare = spare, rows[k]
+    middle = np.full(count.shape, np.nan)
+    for n in range(int(np.ceil(min_count)), len(rows) + 1):
+        np.copyto(middle, 0.5 * (rows[(n - 1) // 2] + rows[n // 2]), where=count == n)
+    return middle
+
+
+def _moved(values, k, empty=np.nan):
+    """values[:, c + k] at every cell c."""
+    out = np.full(values.shape, empty, values.dtype)
+    if abs(k) >= values.shape[1]:
+        return out
+    if k >= 0:
+        out[:, :values.shape[1] - k] = values[:, k:]
+    else:
+        out[:, -k:] = values[:, :k]
+    return out
+
+
+def _shifted(values, rows, cells):
+    """values[p + rows, c + cells] at every profile and cell, infinite where there is none."""
+    out = np.full(values.shape, np.inf)
+    to, of = zip(*(_overlap(size, by) for size, by in zip(values.shape, (rows, cells))))
+    out[to] = values[of]
+    return out
+
+
+def _overlap(size, by):
+    """Slices of what is moved `by` places: where it comes to lie, and where it lay."""
+    by = max(-size, min(by, size))
+    return slice(max(-by, 0), size - max(by, 0)), slice(max(by, 0), size - max(-by, 0))
+
+
+def _largest_near(values, span):
+    """Largest value within `span` cells either side."""
+    best = values.copy()
+    for k in range(1, span + 1):
+        np.maximum(best, _moved(values, k, -np.inf), out=best)
+        np.maximum(best, _moved(values, -k, -np.inf), out=best)
+    return best
