@@ -17,7 +17,7 @@ import shapely
 
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
-from ..common.setting import check_limits, limits_of, setting
+from ..common.setting import check_limits, setting
 from .driving_lines import checked_tolerances
 from .matching import (
     LinePoints,
@@ -37,6 +37,7 @@ COVERAGE_BIN = 0.1         # m of station in which a line is present or not
 MIN_FALSE_SHARE = 0.25     # share of an interval without reference that a result must exceed to be a false line
 MIN_EXCLUDED_SHARE = 0.15  # share of an interval along an excluded reference that excludes the interval
 EXCLUDED_DISTANCE = 0.30   # m from an excluded reference within which a result is not judged
+MAX_TOLERANCE = 2.0        # m
 MAX_ERROR_DISTANCE = 0.25  # m; a result farther from the reference in a correct interval is another line
 
 
@@ -45,7 +46,7 @@ class BoundaryAccuracySettings:
     """How boundaries are judged."""
 
     tolerances: tuple[float, ...] = (0.05, 0.10, 0.20)   # m
-    tolerance: float = setting(0.10, 0.001, 2.0, "The tolerance", "m")  # the one that intervals are drawn for
+    tolerance: float = setting(0.10, 0.001, MAX_TOLERANCE, "The tolerance", "m")  # the one that intervals are drawn for
     interval: float = setting(2.0, 0.5, 100.0, "The interval", "m")  # along the trajectory or the reference
     coverage: float = 0.5                    # share of an interval that lines must cover
     agreement: float = 0.8                   # share of these that must lie within the tolerance
@@ -53,7 +54,7 @@ class BoundaryAccuracySettings:
 
     def __post_init__(self) -> None:
         check_limits(self)
-        object.__setattr__(self, "tolerances", checked_tolerances(self.tolerances, self.tolerance, limits_of(self, "tolerance").maximum))
+        object.__setattr__(self, "tolerances", checked_tolerances(self.tolerances, self.tolerance, MAX_TOLERANCE))
         for name in ("coverage", "agreement"):
             if not 0 < getattr(self, name) <= 1:
                 raise RoadExtractionError(f"The share {name} is {getattr(self, name)}; it must be above 0 and at most 1.")

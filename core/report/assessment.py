@@ -1,144 +1,26 @@
-"""What the reports of the three assessments share: colours, map, and charts along the road."""
+"""Reports of the accuracy of road boundaries, driving lines and markings."""
 
-import cv2
+from __future__ import annotations
+
+from collections.abc import Sequence
+
 import numpy as np
-import shapely
 
-from ..assess.driving_lines import MAX_MATCH_DISTANCE, MIN_REFERENCE_GAP
-from .figures import Chart
-from .map_figure import draw_map, grey_background, png
+from ..assess.boundaries import BoundaryAccuracy
+from ..assess.driving_lines import MAX_MATCH_DISTANCE, MIN_REFERENCE_GAP, LineAccuracy, LineAccuracySettings, LineMatch
+from ..assess.markings import MarkingAccuracy
+from ..common.features import Features
+from .assessment_figures import OUTCOME_COLOURS, error_along_road, error_histogram, errors_row, outcome_map, outcomes_along_road, percent, plain
+from .map_figure import grey_background
 from .page import Page
 
-COLOURS = {"correct": "#009e73", "missed": "#d55e00", "false": "#a33ea1", "excluded": "#9a9a9a"}
-PAPER = 246
-WIDE, TALL = 1800, 1100  # pixels of the map's longer side
-BIN = 10.0      # m of road that one bar stands for, at least
-BARS = 180      # bars at most
-SPREAD = 41     # classes of the distribution of errors
 
-
-def outcome_map(page, layer, caption, background=None, filled=False):
-    """The layer coloured by outcome, over a grey image where there is one."""
-    if not len(layer):
-        return
-    bounds = shapely.total_bounds(np.array(layer.geometries, object)) + np.array([-3, -3, 3, 3])
-    width, height = bounds[2:] - bounds[:2]
-    style = tuple(("outcome", ("outcome", name), _bgr(COLOURS[name]), 2 if filled else 4, filled)
-                  for name in ("excluded", "correct", "missed", "false"))
-    if background is not None:
-        grey, extent = background
-        background = np.where(grey > 0, 90 + 0.6 * grey, 0).astype(np.uint8), extent
-    # a road that runs north would fill several screens
-    longest = WIDE if width > height else TALL
-    picture = draw_map({"outcome": layer}, background, bounds, longest, style, PAPER)
-    length = _scale_bar(picture, longest / max(width, height), min(width, 200.0))
-    page.picture(png(picture), f"{caption} The bar is {length:g} m long.")
-    shown = {row["outcome"] for row in layer.rows}
-    page.colour_key([(colour, name) for name, colour in COLOURS.items() if name in shown])
-
-
-def _scale_bar(picture, scale, width):
-    """Draw a bar of a round number of metres, a fifth of the map or less; that number."""
-    power = 10.0 ** np.floor(np.log10(width / 5))
-    length = power * max(m for m in (1, 2, 5) if m * power <= width / 5 * 1.001)
-    foot, left = picture.shape[0] - 14, 14
-    cv2.rectangle(picture, (left - 3, foot - 4), (left + int(length * scale) + 3, foot + 4), (255, 255, 255), -1)
-    cv2.rectangle(picture, (left, foot - 2), (left + int(length * scale), foot + 2), (30, 30, 30), -1)
-    return length
-
-
-def error_along_road(page, station, error, weights, along, what="lateral error"):
-    """Bars of the root mean square error of every 10 m or more along the road, in centimetres, with the largest as a line."""
-    known = np.isfinite(station) & np.isfinite(error)
-    if not known.any():
-        return
-    edges, number = bins_of(station[known])
-    size, weight = np.abs(error[known]), weights[known]
-    count = len(edges) - 1
-    mean = np.bincount(number, weight * size**2, count) / np.maximum(np.bincount(number, weight, count), 1e-12)
-    largest = np.full(count, np.nan)
-    np.fmax.at(largest, number, size)
-    rms = np.where(np.isfinite(largest), 100 * np.sqrt(mean), np.nan)
-    chart = Chart((edges[0], edges[-1]), (0, 1.05 * 100 * np.nanmax(largest)), f"along {along} (m)", "cm")
-    chart.bars(edges[:-1], edges[1:], rms, "#4a7fb5", title="RMSE")
-    chart.curve(np.repeat(edges, 2)[1:-1], np.repeat(100 * largest, 2), "#333333", "largest")
-    page.drawing(chart.svg(), f"The {what} along {along}: bars are the RMSE of every {edges[1] - edges[0]:.0f} m, the line is the largest.")
-
-
-def error_spread(page, error, weights, signed, what="Lateral error"):
-    """How often each error occurs."""
-    known = np.isfinite(error)
-    if not known.any():
-        return
-    error, weights = 100 * error[known], weights[known]
-    reach = max(float(np.percentile(np.abs(error), 99)) * 1.15, 0.5)
-    edges = np.linspace(-reach, reach, SPREAD + 1)
-    share = 100 * np.histogram(np.clip(error, edges[0], edges[-1]), edges, weights=weights)[0] / weights.sum()
-    chart = Chart((edges[0], edges[-1]), (0, 1.08 * share.max()), f"{what.lower()} (cm)", "% of the length")
-    chart.bars(edges[:-1], edges[1:], share, "#4a7fb5")
-    page.drawing(chart.svg(), f"{what}, {signed}; what lies farther out is counted in the outermost bars.")
-
-
-def outcomes_along_road(page, stations, lengths, along, unit):
-    """Stacked bars of how much is correct, missed and false in every stretch of road.
-
-    stations, lengths : dict of outcome to (N,) metres along the road and (N,) amounts
-    """
-    everything = np.concatenate([stations[name] for name in stations]) if stations else np.empty(0)
-    if not np.isfinite(everything).any():
-        return
-    edges, _ = bins_of(everything[np.isfinite(everything)])
-    count, total, amounts = len(edges) - 1, np.zeros(len(edges) - 1), {}
-    for name in stations:
-        known = np.isfinite(stations[name])
-        number = np.clip(np.searchsorted(edges, stations[name][known], side="right") - 1, 0, count - 1)
-        amounts[name] = np.bincount(number, lengths[name][known], count)
-        total = total + amounts[name]
-    chart = Chart((edges[0], edges[-1]), (0, 1.05 * total.max()), f"along {along} (m)", unit)
-    base = np.zeros(count)
-    for name in COLOURS:
-        if name in amounts:
-            base = chart.bars(edges[:-1], edges[1:], amounts[name], COLOURS[name], base, name)
-    page.drawing(chart.svg(), f"Outcomes along {along}, in every {edges[1] - edges[0]:.0f} m.")
-
-
-def bins_of(station):
-    """(edges, number of each station's bin): whole multiples of 10 m, no more than 180 bins."""
-    low, high = float(station.min()), float(station.max())
-    step = BIN * max(1.0, np.ceil((high - low) / BIN / BARS))
-    edges = np.arange(np.floor(low / step), np.floor(high / step) + 2) * step
-    return edges, np.clip(np.searchsorted(edges, station, side="right") - 1, 0, len(edges) - 2)
-
-
-def plain(value):
-    """A tolerance in centimetres: whole where it is."""
-    return int(round(value)) if abs(value - round(value)) < 1e-6 else value
-
-
-def centimetres(value):
-    return None if value is None or value != value else 100.0 * value
-
-
-def percent(share):
-    return None if share != share else 100.0 * share
-
-
-def errors_row(errors):
-    """Mean, RMSE, 95th percentile and maximum in centimetres."""
-    return [centimetres(value) for value in (errors.mean, errors.rmse, errors.p95, errors.maximum)]
-
-
-def _bgr(colour):
-    return tuple(int(colour[k:k + 2], 16) for k in (5, 3, 1))
-
-
-# The report on road boundaries set against a reference.
-
-def boundary_report(accuracy, layer, names, notes=()):
-    """HTML of a BoundaryAccuracy.
+def boundary_report(accuracy: BoundaryAccuracy, layer: Features, names: tuple[str, str], notes: Sequence[str] = ()) -> str:
+    """The report of a BoundaryAccuracy as HTML.
 
     Parameters
     ----------
+    accuracy : BoundaryAccuracy
     layer : Features of `boundary_layer`
     names : (result, reference) as the user calls them
     notes : further sentences
@@ -176,10 +58,10 @@ def boundary_report(accuracy, layer, names, notes=()):
     hit = np.append(table.hit[:, settings.tolerances.index(settings.tolerance)], False)[judged.interval]
     lateral = np.where(hit, accuracy.lateral, np.nan)
     error_along_road(page, judged.stations.station, lateral, judged.points.length, accuracy.along.title)
-    stations = {name: np.array([row["station_m"] for row in layer.rows if row["outcome"] == name]) for name in COLOURS}
+    stations = {name: np.array([row["station_m"] for row in layer.rows if row["outcome"] == name]) for name in OUTCOME_COLOURS}
     outcomes_along_road(page, stations, {name: np.ones(len(s)) for name, s in stations.items()}, accuracy.along.title, "intervals")
     page.heading("Distribution")
-    error_spread(page, lateral, judged.points.length, accuracy.along.signed)
+    error_histogram(page, lateral, judged.points.length, accuracy.along.signed)
     return page.html()
 
 
@@ -197,18 +79,20 @@ def _reasons(page, table):
         page.table(("Not judged because", "Intervals"), [(str(name), int(count)) for name, count in zip(names, counts)])
 
 
-# The report on driving lines set against a reference.
-
-def driving_report(match, accuracy, settings, layer, names, station, along, total_width=False, notes=()):
-    """HTML of driving lines.
+def driving_report(match: LineMatch, accuracy: LineAccuracy, settings: LineAccuracySettings, layer: Features, names: tuple[str, str],
+                   station: tuple[np.ndarray, np.ndarray], along: str, total_width: bool = False, notes: Sequence[str] = ()) -> str:
+    """The report of a LineAccuracy as HTML.
 
     Parameters
     ----------
     match, accuracy : LineMatch and its LineAccuracy
+    settings : LineAccuracySettings
     layer : Features of `driving_line_layer`
+    names : (result, reference) as the user calls them
     station : (N,) metres along the road of the result's places and (M,) of the reference's
     along : what that is measured along
     total_width : whether the user gave tolerances as the whole width of the buffer
+    notes : further sentences
     """
     page = Page("Accuracy of driving lines", f"{names[0]} against {names[1]}.")
     for note in notes:
@@ -244,7 +128,7 @@ def driving_report(match, accuracy, settings, layer, names, station, along, tota
         {"correct": match.result_points.length[~wrong], "false": match.result_points.length[wrong],
          "missed": match.reference_points.length[missed]}, along, "m")
     page.heading("Distribution")
-    error_spread(page, match.lateral, match.result_points.length, "positive left of the reference as drawn")
+    error_histogram(page, match.lateral, match.result_points.length, "positive left of the reference as drawn")
     return page.html()
 
 
@@ -263,17 +147,19 @@ def _per_line(page, match, settings):
               f"{100 * MAX_MATCH_DISTANCE:.0f} cm from every reference line belongs to none and shows in the table above only.")
 
 
-# The report on markings set against a reference.
-
-def marking_report(accuracy, layer, names, station, along, image=None, notes=()):
-    """HTML of a MarkingAccuracy.
+def marking_report(accuracy: MarkingAccuracy, layer: Features, names: tuple[str, str], station: np.ndarray, along: str,
+                   image: str | None = None, notes: Sequence[str] = ()) -> str:
+    """The report of a MarkingAccuracy as HTML.
 
     Parameters
     ----------
+    accuracy : MarkingAccuracy
     layer : Features of `marking_layer`
+    names : (result, reference) as the user calls them
     station : (N,) metres along the road of `accuracy.blocks`
     along : what that is measured along
     image : path of a raster to draw the map over, or None
+    notes : further sentences
     """
     settings = accuracy.settings
     page = Page("Accuracy of markings", f"{names[0]} against {names[1]}.")
@@ -281,7 +167,7 @@ def marking_report(accuracy, layer, names, station, along, image=None, notes=())
         page.warning(note)
     page.text(
         f"Judged in cells of {100 * settings.cell_size:g} cm; a cell is painted when its centre is. With a tolerance of one cell the other side is "
-        f"widened by one cell all round before it is asked. An object is found, or right, when at least {100 * settings.found_share:g} % of its "
+        f"widened by one cell all round before the comparison. An object is found, or right, if at least {100 * settings.found_share:g} % of its "
         f"cells are, with a tolerance of {settings.tolerance} cell{'s' * (settings.tolerance != 1)}.")
     rows = [(f"Cells, {'strict' if t == 0 else f'{t} cell' + 's' * (t > 1) + ' tolerance'}", rates) for t, rates in accuracy.rates.items()]
     page.table(("", "Right", "False", "Missed", "Precision (%)", "Recall (%)", "F1 (%)", "IoU (%)"),
@@ -295,8 +181,9 @@ def marking_report(accuracy, layer, names, station, along, image=None, notes=())
                 background, filled=True)
     page.heading("Along the road")
     blocks, size = accuracy.blocks, settings.cell_size**2
-    names = ("correct", "missed", "false")
-    outcomes_along_road(page, dict.fromkeys(names, station), {name: blocks[:, 2 + k] * size for k, name in enumerate(names)}, along, "m²")
+    outcomes = ("correct", "missed", "false")
+    areas = {name: blocks[:, 2 + k] * size for k, name in enumerate(outcomes)}
+    outcomes_along_road(page, dict.fromkeys(outcomes, station), areas, along, "m²")
     page.note(f"With a tolerance of {settings.tolerance} cell{'s' * (settings.tolerance != 1)}.")
     return page.html()
 
@@ -315,7 +202,7 @@ def _classes(page, accuracy):
     page.table(("Class", "Reference cells", "Recall (%)", f"within {tolerance} cell (%)", "Result cells", "Precision (%)",
                 f"within {tolerance} cell (%)", "F1 of the class (%)", "IoU of the class (%)"), rows,
                (None, None, 2, 2, None, 2, 2, 2, 2))
-    page.note("Recall and precision ask for paint of any class; F1 and IoU of the class ask for the same class in both, where both name it.")
+    page.note("Recall and precision count paint of any class; F1 and IoU of the class require the same class in both, if both have it.")
 
 
 def _share(part, whole):

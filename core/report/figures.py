@@ -1,33 +1,65 @@
-"""Charts as SVG: bars, curves and ribbons over a common axis, with numbers one can read."""
+"""Charts as SVG: bars, curves and levels over common axes.
+
+Written by hand: matplotlib takes a second per chart and three to load, keeps the settings of its SVG files in global state
+(not safe in worker threads), and shows no text when the pointer rests on a bar.
+"""
+
+from __future__ import annotations
 
 import html
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
-WIDTH, LEFT, RIGHT, TOP, BOTTOM = 900, 58, 12, 12, 40
-END = WIDTH - RIGHT
-GRID, INK = "#dddddd", "#444444"
+CHART_WIDTH = 900  # px
+LEFT_MARGIN, RIGHT_MARGIN, TOP_MARGIN, BOTTOM_MARGIN = 58, 22, 12, 40  # px
+PLOT_END = CHART_WIDTH - RIGHT_MARGIN
+GRID_COLOUR, TEXT_COLOUR = "#dddddd", "#444444"
+MIN_LABEL_DISTANCE = 12  # px between the labels of two levels
 
 
 class Chart:
-    """A plot of `height` pixels over x from `x_range` and y from `y_range`; parts are drawn in the order of the calls."""
+    """A chart; its parts are drawn in the order of the calls.
 
-    def __init__(self, x_range, y_range, x_label, y_label, height=220):
+    Parameters
+    ----------
+    x_range, y_range : (lowest, highest) of the axes
+    x_label, y_label : with units
+    height : pixels
+    """
+
+    def __init__(self, x_range: tuple[float, float], y_range: tuple[float, float], x_label: str, y_label: str, height: int = 220) -> None:
         self.height = height
-        self.x0, self.x1 = _spread(x_range)
-        self.y0, self.y1 = _spread(y_range)
-        self.parts, self.levels, self.labels = [], [], (x_label, y_label)
+        self.x0, self.x1 = _nonzero_range(x_range)
+        self.y0, self.y1 = _nonzero_range(y_range)
+        self.parts: list[str] = []
+        self.levels: list[float] = []
+        self.labels = x_label, y_label
 
     def _x(self, x):
-        return LEFT + (np.asarray(x, float) - self.x0) / (self.x1 - self.x0) * (WIDTH - LEFT - RIGHT)
+        return LEFT_MARGIN + (np.asarray(x, float) - self.x0) / (self.x1 - self.x0) * (CHART_WIDTH - LEFT_MARGIN - RIGHT_MARGIN)
 
     def _y(self, y):
-        inner = self.height - TOP - BOTTOM
-        return TOP + inner - (np.clip(y, self.y0, self.y1) - self.y0) / (self.y1 - self.y0) * inner
+        inner = self.height - TOP_MARGIN - BOTTOM_MARGIN
+        return TOP_MARGIN + inner - (np.clip(y, self.y0, self.y1) - self.y0) / (self.y1 - self.y0) * inner
 
-    def bars(self, left, right, values, colour, base=0.0, title=""):
-        """Bars from `base` up to values; NaN leaves a place empty. Returns the tops, to stack the next upon."""
+    def bars(self, left: np.ndarray | Sequence[float], right: np.ndarray | Sequence[float], values: np.ndarray | Sequence[float], colour: str,
+             base: float | np.ndarray = 0.0, title: str = "") -> np.ndarray:
+        """Draw bars.
+
+        Parameters
+        ----------
+        left, right : (N,) x of their sides
+        values : (N,) heights above `base`; no bar where NaN
+        colour : CSS colour
+        base : (N,) or one; y of their lower ends
+        title : text shown under the pointer
+
+        Returns
+        -------
+        (N,) y of their upper ends, on which further bars can be stacked
+        """
         base = np.broadcast_to(np.asarray(base, float), np.shape(values))
         for a, b, low, high in zip(self._x(left), self._x(right), base, np.asarray(values, float) + base):
             if np.isfinite(high) and high != low:
@@ -36,8 +68,8 @@ class Chart:
                                   f'fill="{colour}">{_title(title)}</rect>')
         return np.nan_to_num(values) + base
 
-    def curve(self, x, y, colour, title="", width=1.6):
-        """A line through the points; NaN interrupts it."""
+    def curve(self, x: np.ndarray, y: np.ndarray, colour: str, title: str = "", width: float = 1.6) -> None:
+        """Draw a line of some width, px, through points (N,); NaN interrupts it."""
         known = np.isfinite(x) & np.isfinite(y)
         rows = np.flatnonzero(known)
         for run in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1):
@@ -45,46 +77,48 @@ class Chart:
                 points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(self._x(np.asarray(x)[run]), self._y(np.asarray(y)[run])))
                 self.parts.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="{width}">{_title(title)}</polyline>')
 
-    def level(self, y, colour, label=""):
-        """A dashed line across the plot, with its label where no other is in the way."""
+    def level(self, y: float, colour: str, label: str = "") -> None:
+        """Draw a dashed line across the plot, with its label unless that would lie over another one."""
         at = float(self._y(y))
-        self.parts.append(f'<line x1="{LEFT}" x2="{END}" y1="{at:.1f}" y2="{at:.1f}" stroke="{colour}" stroke-dasharray="5 4"/>')
-        if label and all(abs(at - other) > 12 for other in self.levels):  # labels must not lie over each other
+        self.parts.append(f'<line x1="{LEFT_MARGIN}" x2="{PLOT_END}" y1="{at:.1f}" y2="{at:.1f}" stroke="{colour}" stroke-dasharray="5 4"/>')
+        if label and all(abs(at - other) > MIN_LABEL_DISTANCE for other in self.levels):
             self.levels.append(at)
-            self.parts.append(f'<text x="{END - 4}" y="{at - 4:.1f}" text-anchor="end" font-size="11" fill="{colour}">{html.escape(label)}</text>')
+            self.parts.append(f'<text x="{PLOT_END - 4}" y="{at - 4:.1f}" text-anchor="end" font-size="11" fill="{colour}">'
+                              f'{html.escape(label)}</text>')
 
-    def svg(self):
+    def svg(self) -> str:
+        """The chart as an SVG element."""
         inner = "".join([self._grid(), *self.parts])
-        return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{self.height}" viewBox="0 0 {WIDTH} {self.height}" '
+        return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{CHART_WIDTH}" height="{self.height}" viewBox="0 0 {CHART_WIDTH} {self.height}" '
                 f'font-family="DejaVu Sans, Segoe UI, Helvetica, Arial, sans-serif" font-size="12">'
-                f'<rect width="{WIDTH}" height="{self.height}" fill="white"/>{inner}</svg>')
+                f'<rect width="{CHART_WIDTH}" height="{self.height}" fill="white"/>{inner}</svg>')
 
     def _grid(self):
-        found, foot = [], self.height - BOTTOM
+        found, foot = [], self.height - BOTTOM_MARGIN
         for x in ticks(self.x0, self.x1, 10):
             at = float(self._x(x))
-            found.append(f'<line x1="{at:.1f}" x2="{at:.1f}" y1="{TOP}" y2="{foot}" stroke="{GRID}"/>'
-                         f'<text x="{at:.1f}" y="{foot + 15}" text-anchor="middle" fill="{INK}">{_number(x)}</text>')
+            found.append(f'<line x1="{at:.1f}" x2="{at:.1f}" y1="{TOP_MARGIN}" y2="{foot}" stroke="{GRID_COLOUR}"/>'
+                         f'<text x="{at:.1f}" y="{foot + 15}" text-anchor="middle" fill="{TEXT_COLOUR}">{_number(x)}</text>')
         for y in ticks(self.y0, self.y1, 5):
             at = float(self._y(y))
-            found.append(f'<line x1="{LEFT}" x2="{END}" y1="{at:.1f}" y2="{at:.1f}" stroke="{GRID}"/>'
-                         f'<text x="{LEFT - 6}" y="{at + 4:.1f}" text-anchor="end" fill="{INK}">{_number(y)}</text>')
-        middle = TOP + (foot - TOP) / 2
-        style = f'text-anchor="middle" fill="{INK}"'
-        found.append(f'<text x="{(LEFT + END) / 2}" y="{self.height - 6}" {style}>{html.escape(self.labels[0])}</text>')
+            found.append(f'<line x1="{LEFT_MARGIN}" x2="{PLOT_END}" y1="{at:.1f}" y2="{at:.1f}" stroke="{GRID_COLOUR}"/>'
+                         f'<text x="{LEFT_MARGIN - 6}" y="{at + 4:.1f}" text-anchor="end" fill="{TEXT_COLOUR}">{_number(y)}</text>')
+        middle = TOP_MARGIN + (foot - TOP_MARGIN) / 2
+        style = f'text-anchor="middle" fill="{TEXT_COLOUR}"'
+        found.append(f'<text x="{(LEFT_MARGIN + PLOT_END) / 2}" y="{self.height - 6}" {style}>{html.escape(self.labels[0])}</text>')
         found.append(f'<text x="14" y="{middle}" {style} transform="rotate(-90 14 {middle})">{html.escape(self.labels[1])}</text>')
         return "".join(found)
 
 
-def ticks(low, high, about):
-    """Round values between low and high, about so many."""
-    rough = (high - low) / about
+def ticks(low: float, high: float, count: int) -> np.ndarray:
+    """About `count` round values from low to high: steps of 1, 2 or 5 times a power of ten."""
+    rough = (high - low) / count
     power = 10.0 ** math.floor(math.log10(rough))
     step = power * next(m for m in (1, 2, 5, 10) if m * power >= rough * 0.999)
     return np.arange(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1) * step
 
 
-def _spread(pair):
+def _nonzero_range(pair):
     low, high = float(pair[0]), float(pair[1])
     return (low, high) if high > low else (low - 0.5, low + 0.5)
 

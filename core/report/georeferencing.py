@@ -1,4 +1,8 @@
-"""The report on a georeferenced image: how well it lies, point by point, and a picture of the residuals."""
+"""The report on a georeferenced image: errors, residuals point by point, and a picture of the residuals."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
@@ -10,15 +14,18 @@ from ..overlay.warp import drawn_area, output_grid
 from .map_figure import png
 from .page import Page
 
-LONGEST = 1300    # pixels of the picture
-ARROW = 0.06      # of the picture's longer side, length of the longest arrow
-COLOURS = {CONTROL: (60, 60, 230), CHECK: (230, 190, 40), DISABLED: (150, 150, 150)}  # blue, green, red
-CSS = {role: f"#{red:02x}{green:02x}{blue:02x}" for role, (blue, green, red) in COLOURS.items()}
-KINDS = {0: "shift (order 0)", 1: "polynomial of order 1 (affine)", 2: "polynomial of order 2", 3: "polynomial of order 3"}
+if TYPE_CHECKING:
+    from ..overlay.georeference import Georeferencing
+
+RESIDUAL_PICTURE_SIDE = 1300  # px, longer side of the picture
+MAX_ARROW_LENGTH = 0.06       # of the longest arrow, as a share of that side
+ROLE_COLOURS = {CONTROL: (60, 60, 230), CHECK: (230, 190, 40), DISABLED: (150, 150, 150)}  # blue, green, red
+ROLE_CSS = {role: f"#{red:02x}{green:02x}{blue:02x}" for role, (blue, green, red) in ROLE_COLOURS.items()}
+POLYNOMIAL_NAMES = {0: "shift (order 0)", 1: "polynomial of order 1 (affine)", 2: "polynomial of order 2", 3: "polynomial of order 3"}
 
 
-def georeferencing_report(found, drawn, departure):
-    """HTML of a Georeferencing.
+def georeferencing_report(found: Georeferencing, drawn: str, departure: float) -> str:
+    """The report of a Georeferencing as HTML.
 
     Parameters
     ----------
@@ -33,16 +40,16 @@ def georeferencing_report(found, drawn, departure):
     _, width, height = output_grid(found)
     page.heading("Image")
     page.facts((
-        ("Image", image.path), ("Pixels and lines", f"{image.width} × {image.height}"), ("Placed by", KINDS[found.settings.order]),
+        ("Image", image.path), ("Pixels and lines", f"{image.width} × {image.height}"), ("Placed by", POLYNOMIAL_NAMES[found.settings.order]),
         ("CRS", horizontal_part(parse_crs(crs)).name if crs else "none"), ("Result", f"{width} × {height} pixels of {found.pixel_size:g} m"),
         ("Drawn within", f"{departure:.2f} pixels of the polynomial, everywhere"),
         ("Outside the hull of the control points", f"{100 * found.outside:.0f} % of the image" + (", left out" if found.cut else ""))))
     _errors(page, found)
-    picture, times = residual_picture(found, drawn)
+    picture, magnification = residual_picture(found, drawn)
     page.heading("Residuals")
-    page.picture(png(picture), f"From where the polynomial puts each point to where it was measured, {times:,.0f} times as long as on "
+    page.picture(png(picture), f"From where the polynomial puts each point to where it was measured, {magnification:,.0f} times as long as on "
                                "the ground. North is up; the thin line is the hull of the control points.")
-    page.colour_key([(CSS[role], role) for role in (CONTROL, CHECK, DISABLED) if len(found.points.having(role))])
+    page.colour_key([(ROLE_CSS[role], role) for role in (CONTROL, CHECK, DISABLED) if len(found.points.having(role))])
     _points(page, found)
     return page.html()
 
@@ -57,8 +64,8 @@ def _errors(page, found):
                [(title, count, error, error / pixel, _largest(vectors)) for (title, count, error), vectors in zip(
                    rows, (found.errors[found.points.having(CONTROL)], found.left_out[found.points.having(CONTROL)],
                           found.errors[found.points.having(CHECK)]))])
-    page.note("RMSE = √(Σ(dx² + dy²) / n). The residuals of control points flatter, since the polynomial was bent to them; "
-              f"there are {fit.free} more than it needs. Points measured in the laser point cloud itself tell how well the image fits "
+    page.note("RMSE = √(Σ(dx² + dy²) / n). The residuals of control points are too small, since the polynomial was fitted to them; "
+              f"there are {fit.free} more than it needs. Points measured in the laser point cloud itself show how well the image fits "
               "the cloud, not how well either fits the ground.")
 
 
@@ -77,9 +84,20 @@ def _points(page, found):
          for k in range(len(points))])
 
 
-def residual_picture(found, drawn):
-    """((H, W, 3) picture of the drawn image with the residuals on it, how many times they are lengthened)."""
-    canvas, scale, corner = _small(drawn)
+def residual_picture(found: Georeferencing, drawn: str) -> tuple[np.ndarray, float]:
+    """The drawn image with the residuals as arrows.
+
+    Parameters
+    ----------
+    found : Georeferencing
+    drawn : path of the GeoTIFF that was drawn
+
+    Returns
+    -------
+    picture : (H, W, 3) uint8, blue, green, red
+    magnification : of the residuals, relative to the ground
+    """
+    canvas, scale, corner = _reduced_copy(drawn)
     points = found.points
 
     def at(x, y):
@@ -91,19 +109,19 @@ def residual_picture(found, drawn):
         cv2.polylines(canvas, [np.rint(outline * 16).astype(np.int32)], True, (255, 255, 255), 1, cv2.LINE_AA, 4)
     judged = points.roles != DISABLED
     longest = np.hypot(*found.errors[judged].T).max() if judged.any() else 0.0
-    times = _round_down(ARROW * max(canvas.shape[:2]) / (longest * scale)) if longest * scale > 1e-6 else 1.0
+    magnification = _round_down(MAX_ARROW_LENGTH * max(canvas.shape[:2]) / (longest * scale)) if longest * scale > 1e-6 else 1.0
     # An arrow starts where the polynomial puts the point and is lengthened from there
     starts = at(points.easting - found.errors[:, 0], points.northing - found.errors[:, 1])
-    tips = starts + found.errors * np.array([1.0, -1.0]) * scale * times
+    tips = starts + found.errors * np.array([1.0, -1.0]) * scale * magnification
     for place, tip, role in sorted(zip(starts, tips, points.roles), key=lambda one: one[2] != DISABLED):
-        colour = COLOURS[str(role)]
+        colour = ROLE_COLOURS[str(role)]
         if role == DISABLED:
             cv2.drawMarker(canvas, _whole(place), colour, cv2.MARKER_TILTED_CROSS, 10, 2, cv2.LINE_AA)
             continue
         for tint, width in (((20, 20, 20), 5), (colour, 2)):
             cv2.arrowedLine(canvas, _whole(place), _whole(tip), tint, width, cv2.LINE_AA, tipLength=0.25)
         cv2.circle(canvas, _whole(place), 4, colour, -1, cv2.LINE_AA)
-    return canvas, times
+    return canvas, magnification
 
 
 def _whole(place):
@@ -117,12 +135,12 @@ def _round_down(value):
 
 
 @gdal_exceptions()
-def _small(path):
+def _reduced_copy(path):
     """((H, W, 3) small copy of the drawn image, pixels per metre, map coordinates of its north-west corner)."""
     from osgeo import gdal
 
     dataset = gdal.Open(str(path))
-    share = min(1.0, LONGEST / max(dataset.RasterXSize, dataset.RasterYSize))
+    share = min(1.0, RESIDUAL_PICTURE_SIDE / max(dataset.RasterXSize, dataset.RasterYSize))
     width, height = (max(int(n * share), 1) for n in (dataset.RasterXSize, dataset.RasterYSize))
     colours = (3, 2, 1) if dataset.RasterCount >= 3 else (1, 1, 1)
     bands = []

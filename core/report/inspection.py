@@ -1,6 +1,9 @@
 """The report on a survey's files."""
 
+from __future__ import annotations
+
 from datetime import datetime, timedelta
+from typing import TYPE_CHECKING, Any
 
 import cv2
 import numpy as np
@@ -9,12 +12,15 @@ from ..io.crs import horizontal_part, parse_crs
 from .map_figure import png
 from .page import Page
 
-LONGEST = 1400  # pixels
-DARK = (28, 28, 30)
+if TYPE_CHECKING:
+    from ..survey.inspection import Inspection
+
+DENSITY_PICTURE_SIDE = 1400  # px
+NO_DATA_COLOUR = (28, 28, 30)  # blue, green, red
 
 
-def inspection_report(found):
-    """HTML of an Inspection."""
+def inspection_report(found: Inspection) -> str:
+    """The report of an Inspection as HTML."""
     page = Page("Survey", "What the point clouds and the trajectory hold, before any work is done on them.")
     for note in found.notes:
         page.warning(note)
@@ -53,20 +59,21 @@ def _density(page, found):
     page.picture(png(image), caption)
 
 
-def density_picture(found):
-    """((H, W, 3) picture of the density with the trajectory on it, what it shows)."""
+def density_picture(found: Inspection) -> tuple[np.ndarray, str]:
+    """((H, W, 3) uint8 picture of the density with the trajectory on it, its caption)."""
     density, corner = found.density
     known = np.isfinite(density)
     top = max(float(np.percentile(density[known], 98)), 1e-9)
     value = np.where(known, 20 + 235 * np.clip(np.nan_to_num(density) / top, 0, 1), 0).astype(np.uint8)
     image = cv2.applyColorMap(value, cv2.COLORMAP_VIRIDIS)
-    image[~known] = DARK
-    scale = max(LONGEST / max(density.shape), 1.0 / 64)
+    image[~known] = NO_DATA_COLOUR
+    scale = max(DENSITY_PICTURE_SIDE / max(density.shape), 1.0 / 64)
     height, width = (max(int(round(n * scale)), 1) for n in density.shape)
     image = cv2.resize(image, (width, height), interpolation=cv2.INTER_NEAREST if scale >= 1 else cv2.INTER_AREA)
     caption = f"Points per m², from 0 (dark) to {top:.0f} (yellow); north is up."
-    if found.trajectory is not None and found.near_share:
-        track = np.c_[found.trajectory.x - corner[0], corner[1] - found.trajectory.y] / found.settings.cell_size * scale
+    trajectory: Any = found.trajectory
+    if trajectory is not None and found.near_share:
+        track = np.c_[trajectory.x - corner[0], corner[1] - trajectory.y] / found.settings.cell_size * scale
         cv2.polylines(image, [np.rint(track).astype(np.int32)], False, (60, 60, 255), 2, cv2.LINE_AA)
         caption += " Red is the trajectory."
     return image, caption
@@ -85,7 +92,7 @@ def _time(page, found):
             rows.append(("Counted as", "seconds of the GPS week, says the file"))
     else:
         rows.append(("gps_time", "none that can be used"))
-    rows.append(("Scanners", f"{len(found.scanners)}, told apart by {found.scanner_field}" if found.scanner_field else "1"))
+    rows.append(("Scanners", f"{len(found.scanners)}, distinguished by {found.scanner_field}" if found.scanner_field else "1"))
     if found.near_share is not None:
         rows.append(("Points within 25 m of the trajectory", f"{100 * found.near_share:.1f} %"))
     if found.in_time_share is not None:
@@ -100,7 +107,7 @@ def _drive(page, drive):
     if drive is None:
         return
     page.heading("Drive")
-    height = "too few points lie under the vehicle to tell" if drive.sensor_height is None else f"{drive.sensor_height:.2f} m above the road"
+    height = "unknown: too few points lie under the vehicle" if drive.sensor_height is None else f"{drive.sensor_height:.2f} m above the road"
     page.facts((("Driven", f"{drive.driven:.1f} m"), ("Trajectory", height),
                 ("Roads", ", ".join(f"road {number}: {length:.1f} m" for number, length in enumerate(drive.roads)))))
     page.table(
@@ -112,8 +119,19 @@ def _drive(page, drive):
                              "(above): red the trajectory, grey the road under it.")
 
 
-def profile_picture(profile, width=900, height=220):
-    """((height, width, 3) picture of the heights of track and road along the drive, lowest and highest height)."""
+def profile_picture(profile: np.ndarray, width: int = 900, height: int = 220) -> tuple[np.ndarray, float, float]:
+    """Heights along the drive.
+
+    Parameters
+    ----------
+    profile : (N, 3) distance driven, height of the trajectory and of the road under it (NaN where unknown), metres
+    width, height : pixels
+
+    Returns
+    -------
+    picture : (height, width, 3) uint8
+    low, high : lowest and highest height, metres
+    """
     known = profile[:, 1:][np.isfinite(profile[:, 1:])]
     low, high = float(known.min()), float(known.max())
     spread = max(high - low, 0.1)
@@ -145,8 +163,8 @@ def _intensity(page, found):
                      f"How often each intensity occurs, from {low} (left) to {high} (right).")
 
 
-def histogram_picture(counts, low, high, width=900, height=220):
-    """(height, width, 3) picture of how the counts of values low..high are spread."""
+def histogram_picture(counts: np.ndarray, low: int, high: int, width: int = 900, height: int = 220) -> np.ndarray:
+    """(height, width, 3) uint8 picture of the histogram of the values low to high, from the counts (M,) of the values from 0 on."""
     high = max(high, low + 1)
     edges = np.linspace(low, high + 1, min(width // 3, high - low + 1) + 1)
     place = np.clip(np.searchsorted(edges, np.arange(low, high + 1), side="right") - 1, 0, len(edges) - 2)

@@ -1,8 +1,13 @@
-"""A small map as a picture: the intensity image below, lines and polygons above.
+"""A small map as a picture: a grey raster with lines and polygons over it.
 
-For reports only; a map to print is made by QGIS. Colours are blue, green, red, as
-OpenCV wants them.
+For reports only; a map to print is made by QGIS. Drawn by OpenCV, which the core needs anyway: matplotlib takes three times as long
+for such a picture and seconds to load. Colours are blue, green, red, as OpenCV takes them.
 """
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import cv2
 import numpy as np
@@ -11,18 +16,36 @@ import shapely
 from ..io.gdal_errors import gdal_exceptions
 from ..io.geotiff import GEOTIFF_TILE, filled_tiles
 
-# An intensity image made small and grey, to lie below a report's map.
+MAP_LONGEST_SIDE = 1800      # px
+MAX_AVERAGED_SIDE = 500_000  # px; GDAL averages rasters up to this size, empty tiles included; larger ones are read by tile
+MAP_MARGIN = 3.0             # m around the layers
 
-BACKGROUND_LONGEST = 500_000  # px of a side up to which GDAL averages all, empty ones among them; longer rasters are read by tile
+# What is drawn, from the bottom up: layer, condition (field, value) or None, colour, width (px), filled
+MAP_STYLE = (
+    ("markings", None, (80, 220, 255), 1, True),
+    ("edges", ("status", "measured"), (60, 60, 230), 3, False),
+    ("edges", ("status", "bridged"), (60, 150, 255), 3, False),
+    ("differences", None, (255, 60, 230), 7, False),
+    ("marking_lines", None, (230, 200, 60), 2, False),
+    ("driving_lines", ("status", "measured"), (90, 220, 60), 3, False),
+    ("driving_lines", ("status", "bridged"), (60, 255, 190), 3, False),
+    ("driving_lines", ("status", "inferred"), (220, 120, 200), 3, False),
+)
 
 
 @gdal_exceptions()
-def grey_background(path, longest=1800):
-    """A stretched grey copy of a raster.
+def grey_background(path: str, longest: int = MAP_LONGEST_SIDE) -> tuple[np.ndarray, tuple[float, float, float, float]]:
+    """A small grey copy of a raster, with stretched contrast.
+
+    Parameters
+    ----------
+    path : of a raster file
+    longest : pixels of the longer side
 
     Returns
     -------
-    (H, W) uint8 with 0 where there is no data, and (min x, min y, max x, max y)
+    grey : (H, W) uint8, 0 where there is no data
+    extent : (min x, min y, max x, max y)
     """
     from osgeo import gdal
 
@@ -32,7 +55,7 @@ def grey_background(path, longest=1800):
     columns, rows = max(int(width * scale), 1), max(int(height * scale), 1)
     band = dataset.GetRasterBand(1)
     nodata = band.GetNoDataValue()
-    if max(width, height) > BACKGROUND_LONGEST:
+    if max(width, height) > MAX_AVERAGED_SIDE:
         values = _averaged(dataset, columns, rows, nodata)
     else:
         data = band.ReadRaster(0, 0, width, height, columns, rows, gdal.GDT_Float32, resample_alg=gdal.GRIORA_Average)
@@ -51,7 +74,7 @@ def grey_background(path, longest=1800):
 
 
 def _averaged(dataset, columns, rows, nodata):
-    """(rows, columns) means of what a raster holds, read tile by tile; NaN where there is nothing."""
+    """(rows, columns) means of the values of a raster, read tile by tile; NaN where there are none."""
     from osgeo import gdal
 
     band, width, height = dataset.GetRasterBand(1), dataset.RasterXSize, dataset.RasterYSize
@@ -69,41 +92,29 @@ def _averaged(dataset, columns, rows, nodata):
         count[place] += np.bincount(cell, minlength=cells[0] * cells[1]).reshape(cells)
     return np.divide(total, count, out=np.full((rows, columns), np.nan), where=count > 0)
 
-LONGEST = 1800  # pixels of the longer side
 
-# What is drawn, from below: layer, rule (field, value or None), colour, width in pixels, filled
-STYLE = (
-    ("markings", None, (80, 220, 255), 1, True),
-    ("edges", ("status", "measured"), (60, 60, 230), 3, False),
-    ("edges", ("status", "bridged"), (60, 150, 255), 3, False),
-    ("differences", None, (255, 60, 230), 7, False),
-    ("marking_lines", None, (230, 200, 60), 2, False),
-    ("driving_lines", ("status", "measured"), (90, 220, 60), 3, False),
-    ("driving_lines", ("status", "bridged"), (60, 255, 190), 3, False),
-    ("driving_lines", ("status", "inferred"), (220, 120, 200), 3, False),
-)
-
-
-def draw_map(layers, background=None, bounds=None, longest=LONGEST, style=STYLE, paper=28):
+def draw_map(layers: Mapping[str, Any], background: tuple[np.ndarray, Sequence[float]] | None = None, bounds: Sequence[float] | None = None,
+             longest: int = MAP_LONGEST_SIDE, style: Sequence[tuple[Any, ...]] = MAP_STYLE, paper: int = 28) -> np.ndarray | None:
     """Draw layers over an image.
 
     Parameters
     ----------
-    layers : dict of Features by the names in `style`; missing ones are left out
+    layers : Features by the names in `style`; missing ones are left out
     background : (grey image (H, W) uint8 with 0 where empty, (min x, min y, max x, max y)) or None
-    bounds : map area; by default that of the layers with a margin of 3 m
-    style : what is drawn and how, as STYLE
-    paper : grey of what no layer and no image covers
+    bounds : (min x, min y, max x, max y); by default those of the layers with a margin of 3 m
+    longest : pixels of the longer side
+    style : what is drawn and how, as MAP_STYLE
+    paper : grey level where neither a layer nor the image covers the map
 
     Returns
     -------
-    (H, W, 3) uint8, or None where there is nothing to draw
+    (H, W, 3) uint8, or None if there is nothing to draw
     """
     shapes = [g for features in layers.values() if features is not None for g in features.geometries if g is not None]
     if bounds is None:
         if not shapes:
             return None
-        bounds = shapely.total_bounds(np.array(shapes, object)) + np.array([-3, -3, 3, 3])
+        bounds = shapely.total_bounds(np.array(shapes, object)) + MAP_MARGIN * np.array([-1, -1, 1, 1])
     scale = longest / max(bounds[2] - bounds[0], bounds[3] - bounds[1])
     width, height = (max(int(np.ceil(side * scale)), 2) for side in (bounds[2] - bounds[0], bounds[3] - bounds[1]))
     canvas = np.full((height, width, 3), paper, np.uint8)
@@ -116,7 +127,7 @@ def draw_map(layers, background=None, bounds=None, longest=LONGEST, style=STYLE,
     return canvas
 
 
-def png(image):
+def png(image: np.ndarray) -> bytes:
     """The bytes of a PNG file."""
     return cv2.imencode(".png", image)[1].tobytes()
 
@@ -126,10 +137,10 @@ def _paste(canvas, grey, extent, bounds, scale):
     height, width = canvas.shape[:2]
     column = (bounds[0] + (np.arange(width) + 0.5) / scale - extent[0]) / (extent[2] - extent[0]) * grey.shape[1]
     row = (extent[3] - bounds[3] + (np.arange(height) + 0.5) / scale) / (extent[3] - extent[1]) * grey.shape[0]
-    inside_c, inside_r = (column >= 0) & (column < grey.shape[1]), (row >= 0) & (row < grey.shape[0])
-    part = grey[np.ix_(row[inside_r].astype(int), column[inside_c].astype(int))]
-    target = canvas[np.ix_(inside_r, inside_c)]
-    canvas[np.ix_(inside_r, inside_c)] = np.where(part[..., None] > 0, part[..., None], target)
+    column_inside, row_inside = (column >= 0) & (column < grey.shape[1]), (row >= 0) & (row < grey.shape[0])
+    part = grey[np.ix_(row[row_inside].astype(int), column[column_inside].astype(int))]
+    target = canvas[np.ix_(row_inside, column_inside)]
+    canvas[np.ix_(row_inside, column_inside)] = np.where(part[..., None] > 0, part[..., None], target)
 
 
 def _draw(canvas, geometry, bounds, scale, colour, thickness, filled):

@@ -293,7 +293,7 @@ def test_a_report_shows_the_same_background_when_only_tiles_with_data_are_read(t
 
     image_of(painted_street(length=40.96), tmp_path / "i.tif", ImageSettings(cell_size=0.02))
     whole, extent = background.grey_background(tmp_path / "i.tif", longest=100)
-    monkeypatch.setattr(background, "LONGEST", 0)
+    monkeypatch.setattr(background, "MAX_AVERAGED_SIDE", 0)
     tiles, again = background.grey_background(tmp_path / "i.tif", longest=100)
     assert extent == again and whole.shape == tiles.shape
     assert (np.abs(whole.astype(int) - tiles) <= 25).mean() > 0.9
