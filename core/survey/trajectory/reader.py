@@ -22,6 +22,7 @@ from .unnamed_columns import columns_from_numbers
 
 SBET_DOUBLES = 17  # time, lat, lon, height, 3 velocities, roll, pitch, heading, wander angle, 6 more
 WGS84 = "EPSG:4326"
+SECONDS_PER_UNIT = {"milliseconds": 1e-3, "microseconds": 1e-6, "nanoseconds": 1e-9}
 # A vehicle on a road rolls by more than 3 degrees somewhere, but never by 0.2 radians.
 MAX_ROLL_RADIANS = 0.15
 
@@ -95,6 +96,7 @@ def trajectory_from_columns(columns: Mapping[str, Any], crs: str = "", angle_uni
 
 
 def _read_text(path, crs):
+    """The trajectory in a table of numbers; columns are recognised by the names above the table, otherwise by the numbers."""
     table = read_number_table(path)
     count = table.values.shape[1]
     names, units = find_header(table.preamble, count)
@@ -114,26 +116,26 @@ def _read_text(path, crs):
     if table.dropped:
         notes.append(f"{table.dropped} lines of {path.name} had another number of columns than {count} and were left out.")
     columns = {role: table.values[:, k] for role, k in place.items()}
-    _seconds(columns, units[place["time"]] if "time" in place else "")
-    if "lon" in place and units[place["lon"]] in ("degrees", "radians"):
-        columns["_plane_unit"] = units[place["lon"]]
-    return _with_stated_crs(columns, crs, unit, path, table.preamble, notes)
-
-
-def _with_stated_crs(columns, crs, unit, path, preamble, notes):
-    plane_unit = columns.pop("_plane_unit", "")
-    if plane_unit == "radians":
+    if "time" in place:
+        columns["time"] = columns["time"] * SECONDS_PER_UNIT.get(units[place["time"]], 1.0)
+    if "lon" in place and units[place["lon"]] == "radians":
         columns["lon"], columns["lat"] = np.degrees(columns["lon"]), np.degrees(columns["lat"])
-    stated = re.search(r"EPSG\s*[:=]?\s*(\d{4,6})", " ".join(preamble), re.IGNORECASE)
-    if stated and not crs:
-        found = parse_crs(f"EPSG:{stated.group(1)}")
-        if horizontal_part(found).is_projected == ("x" in columns):
-            crs = found.to_wkt()
-            notes.append(f"{path.name} states the CRS {found.name} (EPSG:{stated.group(1)}).")
+    crs = crs or _stated_crs(path, table.preamble, "x" in columns, notes)
     return trajectory_from_columns(columns, crs, unit, path.name, notes)
 
 
+def _stated_crs(path, preamble, projected, notes):
+    """WKT of the CRS that the lines above a table state by its EPSG number, if it fits the columns; otherwise ""."""
+    stated = re.search(r"EPSG\s*[:=]?\s*(\d{4,6})", " ".join(preamble), re.IGNORECASE)
+    found = parse_crs(f"EPSG:{stated.group(1)}") if stated else None
+    if found is None or horizontal_part(found).is_projected != projected:
+        return ""
+    notes.append(f"{path.name} states the CRS {found.name} (EPSG:{stated.group(1)}).")
+    return found.to_wkt()
+
+
 def _check_complete(path, names, place, first_row):
+    """Refuse a table without coordinates, or with clock times."""
     missing = [role for role, other in (("x", "lon"), ("y", "lat"), ("z", "z")) if role not in place and other not in place]
     if missing:
         raise RoadExtractionError(
@@ -146,17 +148,12 @@ def _check_complete(path, names, place, first_row):
 
 
 def _refuse_feet(path, units, place, preamble):
+    """Refuse positions in feet."""
     text = " ".join(preamble).lower()
     in_feet = [role for role in ("x", "y", "z") if role in place and units[place[role]] == "feet"]
     if in_feet or re.search(r"(position|height|distance|coordinates?)s? in (us )?(survey )?(feet|foot|ft)\b", text):
         raise RoadExtractionError(
             f"{path} gives positions in feet. Lanewright works in metres: export the trajectory in a metric CRS and run again.")
-
-
-def _seconds(columns, unit):
-    scale = {"milliseconds": 1e-3, "microseconds": 1e-6, "nanoseconds": 1e-9}.get(unit)
-    if scale:
-        columns["time"] = columns["time"] * scale
 
 
 def _plane_coordinates(columns, time, crs, label, notes):
