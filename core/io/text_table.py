@@ -21,8 +21,8 @@ SAMPLE_LINES = 400         # lines of these that are split
 MIN_NUMBER_COLUMNS = 3     # columns of numbers that make a table
 MAX_NUMBER = 1e20          # beyond time in nanoseconds; larger numbers count as missing, like infinity
 FIELDS_PER_CHUNK = 200_000  # fields parsed at a time where some are words
-NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?$|[+-]?(nan|inf)$", re.IGNORECASE)
-COMMA_NUMBER = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?$|[+-]?\d+$")
+NUMBER_PATTERN = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?$|[+-]?(nan|inf)$", re.IGNORECASE)
+DECIMAL_COMMA_PATTERN = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?$|[+-]?\d+$")
 DELIMITERS = (";", "\t", "|", ",", " ")
 
 
@@ -105,7 +105,7 @@ def _fields(line, delimiter):
 
 
 def _is_number(field, decimal_comma):
-    return bool((COMMA_NUMBER if decimal_comma else NUMBER).match(field))
+    return bool((DECIMAL_COMMA_PATTERN if decimal_comma else NUMBER_PATTERN).match(field))
 
 
 def _is_row(fields, columns, decimal_comma):

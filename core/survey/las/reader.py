@@ -15,7 +15,7 @@ from ...common.parallel import check_cancelled
 from .guard import find_damage, points_per_chunk
 
 POINTS_PER_BLOCK = 400_000  # points decoded at a time
-SUFFIXES = (".las", ".laz")
+CLOUD_SUFFIXES = (".las", ".laz")
 MAX_HEADER_SCALE, MAX_HEADER_OFFSET = 1e3, 1e12  # m, of coordinates stored as integers; beyond them no place on earth is described
 NOT_FILE_ERRORS = (KeyboardInterrupt, SystemExit, GeneratorExit, Cancelled, MemoryError)  # they say nothing about the file
 
@@ -78,7 +78,7 @@ def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None
     path = str(path)
     if not Path(path).exists():
         raise RoadExtractionError(f"There is no file {path}. Check the path of the point cloud.")
-    if not path.lower().endswith(SUFFIXES):
+    if not path.lower().endswith(CLOUD_SUFFIXES):
         raise RoadExtractionError(f"{path} is not a LAS or LAZ file. Lanewright reads .las, .laz and .copc.laz; convert other formats first.")
     if not checked and (damage := find_damage(path)):
         raise RoadExtractionError(f"{path} is damaged or cut off: {damage}. Copy or export the file again.")

@@ -12,7 +12,7 @@ MIN_PHASE_BIN_POINTS = 8     # points of a bin, or it gives no phase
 MIN_PHASE_BIN_SHARE = 0.3    # of the median number of points: bins that are cut off have a biased phase
 MIN_PHASE_COHERENCE = 0.3    # length of the mean phasor of a bin
 NODES_PER_BIN = 5            # of the smooth curve through the phases of the bins
-MAX_BIN_STEP = 1.5           # bins between two phases; farther apart, the phase in between is extrapolated from the rate before
+MAX_PHASE_BIN_GAP = 1.5           # bins between two phases; farther apart, the phase in between is extrapolated from the rate before
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ def _unwrap(time, phase, bin_length):
     """(K,) phases, each within half a turn of the one that the rate before it predicts."""
     apart = np.diff(time)
     step = (np.diff(phase) + np.pi) % (2 * np.pi) - np.pi
-    near = apart < MAX_BIN_STEP * bin_length
+    near = apart < MAX_PHASE_BIN_GAP * bin_length
     if near.any() and not near.all():
         before = np.maximum.accumulate(np.where(near, np.arange(len(near)), -1))
         rate = np.where(before >= 0, (step / apart)[before], 0.0)
