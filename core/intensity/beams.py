@@ -31,8 +31,8 @@ MIN_SHARPNESS = 1.5     # times as full as the mean of a degree around them: bin
 UNEQUAL_BEAMS = 0.05    # of asphalt's level: beams that differ less from their neighbours are alike
 NEIGHBOUR_BEAMS = 3     # beams either side
 SAMPLE_WINDOWS, SAMPLE_WINDOW = 12, 5.0     # windows of each road that are searched for beams; their length, m
-MAX_SAMPLE_POINTS = 8_000   # points of one scanner in a window that are looked at
-MAX_TURN = 1.0          # s, the longest turn of a spinning scanner
+MAX_SAMPLE_POINTS = 8_000   # points of one scanner in a window that are examined
+MAX_TURN_TIME = 1.0          # s, the longest turn of a spinning scanner
 SOURCE_IDS = 2**16      # numbers that point_source_id may have
 SAMPLE_COLUMNS = "time", "x", "y", "z", "source", "pass_number"   # needed for the elevation seen from the vehicle
 ANGLE_SIGNS = ((0, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))  # sign conventions of roll and pitch that are tried; 0 ignores them
@@ -65,7 +65,7 @@ class ScannerTurns:
         number = number[np.argsort(first[number], kind="stable")]
         begin, end = first[number], last[number]
         # not every turn begins and ends over the road: two consecutive turns share the time between them
-        follows = begin[1:] - end[:-1] < MAX_TURN / 2
+        follows = begin[1:] - end[:-1] < MAX_TURN_TIME / 2
         between = (end[:-1] + begin[1:]) / 2
         begin[1:][follows], end[:-1][follows] = between[follows], between[follows]
         # a turn without a predecessor or a successor is as long as the others
@@ -75,7 +75,7 @@ class ScannerTurns:
             begin = np.where(np.r_[False, follows] | ~np.r_[follows, False], begin, end - length)
             end = np.where(np.r_[follows, False] | ~np.r_[False, follows], end, begin + length)
         middle = np.full(SOURCE_IDS, np.nan)
-        turn = (end - begin < MAX_TURN) & (end > begin)
+        turn = (end - begin < MAX_TURN_TIME) & (end > begin)
         middle[number[turn]] = (begin[turn] + end[turn]) / 2
         return cls(middle)
 
@@ -95,7 +95,7 @@ def _may_be_turns(samples):
     order = np.argsort(source, kind="stable")
     source, time = source[order], time[order]
     begins = np.flatnonzero(np.r_[True, source[1:] != source[:-1]])
-    return bool((np.maximum.reduceat(time, begins) - np.minimum.reduceat(time, begins) < MAX_TURN).any())
+    return bool((np.maximum.reduceat(time, begins) - np.minimum.reduceat(time, begins) < MAX_TURN_TIME).any())
 
 
 @dataclass

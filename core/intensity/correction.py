@@ -15,11 +15,11 @@ from ..survey.store.records import Points
 from ..survey.store.road_points import RoadPoints
 from .asphalt_model import DISTANCE_BIN, MAX_DISTANCE, POINTS_AT_ONCE, AsphaltTable, IntensityHistograms, asphalt_of_histograms
 from .beams import Beams
-from .saturation import MAX_SCANNERS, Saturation
+from .saturation import SCANNER_NUMBERS, Saturation
 from .vehicle_relative import ACROSS_TRACK, UNKNOWN_DISTANCE, VehicleDistances
 
 ENOUGH_POINTS_PER_METRE = 6_000   # of road: more do not improve the estimate of asphalt
-STRIPE_LENGTH = 100    # units of 0.1 mm along the road: of denser roads, stripes of this length are sampled
+SAMPLE_STRIPE_LENGTH = 100    # units of 0.1 mm along the road: of denser roads, stripes of this length are sampled
 MAX_SHARE_WITHOUT_VEHICLE = 0.2   # of the points, whose vehicle position is unknown: beyond it nothing is corrected
 
 
@@ -193,8 +193,8 @@ def _stripes(points, step):
     s = points.records["s"]
     if step == 1 or not len(s):
         return points
-    first = np.arange(s[0] // (STRIPE_LENGTH * step), s[-1] // (STRIPE_LENGTH * step) + 1) * (STRIPE_LENGTH * step)
-    begins, ends = np.searchsorted(s, first), np.searchsorted(s, first + STRIPE_LENGTH)
+    first = np.arange(s[0] // (SAMPLE_STRIPE_LENGTH * step), s[-1] // (SAMPLE_STRIPE_LENGTH * step) + 1) * (SAMPLE_STRIPE_LENGTH * step)
+    begins, ends = np.searchsorted(s, first), np.searchsorted(s, first + SAMPLE_STRIPE_LENGTH)
     count = ends - begins
     return points[np.repeat(begins - (np.cumsum(count) - count), count) + np.arange(count.sum())]
 
@@ -202,8 +202,8 @@ def _stripes(points, step):
 def _points_by_scanner(points):
     """(256,) how many points each scanner has."""
     scanner = points.scanner
-    return sum((np.bincount(scanner[k:k + POINTS_AT_ONCE], minlength=MAX_SCANNERS) for k in range(0, len(scanner), POINTS_AT_ONCE)),
-               np.zeros(MAX_SCANNERS, np.int64))
+    return sum((np.bincount(scanner[k:k + POINTS_AT_ONCE], minlength=SCANNER_NUMBERS) for k in range(0, len(scanner), POINTS_AT_ONCE)),
+               np.zeros(SCANNER_NUMBERS, np.int64))
 
 
 def _reason_against(road_points, frame):

@@ -9,7 +9,7 @@ from ..io.geotiff import IntensityImage
 from ..survey.consistency import sample_road_points
 from ..survey.store.road_points import RoadPoints
 
-MIN_COVERED_SHARE = 0.5  # of the sample_road_points points: must lie on a pixel with a value
+MIN_SHOWN_SHARE = 0.5  # of the sample_road_points points: must lie on a pixel with a value
 
 
 def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:
@@ -34,7 +34,7 @@ def check_image_shows(image: IntensityImage, road_points: RoadPoints) -> None:
     x, y = (np.concatenate(part) for part in zip(*places))
     left, size, _, top, _, _ = image.geotransform
     seen = np.isfinite(image.sample(x, y))
-    if seen.mean() < MIN_COVERED_SHARE:
+    if seen.mean() < MIN_SHOWN_SHARE:
         raise RoadExtractionError(
             f"{image.path} does not show these road points: it covers x {left:.1f} to {left + size * image.width:.1f}, "
             f"y {top - size * image.height:.1f} to {top:.1f}, the points lie over x {x.min():.1f} to {x.max():.1f}, "

@@ -13,7 +13,7 @@ from .asphalt_model import INTENSITY_LEVELS, LOWER_QUANTILE, POINTS_AT_ONCE, to_
 MAX_SHARE_AT_HIGHEST = 0.05   # share of points at their scanner's highest intensity: more than paint covers of most roads
 MAX_SHARE_AT_LOWEST = LOWER_QUANTILE   # share at its lowest: the quantile from which asphalt's spread is taken
 REMEDY = "Export the cloud with the scanner's full intensities (16 bits, not stretched)."
-MAX_SCANNERS = 256   # numbers that a scanner may have
+SCANNER_NUMBERS = 256   # numbers that a scanner may have
 
 
 @dataclass(frozen=True)
@@ -70,12 +70,12 @@ def _accumulated(counts):
 def saturation_of(road_points: RoadPoints) -> Saturation:
     """Saturation of the raw intensities of road points."""
     def count(key):
-        points, found = road_points.section(*key), np.zeros(MAX_SCANNERS * INTENSITY_LEVELS, np.int64)
+        points, found = road_points.section(*key), np.zeros(SCANNER_NUMBERS * INTENSITY_LEVELS, np.int64)
         intensity, scanner = points.intensity, points.scanner
         for first in range(0, len(points), POINTS_AT_ONCE):
             rows = slice(first, first + POINTS_AT_ONCE)
             found += np.bincount(scanner[rows].astype(np.int32) * np.int32(INTENSITY_LEVELS) + to_level(intensity[rows]), minlength=len(found))
         return found
 
-    counts = sum(ordered_map(count, road_points.all_sections()), np.zeros(MAX_SCANNERS * INTENSITY_LEVELS, np.int64))
-    return Saturation.from_levels(counts.reshape(MAX_SCANNERS, INTENSITY_LEVELS))
+    counts = sum(ordered_map(count, road_points.all_sections()), np.zeros(SCANNER_NUMBERS * INTENSITY_LEVELS, np.int64))
+    return Saturation.from_levels(counts.reshape(SCANNER_NUMBERS, INTENSITY_LEVELS))

@@ -13,7 +13,7 @@ import numpy as np
 from ..io.geotiff import GEOTIFF_TILE, NODATA, IntensityImage
 from ..survey.store.spill_file import SpillFile, StoredColumn
 
-TILE_MEMORY = 128 * 2**20   # bytes of pixels kept in memory; the tiles that follow go to a temporary file
+TILE_MEMORY = 64 * 2**20   # bytes of pixels kept in memory; the tiles that follow go to a temporary file
 
 
 Origin = Union[Sequence[float], np.ndarray]   # two or more map coordinates, m

@@ -203,7 +203,7 @@ class _SectionWriter:
 class WindowExtractor:
     """Extracts paint from the windows of one road, in two steps: the level of asphalt, then the cells that are brighter.
 
-    A window is extracted when the level of its neighbours is known; its data are paint until then. Several threads
+    A window is extracted when the level of its neighbours is known; its data are kept until then. Several threads
     may extract windows at once, in the order of the road.
 
     Parameters
@@ -243,7 +243,7 @@ class WindowExtractor:
         return self.road_points.window(self.road, first * CELL_UNITS * COORDINATE_SCALE, last * CELL_UNITS * COORDINATE_SCALE)
 
     def _in_cells(self, window):
-        """[PieceOfRoad] of a window's own points; paint until the window is extracted, as its neighbours use them too."""
+        """[PieceOfRoad] of a window's own points; kept until the window is extracted, as its neighbours use them too."""
         with self._piece_locks.setdefault(window, threading.Lock()):
             if window not in self._pieces:
                 first, last = window * THRESHOLD_WINDOW, (window + 1) * THRESHOLD_WINDOW

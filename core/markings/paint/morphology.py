@@ -13,7 +13,7 @@ from ..objects.shape import fill_gaps
 if TYPE_CHECKING:
     from .extract import MarkingSettings
 
-MAX_WORN_GAP = 0.80  # m along the road: no painted gap is shorter, so bright specks in it belong to one worn line
+WORN_GAP = 0.80  # m along the road: no painted gap is shorter, so bright specks in it belong to one worn line
 
 
 def morphology(mask: np.ndarray, settings: MarkingSettings) -> np.ndarray:
@@ -39,7 +39,7 @@ def morphology(mask: np.ndarray, settings: MarkingSettings) -> np.ndarray:
 
 
 def _between(ends, specks):
-    """Cells of runs along the road that connect two ends by specks, with gaps no longer than MAX_WORN_GAP.
+    """Cells of runs along the road that connect two ends by specks, with gaps no longer than WORN_GAP.
 
     A run may deviate by one column: paint is not exactly parallel to the road's reference line.
     """
@@ -47,7 +47,7 @@ def _between(ends, specks):
     ends, specks = (cv2.dilate(mask.view(np.uint8), beside, borderValue=0).view(bool) for mask in (ends, specks))
     columns = np.flatnonzero(ends.any(axis=0))
     ends, specks = np.ascontiguousarray(ends[:, columns]), np.ascontiguousarray(specks[:, columns])
-    run = fill_gaps(specks, int(round(MAX_WORN_GAP / CELL_SIZE)), 0)
+    run = fill_gaps(specks, int(round(WORN_GAP / CELL_SIZE)), 0)
     result[:, columns] = run & _met_since(ends, ~run) & _met_since(ends[::-1], ~run[::-1])[::-1]
     return result
 

@@ -136,8 +136,8 @@ def local_scatter(contrast: np.ndarray) -> np.ndarray:
     if not len(known):
         return np.full(contrast.shape, np.nan, np.float32)
     reach = SCATTER_BLOCKS // 2
-    about = np.lib.stride_tricks.sliding_window_view(np.pad(spread, reach, constant_values=np.nan), (SCATTER_BLOCKS, SCATTER_BLOCKS))
-    ordered = np.sort(about.reshape(rows, columns, -1), axis=2)
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(spread, reach, constant_values=np.nan), (SCATTER_BLOCKS, SCATTER_BLOCKS))
+    ordered = np.sort(around.reshape(rows, columns, -1), axis=2)
     count = np.isfinite(ordered).sum(axis=2, keepdims=True)
     middle = np.take_along_axis(ordered, np.maximum(count - 1, 0) // 2, 2)[..., 0]
     middle = np.where(count[..., 0] > 0, middle, np.median(known))

@@ -29,7 +29,7 @@ from ...survey.store.road_points import RoadPoints
 PEAK_WINDOW = 20.0     # m of station processed together
 PROFILE_CELL = 200        # units of 0.1 mm: a profile has one value every 2 cm
 MEDIAN_CELLS = 5        # cells of the running median
-MAX_EMPTY_CELLS = 5   # without points that are interpolated; beyond them the profile is taken for asphalt
+MAX_EMPTY_PROFILE_CELLS = 5   # without points that are interpolated; beyond them the profile is taken for asphalt
 MIN_DEVIATION = 0.005   # of the profile's level: the deviation of integer intensities can be 0
 MIN_CHAIN_SHARE = 0.6   # of the profiles along a chain: must have the peak
 
@@ -153,7 +153,7 @@ def _profiles(value, row, column):
     after = np.minimum(np.searchsorted(seen, places), len(seen) - 1)
     before = np.maximum(np.searchsorted(seen, places, side="right") - 1, 0)
     level = np.interp(places, seen, total[seen] / count[seen]).reshape(shape)
-    unseen = (np.maximum(np.abs(seen[after] - places), np.abs(places - seen[before])) > MAX_EMPTY_CELLS).reshape(shape)
+    unseen = (np.maximum(np.abs(seen[after] - places), np.abs(places - seen[before])) > MAX_EMPTY_PROFILE_CELLS).reshape(shape)
     level = ndimage.median_filter(level, (1, MEDIAN_CELLS), mode="nearest")
     level[unseen] = np.nan
     empty = unseen.all(axis=1)

@@ -34,7 +34,7 @@ class SegmentSettings:
 
     length, width : m, of a segment along and across the road
     separation : spreads of asphalt between the means of the two classes, below which a segment has no paint
-    radius : m about a bright point in which its bright neighbours are counted
+    radius : m around a bright point in which its bright neighbours are counted
     """
 
     length: float = setting(10.0, 0.5, 200.0, "The length of a segment", "m")

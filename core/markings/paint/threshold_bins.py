@@ -1,7 +1,7 @@
 """Bins across the road and Otsu's threshold in each of them.
 
 Bins are as wide as the spread of point density, so that the points of one bin were
-measured from about one distance. Every brightness is stated in robust z: above the median of asphalt, in
+measured from nearly one distance. Every brightness is stated in robust z: above the median of asphalt, in
 units of its spread below the median, which paint does not increase.
 """
 
