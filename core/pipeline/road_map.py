@@ -15,7 +15,7 @@ from ..driving.driving_layers import curve_elements_to_features, driving_lines_t
 from ..driving.driving_lines import DrivingSettings, make_driving_lines
 from ..driving.road_edges import edges_from_features
 from ..intensity.correction import IntensitySettings, correct_intensity
-from ..intensity.image import ImageSettings, check_fits, write_intensity_image
+from ..intensity.image import ImageSettings, check_fits, make_intensity_image
 from ..io.geotiff import IntensityImage
 from ..markings.lines.fit import MarkingLineSettings, fit_marking_lines
 from ..markings.lines.naming import named_by_lines
@@ -176,11 +176,13 @@ def _paint(result, image_path, settings, stages):
     if settings.correct:
         result.road_points, result.intensity_report = stages.run(
             "intensity", "Correcting intensity …", correct_intensity, result.road_points, frame, settings.intensity)
-    stages.run("image", "Making the intensity image …", write_intensity_image,
-               result.road_points, image_path, settings.image)
-    result.image = IntensityImage.open(image_path)
+    image = stages.run("image", "Making the intensity image …", make_intensity_image,
+                       result.road_points, settings.image, path=image_path)
+    # the file is a result; markings are extracted from the image in memory
     points = stages.run("markings", "Extracting markings …", extract_markings,
-                        result.road_points, result.image, frame, settings.markings)
+                        result.road_points, image, frame, settings.markings)
+    image.close()
+    result.image = IntensityImage.open(image_path)
     result.counts["marking_points"] = len(points)
     if len(points):
         points = stages.run("outliers", "Removing outliers …", remove_outliers, points, settings.outliers)

@@ -164,7 +164,7 @@ def test_without_intensity_there_are_edges_and_a_reason(sample, cloud, tmp_path)
     assert "intensity" in found.without_paint and found.markings is None
 
 
-@pytest.mark.parametrize("stage", ["draw_boundaries", "write_intensity_image"])
+@pytest.mark.parametrize("stage", ["draw_boundaries", "make_intensity_image"])
 def test_a_run_that_is_broken_off_gives_back_the_disk_of_its_points(sample, cloud, tmp_path, monkeypatch, stage):
     opened = []
 
