@@ -13,6 +13,7 @@ from ..algorithms.destinations import destination_path, files_of
 from ..core.common.errors import RoadExtractionError
 from .gdal_module import check_gdal
 from .layer_files import DRIVERS, LayerFile, file_and_table, first_table, write_layer
+from .measured_lines import check_format
 from .values import checked_values
 
 RASTERS = (specs.RasterSpec, specs.RasterOutput)
@@ -28,6 +29,9 @@ class FileCall(Call):
         rasters = [spec for spec in algorithm.parameters if isinstance(spec, RASTERS) and spec.name in values]
         if rasters or algorithm.NEEDS_GDAL:
             check_gdal(f"{rasters[0].label} ({rasters[0].name}) is a raster" if rasters else f"{algorithm.title()} makes a raster")
+        for spec in algorithm.parameters:
+            if isinstance(spec, specs.LayerOutput) and spec.geometry.endswith("ZM") and spec.name in values:
+                check_format(file_and_table(values[spec.name])[0], spec.label)
         super().__init__(algorithm, values)
         self._progress = progress
         self._folders = {}  # of every vector file that is written: destination -> the temporary folder that it is written in

@@ -61,13 +61,13 @@ class LayerFile(VectorSource):
         self.kind = KINDS.get(plain, UNKNOWN)
         self.has_z = geometry.startswith("3D")
         # fiona leaves measures out
-        self.has_m = self.kind == LINE and measured_lines.has_measures(self.path, self.table)
+        self.has_m = self.kind == LINE and self.has_z and measured_lines.may_have_measures(self.path, self.table)
 
     def rows(self, measures=False, check_validity=True):
         import shapely
         from shapely.geometry import shape
 
-        if measures and self.kind == LINE and (self.has_m or self.has_z and not measured_lines.available()):
+        if measures and self.has_m:
             yield from measured_lines.rows(self.path, self.table, self.names, self.label)
             return
         for record in self._records():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sqlite3
+from contextlib import closing
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -16,15 +18,27 @@ def available():
     return find_spec("osgeo") is not None
 
 
-def has_measures(path, table):
-    """Whether a layer has measures; False where GDAL's Python module is missing, and nobody can tell."""
-    if not available():
-        return False
-    from osgeo import gdal, ogr
+def may_have_measures(path, table):
+    """Whether a layer of lines has measures; where GDAL's Python module is missing, also True where nobody can tell."""
+    if available():
+        from osgeo import gdal, ogr
 
-    dataset = gdal.OpenEx(path, gdal.OF_VECTOR)
-    layer = None if dataset is None else dataset.GetLayerByName(table)
-    return layer is not None and bool(ogr.GT_HasM(layer.GetGeomType()))
+        dataset = gdal.OpenEx(path, gdal.OF_VECTOR)
+        layer = None if dataset is None else dataset.GetLayerByName(table)
+        return layer is not None and bool(ogr.GT_HasM(layer.GetGeomType()))
+    suffix = Path(path).suffix.lower()
+    if suffix == ".gpkg":
+        with closing(sqlite3.connect(f"{Path(path).absolute().as_uri()}?mode=ro", uri=True)) as database:
+            found = database.execute("SELECT m FROM gpkg_geometry_columns WHERE table_name = ?", (table,)).fetchone()
+        return bool(found and found[0])
+    return suffix not in (".geojson", ".json")
+
+
+def check_format(path, label):
+    """Raise RoadExtractionError, before the work, where lines with measures cannot be written to a file."""
+    check_gdal(f"{label} are lines with measures")
+    if Path(path).suffix.lower() not in DRIVERS:
+        raise RoadExtractionError(f"{label} was to be written to {path}, but they are lines with measures. Write a GeoPackage (.gpkg).")
 
 
 def rows(path, table, names, label):
@@ -42,14 +56,11 @@ def rows(path, table, names, label):
 
 def write(path, table, features, check_cancelled):
     """A layer of lines with Z and M into a new file, or as a table of a GeoPackage."""
-    check_gdal("lines with measures are written")
     from osgeo import gdal, ogr, osr
 
     from ..core.io.gdal_errors import gdal_exceptions
 
     suffix = Path(path).suffix.lower()
-    if suffix not in DRIVERS:
-        raise RoadExtractionError(f"{Path(path).name} cannot hold lines with measures. Write a GeoPackage (.gpkg).")
     types = {int: ogr.OFTInteger64, float: ogr.OFTReal, str: ogr.OFTString}
     with gdal_exceptions():
         crs = None

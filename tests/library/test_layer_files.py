@@ -8,6 +8,7 @@ from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import CURVE_ELEMENTS, MARKINGS, ROAD_EDGES, SCANLINES, TRAJECTORY
 from lanewright.core.road.scanlines.layer import LineSpool
+from lanewright.library import gdal_module, measured_lines
 from lanewright.library.layer_files import LayerFile, file_and_table, write_layer
 from pyproj import CRS
 
@@ -79,6 +80,28 @@ def test_scanlines_keep_their_intensity(tmp_path):
     found = read_features(source, SCANLINES, "LineStringZM")
     assert source.has_m and found.rows[0]["scanner"] == 1
     np.testing.assert_array_equal(vertices_of(found.geometries[0]), vertices)
+
+
+def test_without_gdal_a_line_with_measures_is_refused_and_one_without_is_read(tmp_path, monkeypatch):
+    """Read without its measures a drive would lose its time unnoticed."""
+    ogr = pytest.importorskip("osgeo.ogr")
+    package = ogr.GetDriverByName("GPKG").CreateDataSource(str(tmp_path / "drive.gpkg"))
+    drives = (("timed", ogr.wkbLineStringZM, "LINESTRING ZM (0 0 0 1, 1 0 0 2)"), ("plain", ogr.wkbLineString25D, "LINESTRING Z (0 0 5, 1 0 5)"))
+    for name, kind, wkt in drives:
+        layer = package.CreateLayer(name, None, kind)
+        feature = ogr.Feature(layer.GetLayerDefn())
+        feature.SetGeometry(ogr.CreateGeometryFromWkt(wkt))
+        layer.CreateFeature(feature)
+    del feature, layer, package
+    timed, plain = (f"{tmp_path}/drive.gpkg|layername={name}" for name in ("timed", "plain"))
+    with_gdal = [vertices_of(next(LayerFile(value, "Trajectory").rows(measures=True))[0])[:, 2:].tolist() for value in (timed, plain)]
+    np.testing.assert_equal(with_gdal, [[[0, 1], [0, 2]], [[5, np.nan], [5, np.nan]]])
+    for module in (measured_lines, gdal_module):
+        monkeypatch.setattr(module, "find_spec", lambda name: None)
+    with pytest.raises(RoadExtractionError, match="Trajectory has lines with measures, which needs GDAL"):
+        next(LayerFile(timed, "Trajectory").rows(measures=True))
+    wkb, _ = next(LayerFile(plain, "Trajectory").rows(measures=True))
+    np.testing.assert_equal(vertices_of(wkb)[:, 2:], [[5, np.nan], [5, np.nan]])
 
 
 def test_a_condition_holds_for_some_rows(tmp_path):

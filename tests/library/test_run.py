@@ -113,6 +113,16 @@ def test_without_gdal_rasters_are_refused_with_what_to_install(survey, tmp_path,
             run(name, POINT_CLOUDS=[survey / "s.laz"], TRAJECTORY=survey / "drive.gpkg", **outputs)
 
 
+def test_scanlines_are_refused_before_the_work_where_they_cannot_be_written(survey, tmp_path, monkeypatch):
+    inputs = {"POINT_CLOUDS": [survey / "s.laz"], "TRAJECTORY": survey / "drive.gpkg"}
+    with pytest.raises(RoadExtractionError, match="lines with measures. Write a GeoPackage"):
+        run("normalizedscanlines", **inputs, SCANLINES=tmp_path / "s.fgb")
+    find = gdal_module.find_spec
+    monkeypatch.setattr(gdal_module, "find_spec", lambda name: None if name == "osgeo" else find(name))
+    with pytest.raises(RoadExtractionError, match="Normalized scanlines are lines with measures, which needs GDAL's"):
+        run("normalizedscanlines", **inputs, SCANLINES=tmp_path / "s.gpkg")
+
+
 def test_rows_of_a_reference_are_excluded_by_a_condition(survey, tmp_path):
     numbers = [run("assessboundaries", INPUT=survey / "truth.gpkg", REFERENCE=survey / "truth.gpkg", OUTPUT=tmp_path / "o.gpkg", **more)
                for more in ({}, {"EXCLUDED": "\"side\" = 'left'"})]
