@@ -1,6 +1,5 @@
 """The sample survey through the whole chain, in the background, into the project."""
 
-import shutil
 import tempfile
 import time
 from functools import partial
@@ -34,9 +33,10 @@ class SampleRun:
             self._say(tr("The sample survey is already running."), Qgis.MessageLevel.Info)
             return
         self.running = True
-        self.folder = Path(tempfile.mkdtemp(prefix="lanewright-sample-"))
+        folder = tempfile.TemporaryDirectory(prefix="lanewright-sample-")
+        self.folder = Path(folder.name)
         # its layers stay in the project until then
-        QgsApplication.instance().aboutToQuit.connect(partial(shutil.rmtree, self.folder, ignore_errors=True))
+        QgsApplication.instance().aboutToQuit.connect(partial(_remove, folder))
         self._run("samplesurvey", dict(
             LENGTH=LENGTH, POINT_CLOUD=str(self.folder / "sample.laz"), TRAJECTORY=str(self.folder / "trajectory.gpkg")
         ), self._survey_made)
@@ -86,3 +86,10 @@ def _loaded(path, table=""):
 
     sink = f"ogr:dbname='{path}' table=\"{table}\" (geom)" if table else str(path)
     return QgsProcessingOutputLayerDefinition(sink, QgsProject.instance())
+
+
+def _remove(folder):
+    try:
+        folder.cleanup()
+    except OSError:
+        pass  # a file that is still open on Windows; the system empties its folder for temporary files

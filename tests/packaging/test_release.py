@@ -48,7 +48,7 @@ def test_every_package_one_must_install_is_named_to_the_user(metadata):
     for line in (ROOT / "requirements.txt").read_text().splitlines():
         if line and not line.startswith("#"):
             name = re.split(r"[<>=]", line)[0].removesuffix("-python-headless")
-            assert name in metadata["about"], name
+            assert name.lower() in metadata["about"].lower(), name
 
 
 def test_the_zip_has_one_folder_with_what_qgis_needs(archive):
