@@ -128,7 +128,13 @@ class IntensityHistograms:
         return found
 
     def add(self, found: Sequence[BinCounts], times: int = 1) -> None:
-        """Add the result of `count`, `times` times."""
+        """Add counts.
+
+        Parameters
+        ----------
+        found : result of `count`
+        times : how many points each counted point stands for
+        """
         for kind, first, counts in found:
             self.counts[kind, :, first:first + counts.shape[1]] += counts if times == 1 else times * counts
 
@@ -268,7 +274,13 @@ def is_logarithmic(median: np.ndarray, sigma: np.ndarray, weight: np.ndarray) ->
 
 
 def weighted_median(values: np.ndarray, weights: np.ndarray) -> float:
-    """The value below which half of the weight lies, of (N,) values and weights."""
+    """The value below which half of the weight lies.
+
+    Parameters
+    ----------
+    values : (N,) float, at least one
+    weights : (N,) 0 or more
+    """
     order = np.argsort(values, kind="stable")
     sums = np.cumsum(weights[order])
     return float(values[order][np.searchsorted(sums, 0.5 * sums[-1])])

@@ -86,6 +86,7 @@ class ScannerTurns:
 
     @property
     def known(self) -> bool:
+        """Whether there are any turns."""
         return bool(np.isfinite(self.middle).any())
 
 
@@ -147,7 +148,14 @@ class BeamGeometry:
 
     @classmethod
     def of(cls, p: Pass, points: Points, time: np.ndarray) -> BeamGeometry:
-        """Geometry of (N) points of a pass, seen at (N,) times."""
+        """Geometry of the points of a pass.
+
+        Parameters
+        ----------
+        p : Pass
+        points : (N) points
+        time : (N,) s, the time at which the position of the vehicle is taken for each point
+        """
         px, py, pz = p.position(time)
         dx, dy = points.x - px, points.y - py
         by_roll: np.ndarray | float = 0.0

@@ -57,7 +57,18 @@ def reach_of(settings: ImageSettings) -> int:
 
 
 def lattice_cell(units: np.ndarray | int, origin: float, cell_size: float) -> Any:
-    """Column or row of the lattice in which coordinates lie, as whole float64; `units` are 0.1 mm from `origin`, m."""
+    """Column or row of the lattice in which coordinates lie.
+
+    Parameters
+    ----------
+    units : (N,) or one, integers of 0.1 mm from `origin`
+    origin : map coordinate, m
+    cell_size : m
+
+    Returns
+    -------
+    whole float64 of the shape of `units`
+    """
     return np.floor((units * COORDINATE_SCALE + origin) / cell_size)
 
 

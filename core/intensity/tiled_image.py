@@ -37,13 +37,44 @@ class IntensityRaster(Protocol):
     crs: str
 
     def pixel_of(self, x: np.ndarray, y: np.ndarray, origin: Origin = (0.0, 0.0)) -> tuple[np.ndarray, np.ndarray]:
-        """Column and row, (N,) float, of (N,) coordinates that leave out `origin`; pixel 0 reaches from 0 to 1."""
+        """Column and row of places; pixel 0 reaches from 0 to 1.
+
+        Parameters
+        ----------
+        x, y : (N,) coordinates that leave out `origin`, m
+        origin : (2,) or more map coordinates, m
+
+        Returns
+        -------
+        column, row : (N,) float
+        """
 
     def sample(self, x: np.ndarray, y: np.ndarray, origin: Origin = (0.0, 0.0), bilinear: bool = False) -> np.ndarray:
-        """(N,) float32 values at (N,) coordinates that leave out `origin`, NaN where there is no data."""
+        """Image values at places.
+
+        Parameters
+        ----------
+        x, y : (N,) coordinates that leave out `origin`, m
+        origin : (2,) or more map coordinates, m
+        bilinear : between the centres of four pixels, else the pixel that a place lies in
+
+        Returns
+        -------
+        (N,) float32, NaN where there is no data
+        """
 
     def read_pixels(self, column: int, row: int, width: int, height: int) -> np.ndarray:
-        """(height, width) float32 from a pixel on, NaN where there is no data or no image."""
+        """Values of a window.
+
+        Parameters
+        ----------
+        column, row : of the first pixel, which may lie outside the image
+        width, height : pixels
+
+        Returns
+        -------
+        (height, width) float32, NaN where there is no data or no image
+        """
 
 
 class _StoredTile(NamedTuple):
@@ -100,7 +131,17 @@ class TiledImage(IntensityImage):
         self._tiles[column // GEOTIFF_TILE, row // GEOTIFF_TILE] = _StoredTile(*first, pixels.shape, stored)
 
     def read_pixels(self, column: int, row: int, width: int, height: int) -> np.ndarray:
-        """(height, width) float32 from a pixel on; NaN where there is no data or no image."""
+        """Values of a window.
+
+        Parameters
+        ----------
+        column, row : of the first pixel, which may lie outside the image
+        width, height : pixels
+
+        Returns
+        -------
+        (height, width) float32, NaN where there is no data or no image
+        """
         values = np.full((height, width), np.nan, np.float32)
         c0, c1 = max(column, 0), min(column + width, self.width)
         r0, r1 = max(row, 0), min(row + height, self.height)

@@ -52,7 +52,17 @@ def flatten(brightness: np.ndarray, median: np.ndarray, spread: np.ndarray, rims
 
 
 def asphalt_profile(bins: list[AsphaltBin], offsets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Median and spread of asphalt, (N,) float32, at (N,) offsets, m: interpolated between the middles of one window's bins."""
+    """Median and spread of asphalt across the road, interpolated between the middles of one window's bins.
+
+    Parameters
+    ----------
+    bins : of `asphalt_bins`, at least one
+    offsets : (N,) m
+
+    Returns
+    -------
+    median, spread : (N,) float32
+    """
     middles = [b.middle for b in bins]
     return (np.interp(offsets, middles, [b.median for b in bins]).astype(np.float32),
             np.interp(offsets, middles, [b.spread for b in bins]).astype(np.float32))

@@ -60,7 +60,18 @@ def _met_since(ends, breaks):
 
 
 def long_runs(mask: np.ndarray, length: int, axis: int) -> np.ndarray:
-    """The cells of a (rows, columns) bool mask that lie in runs of at least `length` cells along an axis."""
+    """The cells that lie in runs of a minimum length along an axis.
+
+    Parameters
+    ----------
+    mask : (rows, columns) bool
+    length : cells
+    axis : 0 along the road, 1 across it
+
+    Returns
+    -------
+    (rows, columns) bool, a subset of `mask`
+    """
     if length < 2:
         return mask.copy()
     size, behind = ((1, length), (0, length - 1)) if axis == 0 else ((length, 1), (length - 1, 0))

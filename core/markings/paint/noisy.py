@@ -179,6 +179,7 @@ class BrightPiece:
 
     @property
     def may_be_dash(self) -> bool:
+        """Whether it is long and narrow enough for a dash in a row."""
         return self.shape.length >= DASH_LENGTH and self.shape.width <= DASH_WIDTH
 
 
@@ -199,7 +200,17 @@ class ViewSamples:
 
 
 def views(points: Points, frame: RoadFrame) -> np.ndarray | None:
-    """(N,) int, the half metre of its way from which the vehicle measured each point; None where times are not known."""
+    """The half metre of the vehicle's way from which each point was measured.
+
+    Parameters
+    ----------
+    points : (N) road points
+    frame : RoadFrame
+
+    Returns
+    -------
+    (N,) int numbers; None where times are not known
+    """
     if not frame.has_time:
         return None
     found = np.zeros(len(points), np.int64)
@@ -251,7 +262,15 @@ def noisy_paint_cells(averages: CellAverages, rim: np.ndarray, samples: ViewSamp
 
 
 def bright_pieces(mask: np.ndarray, averages: CellAverages, rim: np.ndarray, threshold: float) -> list[BrightPiece]:
-    """Connected pieces of a (rows, columns) mask that reach the threshold away from the road's rim; the smallest are left out."""
+    """Connected pieces that reach the threshold away from the road's rim; the smallest are left out.
+
+    Parameters
+    ----------
+    mask : (rows, columns) bool, bright cells
+    averages : CellAverages of the window
+    rim : (rows, columns) metres from the rim of the road
+    threshold : spreads above asphalt that the brightest tenth of a piece reaches
+    """
     labels, count = ndimage.label(mask, np.ones((3, 3), bool))
     large = np.bincount(labels.ravel(), minlength=count + 1) * CELL_SIZE**2 >= DASH_AREA
     z, found = averages.z, []

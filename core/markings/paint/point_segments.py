@@ -96,7 +96,17 @@ def _segments(records, settings):
 
 
 def segment_thresholds(records: Columns, settings: SegmentSettings) -> dict[int, float]:
-    """The least intensity of paint by number of the segment across the road, infinite where there is none."""
+    """The least intensity of paint in the segments of one row across the road.
+
+    Parameters
+    ----------
+    records : (N,) columns of road points
+    settings : SegmentSettings
+
+    Returns
+    -------
+    threshold by number of the segment, infinite where there is no paint
+    """
     value, segment = Points(records).value, _segments(records, settings)
     order = np.argsort(segment, kind="stable")
     numbers, starts = np.unique(segment[order], return_index=True)

@@ -141,8 +141,8 @@ def test_the_correction_does_not_depend_on_the_length_of_sections(section_length
     np.testing.assert_array_equal(np.sort(a.corrected), np.sort(b.corrected))
 
 
-def test_where_points_crowd_stripes_of_road_tell_the_same_asphalt(monkeypatch):
-    """Of 2000 points a metre each ninth centimetre is looked at, whatever the length of sections."""
+def test_where_points_are_dense_stripes_of_road_give_the_same_asphalt(monkeypatch):
+    """Of 2000 points a metre each ninth centimetre is sampled, whatever the length of sections."""
     usual, _ = corrected(street()[0])
     monkeypatch.setattr(intensity, "ENOUGH_POINTS_PER_METRE", 220)
     striped, report = corrected(street()[0])

@@ -148,11 +148,11 @@ def test_the_image_does_not_depend_on_the_length_of_sections(tmp_path, section_l
     np.testing.assert_array_equal(usual, other)
 
 
-def test_where_points_crowd_a_share_of_them_makes_the_same_image(tmp_path):
+def test_where_points_are_dense_a_share_of_them_makes_the_same_image(tmp_path):
     """Ten points to a cell, of which each third weighs on all cells, whatever the length of sections."""
-    crowded = painted_street(length=12.0, density=6300)
-    share = all_pixels(image_of(crowded, tmp_path / "a.tif"))
-    other = all_pixels(image_of(crowded[::-1], tmp_path / "b.tif", section_length=7.3))
+    dense = painted_street(length=12.0, density=6300)
+    share = all_pixels(image_of(dense, tmp_path / "a.tif"))
+    other = all_pixels(image_of(dense[::-1], tmp_path / "b.tif", section_length=7.3))
     np.testing.assert_array_equal(share, other)
     usual = all_pixels(image_of(painted_street(length=12.0, density=2100), tmp_path / "c.tif"))
     for values in (share, usual):
@@ -162,13 +162,13 @@ def test_where_points_crowd_a_share_of_them_makes_the_same_image(tmp_path):
     assert abs(np.mean(share > middle) - np.mean(usual > middle)) * 6.0 < 0.005
 
 
-def test_where_points_crowd_almost_every_pixel_is_as_if_all_points_weighed_on_all_cells(tmp_path, monkeypatch):
+def test_where_points_are_dense_almost_every_pixel_is_as_if_all_points_weighed_on_all_cells(tmp_path, monkeypatch):
     from lanewright.core.intensity import image
 
-    crowded = painted_street(length=12.0, density=6300)
-    share = all_pixels(image_of(crowded, tmp_path / "a.tif", ImageSettings(beta=0.0)))
+    dense = painted_street(length=12.0, density=6300)
+    share = all_pixels(image_of(dense, tmp_path / "a.tif", ImageSettings(beta=0.0)))
     monkeypatch.setattr(image, "FAR_POINTS_PER_CELL", 100)
-    every = all_pixels(image_of(crowded, tmp_path / "b.tif", ImageSettings(beta=0.0)))
+    every = all_pixels(image_of(dense, tmp_path / "b.tif", ImageSettings(beta=0.0)))
     assert share.shape == every.shape and (share != every).mean() > 0.5
     assert (np.abs(share - every) <= 0.02 * (PAINT - ASPHALT)).sum() > 0.97 * np.isfinite(every).sum()
 
@@ -299,7 +299,7 @@ def test_a_report_shows_the_same_background_when_only_tiles_with_data_are_read(t
     assert (np.abs(whole.astype(int) - tiles) <= 25).mean() > 0.9
 
 
-def test_tiles_with_data_are_told_row_by_row(tmp_path):
+def test_tiles_with_data_are_listed_row_by_row(tmp_path):
     image = image_of(painted_street(length=45.0), tmp_path / "i.tif")
     every = [(column, row) for row in range(0, image.height, 512) for column in range(0, image.width, 512)]
     assert image.tiles() == every and len(every) > 2
@@ -364,7 +364,7 @@ def test_settings_that_make_no_image_are_refused(wrong):
         ImageSettings(**wrong)
 
 
-def test_an_image_is_told_from_one_of_another_road(tmp_path):
+def test_an_image_of_another_road_is_refused(tmp_path):
     here = painted_street()
     image = image_of(here, tmp_path / "here.tif")
     check_image_shows(image, road_points(here))

@@ -150,7 +150,7 @@ def test_noisy_multi_beam_intensities_show_bars_of_paint_and_stay_silent_without
 
 
 class Listener(Progress):
-    """Keeps what a user is told and warned of."""
+    """Keeps the messages and warnings."""
 
     def __init__(self):
         self.warnings, self.said = [], []
@@ -165,15 +165,15 @@ class Listener(Progress):
         return self
 
 
-@pytest.mark.parametrize("ends, told", [((0, 100), 0), ((0, 84), 1), ((33, 100), 1)], ids=["whole", "bright end", "dark end"])
-def test_intensities_cut_off_at_an_end_are_warned_of_also_where_nothing_is_corrected(tmp_path, ends, told):
+@pytest.mark.parametrize("ends, warnings", [((0, 100), 0), ((0, 84), 1), ((33, 100), 1)], ids=["whole", "bright end", "dark end"])
+def test_intensities_cut_off_at_an_end_are_warned_of_also_where_nothing_is_corrected(tmp_path, ends, warnings):
     records, listener = street(FRAME, [strip(10, 70, 1.0, 1.15)]), Listener()
     low, high = np.percentile(records["intensity"], ends)
     records["intensity"] = np.rint(np.clip((records["intensity"] - low) / (high - low), 0, 1) * 1000)
     points = road_points(records, FRAME)
     write_intensity_image(points, tmp_path / "image.tif")
     extract_markings(points, IntensityImage.open(tmp_path / "image.tif"), FRAME, progress=listener)
-    assert len(listener.warnings) == told
+    assert len(listener.warnings) == warnings
 
 
 def test_neither_the_order_of_points_nor_the_length_of_sections_matters(tmp_path):
@@ -184,8 +184,8 @@ def test_neither_the_order_of_points_nor_the_length_of_sections_matters(tmp_path
 
 
 @pytest.mark.slow
-def test_where_points_crowd_some_of_them_tell_how_all_lie(tmp_path, monkeypatch):
-    """Of 12 000 points a metre every fourth tells how wide the bins are."""
+def test_where_points_are_dense_a_share_of_them_gives_the_bins(tmp_path, monkeypatch):
+    """Of 12 000 points a metre every fourth is used for the width of the bins."""
     line = strip(5, 75, 1.0, 1.15)
     records = street(FRAME, [line], density=1500)
     usual = found_on(records, tmp_path)
@@ -289,7 +289,7 @@ def test_another_road_of_another_scanner_leaves_the_method_on_this_street_as_it_
 
 
 def test_a_noisy_scanner_that_measured_forty_metres_of_a_quiet_street_is_known_there(tmp_path):
-    """None of the windows that usually tell lies in its 40 m."""
+    """None of the windows that are usually examined lies in its 40 m."""
     frame = drive(90)
     quiet = noisy_bar(frame, 0, 0, 79.9, 0, noisy=False)
     outside = quiet[(quiet["s"] < to_units(20)) | (quiet["s"] >= to_units(60))]

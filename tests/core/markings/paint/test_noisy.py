@@ -10,7 +10,7 @@ from spun_streets import spun
 
 
 class NoImage:
-    """Averages are taken of the points: the image is not looked at."""
+    """Averages are taken of the points: the image is not used."""
 
 
 def strip(x0, x1, y0, y1):
