@@ -1,6 +1,9 @@
 """The alignment that the lanes of a road have in common: its straights, arcs and clothoids."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,11 +15,15 @@ from .cross_section import STATION_STEP
 from .lane_tracking import BRIDGED
 from .settings import MIN_PLACES_PER_FIT
 
-MAX_PARALLEL_DEVIATION = 0.06     # m: 95 % of a lane's places are nearer than this to a parallel of the others
-MIN_SHARED_LENGTH = 10.0  # m that a lane must share with others to be compared
-MIN_ARC_LENGTH = 25.0     # m: a shorter arc may be a stair of a transition
-MAX_TRANSITION_MISFIT = 0.02     # m
-DIVISION_SPACING = 1.0        # m between places that are divided: fitted lines err alike over metres
+if TYPE_CHECKING:
+    from ..survey.frame.road_frame import Road
+    from .lane_tracking import LaneTrack
+
+MAX_PARALLEL_DEVIATION = 0.06  # m: 95 % of a lane's places are nearer than this to a parallel of the others
+MIN_SHARED_LENGTH = 10.0       # m that a lane must share with others to be compared
+MIN_ARC_LENGTH = 25.0          # m: a shorter arc may be a stair of a transition
+MAX_TRANSITION_MISFIT = 0.02   # m
+DIVISION_SPACING = 1.0         # m between places that are divided: fitted lines err alike over metres
 
 
 @dataclass(frozen=True)
@@ -34,7 +41,7 @@ class Element:
     complete: bool
 
 
-def lane_elements(tracks, s, road):
+def lane_elements(tracks: list[LaneTrack], s: np.ndarray, road: Road) -> list[list[Element]]:
     """Arcs and straights of every lane.
 
     Lanes of a road run parallel, so that their bends are concentric: what they have
@@ -44,7 +51,7 @@ def lane_elements(tracks, s, road):
 
     Parameters
     ----------
-    tracks : list of Track
+    tracks : list of LaneTrack
     s : (K,) grid stations
     road : Road
 
@@ -52,7 +59,8 @@ def lane_elements(tracks, s, road):
     -------
     list, for every track, of lists of Element in order of station
     """
-    found, groups = [None] * len(tracks), []
+    found: list[list[Element]] = [[] for _ in tracks]
+    groups = []
     waiting = sorted(range(len(tracks)), key=lambda i: (-len(tracks[i]), i))
     while waiting:
         groups.append(_parallel_lanes([(i, tracks[i]) for i in waiting]))

@@ -1,6 +1,9 @@
 """The smooth course of a lane, its pieces by status, and the arcs in it."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -9,10 +12,15 @@ from .cross_section import STATION_STEP
 from .lane_tracking import BRIDGED
 from .settings import MIN_PLACES_PER_FIT
 
-MIN_STATUS_LENGTH = 5.0   # m: a shorter change of status is not worth a piece
-MIN_ELEMENT_SHARE = 0.9    # share of a piece that one element must cover to give it its name
-ARC_BLEND_LENGTH = 5.0         # m at its ends over which an arc passes into what comes before and after
-MAX_SHARED_ARC_RMSE = 0.02     # m: RMSE below which a lane is taken to be the arc it shares with its neighbours
+if TYPE_CHECKING:
+    from ..survey.frame.road_frame import Road
+    from .alignment import Element
+    from .lane_tracking import LaneTrack
+
+MIN_STATUS_LENGTH = 5.0     # m: a shorter change of status is not worth a piece
+MIN_ELEMENT_SHARE = 0.9     # share of a piece that one element must cover to give it its name
+ARC_BLEND_LENGTH = 5.0      # m at its ends over which an arc passes into what comes before and after
+MAX_SHARED_ARC_RMSE = 0.02  # m: RMSE below which a lane is taken to be the arc it shares with its neighbours
 
 
 @dataclass
@@ -30,12 +38,12 @@ class Course:
     rmse: float
 
 
-def lane_courses(tracks, s, road, elements):
+def lane_courses(tracks: list[LaneTrack], s: np.ndarray, road: Road, elements: list[list[Element]]) -> list[Course]:
     """Fit the courses of the lanes of a road, together.
 
     Parameters
     ----------
-    tracks : list of Track
+    tracks : list of LaneTrack
     s : (K,) grid stations
     road : Road
     elements : Elements of each lane; on them the course is the arc or straight itself, so
@@ -88,7 +96,7 @@ def _drawn_to(element, places, station):
     return moved
 
 
-def without_short_status(status):
+def without_short_status(status: np.ndarray) -> np.ndarray:
     """Status along a lane without changes shorter than 5 m: these take the worse of their neighbours."""
     status = status.copy()
     shortest = int(MIN_STATUS_LENGTH / STATION_STEP)
@@ -102,7 +110,7 @@ def without_short_status(status):
         status[cuts[k]:cuts[k + 1]] = max(beside)
 
 
-def status_pieces(status, first, s):
+def status_pieces(status: np.ndarray, first: int, s: np.ndarray) -> list[tuple[int, float, float]]:
     """(status, start station, end station) of the pieces of a lane; ends touch."""
     cuts = np.r_[0, np.flatnonzero(np.diff(status)) + 1, len(status)]
     bounds = s[first + cuts[:-1]]
@@ -110,7 +118,7 @@ def status_pieces(status, first, s):
     return [(int(status[a]), float(b), float(e)) for a, b, e in zip(cuts[:-1], bounds, ends)]
 
 
-def element_of(elements, start, end):
+def element_of(elements: list[Element], start: float, end: float) -> Element | None:
     """The arc or straight that covers nine tenths of a piece between two stations, or None."""
     for element in elements:
         if min(end, element.end) - max(start, element.start) >= MIN_ELEMENT_SHARE * (end - start):

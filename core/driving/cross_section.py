@@ -11,11 +11,11 @@ from ..markings.lines.frame_lines import FrameLines
 from ..markings.lines.painted_lines import PaintedLines
 from .road_edges import RoadEdges
 
-STATION_STEP = 0.5                    # m of station between places where lanes are looked for
+STATION_STEP = 0.5                             # m of station between places where lanes are looked for
 MAX_LINE_OBLIQUITY = np.tan(np.radians(25.0))  # a line that runs more across the road than this bounds no lane
-MIN_BOUNDARY_SPACING = 0.8                  # m: lines nearer than this are one boundary, a lane ends at the nearer one
-MAX_LATERAL_JUMP = 0.3                 # m across by which a line may jump where it goes on as another
-MAX_DASH_GAP = 9.5                # m that a dashed line may be silent at its ends before it is known to end
+MIN_BOUNDARY_SPACING = 0.8                     # m: lines nearer than this are one boundary, a lane ends at the nearer one
+MAX_LATERAL_JUMP = 0.3                         # m across by which a line may jump where it goes on as another
+MAX_DASH_GAP = 9.5                             # m that a dashed line may be silent at its ends before it is known to end
 
 
 @dataclass
@@ -37,7 +37,7 @@ class CrossSections:
     names: list
 
     @property
-    def seen_length(self):
+    def seen_length(self) -> np.ndarray:
         """(L,) metres of each line that were measured."""
         return STATION_STEP * (self.seen & np.isfinite(self.d)).sum(1)
 

@@ -1,14 +1,23 @@
 """Which way each lane is driven."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from .cross_section import STATION_STEP
+
+if TYPE_CHECKING:
+    from ..survey.frame.road_frame import RoadFrame
+    from .cross_section import CrossSections
+    from .lane_tracking import LaneTrack
 
 MAX_DIVIDE_PAUSE = 30.0     # m: where a centre line pauses for less, the divide goes on from end to end
 MIN_DRIVEN_SHARE = 0.6
 
 
-def driven_offsets(frame, road, s):
+def driven_offsets(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(P, K) offset of every pass over a road where it drove, NaN elsewhere, and (P,) its direction."""
     passes = frame.passes_of(road)
     d = np.full((len(passes), len(s)), np.nan)
@@ -19,7 +28,7 @@ def driven_offsets(frame, road, s):
     return d, np.array([p.direction for p in passes], int)
 
 
-def divide(lines, tracks, driven, directions):
+def divide(lines: CrossSections, tracks: list[LaneTrack], driven: np.ndarray, directions: np.ndarray) -> np.ndarray:
     """(K,) offset of what parts the two directions of traffic, NaN where nothing does.
 
     A line called centre line or drawn double with lanes on both sides; passes that
@@ -106,7 +115,7 @@ def _middle_of_lanes(middles, driven, directions):
     return found
 
 
-def side_votes(middle, driven, directions):
+def side_votes(middle: np.ndarray, driven: np.ndarray, directions: np.ndarray) -> np.ndarray:
     """Metres driven right and left of the divide, as seen by the driver."""
     with np.errstate(invalid="ignore"):
         right = (driven - middle) * directions[:, None] < -0.3
@@ -114,7 +123,7 @@ def side_votes(middle, driven, directions):
     return STATION_STEP * np.array([right.sum(), left.sum()])
 
 
-def lane_directions(tracks, middle, driven, directions, side, asked):
+def lane_directions(tracks: list[LaneTrack], middle: np.ndarray, driven: np.ndarray, directions: np.ndarray, side: str, asked: bool) -> list[int]:
     """(T,) direction of each lane, 1 along the road's reference, -1 against it.
 
     side : "right" or "left"; asked : True where the user named it, which then counts

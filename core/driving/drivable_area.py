@@ -15,9 +15,9 @@ from .settings import MIN_LANE_WIDTH
 if TYPE_CHECKING:
     from ..survey.frame.road_frame import RoadFrame
 
-CURB_CLEARANCE_SHARE = 0.3       # share of a lane's width: a curb this near its middle runs along the lane
+CURB_CLEARANCE_SHARE = 0.3  # share of a lane's width: a curb this near its middle runs along the lane
 MAX_CURB_SHARE = 0.5        # of its length beside such a curb, and it is no lane
-MAX_HATCHED_SHARE = 0.25      # of its middle on the stripes of a hatched area (they cover less than half of it)
+MAX_HATCHED_SHARE = 0.25    # of its middle on the stripes of a hatched area (they cover less than half of it)
 
 
 class DrivableArea:

@@ -10,8 +10,8 @@ import numpy as np
 from ..common.progress import Progress
 from ..markings.lines.painted_lines import PaintedLines
 from ..markings.objects.marking_objects import MarkingObjects
-from .alignment import lane_elements
-from .centreline import element_of, lane_courses, status_pieces, without_short_status
+from .alignment import Element, lane_elements
+from .centreline import Course, element_of, lane_courses, status_pieces, without_short_status
 from .cross_section import STATION_STEP, CrossSections, sections_of_edges, sections_of_lines
 from .curve_elements import is_curve
 from .direction import divide, driven_offsets, lane_directions, side_votes
@@ -96,26 +96,26 @@ def road_lanes(lines: CrossSections, driven: np.ndarray, settings: DrivingSettin
     area : DrivableArea
     """
     clear = area.clear
-    kept = select_lane_lines(lines, driven)
-    all_strips = lane_strips(lines, kept)
+    bounding = select_lane_lines(lines, driven)
+    all_strips = lane_strips(lines, bounding)
     tracks = paired_lanes(lines, all_strips, driven, clear)
     lane_width = settings.lane_width or typical_lane_width(tracks)
     gaps = settings.max_bridge, settings.max_inferred
     tracks = connect(tracks, lines, 0.0, 0.0)
     tracks = [track for track in tracks if len(track) * STATION_STEP >= settings.shortest]
     tracks = connect(tracks, lines, 0.0, settings.max_inferred)
-    tracks = connect(extend(tracks, lines, kept, clear, settings.max_bridge), lines, *gaps)
+    tracks = connect(extend(tracks, lines, bounding, clear, settings.max_bridge), lines, *gaps)
     tracks += divided_strips(lines, all_strips, tracks, driven, lane_width, clear)
     tracks = connect(tracks, lines, *gaps)
-    tracks = connect(extend(tracks, lines, kept, clear, settings.max_bridge), lines, *gaps)
+    tracks = connect(extend(tracks, lines, bounding, clear, settings.max_bridge), lines, *gaps)
     half = (typical_lane_width(tracks, painted=False) if tracks else lane_width) / 2
 
     def half_lane(d, side):
         return np.full(len(d), settings.line_distance) if settings.line_distance else area.half_lane(d, side, half)
 
-    tracks = connect(tracks + single_line_lanes(lines, kept, tracks, driven, half_lane, settings.max_bridge, clear), lines, *gaps)
-    tracks = [track.without_bridged_ends() for track in tracks]
-    tracks = [track for track in tracks if track is not None and len(track) * STATION_STEP >= settings.shortest]
+    tracks = connect(tracks + single_line_lanes(lines, bounding, tracks, driven, half_lane, settings.max_bridge, clear), lines, *gaps)
+    known = [track.without_bridged_ends() for track in tracks]
+    tracks = [track for track in known if track is not None and len(track) * STATION_STEP >= settings.shortest]
     return sorted(tracks, key=lambda track: (track.first, float(track.d[0])))
 
 
@@ -130,7 +130,8 @@ def _traffic_side(found, settings, progress):
     return "left" if left > right else "right"
 
 
-def _lane_pieces(track, way, course, elements, road_lines, z) -> Iterator[dict[str, Any]]:
+def _lane_pieces(track: LaneTrack, way: int, course: Course, elements: list[Element], road_lines: CrossSections,
+                 z: np.ndarray) -> Iterator[dict[str, Any]]:
     """The pieces of one lane by status, in order of station."""
     s = road_lines.s
     grid = s[track.first:track.last + 1]
@@ -172,7 +173,7 @@ def _between(course, start, end, code_first, code_last):
     return np.interp(at, s, course.x), np.interp(at, s, course.y), at
 
 
-def _lane_curves(way, elements) -> Iterator[dict[str, Any]]:
+def _lane_curves(way: int, elements: list[Element]) -> Iterator[dict[str, Any]]:
     """The circular curves of one lane."""
     for element in elements:
         arc = element.arc if way > 0 else element.arc.reversed()
@@ -189,8 +190,9 @@ def _driving_lines(rows: list[dict[str, Any]], crs: str) -> DrivingLines:
     return DrivingLines(
         _column(rows, "road", int), _column(rows, "lane", int), _column(rows, "pattern", object), _column(rows, "direction", int),
         _column(rows, "source", object), _column(rows, "status", object), [row["curve"] for row in rows],
-        *(_column(rows, name, float) for name in ("rmse", "station", "end", "offset", "width")),
-        np.concatenate([*places, np.empty((0, 3))]), np.append(0, np.cumsum([len(some) for some in places], dtype=int)), crs)
+        _column(rows, "rmse", float), _column(rows, "station", float), _column(rows, "end", float), _column(rows, "offset", float),
+        _column(rows, "width", float), np.concatenate([*places, np.empty((0, 3))]),
+        np.append(0, np.cumsum([len(some) for some in places], dtype=int)), crs)
 
 
 def _curve_elements(rows: list[dict[str, Any]], crs: str) -> CurveElements:

@@ -1,5 +1,9 @@
 """Heights of driving lines: the road's own."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 from scipy.ndimage import gaussian_filter1d, median_filter
 
@@ -8,15 +12,20 @@ from ..common.parallel import ordered_map
 from ..survey.store.records import COORDINATE_SCALE
 from .cross_section import STATION_STEP
 
+if TYPE_CHECKING:
+    from ..survey.store.road_points import RoadPoints
+    from .cross_section import CrossSections
+    from .lane_tracking import LaneTrack
+
 HEIGHT_REACH = 0.3        # m either side of the driving line
 MIN_POINTS_PER_HEIGHT = 3
 DENSE_SLICE, DENSE_COUNT = 0.05, 200  # m before and after a place: with so many points there, no others are looked at
-OFFSET_GRAIN_BITS = 4          # bits: points are sorted by offset to 1.6 mm
-HEIGHT_SMOOTHING_SIGMA = 2.0    # m: a car does not follow a pothole
-HEIGHT_WINDOW = 20.0      # m of road points in memory at a time
+OFFSET_GRAIN_BITS = 4                 # bits: points are sorted by offset to 1.6 mm
+HEIGHT_SMOOTHING_SIGMA = 2.0          # m: a car does not follow a pothole
+HEIGHT_WINDOW = 20.0                  # m of road points in memory at a time
 
 
-def road_heights(road_points, road, s, tracks):
+def road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list[LaneTrack]) -> list[np.ndarray]:
     """Median height of road points within 0.3 m of the places along lanes.
 
     Parameters
@@ -24,7 +33,7 @@ def road_heights(road_points, road, s, tracks):
     road_points : RoadPoints; every point is read once for all lanes
     road : number
     s : (K,) grid stations
-    tracks : list of Track
+    tracks : list of LaneTrack
 
     Returns
     -------
@@ -118,7 +127,7 @@ class _Near:
         return found, count
 
 
-def line_heights(lines, first, d):
+def line_heights(lines: CrossSections, first: int, d: np.ndarray) -> np.ndarray:
     """(N,) height between the marking lines (or beside them) at offsets d from grid station `first` on."""
     window = slice(first, first + len(d))
     z, at = lines.z[:, window], lines.d[:, window]
@@ -134,7 +143,7 @@ def line_heights(lines, first, d):
     return np.where(np.isfinite(a) & np.isfinite(b), between, np.where(np.isfinite(a), za, np.where(np.isfinite(b), zb, np.nan)))
 
 
-def smooth_heights(z):
+def smooth_heights(z: np.ndarray) -> np.ndarray:
     """Gaps closed along the lane, stray medians taken out, the rest smoothed; NaN only if all is."""
     known = np.isfinite(z)
     if not known.any():
@@ -150,7 +159,7 @@ def smooth_heights(z):
     return gaussian_filter1d(np.r_[head, z, tail], HEIGHT_SMOOTHING_SIGMA / STATION_STEP)[pad:pad + len(z)]
 
 
-def lane_heights(lines, road_points, road, tracks):
+def lane_heights(lines: CrossSections, road_points: RoadPoints | None, road: int, tracks: list[LaneTrack]) -> list[np.ndarray]:
     """Local z along every lane, (N,) each: from road points where there are any, else from the marking lines beside it."""
     measured = road_heights(road_points, road, lines.s, tracks) if road_points is not None else [None] * len(tracks)
     return [_height(z, line_heights(lines, track.first, track.d)) for z, track in zip(measured, tracks)]

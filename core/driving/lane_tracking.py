@@ -1,19 +1,26 @@
 """One lane followed along the road, and how stretches of lanes become one."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .cross_section import STATION_STEP
 
+if TYPE_CHECKING:
+    from .cross_section import CrossSections
+
 MEASURED, INFERRED, BRIDGED = 0, 1, 2
 LANE_STATUS = ("measured", "inferred", "bridged")
-MAX_LANE_JUMP_SHARE = 0.35      # share of a lane's width by which it may jump from one stretch to the next
-GAP_NEIGHBOURHOOD = 10.0       # m around a gap within which other lanes tell of a split or merge
-MIN_LANE_SEPARATION_SHARE = 0.6         # share of a lane's width that lanes keep from each other
-INTRUSION_SHARE = 0.3        # share of a lane's width within which a line makes it another lane
-MAX_EXTENSION_RATIO = 4               # times its own length that a lane is led on beside one line
-END_WIDTH_LENGTH = 10.0      # m over which a lane's width at its end is taken
+MAX_LANE_JUMP_SHARE = 0.35       # share of a lane's width by which it may jump from one stretch to the next
+GAP_NEIGHBOURHOOD = 10.0         # m around a gap within which other lanes tell of a split or merge
+MIN_LANE_SEPARATION_SHARE = 0.6  # share of a lane's width that lanes keep from each other
+INTRUSION_SHARE = 0.3            # share of a lane's width within which a line makes it another lane
+MAX_EXTENSION_RATIO = 4          # times its own length that a lane is led on beside one line
+END_WIDTH_LENGTH = 10.0          # m over which a lane's width at its end is taken
 
 
 @dataclass
@@ -33,34 +40,34 @@ class LaneTrack:
     right: np.ndarray
 
     @property
-    def last(self):
+    def last(self) -> int:
         return self.first + len(self.d) - 1
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.d)
 
-    def part(self, a, b):
+    def part(self, a: int, b: int) -> LaneTrack:
         """Rows a to b (exclusive) as a track of their own."""
         return LaneTrack(self.first + a, *(v[a:b] for v in self._columns()))
 
     def _columns(self):
         return self.d, self.width, self.status, self.offset, self.left, self.right
 
-    def followed_by(self, other):
+    def followed_by(self, other: LaneTrack) -> LaneTrack:
         """This track and one that begins at the next station."""
         return LaneTrack(self.first, *(np.concatenate(pair) for pair in zip(self._columns(), other._columns())))
 
-    def at(self, k):
+    def at(self, k: int) -> tuple[float, float]:
         """Offset and width at grid station k; NaN where the lane is not."""
         if self.first <= k <= self.last:
             return float(self.d[k - self.first]), float(self.width[k - self.first])
         return np.nan, np.nan
 
-    def end_width(self, head):
+    def end_width(self, head: bool) -> float:
         rows = int(END_WIDTH_LENGTH / STATION_STEP)
         return float(np.median(self.width[:rows] if head else self.width[-rows:]))
 
-    def without_bridged_ends(self):
+    def without_bridged_ends(self) -> LaneTrack | None:
         """The track less bridged stretches at its ends, where nothing follows; None if nothing is left."""
         known = np.flatnonzero(self.status != BRIDGED)
         return self.part(known[0], known[-1] + 1) if len(known) else None
@@ -71,7 +78,7 @@ def _filler(count, d, width, status, offset, left=-1, right=-1):
             np.full(count, left), np.full(count, right))
 
 
-def connect(tracks, lines, most_bridged, most_inferred):
+def connect(tracks: list[LaneTrack], lines: CrossSections, most_bridged: float, most_inferred: float) -> list[LaneTrack]:
     """Join lanes end to start, one to one.
 
     Without a gap they are joined where they meet; across a gap where one lane faces
@@ -186,7 +193,8 @@ def _crowded(track, other):
     return bool((apart < MIN_LANE_SEPARATION_SHARE * track.width[a - track.first:b - track.first + 1]).any())
 
 
-def extend(tracks, lines, kept, room, most_bridged):
+def extend(tracks: list[LaneTrack], lines: CrossSections, bounding: np.ndarray, clear: Callable[[LaneTrack], bool],
+           most_bridged: float) -> list[LaneTrack]:
     """Lead lanes on beside the one of their lines that goes on, as wide as they were.
 
     A lane stops where another lane is or a line cuts into it. Where that is within
@@ -196,13 +204,13 @@ def extend(tracks, lines, kept, room, most_bridged):
     tracks = sorted(tracks, key=lambda t: (t.first, float(t.d[0])))
     for i in range(len(tracks)):
         for head in (False, True):
-            more = _extension(tracks[i], tracks[:i] + tracks[i + 1:], lines, kept, head, most_bridged)
-            if more is not None and room(more):
+            more = _extension(tracks[i], tracks[:i] + tracks[i + 1:], lines, bounding, head, most_bridged)
+            if more is not None and clear(more):
                 tracks[i] = more.followed_by(tracks[i]) if head else tracks[i].followed_by(more)
     return tracks
 
 
-def _extension(track, others, lines, kept, head, most_bridged):
+def _extension(track, others, lines, bounding, head, most_bridged):
     tip = 0 if head else -1
     if track.status[tip] == BRIDGED:
         return None
@@ -211,7 +219,7 @@ def _extension(track, others, lines, kept, head, most_bridged):
     ahead = np.arange(start - 1, -1, -1) if head else np.arange(start + 1, len(lines.s))
     best, best_line = 0, None
     for line in {int(track.left[tip]), int(track.right[tip])} - {-1}:
-        length = _first_false(kept[line, ahead] & lines.seen[line, ahead])
+        length = _first_false(bounding[line, ahead] & lines.seen[line, ahead])
         if length > best and not _outside(track, lines, line, tip, start):
             best, best_line = length, line
     if best_line is None:
@@ -226,7 +234,7 @@ def _extension(track, others, lines, kept, head, most_bridged):
     for other in others:
         inside = (ahead >= other.first) & (ahead <= other.last)
         free[inside] &= np.abs(other.d[ahead[inside] - other.first] - d[inside]) >= MIN_LANE_SEPARATION_SHARE * width
-    cutting = kept[:, ahead] & (np.abs(lines.d[:, ahead] - d) < INTRUSION_SHARE * width)
+    cutting = bounding[:, ahead] & (np.abs(lines.d[:, ahead] - d) < INTRUSION_SHARE * width)
     free &= ~cutting.any(0)
     length = _first_false(free)
     if not length or length < best and length * STATION_STEP <= most_bridged and not _arrives(track, others, ahead[length], d[length], width):

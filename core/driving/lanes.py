@@ -1,26 +1,34 @@
 """Lines paired into lanes: where, between which lines, how wide."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
+
 import numpy as np
 
-from .cross_section import MIN_BOUNDARY_SPACING, STATION_STEP
+from .cross_section import MIN_BOUNDARY_SPACING, STATION_STEP, CrossSections
 from .lane_tracking import BRIDGED, INFERRED, MEASURED, LaneTrack
 from .settings import DEFAULT_LANE_WIDTH, MAX_LANE_WIDTH, MIN_LANE_WIDTH
 
-FULL_TRUST_LENGTH = 40.0     # m of measured length that make a line as good as any other
-NARROW_GAP_COST = 0.5      # what two lines too near for a lane between them cost, in lines
-STRADDLED_LINE_COST = 0.5    # what a line costs that the vehicle drove along, astride
-MAX_LANES = 4     # between two outer lines
-MAX_WIDTH_CHANGE = 0.8     # m of change of width beyond which a strip is classed place by place
+FULL_TRUST_LENGTH = 40.0          # m of measured length that make a line as good as any other
+NARROW_GAP_COST = 0.5             # what two lines too near for a lane between them cost, in lines
+STRADDLED_LINE_COST = 0.5         # what a line costs that the vehicle drove along, astride
+MAX_LANES = 4                     # between two outer lines
+MAX_WIDTH_CHANGE = 0.8            # m of change of width beyond which a strip is classed place by place
 MAX_DIVISION_OFFSET_SHARE = 0.25  # share of a lane's width by which a known lane may lie beside its place in a division
-MAX_ISOLATED_LINE = 15.0    # m: a shorter line between two that go on both ways needs a reason to part them
-ISOLATED_LINE_MARGIN = 5.0       # m that they go on
-MAX_DIVIDER_OFFSET = 0.5    # m from where the line between two lanes of a strip should be
-MIN_LANE_LENGTH = 2.0   # m: shorter, it is where lines end unevenly
-MIN_CLASS_LENGTH = 5.0  # m: a shorter change of class is noise of the width
-MAX_SHOULDER_WIDTH = 3.0     # m between two edge lines: a hard shoulder or a row of parking places, unless driven on
+MAX_ISOLATED_LINE = 15.0          # m: a shorter line between two that go on both ways needs a reason to part them
+ISOLATED_LINE_MARGIN = 5.0        # m that they go on
+MAX_DIVIDER_OFFSET = 0.5          # m from where the line between two lanes of a strip should be
+MIN_LANE_LENGTH = 2.0             # m: shorter, it is where lines end unevenly
+MIN_CLASS_LENGTH = 5.0            # m: a shorter change of class is noise of the width
+MAX_SHOULDER_WIDTH = 3.0          # m between two edge lines: a hard shoulder or a row of parking places, unless driven on
 
 
-def select_lane_lines(lines, driven):
+Strip = tuple[int, int, int, int]            # left line, right line, first and last grid station
+Clear = Callable[[LaneTrack], bool]          # whether a lane can be there
+
+
+def select_lane_lines(lines: CrossSections, driven: np.ndarray) -> np.ndarray:
     """Which of the present lines bound lanes.
 
     Strokes of symbols, outlines and gutters make lines too, which cut a lane in two
@@ -39,7 +47,7 @@ def select_lane_lines(lines, driven):
     (L, K) bool
     """
     present = np.isfinite(lines.d) & ~isolated_lines(lines)[:, None]
-    kept = np.zeros_like(present)
+    bounding = np.zeros_like(present)
     trust = np.clip(lines.seen_length / FULL_TRUST_LENGTH, 0.02, 1.0)
     for first, last in runs_of_columns(present):
         active = np.flatnonzero(present[:, first])
@@ -54,11 +62,11 @@ def select_lane_lines(lines, driven):
             apart = np.abs(lines.d[active, window][:, None] - driven[None, :, window])
             astride = np.nanmin(np.where(np.isnan(apart), np.inf, apart), axis=1) < 0.4
             weight = np.maximum(weight - STRADDLED_LINE_COST * (astride.mean(1) > 0.8), 0.01)
-        kept[active[_cheapest(d, weight)], window] = True
-    return kept
+        bounding[active[_cheapest(d, weight)], window] = True
+    return bounding
 
 
-def isolated_lines(lines):
+def isolated_lines(lines: CrossSections) -> np.ndarray:
     """(L,) True for short lines between two longer ones that do not part the road as lanes would."""
     present = np.isfinite(lines.d)
     found = np.zeros(len(present), bool)
@@ -98,33 +106,33 @@ def _cheapest(d, weight):
     return chain[::-1]
 
 
-def runs_of_columns(pattern):
+def runs_of_columns(pattern: np.ndarray) -> list[tuple[int, int]]:
     """(first, last) of the stretches over which the columns of a boolean (L, K) do not change."""
     change = (pattern[:, 1:] != pattern[:, :-1]).any(0)
     cuts = np.r_[0, np.flatnonzero(change) + 1, pattern.shape[1]]
     return [(int(a), int(b) - 1) for a, b in zip(cuts[:-1], cuts[1:])]
 
 
-def true_runs(mask):
+def true_runs(mask: np.ndarray) -> list[tuple[int, int]]:
     """(first, last) of the stretches of True in a boolean (K,)."""
     return [(a, b) for a, b in runs_of_columns(np.atleast_2d(mask)) if mask[a]]
 
 
-def lane_strips(lines, kept):
+def lane_strips(lines: CrossSections, bounding: np.ndarray) -> list[Strip]:
     """Strips of road between neighbouring lines: (left line, right line, first, last), in order of station."""
-    ranked = np.where(kept, -lines.d, np.inf)
+    ranked = np.where(bounding, -lines.d, np.inf)
     order = np.argsort(ranked, axis=0, kind="stable")
-    count = kept.sum(0)
+    count = bounding.sum(0)
     found = []
     for rank in range(int(count.max(initial=0)) - 1):
         both = count > rank + 1
-        pair = np.where(both, order[rank] * len(kept) + order[rank + 1], -1)
+        pair = np.where(both, order[rank] * len(bounding) + order[rank + 1], -1)
         for first, last in runs_of_columns(pair[None, :]):
             if pair[first] >= 0:
                 found.append((int(order[rank, first]), int(order[rank + 1, first]), first, last))
     # a strip may change its rank where a line begins beside it
     found.sort(key=lambda strip: (strip[0], strip[1], strip[2]))
-    merged = []
+    merged: list[Strip] = []
     for strip in found:
         if merged and merged[-1][:2] == strip[:2] and merged[-1][3] + 1 == strip[2]:
             merged[-1] = merged[-1][:3] + (strip[3],)
@@ -133,7 +141,7 @@ def lane_strips(lines, kept):
     return sorted(merged, key=lambda strip: (strip[2], strip[0], strip[1]))
 
 
-def classed(lines, strip):
+def classed(lines: CrossSections, strip: Strip) -> list[tuple[str, int, int]]:
     """Cut a strip where it changes between a lane ("lane"), room for several ("wide") and none.
 
     Returns
@@ -158,14 +166,14 @@ def classed(lines, strip):
     return [(names[kind], first + a, first + b) for kind, a, b in pieces]
 
 
-def paired_lanes(lines, all_strips, driven, room):
-    """A LaneTrack for every strip as wide as one lane; `room` says where lanes may be."""
+def paired_lanes(lines: CrossSections, all_strips: list[Strip], driven: np.ndarray, clear: Clear) -> list[LaneTrack]:
+    """A LaneTrack for every strip as wide as one lane; `clear` says where lanes may be."""
     tracks = []
     for left, right, first, last in all_strips:
         for what, a, b in classed(lines, (left, right, first, last)):
             if what == "lane" and b - a + 1 >= MIN_LANE_LENGTH / STATION_STEP and not _shoulder(lines, left, right, a, b, driven):
                 tracks.append(_share(lines, left, right, a, b, 0, 1))
-    return [track for track in tracks if room(track)]
+    return [track for track in tracks if clear(track)]
 
 
 def _shoulder(lines, left, right, first, last, driven):
@@ -189,7 +197,8 @@ def _share(lines, left, right, first, last, place, count):
                  np.full(size, left if place == count - 1 else -1), np.full(size, right if place == 0 else -1))
 
 
-def divided_strips(lines, all_strips, tracks, driven, lane_width, room):
+def divided_strips(lines: CrossSections, all_strips: list[Strip], tracks: list[LaneTrack], driven: np.ndarray, lane_width: float,
+                   clear: Clear) -> list[LaneTrack]:
     """Lanes where only the outer lines are painted: their number follows from the distance and the lane width.
 
     Only where the vehicle drove (a verge between two carriageways has lines on both
@@ -209,7 +218,7 @@ def divided_strips(lines, all_strips, tracks, driven, lane_width, room):
             shares = [_share(lines, left, right, a, b, place, count) for place in range(count)]
             for share, free in zip(shares, _free(shares, dl, dr, tracks)):
                 found += [share.part(i, j + 1) for i, j in true_runs(free)]
-    return [track for track in found if room(track)]
+    return [track for track in found if clear(track)]
 
 
 def _free(shares, dl, dr, tracks):
@@ -230,36 +239,37 @@ def _free(shares, dl, dr, tracks):
     return ~taken & ~foreign
 
 
-def lane_count(width, lane_width):
+def lane_count(width: float, lane_width: float) -> int:
     """How many lanes of plausible width fill a strip; 0 where it is too wide to be one road's lanes."""
     likely = [n for n in range(1, MAX_LANES + 1) if MIN_LANE_WIDTH <= width / n <= MAX_LANE_WIDTH]
     return min(likely, key=lambda n: (abs(width / n - lane_width), n)) if likely else 0
 
 
-def typical_lane_width(tracks, painted=True):
+def typical_lane_width(tracks: list[LaneTrack], painted: bool = True) -> float:
     """The median width of lanes (of those between two painted lines), 3.5 m where there is none."""
     widths = [track.width[track.status == MEASURED] if painted else track.width for track in tracks]
-    widths = np.concatenate(widths) if widths else np.empty(0)
-    return float(np.median(widths)) if len(widths) else DEFAULT_LANE_WIDTH
+    every = np.concatenate([*widths, np.empty(0)])
+    return float(np.median(every)) if len(every) else DEFAULT_LANE_WIDTH
 
 
-def single_line_lanes(lines, kept, tracks, driven, half_lane, shortest, room):
+def single_line_lanes(lines: CrossSections, bounding: np.ndarray, tracks: list[LaneTrack], driven: np.ndarray,
+                      half_lane: Callable[[np.ndarray, int], np.ndarray], shortest: float, clear: Clear) -> list[LaneTrack]:
     """Lanes beside a line without partner: where the vehicle drove, and on both sides of a centre line that is alone.
 
     half_lane : a function of offsets (K,) of a painted line and a side, 1 or -1, that gives the (K,) distance of the
         driving line from it
     shortest : metres; less is a gap between lanes that are known, left open for a reason
     """
-    alone = (kept.sum(0) == 1)
-    found = []
+    alone = (bounding.sum(0) == 1)
+    found: list[LaneTrack] = []
     for k in range(len(lines.d)):
         for side in (1, -1):
             half = half_lane(lines.d[k], side)
             d = lines.d[k] + side * half
-            free = kept[k] & lines.seen[k]
-            others = kept.copy()
+            free = bounding[k] & lines.seen[k]
+            others = bounding.copy()
             others[k] = False
-            for other in np.flatnonzero((others & kept[k]).any(1)):
+            for other in np.flatnonzero((others & bounding[k]).any(1)):
                 # with a line on the lane's other side the lane would have been paired or divided
                 beyond = side * (lines.d[other] - lines.d[k])
                 free &= ~(others[other] & (beyond > 0) & (beyond < 2 * MAX_LANE_WIDTH))
@@ -277,6 +287,6 @@ def single_line_lanes(lines, kept, tracks, driven, half_lane, shortest, room):
                 near = np.full(size, k)
                 track = LaneTrack(a, d[window].copy(), 2 * half[window], np.full(size, INFERRED), np.ones(size, bool),
                               near if side < 0 else np.full(size, -1), near if side > 0 else np.full(size, -1))
-                if room(track):
+                if clear(track):
                     found.append(track)
     return found

@@ -7,8 +7,8 @@ from ..common.setting import check_limits, setting
 
 MIN_LANE_WIDTH = 2.2  # m between the lines of a lane
 MAX_LANE_WIDTH = 5.0
-DEFAULT_LANE_WIDTH = 3.5      # where no lane of the road shows its width
-MIN_PLACES_PER_FIT = 8  # grid stations of a lane that a curve is fitted to
+DEFAULT_LANE_WIDTH = 3.5  # where no lane of the road shows its width
+MIN_PLACES_PER_FIT = 8    # grid stations of a lane that a curve is fitted to
 TRAFFIC_SIDES = ("automatic", "right", "left")
 
 

@@ -1,19 +1,25 @@
 """Solid or dashed, and with what rhythm: what the painted intervals of a line say."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-MAX_WORN_HOLE = 0.8           # m: a shorter hole is wear within a dash
-MAX_DASH_LENGTH = 10.5        # m: longer paint is solid line
-MIN_GAP_PER_DASH = 0.4        # of the dash length: road markings leave gaps of half a dash (6 m and 3 m) or more
+if TYPE_CHECKING:
+    from .linking import LinkedLine
+
+MAX_WORN_HOLE = 0.8            # m: a shorter hole is wear within a dash
+MAX_DASH_LENGTH = 10.5         # m: longer paint is solid line
+MIN_GAP_PER_DASH = 0.4         # of the dash length: road markings leave gaps of half a dash (6 m and 3 m) or more
 DASH_PAIR_LENGTH = (1.5, 8.0)  # m: dashes of which two alone are taken for a dashed line
-PERIOD_TOLERANCE = 0.16       # of the period: how evenly dashes must follow each other
-STEP_TOLERANCE = 0.2          # m by which the two steps between three pieces of unequal lengths may differ
-MIN_SHORT_DASHES = 4          # dashes of about a metre with gaps as long must be so many
-SHORT_DASH_TOLERANCE = 0.25   # m: of such dashes, deviation of the length from the median
-MAX_UNEVEN_SHARE = 0.25       # of such dashes: those that deviate more
-MAX_SOLID_GAP = 2.5           # m: a longer hole in a solid line is bridged, not measured
+PERIOD_TOLERANCE = 0.16        # of the period: how evenly dashes must follow each other
+STEP_TOLERANCE = 0.2           # m by which the two steps between three pieces of unequal lengths may differ
+MIN_SHORT_DASHES = 4           # dashes of about a metre with gaps as long must be so many
+SHORT_DASH_TOLERANCE = 0.25    # m: of such dashes, deviation of the length from the median
+MAX_UNEVEN_SHARE = 0.25        # of such dashes: those that deviate more
+MAX_SOLID_GAP = 2.5            # m: a longer hole in a solid line is bridged, not measured
 
 
 @dataclass(frozen=True)
@@ -24,7 +30,7 @@ class DashPattern:
     period: float
 
     @property
-    def gap(self):
+    def gap(self) -> float:
         return self.period - self.dash
 
 
@@ -34,15 +40,15 @@ class Stretch:
 
     first: float
     last: float
-    rhythm: DashPattern
+    dashes: DashPattern | None
     intervals: tuple   # (first, last) of each painted interval
 
     @property
-    def pattern(self):
-        return "dashed" if self.rhythm else "solid"
+    def pattern(self) -> str:
+        return "dashed" if self.dashes else "solid"
 
 
-def painted_intervals(line):
+def painted_intervals(line: LinkedLine) -> np.ndarray:
     """(K, 2) stations between which a line is painted, holes of wear closed."""
     spans = [span for strand in line.strands for span in _painted(strand)]
     found = [list(spans[0])]
@@ -67,25 +73,25 @@ def _painted(strand):
     return list(map(tuple, parts.tolist()))
 
 
-def stretches(line):
-    """The stretches of a line: dashed where short intervals follow a rhythm, solid elsewhere."""
+def stretches(line: LinkedLine) -> list[Stretch]:
+    """The stretches of a line: dashed where short intervals follow a dash pattern, solid elsewhere."""
     spans = painted_intervals(line)
     long = np.diff(spans, axis=1)[:, 0] > MAX_DASH_LENGTH
     cuts = np.flatnonzero(np.r_[True, np.diff(long.astype(int)) != 0, True])
-    found = []
+    found: list[tuple[np.ndarray, DashPattern | None]] = []
     for a, b in zip(cuts[:-1], cuts[1:]):
         group = spans[a:b]
         # beside solid stretches a few worn pieces look like dashes by chance
-        beat = None if long[a] or long.any() and len(group) < 3 else find_dash_pattern(group)
-        if found and found[-1][1] is None and beat is None:
+        dashes = None if long[a] or long.any() and len(group) < 3 else find_dash_pattern(group)
+        if found and found[-1][1] is None and dashes is None:
             found[-1] = (np.vstack([found[-1][0], group]), None)
         else:
-            found.append((group, beat))
-    return [Stretch(float(group[0, 0]), float(group[-1, 1]), beat, tuple(map(tuple, group.tolist())))
-            for group, beat in found]
+            found.append((group, dashes))
+    return [Stretch(float(group[0, 0]), float(group[-1, 1]), dashes, tuple(map(tuple, group.tolist())))
+            for group, dashes in found]
 
 
-def find_dash_pattern(spans):
+def find_dash_pattern(spans: np.ndarray) -> DashPattern | None:
     """The DashPattern of painted intervals (K, 2), or None where they follow none.
 
     Dashes may be missing: steps between dashes are then whole multiples of the
@@ -133,14 +139,14 @@ def _period(steps):
     return best if best_share >= 0.65 else None
 
 
-def same_dash_pattern(before, after):
+def same_dash_pattern(before: LinkedLine, after: LinkedLine) -> bool:
     """Whether two lines are dashed alike and the gap between them is a whole multiple of the period."""
     ends, begins = stretches(before)[-1], stretches(after)[0]
-    if not ends.rhythm or not begins.rhythm:
+    if not ends.dashes or not begins.dashes:
         return False
-    period = (ends.rhythm.period + begins.rhythm.period) / 2
-    if abs(ends.rhythm.period - begins.rhythm.period) > PERIOD_TOLERANCE * period \
-            or abs(ends.rhythm.dash - begins.rhythm.dash) > max(0.6, 0.25 * ends.rhythm.dash):
+    period = (ends.dashes.period + begins.dashes.period) / 2
+    if abs(ends.dashes.period - begins.dashes.period) > PERIOD_TOLERANCE * period \
+            or abs(ends.dashes.dash - begins.dashes.dash) > max(0.6, 0.25 * ends.dashes.dash):
         return False
     step = (np.mean(begins.intervals[0]) - np.mean(ends.intervals[-1])) / period
     return abs(step - round(step)) <= PERIOD_TOLERANCE * 1.5
@@ -156,7 +162,7 @@ class LinePiece:
     pattern: str
 
 
-def line_pieces(parts):
+def line_pieces(parts: list[Stretch]) -> list[LinePiece]:
     """Cut a line of some stretches where its status or pattern changes.
 
     A regular gap between dashes is part of the dashed line; a hole longer than the
@@ -164,14 +170,14 @@ def line_pieces(parts):
     """
     found = []
     for k, part in enumerate(parts):
-        gap = part.rhythm.gap * 1.25 + 0.8 if part.rhythm else MAX_SOLID_GAP
+        gap = part.dashes.gap * 1.25 + 0.8 if part.dashes else MAX_SOLID_GAP
         if k:
             # between two patterns: the dashed one's gap, if there is one
             other = parts[k - 1]
-            between = max(gap, other.rhythm.gap * 1.25 + 0.8 if other.rhythm else MAX_SOLID_GAP)
+            between = max(gap, other.dashes.gap * 1.25 + 0.8 if other.dashes else MAX_SOLID_GAP)
             measured = part.first - other.last <= between
             found.append(LinePiece(other.last, part.first, "measured" if measured else "bridged",
-                               other.pattern if other.rhythm else part.pattern))
+                               other.pattern if other.dashes else part.pattern))
         spans = part.intervals
         for j, (first, last) in enumerate(spans):
             if j and first - spans[j - 1][1] > gap:
@@ -182,9 +188,9 @@ def line_pieces(parts):
     return merged_pieces(found)
 
 
-def merged_pieces(parts):
+def merged_pieces(parts: list[LinePiece]) -> list[LinePiece]:
     """Pieces with equal neighbours put together; empty ones dropped."""
-    found = []
+    found: list[LinePiece] = []
     for part in parts:
         if part.last - part.first <= 1e-9:
             continue

@@ -17,8 +17,8 @@ from ...survey.store.records import join_columns
 from ..objects.marking_objects import MarkingObjects
 from .dash_pattern import same_dash_pattern
 from .frame_lines import lines_in_frame
-from .geometry import fit_line_shapes
-from .labelling import crossings, hatching_bars, hatching_borders, select_lines
+from .geometry import LineShape, fit_line_shapes
+from .labelling import SelectedLine, crossings, hatching_bars, hatching_borders, select_lines
 from .linking import CommonTrend, LinkedLine, link_lines, link_over_long_gaps, without_strays
 from .painted_lines import FittedPieces, PaintedLines
 from .strands import line_paint, trace_strands
@@ -90,23 +90,23 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
         strands = trace_strands(records, rank)
         part.report(0.4)
         hatched = hatching_bars(markings, road)
-        lines, drift = _linked(strands, settings)
+        lines, trend = _linked(strands, settings)
         # a line that leads up to a hatched area may be taken for its border: linked anew without that, it goes on behind the area
         while borders := hatching_borders(lines, hatched):
             strands = [strand for strand in strands if not any(strand is border for border in borders)]
-            lines, drift = _linked(strands, settings)
+            lines, trend = _linked(strands, settings)
         part.report(0.5)
-        chosen = select_lines(lines, drift, crossings(markings, road), settings.min_paint,
+        selected = select_lines(lines, trend, crossings(markings, road), settings.min_paint,
                                     hatched, frame.passes_of(road))
-        dropped += len(lines) - len(chosen)
-        shapes, unwanted = fit_line_shapes([one.line for one in chosen], [one.span for one in chosen], frame.road(road), drift,
+        dropped += len(lines) - len(selected)
+        shapes, unwanted = fit_line_shapes([one.line for one in selected], [one.span for one in selected], frame.road(road), trend,
                                      partial(frame.track_height, road), settings)
         part.report(0.8)
         replaced += unwanted
-        for j, (one, shape) in enumerate(zip(chosen, shapes)):
+        for j, (one, shape) in enumerate(zip(selected, shapes)):
             number += 1
             rows += [dict(row, line=number, road=int(road)) for row in _drawn_pieces(one, shape, frame.origin)]
-            part.report(0.8 + 0.2 * (j + 1) / len(chosen))
+            part.report(0.8 + 0.2 * (j + 1) / len(selected))
     progress.info(f"Marking lines: {number}; {dropped} fragments were left out.")
     if replaced:
         progress.warn(f"{replaced} of {number} lines cannot take the curve “{settings.curve}”; "
@@ -116,10 +116,10 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
 
 def _linked(strands, settings):
     """Lines of strands, and the CommonTrend they have in common."""
-    drift = CommonTrend(strands)
-    lines = link_lines([LinkedLine([strand]) for strand in strands], drift, settings.max_gap)
-    lines = link_over_long_gaps(lines, drift, settings.max_gap, settings.max_bridge, same_dash_pattern)
-    return [without_strays(line, drift) for line in lines], drift
+    trend = CommonTrend(strands)
+    lines = link_lines([LinkedLine([strand]) for strand in strands], trend, settings.max_gap)
+    lines = link_over_long_gaps(lines, trend, settings.max_gap, settings.max_bridge, same_dash_pattern)
+    return [without_strays(line, trend) for line in lines], trend
 
 
 def _records_of(points, road):
@@ -127,7 +127,7 @@ def _records_of(points, road):
     return join_columns(parts, points.store.dtype)
 
 
-def _drawn_pieces(one, shape, origin) -> Iterator[dict[str, Any]]:
+def _drawn_pieces(one: SelectedLine, shape: LineShape, origin: np.ndarray) -> Iterator[dict[str, Any]]:
     """The pieces of one line that have a length on the map."""
     s, d, *_ = one.line.places()
     for piece in one.pieces:
@@ -153,4 +153,4 @@ def _painted_lines(rows: list[dict[str, Any]], frame: RoadFrame, crs: str) -> Pa
                           np.append(0, np.cumsum([len(some) for some in places], dtype=int)),
                           *(column(name, float) for name in ("station", "end", "offset", "width", "rmse")))
     course = lines_in_frame(fitted.linestrings(frame), column("road", int), frame)
-    return PaintedLines(column("line", int), *(column(name, object) for name in ("kind", "pattern", "status")), course, fitted, crs)
+    return PaintedLines(column("line", int), column("kind", object), column("pattern", object), column("status", object), course, fitted, crs)

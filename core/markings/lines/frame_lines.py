@@ -56,7 +56,7 @@ class FrameLines:
         return shapely.linestrings(np.c_[self.x, self.y], indices=owner, out=found) if len(owner) else found
 
 
-def lines_in_frame(lines: Sequence[Any], road: Sequence[int] | np.ndarray, frame: RoadFrame) -> FrameLines:
+def lines_in_frame(lines: Sequence[Any] | np.ndarray, road: Sequence[int] | np.ndarray, frame: RoadFrame) -> FrameLines:
     """Lines in map coordinates as FrameLines.
 
     Parameters

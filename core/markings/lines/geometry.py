@@ -1,6 +1,10 @@
 """The course of one marking line in plan and height: places from its paint, a curve through them."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,10 +15,15 @@ from ...curves.model_selection import fit_curve, fit_curves
 from ...curves.robust import median
 from .frame_lines import LINE_VERTEX_SPACING
 
-MIN_POINTS_PER_PLACE = 3            # points that a place must have to count, where there are enough such places
-MIN_GUIDED_GAP = 4.0     # m: in a longer gap the curve is guided parallel to the other lines
+if TYPE_CHECKING:
+    from ...survey.frame.road_frame import Road
+    from .fit import MarkingLineSettings
+    from .linking import CommonTrend, LinkedLine
+
+MIN_POINTS_PER_PLACE = 3     # points that a place must have to count, where there are enough such places
+MIN_GUIDED_GAP = 4.0         # m: in a longer gap the curve is guided parallel to the other lines
 GUIDE_SPACING = 2.0          # m between guiding places
-GUIDE_LEVEL_REACH = 3.0          # m at either side of a gap that say where the guide begins and ends
+GUIDE_LEVEL_REACH = 3.0      # m at either side of a gap that say where the guide begins and ends
 LINE_HEIGHT_SMOOTHING = 3.0  # m
 
 
@@ -29,15 +38,15 @@ class LineShape:
     fit: CurveFit
     s: np.ndarray
     _station_to_u: tuple
-    _height: object
+    _height: Callable[[np.ndarray], np.ndarray]
 
-    def u(self, s):
+    def u(self, s: np.ndarray) -> np.ndarray:
         """Arc length on the curve at stations s, going on evenly beyond the ends."""
         stations, lengths = self._station_to_u
         inside = np.interp(s, stations, lengths)
         return inside + np.minimum(s - stations[0], 0.0) + np.maximum(s - stations[-1], 0.0)
 
-    def draw(self, first, last):
+    def draw(self, first: float, last: float) -> np.ndarray:
         """(M, 3) local places from station `first` to `last`, at most half a metre apart."""
         ends = self.u(np.array([first, last]))
         count = max(2, int(np.ceil((ends[1] - ends[0]) / LINE_VERTEX_SPACING - 1e-9)) + 1)
@@ -47,15 +56,16 @@ class LineShape:
         return np.c_[self.fit.curve.at(u), self._height(s)]
 
 
-def fit_line_shapes(lines, spans, road, drift, track_height, settings):
+def fit_line_shapes(lines: list[LinkedLine], spans: list[tuple[float, float]], road: Road, trend: CommonTrend,
+                    track_height: Callable[[np.ndarray], np.ndarray], settings: MarkingLineSettings) -> tuple[list[LineShape], int]:
     """The LineShapes of linked lines, fitted together.
 
     Parameters
     ----------
-    lines : list of Line
+    lines : list of LinkedLine
     spans : (first, last) stations of each to be drawn, which may reach beyond the paint
     road : Road
-    drift : Drift, how the painted lines of the road run together
+    trend : CommonTrend, how the painted lines of the road run together
     track_height : function of stations (N,), height of the trajectory; the line's height is
         smoothed as the difference to it, so that it goes on along the road's slope
     settings : MarkingLineSettings
@@ -66,7 +76,7 @@ def fit_line_shapes(lines, spans, road, drift, track_height, settings):
     """
     if not lines:
         return [], 0
-    courses = [_course(line, drift, span) for line, span in zip(lines, spans)]
+    courses = [_course(line, trend, span) for line, span in zip(lines, spans)]
     s, d, own = (np.concatenate(parts) for parts in zip(*((course.s, course.d, course.own) for course in courses)))
     bounds = np.cumsum([len(course.s) for course in courses])[:-1]
     x, y = (np.split(values, bounds) for values in road.to_map(s, d))
@@ -88,8 +98,13 @@ def fit_line_shapes(lines, spans, road, drift, track_height, settings):
         rising = np.maximum.accumulate(u)
         keep = np.append(True, np.diff(rising) > 1e-6)
         found.append(LineShape(fit, course.s[course.own], (course.s[keep], rising[keep]),
-                               lambda at, height=height: height(at) + track_height(at)))
+                               _height_above(height, track_height)))
     return found, replaced
+
+
+def _height_above(height, track_height):
+    """The function of stations that gives the height of a line from that above the trajectory."""
+    return lambda s: height(s) + track_height(s)
 
 
 @dataclass
@@ -105,14 +120,14 @@ class _Course:
     z: np.ndarray
 
 
-def _course(line, drift, span):
+def _course(line, trend, span):
     s, d, z, weight = line.places()
     strong = weight >= MIN_POINTS_PER_PLACE
     if strong.sum() >= max(4, 0.5 * len(s)):
         s, d, z = s[strong], d[strong], z[strong]
     order = np.argsort(s, kind="stable")
     s, d, z = s[order], d[order], z[order]
-    guide_s, guide_d = _guides(s, d - drift.at(s), drift, span)
+    guide_s, guide_d = _guides(s, d - trend.at(s), trend, span)
     order = np.argsort(np.concatenate([s, guide_s]), kind="stable")
     return _Course(np.concatenate([s, guide_s])[order], np.concatenate([d, guide_d])[order], order < len(s), z)
 
@@ -131,7 +146,7 @@ def _fitted(places, settings):
     return found, replaced
 
 
-def _guides(s, level, drift, span):
+def _guides(s, level, trend, span):
     """Places in long gaps and beyond the ends, where nothing is painted: parallel to the other lines."""
     wide = np.flatnonzero(np.diff(s) > MIN_GUIDED_GAP)
     gaps = zip(s[wide].tolist(), s[wide + 1].tolist())
@@ -142,12 +157,12 @@ def _guides(s, level, drift, span):
         before = median(level[np.searchsorted(s, a - GUIDE_LEVEL_REACH):start])
         after = median(level[stop:np.searchsorted(s, b + GUIDE_LEVEL_REACH, "right")])
         stations.append(at)
-        offsets.append(np.interp(at, [a, b], [before, after]) + drift.at(at))
+        offsets.append(np.interp(at, [a, b], [before, after]) + trend.at(at))
     for tip, end in ((s[0], span[0]), (s[-1], span[1])):
         if abs(end - tip) > GUIDE_SPACING / 4:
             at = np.linspace(tip, end, int(np.ceil(abs(end - tip) / GUIDE_SPACING)) + 1)[1:]
             stations.append(at)
-            offsets.append(median(level[np.abs(s - tip) <= GUIDE_LEVEL_REACH]) + drift.at(at))
+            offsets.append(median(level[np.abs(s - tip) <= GUIDE_LEVEL_REACH]) + trend.at(at))
     if not stations:
         return np.empty(0), np.empty(0)
     return np.concatenate(stations), np.concatenate(offsets)

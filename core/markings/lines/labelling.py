@@ -1,6 +1,10 @@
 """Which linked paint is a line, what kind of line it is, and how far it reaches."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -9,45 +13,52 @@ from ..objects.classify import LANE_CLEARANCE
 from .dash_pattern import MAX_DASH_LENGTH, LinePiece, line_pieces, merged_pieces, stretches
 from .linking import DOUBLE_LINE_SPACING, LinkedLine
 
+if TYPE_CHECKING:
+    from ...survey.frame.passes import Pass
+    from ..objects.marking_objects import MarkingObjects
+    from .linking import CommonTrend
+    from .strands import Strand
+
+
 # Which lines part the two directions of traffic, and which bound the road: what lines say of each other.
 
 MIN_TWO_LANE_WIDTH = 5.0      # m between the outer lines of a road of two lanes
-SAME_COURSE_OFFSET = 0.25   # m: a lone dash this near the course of a dashed line is one of its dashes
+SAME_COURSE_OFFSET = 0.25     # m: a single dash this near the course of a dashed line is one of its dashes
 MAX_JUNCTION_GAP = 40.0       # m: over a junction, between a double line and the dashes that take its place
 SINGLE_LANE_WIDTH = 2.2, 5.5  # m of carriageway on either side of a line that is alone: a lane, with a gutter or a cycle lane
 
 
-def label_outer_lines(chosen):
+def label_outer_lines(selected: list[SelectedLine]) -> None:
     """Two solid lines with room for two lanes and no line between them are the road's edge lines.
 
     The road's own edge is no help there: where there is no curb, a smooth verge may pass for carriageway.
     """
-    solid = [one for one in chosen if not one.double and all(piece.pattern == "solid" for piece in one.pieces)]
+    solid = [one for one in selected if not one.double and all(piece.pattern == "solid" for piece in one.pieces)]
     pairs = [(one, other) for one in solid for other in solid
              if MIN_TWO_LANE_WIDTH <= other.level - one.level and max(_shared(one, [other]), _shared(other, [one])) > 0.5]
     for one, other in pairs:
-        between = [inner for inner in chosen if one.level + DOUBLE_LINE_SPACING[1] < inner.level < other.level - DOUBLE_LINE_SPACING[1]]
+        between = [inner for inner in selected if one.level + DOUBLE_LINE_SPACING[1] < inner.level < other.level - DOUBLE_LINE_SPACING[1]]
         if not _shared(one, between) and not _shared(other, between):
             one.kind = other.kind = "edge"
 
 
-def label_single_centre(chosen):
+def label_single_centre(selected: list[SelectedLine]) -> None:
     """A road has one centre line at a place.
 
     Where it is double, solid lines beside it are lane lines; of two solid lines the
     one nearer the middle of what is painted is the centre line. A dashed line on the
     course of a centre line is that line's dashed part.
     """
-    inner = [one for one in chosen if one.kind == "centre" and not one.double]
+    inner = [one for one in selected if one.kind == "centre" and not one.double]
     for one in inner:
-        if _shared(one, [other for other in chosen if other.double]) > 0.5:
+        if _shared(one, [other for other in selected if other.double]) > 0.5:
             one.kind = "lane"
     rest = [one for one in inner if one.kind == "centre"]
-    for one in sorted(rest, key=lambda one: -_off_centre(one, chosen)):
+    for one in sorted(rest, key=lambda one: -_off_centre(one, selected)):
         if _shared(one, [other for other in rest if other is not one and other.kind == "centre"]) > 0.5:
             one.kind = "lane"
-    central = [one for one in chosen if one.kind == "centre"]
-    for one in chosen:
+    central = [one for one in selected if one.kind == "centre"]
+    for one in selected:
         if one.kind == "lane" and any(_on_course(one, other, central) for other in central) and not _shared(one, central):
             one.kind = "centre"
 
@@ -68,13 +79,13 @@ def _shared(one, others):
     return max(together, 0.0) / max(last - first, 1e-6)
 
 
-def _off_centre(one, chosen):
+def _off_centre(one, selected):
     """Metres between a line and the middle of the outermost lines beside it."""
-    beside = [other.level for other in chosen if _shared(one, [other]) > 0.3]
+    beside = [other.level for other in selected if _shared(one, [other]) > 0.3]
     return abs(one.level - (max(beside) + min(beside)) / 2) if beside else 0.0
 
 
-def label_isolated_centre(chosen, passes):
+def label_isolated_centre(selected: list[SelectedLine], passes: Sequence[Pass]) -> None:
     """A dashed line alone on its road, with room for one lane on either side, parts the two directions.
 
     The lane that was driven is taken to reach as far beyond the vehicle as the line lies on
@@ -83,9 +94,9 @@ def label_isolated_centre(chosen, passes):
 
     passes : the Passes of the road
     """
-    for one in chosen:
-        others = [other for other in chosen if other is not one]
-        if one.kind != "lane" or _shared(one, others) > 0.5 or not SINGLE_LANE_WIDTH[0] <= one.room <= SINGLE_LANE_WIDTH[1]:
+    for one in selected:
+        others = [other for other in selected if other is not one]
+        if one.kind != "lane" or _shared(one, others) > 0.5 or not SINGLE_LANE_WIDTH[0] <= one.edge_clearance <= SINGLE_LANE_WIDTH[1]:
             continue
         beside = _driven_beside(one, passes)
         driven = {way: {side for direction, side, _ in beside if direction == way} for way in (1, -1)}
@@ -104,43 +115,43 @@ def _driven_beside(one, passes):
             found.append((int(drive.direction), bool(away > 0), abs(away)))
     return found
 
-MIN_SHARED_PAINT = 0.6         # of a line's paint that must have its twin beside it in a double line
-MIN_TWIN_PAINT = 4.0     # m of paint: a shorter line beside another is its frayed edge, however short the other is there
-MAX_FRAYED_SHARE = 0.35        # of a line's length: less paint beside a line than this is no second line but its frayed edge
-MIN_SINGLE_DASH = 1.5      # m
-MIN_BOUNDING_PAINT = 15.0          # m of paint: enough to bound a road by
-MAX_NEIGHBOUR_OFFSET = 8.0      # m across: a line this near starts and ends where this one does
-WIDE_LANE_CLEARANCE = 2.6      # m: a solid line with less room than this to the road edge bounds the road
-MAX_BAR_LENGTH = 4.0            # m along the road: what is called hatching and is longer is no single bar of it
-MAX_BAR_END_OFFSET = 0.35        # m between the end of a bar and the outline
-MAX_BAR_PITCH = 3.0      # m from bar to bar along an outline
-MIN_BARS = 4             # that make an outline
-MIN_BARS_OF_STRAND = 2         # that tell which strands of an outline are its own
+MIN_SHARED_PAINT = 0.6      # of a line's paint that must have its twin beside it in a double line
+MIN_TWIN_PAINT = 4.0        # m of paint: a shorter line beside another is its frayed edge, however short the other is there
+MAX_FRAYED_SHARE = 0.35     # of a line's length: less paint beside a line than this is no second line but its frayed edge
+MIN_SINGLE_DASH = 1.5       # m
+MIN_BOUNDING_PAINT = 15.0   # m of paint: enough to bound a road by
+MAX_NEIGHBOUR_OFFSET = 8.0  # m across: a line this near starts and ends where this one does
+WIDE_LANE_CLEARANCE = 2.6   # m: a solid line with less room than this to the road edge bounds the road
+MAX_BAR_LENGTH = 4.0        # m along the road: what is called hatching and is longer is no single bar of it
+MAX_BAR_END_OFFSET = 0.35   # m between the end of a bar and the outline
+MAX_BAR_PITCH = 3.0         # m from bar to bar along an outline
+MIN_BARS = 4                # that make an outline
+MIN_BARS_OF_STRAND = 2      # that tell which strands of an outline are its own
 
 
 @dataclass
 class SelectedLine:
     """A line with its kind, its pieces by status and pattern, and the stations it is drawn between."""
 
-    line: object
+    line: LinkedLine
     kind: str
     double: bool
     pieces: list
     width: float
     level: float   # offset less the drift common to the road's lines, metres
-    room: float    # metres between the line and the road edge on its side
+    edge_clearance: float    # metres between the line and the road edge on its side
 
     @property
-    def span(self):
+    def span(self) -> tuple[float, float]:
         return self.pieces[0].first, self.pieces[-1].last
 
 
-def crossings(markings, road):
+def crossings(markings: MarkingObjects, road: int) -> np.ndarray:
     """(K, 4) first and last station, least and greatest offset of zebra crossings and stop lines of a road."""
     return _extents(markings, road, ("zebra", "stop"))
 
 
-def hatching_bars(markings, road):
+def hatching_bars(markings: MarkingObjects, road: int) -> np.ndarray:
     """(K, 4) the same of the bars of hatched areas."""
     found = _extents(markings, road, ("hatch",))
     return found[found[:, 1] - found[:, 0] < MAX_BAR_LENGTH]
@@ -152,7 +163,8 @@ def _extents(markings, road, kinds):
     return found[np.isfinite(found[:, 0])]
 
 
-def select_lines(lines, drift, crossed, min_paint, hatched=np.empty((0, 4)), passes=()):
+def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarray, min_paint: float, hatched: np.ndarray = np.empty((0, 4)),
+                 passes: Sequence[Pass] = ()) -> list[SelectedLine]:
     """The lines worth drawing.
 
     A line needs paint: `min_paint` metres of it, or two dashes of a rhythm, or one dash
@@ -162,8 +174,8 @@ def select_lines(lines, drift, crossed, min_paint, hatched=np.empty((0, 4)), pas
 
     Parameters
     ----------
-    lines : list of Line
-    drift : Drift
+    lines : list of LinkedLine
+    trend : CommonTrend
     crossed : (K, 4) as `crossings` gives it
     min_paint : metres
     hatched : (K, 4) as `hatching_bars` gives it
@@ -176,27 +188,27 @@ def select_lines(lines, drift, crossed, min_paint, hatched=np.empty((0, 4)), pas
     if not lines:
         return []
     parts = [stretches(line) for line in lines]
-    level = [_level(line, drift) for line in lines]
-    beats = [_beats(stretch) for stretch in parts]
+    level = [_level(line, trend) for line in lines]
+    patterns = [_dash_patterns(stretch) for stretch in parts]
     painted_to = max(line.last for line in lines)
     painted_from = min(line.first for line in lines)
-    frayed, double = _beside(lines, drift)
+    frayed, double = _beside(lines, trend)
     outside = _beyond_the_edge(lines, level)
     found = []
     for k, line in enumerate(lines):
-        lone = None
-        if not beats[k] and line.painted < MAX_DASH_LENGTH:
-            lone = _dash_of_another(k, lines, beats, level)
-        if frayed[k] or outside[k] or _frames_hatching(line, hatched) or not (line.painted >= min_paint or beats[k] or lone):
+        single = None
+        if not patterns[k] and line.painted < MAX_DASH_LENGTH:
+            single = _dash_of_another(k, lines, patterns, level)
+        if frayed[k] or outside[k] or _frames_hatching(line, hatched) or not (line.painted >= min_paint or patterns[k] or single):
             continue
-        kind = _kind(line, double[k], bool(beats[k]) or lone is not None)
+        kind = _kind(line, double[k], bool(patterns[k]) or single is not None)
         drawn = line_pieces(parts[k])
-        if lone is not None:
+        if single is not None:
             drawn = [LinePiece(line.first, line.last, "measured", "dashed")]
         neighbours = _painted_beside(k, lines, level)
-        drawn = _extended(drawn, parts[k], lone, (painted_from, painted_to), crossed, neighbours, line)
+        drawn = _extended(drawn, parts[k], single, (painted_from, painted_to), crossed, neighbours, line)
         width = float(np.average([s.width for s in line.strands], weights=[s.length for s in line.strands]))
-        found.append(SelectedLine(line, kind, bool(double[k]), drawn, width, level[k], _room(line)))
+        found.append(SelectedLine(line, kind, bool(double[k]), drawn, width, level[k], _edge_clearance(line)))
     label_outer_lines(found)
     label_single_centre(found)
     label_isolated_centre(found, passes)
@@ -209,29 +221,29 @@ def _painted_beside(k, lines, level):
     return np.array([(strand.first, strand.last) for line in near for strand in line.strands]).reshape(-1, 2)
 
 
-def _level(line, drift):
+def _level(line, trend):
     s, d, *_ = line.places()
-    return median(d - drift.at(s))
+    return median(d - trend.at(s))
 
 
-def _beats(parts):
-    return [part.rhythm for part in parts if part.rhythm]
+def _dash_patterns(parts):
+    return [part.dashes for part in parts if part.dashes]
 
 
-def _dash_of_another(k, lines, beats, level):
-    """The Rhythm of a dashed line elsewhere on the road, on whose course and of whose dash length line k is."""
+def _dash_of_another(k, lines, patterns, level):
+    """The DashPattern of a dashed line elsewhere on the road, on whose course and of whose dash length line k is."""
     if lines[k].painted < MIN_SINGLE_DASH or len(lines[k].strands) > 2:
         return None
-    for j, rhythms in enumerate(beats):
+    for j, of_line in enumerate(patterns):
         apart = lines[j].last < lines[k].first or lines[j].first > lines[k].last
-        for beat in rhythms if apart and abs(level[j] - level[k]) <= SAME_COURSE_OFFSET else ():
-            differs = abs(lines[k].last - lines[k].first - beat.dash)
-            if len(lines[j].strands) >= 3 and differs <= max(0.6, 0.25 * beat.dash):
-                return beat
+        for pattern in of_line if apart and abs(level[j] - level[k]) <= SAME_COURSE_OFFSET else ():
+            differs = abs(lines[k].last - lines[k].first - pattern.dash)
+            if len(lines[j].strands) >= 3 and differs <= max(0.6, 0.25 * pattern.dash):
+                return pattern
     return None
 
 
-def _beside(lines, drift):
+def _beside(lines, trend):
     """(N,) frayed: a sliver beside a longer line; (N,) double: one of two equal lines side by side."""
     frayed, double = np.zeros(len(lines), bool), np.zeros(len(lines), bool)
     tracks = []
@@ -239,7 +251,7 @@ def _beside(lines, drift):
         s, d, *_ = line.places()
         cell = np.floor(s / 0.5).astype(np.int64)
         cells, first = np.unique(cell, return_index=True)
-        tracks.append((cells, (d - drift.at(s))[first]))
+        tracks.append((cells, (d - trend.at(s))[first]))
     for k in range(len(lines)):
         for j in range(len(lines)):
             if j == k or lines[j].first > lines[k].last or lines[j].last < lines[k].first:
@@ -287,7 +299,7 @@ def _beyond_the_edge(lines, level):
     return result
 
 
-def hatching_borders(lines, hatched):
+def hatching_borders(lines: list[LinkedLine], hatched: np.ndarray) -> list[Strand]:
     """Strands that frame hatched areas, of those lines that do so as a whole."""
     return [strand for line in lines if len(line.strands) > 1 and _frames_hatching(line, hatched)
             for strand in line.strands if _frames_hatching(LinkedLine([strand]), hatched, MIN_BARS_OF_STRAND)]
@@ -315,26 +327,26 @@ def _votes(line):
     return votes
 
 
-def _room(line):
-    return float(np.average([s.room for s in line.strands], weights=[s.length for s in line.strands]))
+def _edge_clearance(line):
+    return float(np.average([s.edge_clearance for s in line.strands], weights=[s.length for s in line.strands]))
 
 
 def _kind(line, double, dashed):
     if double:
         return "centre"
-    if _votes(line).get("edge", 0.0) > 0.5 * line.painted or _room(line) < (LANE_CLEARANCE if dashed else WIDE_LANE_CLEARANCE):
+    if _votes(line).get("edge", 0.0) > 0.5 * line.painted or _edge_clearance(line) < (LANE_CLEARANCE if dashed else WIDE_LANE_CLEARANCE):
         return "edge"
     return "lane" if dashed else "centre"
 
 
-def _extended(drawn, parts, lone, painted, crossed, neighbours, line):
+def _extended(drawn, parts, single, painted, crossed, neighbours, line):
     """A dashed line ends with a gap: its ends go on by one gap.
 
     But not past the paint of the road, into a crossing, or past where the lines
     beside it begin or end.
     """
     drawn = list(drawn)
-    before, after = lone or parts[0].rhythm, lone or parts[-1].rhythm
+    before, after = single or parts[0].dashes, single or parts[-1].dashes
     d = median(line.places()[1])
     beside = crossed[(crossed[:, 2] <= d + 0.5) & (crossed[:, 3] >= d - 0.5)]
     if before:

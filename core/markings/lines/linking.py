@@ -6,30 +6,37 @@ taken out (`CommonTrend`) a line is nearly a constant offset, so that the next d
 searched where the line is, not where its last metre happened to point.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...curves.robust import median
 
-TREND_STEP = 0.5            # m, nodes of the drift
-SLOPE_WINDOW = 5.0         # m that slopes are averaged over
-END_WINDOW = 6.0            # m of a strand's end that say where it goes
-MIN_PAINT_BESIDE_GAP = 3.0    # m that either side of a long gap must have
-MAX_STRAND_OVERLAP = 0.6        # m that two strands of one line may overlap
-STRAY_WINDOW = 20.0          # m before and after a strand that say where it should lie
-MAX_STRAY_LENGTH = 4.0          # m: longer strands make their own case
-MAX_STRAY_OFFSET = 0.10         # m across
-DOUBLE_LINE_SPACING = (0.15, 0.50)  # m between the middles of the two lines of a double line
-MIDDLE_SHARE = (0.25, 0.75)  # of the way from one line of a double to the other: its middle
-MAX_LINE_SLOPE = np.tan(np.radians(10.0))   # across per along by which two strands may differ
+if TYPE_CHECKING:
+    from .strands import Strand
+
+TREND_STEP = 0.5                           # m, nodes of the drift
+SLOPE_WINDOW = 5.0                         # m that slopes are averaged over
+END_WINDOW = 6.0                           # m of a strand's end that say where it goes
+MIN_PAINT_BESIDE_GAP = 3.0                 # m that either side of a long gap must have
+MAX_STRAND_OVERLAP = 0.6                   # m that two strands of one line may overlap
+STRAY_WINDOW = 20.0                        # m before and after a strand that say where it should lie
+MAX_STRAY_LENGTH = 4.0                     # m: longer strands make their own case
+MAX_STRAY_OFFSET = 0.10                    # m across
+DOUBLE_LINE_SPACING = (0.15, 0.50)         # m between the middles of the two lines of a double line
+MIDDLE_SHARE = (0.25, 0.75)                # of the way from one line of a double to the other: its middle
+MAX_LINE_SLOPE = np.tan(np.radians(10.0))  # across per along by which two strands may differ
 
 
 class CommonTrend:
     """How the offset of all lines of a road changes together: d(s) of a line minus this is nearly constant."""
 
-    def __init__(self, strands):
+    def __init__(self, strands: list[Strand]) -> None:
         self.s, self.value = np.zeros(1), np.zeros(1)
         long = [strand for strand in strands if strand.length >= 1.5]
         if not long:
@@ -54,7 +61,7 @@ class CommonTrend:
         self.s = np.r_[at[0] - TREND_STEP / 2, at + TREND_STEP / 2]
         self.value = np.r_[0.0, np.cumsum(middle * TREND_STEP)]
 
-    def at(self, s):
+    def at(self, s: np.ndarray) -> np.ndarray:
         """(N,) metres at stations s; flat beyond the painted part."""
         return np.interp(s, self.s, self.value)
 
@@ -91,19 +98,19 @@ class LinkedLine:
     strands: list
 
     @property
-    def first(self):
+    def first(self) -> float:
         return self.strands[0].first
 
     @property
-    def last(self):
+    def last(self) -> float:
         return self.strands[-1].last
 
     @property
-    def painted(self):
+    def painted(self) -> float:
         """Metres of paint."""
         return sum(strand.length for strand in self.strands)
 
-    def places(self):
+    def places(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """s, d, z, weight of all places."""
         return self._places
 
@@ -126,7 +133,7 @@ class _End:
         return self.d + trust * self.slope * (s - self.s)
 
 
-def line_ends(lines, drift, at_start, reach=END_WINDOW):
+def line_ends(lines: list[LinkedLine], trend: CommonTrend, at_start: bool, reach: float = END_WINDOW) -> list[_End]:
     """The `_End` at the start or the end of every line, from its last `reach` metres of station."""
     if not lines:
         return []
@@ -137,7 +144,7 @@ def line_ends(lines, drift, at_start, reach=END_WINDOW):
     tips = np.array([line.first if at_start else line.last for line in lines])
     near = np.flatnonzero(np.abs(s - tips[owner]) <= reach)
     owner, s, weight = owner[near], s[near], np.minimum(weight[near], 10.0)
-    d = d[near] - drift.at(s)
+    d = d[near] - trend.at(s)
     starts = np.flatnonzero(np.r_[True, np.diff(owner) != 0]) if len(owner) else np.empty(0, int)
     count = np.diff(np.append(starts, len(owner)))
     total = np.add.reduceat(weight, starts) if len(owner) else weight
@@ -169,7 +176,7 @@ def _weighted_medians(values, weight, starts):
     return values[starts + (share < share[:, -1:] / 2).sum(axis=1)]
 
 
-def lateral_mismatch(before, after):
+def lateral_mismatch(before: _End, after: _End) -> float:
     """Metres across by which the end of one line misses the start of the next, at the middle of the gap.
 
     The better of two views counts: the lines go on as they pointed, or parallel to
@@ -185,24 +192,24 @@ def _trust(before, after):
     return reach**2 / (reach**2 + 4.0)
 
 
-def link_lines(lines, drift, max_gap, allowed=0.30):
+def link_lines(lines: list[LinkedLine], trend: CommonTrend, max_gap: float, allowed: float = 0.30) -> list[LinkedLine]:
     """Lines linked over gaps up to `max_gap`, each end once, the best match first.
 
     Parameters
     ----------
-    lines : list of Line
-    drift : CommonTrend
+    lines : list of LinkedLine
+    trend : CommonTrend
     max_gap : metres
     allowed : metres across at the longest gap; half of it where lines touch
 
     Returns
     -------
-    list of Line
+    list of LinkedLine
     """
-    starts, ends = (line_ends(lines, drift, at_start) for at_start in (True, False))
+    starts, ends = (line_ends(lines, trend, at_start) for at_start in (True, False))
     by_start = np.argsort([e.s for e in starts], kind="stable")
     stations = np.array([starts[k].s for k in by_start])
-    twin_ends, twin_starts = (twin_offsets(lines, drift, tips, at_start) for tips, at_start in ((ends, False), (starts, True)))
+    twin_ends, twin_starts = (twin_offsets(lines, trend, tips, at_start) for tips, at_start in ((ends, False), (starts, True)))
     pairs = []
     for a, before in enumerate(ends):
         low, high = np.searchsorted(stations, [before.s - MAX_STRAND_OVERLAP, before.s + max_gap])
@@ -225,7 +232,7 @@ def link_lines(lines, drift, max_gap, allowed=0.30):
     return _joined(lines, follows, preceded)
 
 
-def twin_offsets(lines, drift, tips, at_start):
+def twin_offsets(lines: list[LinkedLine], trend: CommonTrend, tips: list[_End], at_start: bool) -> np.ndarray:
     """(N,) signed distance across to the other line of a double line at each start (or end), of which `tips` tell; 0 where there is none."""
     spans = np.array([(line.first, line.last) for line in lines]).reshape(-1, 2)
     inner = np.array([tip.s for tip in tips]) + (1.0 if at_start else -1.0) * np.minimum(2.0, (spans[:, 1] - spans[:, 0]) / 2)
@@ -241,7 +248,7 @@ def twin_offsets(lines, drift, tips, at_start):
                 continue
             if j not in levels:
                 s, d, *_ = lines[j].places()
-                levels[j] = s, d - drift.at(s)
+                levels[j] = s, d - trend.at(s)
             s, level = levels[j]
             near = np.abs(s - inner[k]) <= 2.0
             if near.any():
@@ -277,7 +284,8 @@ def _joined(lines, follows, preceded):
     return sorted(found, key=lambda line: (line.first, line.strands[0].d[0]))
 
 
-def link_over_long_gaps(lines, drift, max_gap, max_bridge, same_dash_pattern, allowed=0.25):
+def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, max_gap: float, max_bridge: float,
+                        same_dash_pattern: Callable[[LinkedLine, LinkedLine], bool], allowed: float = 0.25) -> list[LinkedLine]:
     """Link over longer gaps, up to `max_bridge`, where something carries over.
 
     Either both sides have one rhythm of dashes and the gap is a whole multiple of
@@ -285,7 +293,7 @@ def link_over_long_gaps(lines, drift, max_gap, max_bridge, same_dash_pattern, al
     without one, so that the road does not end there.
     """
     while True:
-        ends, starts = (line_ends(lines, drift, at_start, 3 * END_WINDOW) for at_start in (False, True))
+        ends, starts = (line_ends(lines, trend, at_start, 3 * END_WINDOW) for at_start in (False, True))
         by_start = np.argsort([e.s for e in starts], kind="stable")
         stations = np.array([starts[k].s for k in by_start])
         pairs = []
@@ -295,7 +303,7 @@ def link_over_long_gaps(lines, drift, max_gap, max_bridge, same_dash_pattern, al
                 after = starts[b]
                 if min(lines[a].painted, lines[b].painted) < MIN_PAINT_BESIDE_GAP or lateral_mismatch(before, after) > allowed:
                     continue
-                if same_dash_pattern(lines[a], lines[b]) or _runs_beside(lines, (a, b), before, after, drift):
+                if same_dash_pattern(lines[a], lines[b]) or _runs_beside(lines, (a, b), before, after, trend):
                     score = (lateral_mismatch(before, after) / allowed) ** 2 + (after.s - before.s) / max_bridge
                     pairs.append((score, before.s, a, int(b)))
         if not pairs:
@@ -309,12 +317,12 @@ def link_over_long_gaps(lines, drift, max_gap, max_bridge, same_dash_pattern, al
         lines = _joined(lines, follows, preceded)
 
 
-def without_strays(line, drift):
+def without_strays(line: LinkedLine, trend: CommonTrend) -> LinkedLine:
     """The line less short strands that lie off the course of the paint before and after them."""
     if len(line.strands) < 3:
         return line
     s, d, _, weight = line.places()
-    level = d - drift.at(s)
+    level = d - trend.at(s)
     owner = np.repeat(np.arange(len(line.strands)), [len(strand.s) for strand in line.strands])
     order = np.argsort(s, kind="stable")
     s, level, weight, owner = s[order], level[order], weight[order], owner[order]
@@ -344,14 +352,14 @@ def _robust_level(s, level, weight):
     return found[0]
 
 
-def _runs_beside(lines, pair, before, after, drift):
+def _runs_beside(lines, pair, before, after, trend):
     """Another line within 8 m painted over most of the gap, with holes of at most 5 m, while keeping its distance."""
     for k, other in enumerate(lines):
         if k in pair:
             continue
         s, d, *_ = other.places()
         there = (s > before.s - 5) & (s < after.s + 5)
-        if not there.any() or np.abs(median(d[there]) - drift.at(before.s) - before.d) > 8.0:
+        if not there.any() or np.abs(median(d[there]) - trend.at(before.s) - before.d) > 8.0:
             continue
         covered = np.r_[before.s, np.sort(s[(s > before.s) & (s < after.s)]), after.s]
         if np.diff(covered).max() <= 5.0:

@@ -148,6 +148,6 @@ def lines_from_features(features: Features, frame: RoadFrame) -> PaintedLines:
     free = max((number for number in numbers if number is not None), default=0) + 1
     line = np.array([free + k if number is None else number for number, k in zip(numbers, row_of)], int)
     road = [-1 if row.get("road") is None else int(row["road"]) for row in rows]
-    names = [np.array([str(row.get(name) or missing) for row in rows], object)
-             for name, missing in (("kind", ""), ("pattern", ""), ("status", "measured"))]
-    return PaintedLines(line, *names, lines_in_frame(parts, road, frame), crs=features.crs)
+    kind, pattern, status = (np.array([str(row.get(name) or missing) for row in rows], object)
+                             for name, missing in (("kind", ""), ("pattern", ""), ("status", "measured")))
+    return PaintedLines(line, kind, pattern, status, lines_in_frame(parts, road, frame), crs=features.crs)

@@ -1,6 +1,9 @@
 """From paint points to strands: stretches of one painted line without a gap, traced as d(s)."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -11,18 +14,22 @@ from ...curves.robust import median, percentiles
 from ...survey.store.records import COORDINATE_SCALE
 from ..objects.classify import LINE_KINDS
 
-RUN_BIN_UNITS = 5000             # units of 0.1 mm: 0.5 m of station in which runs of paint are told apart
-PLACE_STEP_UNITS = 2500           # 0.25 m: one place of the line each, so that neighbouring places are nearly independent
-RUN_GAP_UNITS = 600            # 6 cm across without paint separate two runs ...
-MAX_WORN_LINE_WIDTH_UNITS = 2200        # ... unless together they are no wider than one worn line
-MAX_LINE_WIDTH_UNITS = 3600          # 36 cm: wider is no line, or it is a double line whose middle is hazy
-MAX_MIXED_WIDTH_UNITS = 6000          # 60 cm: where a mixed marking reaches farther across, it is hatching or a stop line there
-MIN_MIXED_STRAND = 2.0   # m of paint in a strand of a mixed marking
-MIN_MIXED_MARKING = 9.0  # m: no arrow or letter is this long; a longer mixed marking has a line in it
-MIN_POINTS_PER_RUN = 3             # points in a run
-MIN_STRAND_LENGTH = 0.8         # m of paint in a strand
-MAX_BIN_STEP = 3              # bins that a strand may leap: 1.5 m of wear
-LATERAL_STEP_UNITS, LATERAL_STEP_PER_BIN_UNITS = 600, 400 # units: 6 cm, and 4 cm more per bin, that a strand may move across
+if TYPE_CHECKING:
+    from ...survey.store.columns import Columns
+    from ..objects.marking_objects import MarkingObjects
+
+RUN_BIN_UNITS = 5000                                       # units of 0.1 mm: 0.5 m of station in which runs of paint are told apart
+PLACE_STEP_UNITS = 2500                                    # 0.25 m: one place of the line each, so that neighbouring places are nearly independent
+RUN_GAP_UNITS = 600                                        # 6 cm across without paint separate two runs ...
+MAX_WORN_LINE_WIDTH_UNITS = 2200                           # ... unless together they are no wider than one worn line
+MAX_LINE_WIDTH_UNITS = 3600                                # 36 cm: wider is no line, or it is a double line whose middle is hazy
+MAX_MIXED_WIDTH_UNITS = 6000                               # 60 cm: where a mixed marking reaches farther across, it is hatching or a stop line there
+MIN_MIXED_STRAND = 2.0                                     # m of paint in a strand of a mixed marking
+MIN_MIXED_MARKING = 9.0                                    # m: no arrow or letter is this long; a longer mixed marking has a line in it
+MIN_POINTS_PER_RUN = 3                                     # points in a run
+MIN_STRAND_LENGTH = 0.8                                    # m of paint in a strand
+MAX_BIN_STEP = 3                                           # bins that a strand may leap: 1.5 m of wear
+LATERAL_STEP_UNITS, LATERAL_STEP_PER_BIN_UNITS = 600, 400  # units: 6 cm, and 4 cm more per bin, that a strand may move across
 
 
 @dataclass
@@ -33,7 +40,7 @@ class Strand:
     s, d, z : (K,) its places, one per 0.25 m of station; z local
     weight : (K,) points in each place
     width : metres
-    room : metres between the line and the road edge on its side
+    edge_clearance : metres between the line and the road edge on its side
     classes : dict, class of marking to painted length, metres
     """
 
@@ -44,15 +51,15 @@ class Strand:
     z: np.ndarray
     weight: np.ndarray
     width: float
-    room: float
+    edge_clearance: float
     classes: dict
 
     @property
-    def length(self):
+    def length(self) -> float:
         return self.last - self.first
 
 
-def line_paint(records, markings, road):
+def line_paint(records: Columns, markings: MarkingObjects, road: int) -> tuple[Columns, np.ndarray]:
     """The points that may belong to a painted line.
 
     Those of markings of use keep; of other long markings (a line that touches a stop
@@ -111,7 +118,7 @@ def _narrow_there(records, number, mixed):
     return result
 
 
-def trace_strands(records, rank):
+def trace_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
     """Strands of painted line among the points of one road.
 
     Parameters
@@ -267,7 +274,7 @@ def _strand(place, rank, along, across, height, half_width):
     d = middle * COORDINATE_SCALE
     offset = across * COORDINATE_SCALE
     low, high = percentiles(offset - np.repeat(d, count), (2.5, 97.5))
-    room = median(half_width * 1e-3 - np.abs(offset))
+    edge_clearance = median(half_width * 1e-3 - np.abs(offset))
     share = np.bincount(rank, minlength=len(LINE_KINDS) + 1) / len(rank) * (last - first)
     classes = {name: float(share[k]) for k, name in enumerate(LINE_KINDS + ("mixed",)) if share[k] > 0}
-    return Strand(first, last, s, d, z, count.astype(float), (high - low) / 0.95, room, classes)
+    return Strand(first, last, s, d, z, count.astype(float), (high - low) / 0.95, edge_clearance, classes)

@@ -1,6 +1,10 @@
 """What kind of marking a cluster is, by its size, its direction and its neighbours, or that it is none."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -12,58 +16,61 @@ from .dash_rows import rows_of_dashes
 from .near_pairs import overlapping_pairs
 from .shape import MAX_ANGLE_ALONG
 
+if TYPE_CHECKING:
+    from .shape import Shape
+
 NOT_PAINT = ""
 LINE_KINDS = ("edge", "lane", "centre")
 
 # Contrast: sealed seams, joints of bridges and gutters of islands are far paler than the paint beside them
-CONTRAST_STRETCH = 100.0        # m of road, with as much before and after it, whose paint is compared
-FAINT_PERCENTILE, BRIGHT_PERCENTILE = 2, 90   # % of the bright points there: the faintest of them, and paint
-CONTRAST_PERCENTILE = 75        # % of a marking's points, whose brightness stands for it
-MIN_CONTRAST = 0.20             # of the way from the faintest to paint: what has less is no paint
-MIN_CONTRAST_OF_BARS = 0.30     # the same of a bar across the road, which is often a joint
-MIN_CONTRAST_OF_EDGE_LINES = 0.10  # the same of a line where edge lines lie, which wear most and where seams are rare
+CONTRAST_STRETCH = 100.0                     # m of road, with as much before and after it, whose paint is compared
+FAINT_PERCENTILE, BRIGHT_PERCENTILE = 2, 90  # % of the bright points there: the faintest of them, and paint
+CONTRAST_PERCENTILE = 75                     # % of a marking's points, whose brightness stands for it
+MIN_CONTRAST = 0.20                          # of the way from the faintest to paint: what has less is no paint
+MIN_CONTRAST_OF_BARS = 0.30                  # the same of a bar across the road, which is often a joint
+MIN_CONTRAST_OF_EDGE_LINES = 0.10            # the same of a line where edge lines lie, which wear most and where seams are rare
 
 # Lines
-LANE_CLEARANCE = 2.0            # m: with less between a line and the road edge there is no lane: it is an edge line
-MAX_DOUBLE_LINE_SPACING = 0.45  # m between the middles of a double line
-MIN_SOLID_LENGTH = 10.0         # m: longer than any dash in town; solid lines inside the road are centre lines
+LANE_CLEARANCE = 2.0             # m: with less between a line and the road edge there is no lane: it is an edge line
+MAX_DOUBLE_LINE_SPACING = 0.45   # m between the middles of a double line
+MIN_SOLID_LENGTH = 10.0          # m: longer than any dash in town; solid lines inside the road are centre lines
 SHORT_DASH_LENGTH = (0.75, 1.5)  # m: dashes of cycle lanes and bus bays, which only their row distinguishes from signs and specks
-MIN_DASH_ELONGATION = 3.0       # length by width of such dashes
-MIN_ROW_OF_POINTS = 2.0         # m: points in a row of this length are no speck, however few scan lines met it
+MIN_DASH_ELONGATION = 3.0        # length by width of such dashes
+MIN_ROW_OF_POINTS = 2.0          # m: points in a row of this length are no speck, however few scan lines met it
 
 # Zebra crossings
-STRIPE_WIDTH = (0.25, 0.80)     # m
-STRIPE_LENGTH = (1.5, 10.0)     # m
-STRIPE_PITCH = (0.5, 1.6)       # m from stripe to stripe
+STRIPE_WIDTH = (0.25, 0.80)  # m
+STRIPE_LENGTH = (1.5, 10.0)  # m
+STRIPE_PITCH = (0.5, 1.6)    # m from stripe to stripe
 MIN_STRIPES = 3
 MAX_STRIPE_SKEW, MAX_STRIPE_TURN = np.radians((35.0, 8.0))  # of the stripes to the road, and to each other
 
 # Stop lines, hatching, arrows
-STOP_LINE_WIDTH = (0.18, 0.90)  # m
-MIN_STOP_LINE_LENGTH = 1.5      # m
-MIN_STOP_LINE_FILL = 0.62       # of length times width: a stop line is a full bar, the outline of hatching with its bars is not
-MAX_BAR_TO_OUTLINE = 0.3        # m from a bar of hatching to its outline
-MAX_HATCHING_PITCH = 3.0        # m between bars of one hatching
-MIN_HATCHING_LENGTH = 4.0       # m along the road: what is longer is more than one bar
+STOP_LINE_WIDTH = (0.18, 0.90)               # m
+MIN_STOP_LINE_LENGTH = 1.5                   # m
+MIN_STOP_LINE_FILL = 0.62                    # of length times width: a stop line is a full bar, the outline of hatching with its bars is not
+MAX_BAR_TO_OUTLINE = 0.3                     # m from a bar of hatching to its outline
+MAX_HATCHING_PITCH = 3.0                     # m between bars of one hatching
+MIN_HATCHING_LENGTH = 4.0                    # m along the road: what is longer is more than one bar
 MIN_ARROW_SHAFT, MAX_ARROW_TIP = 0.20, 0.25  # of an arrow's length: its shaft at least, and at the other end the tip of its head at most
 
 # What is no paint
 COVER_DIAMETER = (0.30, 1.15)   # m, manhole covers
 MAX_COVER_ELONGATION = 1.7
-MAX_SPECK_SIZE = 0.30           # m
-MAX_SPECK_AREA = 0.03           # m2
-MIN_COVERED_SHARE = 0.8         # of a marking's points beneath or beside something that stands on the road,
-MAX_CAR_LENGTH = 6.0            # m: and no longer than this, it is the foot of a parked car
-CURB_CORNER_CLEARANCE = 0.30    # m from the road edge: a single bar so near,
-MAX_CURB_CORNER_LENGTH = 2.0    # m: and so short, is the curb or gutter of a corner
-RIM_CLEARANCE = 0.60            # m from the road edge where verge, gutter and curb may look like paint
+MAX_SPECK_SIZE = 0.30                # m
+MAX_SPECK_AREA = 0.03                # m2
+MIN_COVERED_SHARE = 0.8              # of a marking's points beneath or beside something that stands on the road,
+MAX_CAR_LENGTH = 6.0                 # m: and no longer than this, it is the foot of a parked car
+CURB_CORNER_CLEARANCE = 0.30         # m from the road edge: a single bar so near,
+MAX_CURB_CORNER_LENGTH = 2.0         # m: and so short, is the curb or gutter of a corner
+RIM_CLEARANCE = 0.60                 # m from the road edge where verge, gutter and curb may look like paint
 STRIP_REACH_BEYOND_EDGE_LINE = 0.80  # m outside an edge line where strips are taken for verge
-ROAD_EDGE_CLEARANCE = 0.10      # m: strips so near to the road edge are taken for verge
-STRIP_REACH_AT_ROAD_EDGE = 3.0  # m: as far outside an edge line as this, since no lane fits there
-MIN_STRIP_WIDTH_AT_RIM = 0.10   # m: at the road edge a narrower strip is the top or the face of a curb
-MIN_STRIP_WIDTH_ON_EDGE = 0.14  # m: likewise where it reaches the edge itself
-EDGE_CONTACT = 0.02             # m between a strip and the road edge: paint keeps more
-EDGE_LINE_LENGTH_RATIO = 2.0    # an edge line is so many times as long as the strips outside it
+ROAD_EDGE_CLEARANCE = 0.10           # m: strips so near to the road edge are taken for verge
+STRIP_REACH_AT_ROAD_EDGE = 3.0       # m: as far outside an edge line as this, since no lane fits there
+MIN_STRIP_WIDTH_AT_RIM = 0.10        # m: at the road edge a narrower strip is the top or the face of a curb
+MIN_STRIP_WIDTH_ON_EDGE = 0.14       # m: likewise where it reaches the edge itself
+EDGE_CONTACT = 0.02                  # m between a strip and the road edge: paint keeps more
+EDGE_LINE_LENGTH_RATIO = 2.0         # an edge line is so many times as long as the strips outside it
 
 
 @dataclass(frozen=True)
@@ -80,18 +87,18 @@ class ClassSettings:
     min_elongation: float = 4.0
     margin: float = 0.5
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not 0 < self.min_width < self.max_width:
             raise RoadExtractionError(
                 f"A marking line is {self.min_width} to {self.max_width} m wide; the first must be above 0 m and below the second.")
 
 
-def too_pale(share, kind):
+def too_pale(share: float, kind: str) -> bool:
     """Whether a cluster of such a contrast is no paint, by the class that its shape has."""
     return share < {"stop": MIN_CONTRAST_OF_BARS, "edge": MIN_CONTRAST_OF_EDGE_LINES}.get(kind, MIN_CONTRAST)
 
 
-def relative_contrast(value, s, starts):
+def relative_contrast(value: np.ndarray, s: np.ndarray, starts: np.ndarray) -> np.ndarray:
     """How bright clusters are among the bright points of their road.
 
     Parameters
@@ -117,7 +124,8 @@ def relative_contrast(value, s, starts):
     return np.array([np.percentile(share[a:b], CONTRAST_PERCENTILE) for a, b in zip(starts[:-1], starts[1:])])
 
 
-def classify_markings(shapes, half_widths, settings=ClassSettings(), covered=0.0):
+def classify_markings(shapes: list[Shape], half_widths: Sequence[float], settings: ClassSettings = ClassSettings(),
+                      covered: float | Sequence[float] = 0.0) -> list[tuple[str, str]]:
     """Class of every cluster of one road.
 
     Parameters
@@ -133,35 +141,36 @@ def classify_markings(shapes, half_widths, settings=ClassSettings(), covered=0.0
     if not shapes:
         return []
     column = columns_of(shapes)
-    room = np.asarray(half_widths) - np.abs(column["offset"])
-    curb = np.array([_curb(shape, r) for shape, r in zip(shapes, room)])
+    clearance = np.asarray(half_widths) - np.abs(column["offset"])
+    curb = np.array([_curb(shape, r) for shape, r in zip(shapes, clearance)])
     line = _is_line(column, settings) & ~curb
     zebra = zebra_stripes(column)
-    line |= _dashes_in_rows(shapes, column, room, settings)
+    line |= _dashes_in_rows(shapes, column, clearance, settings)
     line &= ~zebra
-    scrap = _beyond_the_edge_line(column, line, room)
+    outside = _beyond_the_edge_line(column, line, clearance)
     found = []
     doubles = _has_partner(column, line)
-    foot = (np.broadcast_to(covered, len(shapes)) > MIN_COVERED_SHARE) & ~(line & (column["length"] > MAX_CAR_LENGTH))
+    covered_feet = (np.broadcast_to(covered, len(shapes)) > MIN_COVERED_SHARE) & ~(line & (column["length"] > MAX_CAR_LENGTH))
     for k, shape in enumerate(shapes):
-        no_paint = _speck(shape) and not (line[k] and shape.length >= MIN_ROW_OF_POINTS) or scrap[k] or foot[k] or curb[k] or _round_cover(shape)
-        if room[k] < -settings.margin or no_paint or _gutter(shape, room[k], line[k], zebra[k]):
+        no_paint = _speck(shape) and not (line[k] and shape.length >= MIN_ROW_OF_POINTS) or outside[k] or covered_feet[k] \
+            or curb[k] or _round_cover(shape)
+        if clearance[k] < -settings.margin or no_paint or _gutter(shape, clearance[k], line[k], zebra[k]):
             kind = NOT_PAINT
         elif zebra[k]:
             kind = "zebra"
         elif line[k]:
-            kind = _line_kind(shape, room[k], doubles[k])
+            kind = _line_kind(shape, clearance[k], doubles[k])
         else:
             kind = _other_kind(shape)
         found.append((kind, "keep" if kind in LINE_KINDS else "other"))
     for k in _outlines(column, [kind for kind, _ in found]):
         found[k] = "hatch", "other"
     for k in _single_bars(column, [kind for kind, _ in found]):
-        found[k] = NOT_PAINT if room[k] < CURB_CORNER_CLEARANCE and shapes[k].length < MAX_CURB_CORNER_LENGTH else "symbol", "other"
+        found[k] = NOT_PAINT if clearance[k] < CURB_CORNER_CLEARANCE and shapes[k].length < MAX_CURB_CORNER_LENGTH else "symbol", "other"
     return found
 
 
-def columns_of(shapes):
+def columns_of(shapes: Sequence[Shape]) -> dict[str, np.ndarray]:
     """dict of (N,) arrays, what the Shapes have."""
     return {name: np.array([getattr(shape, name) for shape in shapes])
             for name in ("s0", "s1", "d0", "d1", "offset", "length", "width", "elongation", "direction", "area", "along")}
@@ -174,9 +183,9 @@ def _is_line(column, settings):
         & (column["length"] >= settings.min_length) & (column["elongation"] >= settings.min_elongation)
 
 
-def _dashes_in_rows(shapes, column, room, settings):
+def _dashes_in_rows(shapes, column, clearance, settings):
     """Short dashes one after the other along the road, away from its rim, where the stones of a curb stand in rows, too."""
-    short = column["along"] & (column["length"] >= SHORT_DASH_LENGTH[0]) & (column["length"] <= SHORT_DASH_LENGTH[1]) & (room > RIM_CLEARANCE) \
+    short = column["along"] & (column["length"] >= SHORT_DASH_LENGTH[0]) & (column["length"] <= SHORT_DASH_LENGTH[1]) & (clearance > RIM_CLEARANCE) \
         & (column["width"] >= settings.min_width) & (column["width"] <= settings.max_width) & (column["elongation"] >= MIN_DASH_ELONGATION)
     result, rows = np.zeros(len(shapes), bool), np.flatnonzero(short)
     for row in rows_of_dashes([shapes[k] for k in rows]):
@@ -184,7 +193,7 @@ def _dashes_in_rows(shapes, column, room, settings):
     return result
 
 
-def zebra_stripes(column, shortest=STRIPE_LENGTH[0]):
+def zebra_stripes(column: dict[str, np.ndarray], shortest: float = STRIPE_LENGTH[0]) -> np.ndarray:
     """Stripes along the road or somewhat askew, side by side across it at an even pitch, at least three of them.
 
     column : dict of (N,) of the Shapes; shortest : m
@@ -208,8 +217,8 @@ def zebra_stripes(column, shortest=STRIPE_LENGTH[0]):
         across = ((np.abs(dd) > np.abs(ds)) | (np.abs(middle) <= MAX_ANGLE_ALONG)) & (np.abs(turn[b] - turn[a]) <= MAX_STRIPE_TURN)
         found = shared & across & (pitch >= STRIPE_PITCH[0]) & (pitch <= STRIPE_PITCH[1])
         beside.append(np.column_stack([a, b])[found])
-    beside = np.concatenate(beside)
-    graph = coo_matrix((np.ones(len(beside), bool), (beside[:, 0], beside[:, 1])), shape=(len(rows),) * 2)
+    pairs = np.concatenate(beside)
+    graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(len(rows),) * 2)
     count, group = connected_components(graph, directed=False)
     size = np.bincount(group, minlength=count)
     result[rows] = size[group] >= MIN_STRIPES
@@ -227,16 +236,16 @@ def _has_partner(column, line):
     return result
 
 
-def _beyond_the_edge_line(column, line, room):
+def _beyond_the_edge_line(column, line, clearance):
     """Short strips between a line and the rim of the road: verge, gutter or curb, where nothing is painted."""
     short = column["along"] & (column["s1"] - column["s0"] > column["d1"] - column["d0"])
-    rows, lines = np.flatnonzero(short & (room < RIM_CLEARANCE)), np.flatnonzero(line)
+    rows, lines = np.flatnonzero(short & (clearance < RIM_CLEARANCE)), np.flatnonzero(line)
     result = np.zeros(len(short), bool)
     s0, s1, d, length = (column[name] for name in ("s0", "s1", "offset", "length"))
     # a double line is as long on either side
-    on_edge = room < column["width"] / 2 + EDGE_CONTACT
+    on_edge = clearance < column["width"] / 2 + EDGE_CONTACT
     longest = np.where(on_edge, 1.0, EDGE_LINE_LENGTH_RATIO) * length
-    reach = np.where(room < ROAD_EDGE_CLEARANCE, STRIP_REACH_AT_ROAD_EDGE, STRIP_REACH_BEYOND_EDGE_LINE)
+    reach = np.where(clearance < ROAD_EDGE_CLEARANCE, STRIP_REACH_AT_ROAD_EDGE, STRIP_REACH_BEYOND_EDGE_LINE)
     for a, b in overlapping_pairs(s0[rows], s1[rows], s0[lines], s1[lines]):
         a, b = rows[a], lines[b]
         outward = np.sign(d[a]) * (d[a] - d[b])
@@ -273,8 +282,8 @@ def _single_bars(column, kinds):
     return rows[single]
 
 
-def _line_kind(shape, room, double):
-    if room < LANE_CLEARANCE and not double:
+def _line_kind(shape, clearance, double):
+    if clearance < LANE_CLEARANCE and not double:
         return "edge"
     return "centre" if double or shape.length > MIN_SOLID_LENGTH else "lane"
 
@@ -291,15 +300,15 @@ def _round_cover(shape):
         and shape.elongation < MAX_COVER_ELONGATION
 
 
-def _curb(shape, room):
+def _curb(shape, clearance):
     """A hair of brightness along the very edge of the road."""
-    on_edge = room < shape.width / 2 + EDGE_CONTACT / 2
-    return shape.along and room < ROAD_EDGE_CLEARANCE and shape.width < (MIN_STRIP_WIDTH_ON_EDGE if on_edge else MIN_STRIP_WIDTH_AT_RIM)
+    on_edge = clearance < shape.width / 2 + EDGE_CONTACT / 2
+    return shape.along and clearance < ROAD_EDGE_CLEARANCE and shape.width < (MIN_STRIP_WIDTH_ON_EDGE if on_edge else MIN_STRIP_WIDTH_AT_RIM)
 
 
-def _gutter(shape, room, line, zebra):
+def _gutter(shape, clearance, line, zebra):
     """A broad bright strip that reaches the road edge: concrete, not paint."""
-    return shape.along and not zebra and not line and shape.length > 2.0 and shape.elongation > 3 and room < shape.width
+    return shape.along and not zebra and not line and shape.length > 2.0 and shape.elongation > 3 and clearance < shape.width
 
 
 def _other_kind(shape):

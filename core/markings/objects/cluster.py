@@ -6,7 +6,10 @@ farther along the road, where scan lines lie apart and paint wears through, than
 across it, where a decimetre may separate the two lines of a double line.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -25,12 +28,18 @@ from .road_grid import CELL_UNITS
 from .shape import measure
 from .split_merge import join_fragments, split_compounds
 
-LINKING_WINDOW_CELLS = 1250    # cells of 4 cm: 50 m of station are linked at a time
-MIN_FRAGMENT_POINTS = 1     # points: the smallest worn rest that a line may be joined from
+if TYPE_CHECKING:
+    from ...survey.frame.road_frame import RoadFrame
+    from ...survey.store.columns import Columns
+    from ...survey.store.road_points import RoadPoints
+    from .marking_objects import MarkingObjects
+
+LINKING_WINDOW_CELLS = 1250                   # cells of 4 cm: 50 m of station are linked at a time
+MIN_FRAGMENT_POINTS = 1                       # points: the smallest worn rest that a line may be joined from
 STRIP_KINDS = LINE_KINDS + ("zebra", "stop")  # drawn as even strips, the others cell by cell
-MAX_SKEW_OF_EVEN_STRIPES = np.radians(5.0)  # stripes of a crossing that is more askew end askew to their run
-REACH_ALONG_FACTOR = 2.5    # neighbours may be this times the distance apart along the road,
-REACH_ACROSS_DIVISOR = 2.0    # and across it the distance over this
+MAX_SKEW_OF_EVEN_STRIPES = np.radians(5.0)    # stripes of a crossing that is more askew end askew to their run
+REACH_ALONG_FACTOR = 2.5                      # neighbours may be this times the distance apart along the road,
+REACH_ACROSS_DIVISOR = 2.0                    # and across it the distance over this
 
 
 @dataclass(frozen=True)
@@ -46,11 +55,12 @@ class ClusterSettings:
     min_points: int = setting(8, 1, 100000, "The least number of points of a marking")
     classes: ClassSettings = field(default_factory=ClassSettings)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_limits(self)
 
 
-def cluster_markings(marking_points, frame, settings=ClusterSettings(), progress=Progress()):
+def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: ClusterSettings = ClusterSettings(),
+                     progress: Progress = Progress()) -> tuple[MarkingObjects, RoadPoints]:
     """Group paint points into markings with class, size and outline.
 
     Parameters
@@ -129,7 +139,7 @@ def _relabelled(records, starts, number):
     return np.r_[labels, len(number) + np.arange(rest)]
 
 
-def connected_points(marking_points, road, distance, progress=Progress()):
+def connected_points(marking_points: RoadPoints, road: int, distance: float, progress: Progress = Progress()) -> tuple[Columns, np.ndarray]:
     """Connected components of the points of one road.
 
     Returns

@@ -1,5 +1,7 @@
 """Which occupied cells of a grid belong together: those that touch, and those whose points lie near enough."""
 
+from __future__ import annotations
+
 import cv2
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -8,7 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from ...common.order_statistics import order_by
 
 
-def occupied(row, column):
+def occupied(row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The cells that points lie in.
 
     Parameters
@@ -30,7 +32,7 @@ def occupied(row, column):
     return np.stack([row[new], column[new]], axis=1).astype(np.int64), member
 
 
-def components(cells, places, size, distance):
+def components(cells: np.ndarray, places: np.ndarray, size: tuple[float, float], distance: float) -> np.ndarray:
     """Connected components of cells whose places lie within a distance.
 
     Parameters

@@ -4,22 +4,30 @@ One bright spot of half a metre may be anything. Four of them in a line, evenly
 spaced and all pointing along it, were painted, or are the stones of one curb.
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-MAX_DASH_SPACING = 3.0        # m between the middles of neighbours in a row
-MIN_DASH_SPACING = 0.25    # m between them at least
-MAX_DASH_BREADTH = 0.45    # m that a dash may reach across its row
-MAX_DASH_OFFSET = 0.12     # m off the line through its neighbours
-MAX_GAP_PER_DASH = 3.0          # times the length of the longer dash: no gap of a row is longer
-MAX_STEP_RATIO = 2.5       # times: how much one step of a row may be longer than the next, a dash worn away between them
-MIN_STEP_COSINE = np.cos(np.radians(12.0))   # by which a row may turn from dash to dash
+if TYPE_CHECKING:
+    from .shape import Shape
+
+MAX_DASH_SPACING = 3.0                      # m between the middles of neighbours in a row
+MIN_DASH_SPACING = 0.25                     # m between them at least
+MAX_DASH_BREADTH = 0.45                     # m that a dash may reach across its row
+MAX_DASH_OFFSET = 0.12                      # m off the line through its neighbours
+MAX_GAP_PER_DASH = 3.0                      # times the length of the longer dash: no gap of a row is longer
+MAX_STEP_RATIO = 2.5                        # times: how much one step of a row may be longer than the next, a dash worn away between them
+MIN_STEP_COSINE = np.cos(np.radians(12.0))  # by which a row may turn from dash to dash
 MIN_DASHES_IN_ROW = 4
 
 
-def rows_of_dashes(shapes):
+def rows_of_dashes(shapes: Sequence[Shape]) -> list[np.ndarray]:
     """Pieces that stand in rows.
 
     Parameters

@@ -130,9 +130,9 @@ def make_marking_objects(rows: Sequence[dict[str, Any]], polygons: Sequence[Any]
         return np.array([missing if row.get(name) is None else row[name] for row in rows], kind)
 
     road, outlines = column("road", -1, int), Outlines.of(polygons)
-    return MarkingObjects(
-        road, column("cluster", -1, int), column("class", "", object), column("use", "", object) == "keep",
-        *(column(name, np.nan, float) for name in NUMBER_FIELDS.values()), _extents(outlines, road, frame), outlines, crs)
+    numbers = {attribute: column(name, np.nan, float) for attribute, name in NUMBER_FIELDS.items()}
+    return MarkingObjects(road=road, cluster=column("cluster", -1, int), kind=column("class", "", object),
+                          keep=column("use", "", object) == "keep", extent=_extents(outlines, road, frame), outlines=outlines, crs=crs, **numbers)
 
 
 def _extents(outlines: Outlines, road: np.ndarray, frame: RoadFrame) -> np.ndarray:

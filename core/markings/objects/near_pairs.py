@@ -1,12 +1,17 @@
 """Which of many stretches of a road meet: found in order of station, so that a long survey needs no table of all pairs."""
 
+from __future__ import annotations
+
+from collections.abc import Iterator
+
 import numpy as np
 
 PAIRS_PER_BLOCK = 1 << 18  # about so many are handed out at a time
-ROUNDING_TOLERANCE = 1e-6      # m, more than coordinates are rounded by
+ROUNDING_TOLERANCE = 1e-6  # m, more than coordinates are rounded by
 
 
-def overlapping_pairs(first, last, other_first, other_last, apart=0.0):
+def overlapping_pairs(first: np.ndarray, last: np.ndarray, other_first: np.ndarray, other_last: np.ndarray,
+                      apart: float = 0.0) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Pairs of stretches that overlap, touch or lie no farther apart than a distance.
 
     Parameters

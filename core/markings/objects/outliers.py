@@ -1,7 +1,10 @@
 """The nearest neighbours of points, exactly, and the mean distance to them."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
@@ -15,25 +18,29 @@ from ...common.setting import check_limits, setting
 from ...survey.store.records import COORDINATE_SCALE, take_rows
 from ...survey.store.road_points import RoadPoints
 
+if TYPE_CHECKING:
+    from ...survey.store.columns import Columns
+
+
 # Which of many points cannot be far from their neighbours: told by the cells they lie in, before any neighbour is looked for.
 
 CELL_SIDE_FACTOR = 1.5     # times the usual distance: cells so large that three by three of them hold three times the neighbours asked for
-NO_DISTANCE = 1e9  # m, where no distance is known
-USUAL_DISTANCE_WINDOW = 9      # cells about a point: where others are looked at to tell what is usual there
-MAX_CELLS_PER_POINT = 8      # for every point at most about so many, however near to each other rounded or repeated points lie
+NO_DISTANCE = 1e9          # m, where no distance is known
+USUAL_DISTANCE_WINDOW = 9  # cells about a point: where others are looked at to tell what is usual there
+MAX_CELLS_PER_POINT = 8    # for every point at most about so many, however near to each other rounded or repeated points lie
 
 
-def outlier_candidates(records, k, looked, distances, limit, lonelier):
+def outlier_candidates(records: Columns, k: int, sample: np.ndarray, distances: np.ndarray, limit: float, factor: float) -> np.ndarray:
     """The points that may lie farther from their k nearest others than a limit, and than is usual about them by a factor.
 
     Parameters
     ----------
     records : Columns of N points
     k : neighbours
-    looked : (M,) indices of points, evenly strewn
+    sample : (M,) indices of points, evenly strewn
     distances : (M,) m, their mean distances to their k nearest others
     limit : m
-    lonelier : times the least of the distances known in the decimetres about a point
+    factor : times the least of the distances known in the decimetres about a point
 
     Returns
     -------
@@ -65,10 +72,10 @@ def outlier_candidates(records, k, looked, distances, limit, lonelier):
         squares -= 2.0 * place * about(place)
     usual = np.full((rows, columns), NO_DISTANCE, np.float32)
     farthest_first = np.argsort(-distances, kind="stable")
-    usual.ravel()[cell[looked[farthest_first]]] = distances[farthest_first]
+    usual.ravel()[cell[sample[farthest_first]]] = distances[farthest_first]
     window = np.ones((USUAL_DISTANCE_WINDOW, USUAL_DISTANCE_WINDOW), np.uint8)
     usual = cv2.erode(usual, window, borderType=cv2.BORDER_CONSTANT, borderValue=NO_DISTANCE).ravel().take(cell)
-    most = np.maximum(np.where(usual < NO_DISTANCE, lonelier * usual, 0.0), limit) / COORDINATE_SCALE
+    most = np.maximum(np.where(usual < NO_DISTANCE, factor * usual, 0.0), limit) / COORDINATE_SCALE
     return np.flatnonzero((count <= k) | (squares > (count - 1) * most**2))
 
 
@@ -85,13 +92,13 @@ def _cells(units, side):
     number -= number.min()
     return number, int(number.max()) + 1
 
-QUERY_PATCH_BITS = 11            # bits: points of one 0.2 m patch are asked for one after the other, in the processor's cache
-TREE_LEAF_POINTS = 20             # points in a leaf of the tree
+QUERY_PATCH_BITS = 11  # bits: points of one 0.2 m patch are asked for one after the other, in the processor's cache
+TREE_LEAF_POINTS = 20  # points in a leaf of the tree
 MAX_FLOAT32_UNITS = 1 << 24       # units (1.6 km): up to here float32 holds every integer
-NEIGHBOUR_TILE_BITS = 18             # bits: 26 m of map worked at together
-NEIGHBOUR_TILE_MARGIN = 10_000       # units: 1 m about a tile where neighbours are looked for
-MIN_COPIES_IN_TREE = 32           # of points at one place are in a tree at least: more are left out where they cannot change a distance
-QUERIES_PER_BLOCK = 1 << 16    # points asked for at a time where only their distances are wanted
+NEIGHBOUR_TILE_BITS = 18                 # bits: 26 m of map worked at together
+NEIGHBOUR_TILE_MARGIN = 10_000           # units: 1 m about a tile where neighbours are looked for
+MIN_COPIES_IN_TREE = 32                  # of points at one place are in a tree at least: more are left out where they cannot change a distance
+QUERIES_PER_BLOCK = 1 << 16              # points asked for at a time where only their distances are wanted
 HASH_MULTIPLIER = np.uint32(2654435761)  # an odd number that scatters places over a table
 
 
@@ -117,7 +124,7 @@ class Neighbours:
     nearest: a search would otherwise look at all of them, for each of them.
     """
 
-    def __init__(self, units, k):
+    def __init__(self, units: np.ndarray, k: int) -> None:
         self.k = max(min(k, len(units) - 1), 0)
         least = units.min(axis=0) if len(units) else 0
         self._units = units - least
@@ -132,7 +139,7 @@ class Neighbours:
     def __len__(self):
         return len(self._units)
 
-    def of(self, rows):
+    def of(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Mean distance of some points to their nearest others, and who these are.
 
         Returns
@@ -155,7 +162,7 @@ class Neighbours:
         means = distances.sum(axis=1, dtype=np.float64) * (COORDINATE_SCALE / self.k)
         return means.take(back), distances[:, -1].take(back) * COORDINATE_SCALE, nearest[:, 1:].take(back, axis=0)
 
-    def distances(self, rows):
+    def distances(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Mean distance of some points to their nearest others, and the distance to the last of these, as in `of`: (M,) metres each."""
         means, farthest = np.empty(len(rows)), np.empty(len(rows))
         for first in range(0, len(rows), QUERIES_PER_BLOCK):
@@ -175,7 +182,7 @@ class Neighbours:
         return nearest.astype(np.int32, copy=False), distances
 
 
-def points_at_place(units):
+def points_at_place(units: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """How many points lie at the very place of each.
 
     Parameters
@@ -216,7 +223,7 @@ def _without_needless(units, k, at_place=None):
     return np.flatnonzero(rank < most) if count.max(initial=0) > most else None
 
 
-def mean_distances(units, k, progress=Progress()):
+def mean_distances(units: np.ndarray, k: int, progress: Progress = Progress()) -> np.ndarray:
     """Mean distance of every point to its k nearest others, over any extent.
 
     Parameters
@@ -270,12 +277,12 @@ def _within(values, tile):
 # Points far from their fellows: statistical outlier removal, exactly as PCL defines it.
 
 OUTLIER_SCOPES = ("all", "windows")
-OUTLIER_WINDOW = 20.0   # m of station that one limit is taken from
-OUTLIER_BAND = 3.0      # m of offset likewise
+OUTLIER_WINDOW = 20.0     # m of station that one limit is taken from
+OUTLIER_BAND = 3.0        # m of offset likewise
 NEIGHBOUR_HALO = 2.0      # m of station beyond a window where neighbours are still looked for
-MAX_LIMIT_SAMPLE = 1500     # points of a band from which its limit is taken; where there are twice as many, of evenly strewn ones
-MIN_POINTS_PER_BAND = 30     # points of a window that still have a spread worth the name
-SPARSENESS_FACTOR = 3.0  # times the distance that is usual among a point's own neighbours
+MAX_LIMIT_SAMPLE = 1500   # points of a band from which its limit is taken; where there are twice as many, of evenly strewn ones
+MIN_POINTS_PER_BAND = 30  # points of a window that still have a spread worth the name
+SPARSENESS_FACTOR = 3.0   # times the distance that is usual among a point's own neighbours
 
 
 @dataclass(frozen=True)
@@ -293,20 +300,20 @@ class OutlierSettings:
     std_ratio: float = setting(1.0, 0.0, 20.0, "The standard deviation ratio")
     scope: str = "windows"
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_limits(self)
         if self.scope not in OUTLIER_SCOPES:
             raise RoadExtractionError(f"The scope {self.scope!r} is not known; use one of {', '.join(OUTLIER_SCOPES)}.")
 
 
-def within_spread(distances, std_ratio):
+def within_spread(distances: np.ndarray, std_ratio: float) -> np.ndarray:
     """(N,) bool: mean distance at most mu + m * sigma, sigma with n - 1 as in PCL."""
     if len(distances) < 2:
         return np.ones(len(distances), bool)
     return ~(distances > distances.mean() + std_ratio * distances.std(ddof=1))
 
 
-def remove_outliers(points, settings=OutlierSettings(), progress=Progress()):
+def remove_outliers(points: RoadPoints, settings: OutlierSettings = OutlierSettings(), progress: Progress = Progress()) -> RoadPoints:
     """Leave out points that lie apart from the others.
 
     Parameters
@@ -361,27 +368,27 @@ def _kept_of_window(points, road, number, settings):
     own = np.flatnonzero((s >= number * OUTLIER_WINDOW) & (s < (number + 1) * OUTLIER_WINDOW))
     neighbours = _DistanceCache(Neighbours(_units(records), settings.neighbours))
     band = np.floor(records["d"].take(own) * COORDINATE_SCALE / OUTLIER_BAND)
-    lonely = [np.empty(0, np.intp)]
+    outliers = [np.empty(0, np.intp)]
     for value in np.unique(band):
         rows = own[band == value]
         if len(rows) >= MIN_POINTS_PER_BAND:
-            lonely.append(_outliers_in_band(records, rows, neighbours, settings))
-    lonely = np.concatenate(lonely)
-    lonely = lonely[neighbours.distances(lonely) > SPARSENESS_FACTOR * _usual(neighbours, lonely)]
+            outliers.append(_outliers_in_band(records, rows, neighbours, settings))
+    outliers = np.concatenate(outliers)
+    outliers = outliers[neighbours.distances(outliers) > SPARSENESS_FACTOR * _usual(neighbours, outliers)]
     keep = np.ones(len(own), bool)
-    keep[np.searchsorted(own, lonely)] = False
+    keep[np.searchsorted(own, outliers)] = False
     return keep
 
 
 def _outliers_in_band(records, rows, neighbours, settings):
     """Those of some rows of a window, ascending, that lie beyond the spread of all of them."""
-    looked = np.arange(0, len(rows), max(len(rows) // MAX_LIMIT_SAMPLE, 1))
-    distances = neighbours.distances(rows[looked])
+    sample = np.arange(0, len(rows), max(len(rows) // MAX_LIMIT_SAMPLE, 1))
+    distances = neighbours.distances(rows[sample])
     limit = distances.mean() + settings.std_ratio * distances.std(ddof=1)
-    if len(looked) < len(rows):
+    if len(sample) < len(rows):
         # beside places of so many points some are far nearer to their neighbours than the evenly strewn ones show
-        lonelier = SPARSENESS_FACTOR if neighbours.neighbours.most_at_place <= max(settings.neighbours // 2, 1) else 0.0
-        rows = rows[outlier_candidates(records.take(rows), settings.neighbours, looked, distances, limit, lonelier)]
+        factor = SPARSENESS_FACTOR if neighbours.neighbours.most_at_place <= max(settings.neighbours // 2, 1) else 0.0
+        rows = rows[outlier_candidates(records.take(rows), settings.neighbours, sample, distances, limit, factor)]
     return rows[neighbours.distances(rows) > limit]
 
 

@@ -5,6 +5,10 @@ together across it, and paint is worn through in places. So gaps are closed
 along the road, and much less across it, where the next stripe may begin.
 """
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
 import numpy as np
 import shapely
 from scipy import ndimage
@@ -15,17 +19,21 @@ from ...survey.store.records import COORDINATE_SCALE
 from .road_grid import CELL_SIZE
 from .shape import fill_gaps, middle_line
 
-CLOSE_ALONG = 0.40   # m of station over which a gap is closed
-CLOSE_ACROSS = 0.04  # m of offset likewise
-MIN_HOLE_AREA = 0.02  # m2: smaller holes are wear, not shape
-STRIP_TOLERANCE = 0.004     # m by which the outline of a strip may leave its middle line's curve
-MIN_PART_AREA = 0.005  # m2: three cells
-OUTLINE_TOLERANCE = 0.025      # m by which a simplified outline may leave the cells
+if TYPE_CHECKING:
+    from ...survey.frame.road_frame import Road
+    from .shape import Shape
+
+CLOSE_ALONG = 0.40            # m of station over which a gap is closed
+CLOSE_ACROSS = 0.04           # m of offset likewise
+MIN_HOLE_AREA = 0.02          # m2: smaller holes are wear, not shape
+STRIP_TOLERANCE = 0.004       # m by which the outline of a strip may leave its middle line's curve
+MIN_PART_AREA = 0.005         # m2: three cells
+OUTLINE_TOLERANCE = 0.025     # m by which a simplified outline may leave the cells
 OUTLINE_VERTEX_SPACING = 1.0  # m of station between vertices: 2 mm of sagitta at R = 60 m
 OUTLINE_HEIGHT_NEIGHBOURS = 8
 
 
-def band(s, d, shape):
+def band(s: np.ndarray, d: np.ndarray, shape: Shape) -> shapely.Polygon:
     """Outline of a strip: its middle line, as wide as the whole of it is.
 
     Parameters
@@ -49,7 +57,7 @@ def band(s, d, shape):
     return shapely.simplify(shapely.Polygon(ring @ np.array([[c, n], [-n, c]])), STRIP_TOLERANCE)
 
 
-def painted_cells(s, d):
+def painted_cells(s: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Cells covered by a cluster.
 
     Parameters
@@ -80,7 +88,7 @@ def _without_small_holes(mask):
     return mask
 
 
-def cell_outline(mask, first):
+def cell_outline(mask: np.ndarray, first: np.ndarray) -> shapely.Geometry:
     """Shapely polygon or multipolygon in (s, d) of the cells that are on, its staircase smoothed."""
     edges = np.diff(np.pad(mask, ((1, 1), (0, 0))).astype(np.int8), axis=0)
     column, start = np.nonzero(edges.T == 1)
@@ -92,13 +100,13 @@ def cell_outline(mask, first):
     return shape.simplify(OUTLINE_TOLERANCE, preserve_topology=True)
 
 
-def parts(shape):
+def parts(shape: shapely.Geometry) -> list[shapely.Polygon]:
     """The polygons of an outline that are large enough to be drawn, from the road's start on."""
     pieces = [piece for piece in getattr(shape, "geoms", [shape]) if piece.area >= MIN_PART_AREA]
     return sorted(pieces, key=lambda piece: piece.bounds)
 
 
-def to_local(shape, road, places):
+def to_local(shape: shapely.Polygon, road: Road, places: np.ndarray) -> shapely.Polygon:
     """The outline in local coordinates with Z.
 
     Parameters

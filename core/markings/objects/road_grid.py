@@ -1,39 +1,51 @@
 """The points of a window of the road in cells, gone through piece by piece: no array of all of them is made."""
 
+from __future__ import annotations
+
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...survey.store.records import COORDINATE_SCALE
 
+if TYPE_CHECKING:
+    from ...io.geotiff import IntensityImage
+    from ...survey.frame.road_frame import RoadFrame
+    from ...survey.store.columns import Columns
+    from ...survey.store.records import Points
+    from ...survey.store.road_points import RoadPoints
+
+
 # A window of the road as an array: along the road and across it, so that a bend is straight.
 
-CELL_SIZE = 0.04   # m, along and across the road: the cells in which points and paint are put
-CELL_UNITS = 400   # the same in units of 0.1 mm
+CELL_SIZE = 0.04  # m, along and across the road: the cells in which points and paint are put
+CELL_UNITS = 400  # the same in units of 0.1 mm
 
 
 class RoadGrid:
     """A window of the road in cells of 4 cm: rows along the road, columns across it."""
 
-    def __init__(self, first, last, low, high):
+    def __init__(self, first: int, last: int, low: int, high: int) -> None:
         self.first, self.last, self.low, self.high = first, last, low, high
 
     @property
-    def shape(self):
+    def shape(self) -> tuple[int, int]:
         return self.last - self.first, self.high - self.low
 
-    def stations(self):
+    def stations(self) -> np.ndarray:
         return (np.arange(self.first, self.last) + 0.5) * CELL_UNITS * COORDINATE_SCALE
 
-    def offsets(self):
+    def offsets(self) -> np.ndarray:
         return (np.arange(self.low, self.high) + 0.5) * CELL_UNITS * COORDINATE_SCALE
 
-    def read(self, image, frame, road):
+    def read(self, image: IntensityImage, frame: RoadFrame, road: int) -> np.ndarray:
         """(rows, columns) float32 brightness, NaN where nothing was scanned."""
         x, y = frame.road(road).to_map(self.stations()[:, None], self.offsets())
         return np.asarray(image.sample(x.ravel(), y.ravel(), frame.origin), np.float32).reshape(self.shape)
 
-ROWS_PER_PIECE = 125        # cells: 5 m of road at a time
+ROWS_PER_PIECE = 125             # cells: 5 m of road at a time
 POINTS_PER_CELL_BLOCK = 1 << 15  # points put into cells at a time: what fits the processor's cache
 
 
@@ -66,12 +78,12 @@ class PieceOfRoad:
             occupied.ravel()[cell] = True
         return cls(grid, number, occupied, _half_widths(records, first, last), d[::step].copy())
 
-    def within(self, grid):
+    def within(self, grid: RoadGrid) -> tuple[slice, slice]:
         """Where this piece lies in a larger grid: slices of its rows and columns."""
         mine = self.grid
         return slice(mine.first - grid.first, mine.last - grid.first), slice(mine.low - grid.low, mine.high - grid.low)
 
-    def points_on(self, mask):
+    def points_on(self, mask: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Ascending indices of the points whose cells are on in (rows, columns) of a mask, and the numbers of their cells."""
         mask, rows, cells = mask.ravel(), [], []
         for k in range(0, len(self.cell), POINTS_PER_CELL_BLOCK):
@@ -82,7 +94,7 @@ class PieceOfRoad:
         return np.concatenate(rows), np.concatenate(cells)
 
 
-def cells_of_road(road_points, road, first, last, step=1):
+def cells_of_road(road_points: RoadPoints, road: int, first: int, last: int, step: int = 1) -> list[PieceOfRoad]:
     """[PieceOfRoad] of the rows from `first` to before `last`."""
     return [PieceOfRoad.of(points, begin, end, step) for begin, end, points in road_pieces(road_points, road, first, last)]
 
@@ -121,7 +133,7 @@ class RoadCells:
         return cls(RoadGrid(first, last, low + begin, low + end), np.ascontiguousarray(occupied[:, begin:end]), half_width)
 
 
-def road_pieces(road_points, road, first, last):
+def road_pieces(road_points: RoadPoints, road: int, first: int, last: int) -> Iterator[tuple[int, int, Points]]:
     """Yield (first row, end, Points) of the rows of cells from `first` to before `last`, in order; those without points are left out."""
     cuts = [first, *range((first // ROWS_PER_PIECE + 1) * ROWS_PER_PIECE, last, ROWS_PER_PIECE), last]
     for begin, end in zip(cuts[:-1], cuts[1:]):
@@ -130,7 +142,7 @@ def road_pieces(road_points, road, first, last):
             yield begin, end, points
 
 
-def cell_numbers(records, grid):
+def cell_numbers(records: Columns, grid: RoadGrid) -> Iterator[tuple[slice, np.ndarray]]:
     """Yield (slice of the records, (n,) int32 flat numbers of their cells in a grid), some thousand at a time."""
     s, d = records["s"], records["d"]
     width = np.int32(grid.shape[1])

@@ -1,5 +1,7 @@
 """Length, width and direction of a cluster, measured in the road frame from its points."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import cv2
@@ -11,12 +13,12 @@ from ...survey.store.records import COORDINATE_SCALE
 from .connected_cells import occupied
 from .road_grid import CELL_UNITS
 
-MIDDLE_LINE_STEP_UNITS = 5000          # units: 0.5 m of station that the run of a line is followed in
-WIDTH_PERCENT = 95.0        # % of the points that the width spans; divided out again
-MAX_ANGLE_ALONG = np.radians(20.0)   # closer to the road's direction than this is "along" it
-MIN_ANGLE_ACROSS = np.radians(60.0)  # farther from it is "across"
-STEM_BREADTH_CELLS, STEM_STEP_CELLS = 9, 5  # cells: a stroke along the road is no broader (0.36 m), looked at every 20 cm
-SCAN_GAPS_OF_BARS = 10, 6    # cells along the road and across it: gaps between the scan lines on a bar
+MIDDLE_LINE_STEP_UNITS = 5000                         # units: 0.5 m of station that the run of a line is followed in
+WIDTH_PERCENT = 95.0                                  # % of the points that the width spans; divided out again
+MAX_ANGLE_ALONG = np.radians(20.0)                    # closer to the road's direction than this is "along" it
+MIN_ANGLE_ACROSS = np.radians(60.0)                   # farther from it is "across"
+STEM_BREADTH_CELLS, STEM_STEP_CELLS = 9, 5            # cells: a stroke along the road is no broader (0.36 m), looked at every 20 cm
+SCAN_GAPS_OF_BARS = 10, 6                             # cells along the road and across it: gaps between the scan lines on a bar
 SMALL_MARKING_SIZE, SCAN_GAPS_OF_SMALL = 1.2, (3, 1)  # m, and cells likewise of what is no longer than that: the strokes of a sign lie farther apart
 
 
@@ -47,25 +49,25 @@ class Shape:
     stems: tuple
 
     @property
-    def elongation(self):
+    def elongation(self) -> float:
         return self.length / max(self.width, 1e-3)
 
     @property
-    def station(self):
+    def station(self) -> float:
         return (self.s0 + self.s1) / 2
 
     @property
-    def along(self):
+    def along(self) -> bool:
         """Whether it runs along the road."""
         return abs(self.direction) <= MAX_ANGLE_ALONG
 
     @property
-    def across(self):
+    def across(self) -> bool:
         """Whether it runs across the road."""
         return abs(self.direction) > MIN_ANGLE_ACROSS
 
 
-def measure(s, d):
+def measure(s: np.ndarray, d: np.ndarray) -> Shape:
     """The Shape of a cluster.
 
     Parameters
@@ -101,7 +103,7 @@ def measure(s, d):
                  _stems(cells))
 
 
-def fill_gaps(mask, limit, axis=0):
+def fill_gaps(mask: np.ndarray, limit: int, axis: int = 0) -> np.ndarray:
     """Close runs of at most `limit` cells that are off between two that are on, along one axis."""
     if limit < 1:
         return mask.copy()
@@ -136,7 +138,7 @@ def _stems(cells):
     return (float(broad[0]) / count, 1.0 - float(broad[-1] + 1) / count) if len(broad) else (1.0, 1.0)
 
 
-def full_width(across):
+def full_width(across: np.ndarray) -> float:
     """Full width of evenly strewn values from their 95 % range."""
     low, high = percentiles(across, ((100 - WIDTH_PERCENT) / 2, (100 + WIDTH_PERCENT) / 2))
     return (high - low) / (WIDTH_PERCENT / 100)
@@ -151,7 +153,7 @@ def _principal_direction(cells):
     return float(angle)
 
 
-def middle_line(s, d):
+def middle_line(s: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The middle line of an elongated cluster.
 
     Parameters

@@ -5,6 +5,11 @@ road, or a bar that runs on across it, and something else beside it, the two are
 free, so that the line keeps its width and the rest its shape.
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 import cv2
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -18,18 +23,22 @@ from .connected_cells import occupied
 from .near_pairs import overlapping_pairs
 from .road_grid import CELL_UNITS
 
-MIN_STRIP_LENGTH = 5.0  # m of a strip
+if TYPE_CHECKING:
+    from ...survey.store.columns import Columns
+    from .shape import Shape
+
+MIN_STRIP_LENGTH = 5.0                        # m of a strip
 COMPOUND_LENGTH, COMPOUND_BREADTH = 9.0, 0.5  # m: no arrow or letter is so long; a line that is broader somewhere has something beside it
-MIN_RUN_ALONG = 1.0          # m along the road that a strip does not break off; stop lines and hatching bars are shorter
-MIN_RUN_ACROSS = 2.0          # m across the road that a bar does not break off; no arrow or letter is as broad
-MIN_LENGTH_BESIDE_BAR = 1.0  # m along the road: what is shorter is nothing but a bar
-MAX_PAINT_GAP = 0.24   # m across the road, closed; the stripes of a zebra crossing leave more
-MAX_SCAN_GAP = 0.40    # m between scan lines, closed
-MORPHOLOGY_CHUNK = 100.0      # m of road looked at together
-MIN_LEFTOVER_AREA = 0.05    # m2: smaller left-overs are the frayed rim of the strip
+MIN_RUN_ALONG = 1.0                           # m along the road that a strip does not break off; stop lines and hatching bars are shorter
+MIN_RUN_ACROSS = 2.0                          # m across the road that a bar does not break off; no arrow or letter is as broad
+MIN_LENGTH_BESIDE_BAR = 1.0                   # m along the road: what is shorter is nothing but a bar
+MAX_PAINT_GAP = 0.24                          # m across the road, closed; the stripes of a zebra crossing leave more
+MAX_SCAN_GAP = 0.40                           # m between scan lines, closed
+MORPHOLOGY_CHUNK = 100.0                      # m of road looked at together
+MIN_LEFTOVER_AREA = 0.05                      # m2: smaller left-overs are the frayed rim of the strip
 
 
-def split_compounds(records, labels):
+def split_compounds(records: Columns, labels: np.ndarray) -> np.ndarray:
     """Give the parts of compound clusters labels of their own.
 
     Parameters
@@ -137,13 +146,13 @@ def _linked(cells, along, across):
 # Pieces of one marking that wear has parted: lines along the road, stop lines across it, the stripes of a crossing.
 
 MAX_WORN_GAP, MAX_FRAGMENT_OVERLAP, MAX_FRAGMENT_OFFSET = 0.9, 0.2, 0.08  # m along, along, across
-STOP_LINE_PIECE_THICKNESS = 0.18, 0.90   # m along the road of a stop line's pieces
+STOP_LINE_PIECE_THICKNESS = 0.18, 0.90  # m along the road of a stop line's pieces
 MIN_STOP_LINE_PIECE, MAX_STOP_LINE_GAP = 0.8, 0.30  # m across: a row of shorter blocks is a give-way line, and its gaps are painted
 MIN_STRIPE_PIECE, MAX_STRIPE_GAP = 0.8, 0.7  # m along the road: what a stripe of a crossing has left at least, and what wear takes of it
-MAX_SIDE_SHIFT = 0.10        # m by which wear has moved an edge that two pieces share
+MAX_SIDE_SHIFT = 0.10  # m by which wear has moved an edge that two pieces share
 
 
-def join_fragments(shapes, max_width):
+def join_fragments(shapes: Sequence[Shape], max_width: float) -> np.ndarray:
     """Which pieces continue each other over a worn spot.
 
     Parameters
