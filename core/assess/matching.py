@@ -16,7 +16,7 @@ LINE_SAMPLE_STEP = 0.1     # m between the compared points along a line
 HEADING_BASE = 0.5         # m to either side over which the direction of a line is measured: vertices a decimetre apart are noisy
 QUERY_BATCH = 20_000       # points queried at a time: each may have many neighbours
 MAX_BESIDE_DISTANCE = 2.5  # m; a result farther from every reference line is stationed along itself
-MIN_ROAD_WIDTH = 2.0       # m between the outermost reference lines, below which lines have no sides
+MIN_REFERENCE_WIDTH = 2.0       # m between the outermost reference lines, below which lines have no sides
 MAX_ROAD_DISTANCE = 30.0   # m from the trajectory or the longest reference line within which lines have stations and sides
 
 
@@ -222,17 +222,17 @@ class SegmentIndex:
         a, b = self.a[segment], self.b[segment]
         step = b - a
         share = np.clip(((xy - a[:, :2]) * step[:, :2]).sum(axis=1) / self.length[segment]**2, 0.0, 1.0)
-        foot = a + share[:, None] * step
-        off = xy - foot[:, :2]
-        return foot, share, np.hypot(off[:, 0], off[:, 1])
+        nearest_xyz = a + share[:, None] * step
+        off = xy - nearest_xyz[:, :2]
+        return nearest_xyz, share, np.hypot(off[:, 0], off[:, 1])
 
     def _nearest_points(self, xy, point, segment):
         found = _no_nearest_points(len(xy))
-        foot, share, distance = self._project(xy[point], segment)
+        nearest_xyz, share, distance = self._project(xy[point], segment)
         step, off = (self.b - self.a)[segment], xy[point] - self.a[segment, :2]
         found.distance[point] = distance
         found.side[point] = np.where(step[:, 0] * off[:, 1] - step[:, 1] * off[:, 0] >= 0, 1.0, -1.0)
-        found.xy[point], found.z[point] = foot[:, :2], foot[:, 2]
+        found.xy[point], found.z[point] = nearest_xyz[:, :2], nearest_xyz[:, 2]
         found.line[point] = self.line[segment]
         found.station[point] = self.start[segment] + share * self.length[segment]
         return found
@@ -280,8 +280,8 @@ class TrajectoryStationing:
 
     def outward(self, points: LinePoints, nearest: NearestPoints, stations: Stations) -> np.ndarray:
         """(N,) +1 where a point lies farther from the trajectory than its nearest point on the reference, else -1."""
-        foot = self.frame.locate_nearest(*self.frame.to_local(*np.nan_to_num(nearest.xy).T), corridor=self.corridor)[2]
-        return np.where(np.abs(stations.offset) >= np.abs(np.nan_to_num(foot)), 1.0, -1.0)
+        offset = self.frame.locate_nearest(*self.frame.to_local(*np.nan_to_num(nearest.xy).T), corridor=self.corridor)[2]
+        return np.where(np.abs(stations.offset) >= np.abs(np.nan_to_num(offset)), 1.0, -1.0)
 
 
 class ReferenceStationing:
@@ -329,7 +329,7 @@ def sides_of(lines: Sequence[shapely.LineString]) -> np.ndarray:
     offset = np.bincount(points.line, nearest.side * nearest.distance, len(lines)) / np.bincount(points.line, minlength=len(lines))
     near = np.abs(offset) <= MAX_ROAD_DISTANCE
     low, high = offset[near].min(), offset[near].max()
-    if high - low < MIN_ROAD_WIDTH:
+    if high - low < MIN_REFERENCE_WIDTH:
         return np.zeros(len(lines), int)
     return np.where(near, np.where(offset > (low + high) / 2, 1, -1), 0)
 

@@ -14,10 +14,10 @@ import numpy as np
 from ..common.parallel import check_cancelled
 from .robust import MAD_TO_SIGMA, SOFT_L1_SCALE
 
-POINTS_PER_BATCH = 8192        # fits the processor's cache
+FIT_POINTS_PER_BATCH = 8192        # fits the processor's cache
 COARSE_POINTS = 128            # points of a line to which it is fitted first
-STEP_TOLERANCE = 1e-7          # share of a sensible step below which a fit has converged,
-COARSE_STEP_TOLERANCE = 1e-3   # and of a fit to the coarse points of a longer line
+FIT_TOLERANCE = 1e-7          # share of a sensible step below which a fit has converged,
+COARSE_FIT_TOLERANCE = 1e-3   # and of a fit to the coarse points of a longer line
 STALLED_GAIN = 1e-3            # relative gain of a step below which a curve with a large misfit is given up
 MAX_MISFIT_SHARE = 0.05        # share of the points beyond `max_misfit` above which a fit is not refined
 MAX_STEPS = 100                # accepted steps of Levenberg-Marquardt
@@ -60,7 +60,7 @@ class PointGroups:
         return np.repeat(self.starts, sizes) + np.rint(within * np.repeat(step, sizes)).astype(np.int64)
 
 
-def batches(counts: Sequence[int] | np.ndarray, max_points: int = POINTS_PER_BATCH) -> list[tuple[int, int]]:
+def batches(counts: Sequence[int] | np.ndarray, max_points: int = FIT_POINTS_PER_BATCH) -> list[tuple[int, int]]:
     """[(first, end)] of successive lines with at most `max_points` points together; a single line may have more."""
     found, first, size = [], 0, 0
     for k, count in enumerate(counts):
@@ -96,7 +96,7 @@ def fit_batch(lines: Sequence[tuple[np.ndarray, np.ndarray]], problem_of: Callab
         x, y = (np.concatenate([lines[k][axis] for k in numbers]) for axis in (0, 1))
         rows = whole.subsampled(COARSE_POINTS)
         problem = problem_of(PointGroups(np.minimum(whole.counts, COARSE_POINTS)), x[rows], y[rows])
-        tolerance = np.where(whole.counts <= COARSE_POINTS, STEP_TOLERANCE, COARSE_STEP_TOLERANCE)
+        tolerance = np.where(whole.counts <= COARSE_POINTS, FIT_TOLERANCE, COARSE_FIT_TOLERANCE)
         solved = minimise_batch(problem, problem.start(), problem.scale, tolerance, max_misfit)
         _store_fits(found, numbers, np.flatnonzero(whole.counts <= COARSE_POINTS), problem, lines, *solved)
         long = np.flatnonzero(whole.counts > COARSE_POINTS)
@@ -126,7 +126,7 @@ def _store_fits(found, numbers, which, problem, lines, unknown, residuals, state
         found[numbers[k]] = problem.fit(k, unknown[k], x, y, residuals[own], tuple(values[own] for values in state))
 
 
-def minimise_batch(problem: Any, start: np.ndarray, scale: np.ndarray, tolerance: float | np.ndarray = STEP_TOLERANCE,
+def minimise_batch(problem: Any, start: np.ndarray, scale: np.ndarray, tolerance: float | np.ndarray = FIT_TOLERANCE,
                    max_misfit: float = np.inf) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, ...]]:
     """Parameters of each line that minimise the soft L1 loss of its residuals, by Levenberg-Marquardt.
 
@@ -152,7 +152,7 @@ def minimise_batch(problem: Any, start: np.ndarray, scale: np.ndarray, tolerance
     """
     exact = np.broadcast_to(tolerance, len(start))
     found, residuals, state = _levenberg_marquardt(problem, np.array(start, float), scale, np.full(len(start), np.inf), problem.state,
-                                                   np.maximum(exact, COARSE_STEP_TOLERANCE / 10), max_misfit)
+                                                   np.maximum(exact, COARSE_FIT_TOLERANCE / 10), max_misfit)
     misfit = MAD_TO_SIGMA * problem.groups.medians(np.abs(residuals))
     return _levenberg_marquardt(problem, found, scale, np.maximum(SOFT_L1_SCALE, misfit), state, exact, max_misfit)
 

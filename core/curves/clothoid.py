@@ -242,14 +242,14 @@ def _start(groups, x, y):
 
 def _parabolas(count, at, heading):
     """(L,) coefficients of order 0, 1 and 2 of the parabola (the straight line of two) through all but the last of each line's values."""
-    kept = PointGroups(count - 1)
+    chord_groups = PointGroups(count - 1)
     rows = np.delete(np.arange(len(at)), np.cumsum(count) - 1)
     at, heading = at[rows], heading[rows]
-    scale = np.maximum(kept.maxima(np.abs(at)), 1e-6)
-    powers = (at / scale[kept.owner]) ** np.arange(5)[:, None]
-    sums, right = kept.sums(powers).T, kept.sums(powers[:3] * heading).T
+    scale = np.maximum(chord_groups.maxima(np.abs(at)), 1e-6)
+    powers = (at / scale[chord_groups.owner]) ** np.arange(5)[:, None]
+    sums, right = chord_groups.sums(powers).T, chord_groups.sums(powers[:3] * heading).T
     normal = sums[:, np.add.outer(np.arange(3), np.arange(3))]
-    two = kept.counts < 3
+    two = chord_groups.counts < 3
     normal[two, 2, :], normal[two, :, 2], normal[two, 2, 2], right[two, 2] = 0.0, 0.0, 1.0, 0.0
     normal += 1e-12 * np.eye(3)
     return (np.linalg.solve(normal, right[:, :, None])[:, :, 0] / scale[:, None] ** np.arange(3)).T

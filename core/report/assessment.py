@@ -97,10 +97,10 @@ def driving_report(match: LineMatch, accuracy: LineAccuracy, settings: LineAccur
     page = Page("Accuracy of driving lines", f"{names[0]} against {names[1]}.")
     for note in notes:
         page.warning(note)
-    asked = ("as the total width of the buffer; the half-width stands beside it" if total_width
+    given = ("as the total width of the buffer; the half-width stands beside it" if total_width
              else "as the half-width of the buffer, from the line to its rim")
     page.text(
-        f"Tolerances were given {asked}. Completeness (recall) is the share of the reference within the tolerance of the result; correctness "
+        f"Tolerances were given {given}. Completeness (recall) is the share of the reference within the tolerance of the result; correctness "
         "(precision) the share of the result within the tolerance of the reference, and miscoding the share outside it: the buffer lies "
         "about the reference. Quality is matched result over result and unmatched reference. "
         + (f"Lines that cross at more than {settings.max_angle:g}° do not match." if settings.max_angle < 90

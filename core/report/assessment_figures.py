@@ -57,9 +57,9 @@ def _scale_bar(picture, scale, width):
     """Draw a scale bar of a round length, at most a fifth of the map; return that length in metres."""
     power = 10.0 ** np.floor(np.log10(width / 5))
     length = power * max(m for m in (1, 2, 5) if m * power <= width / 5 * 1.001)
-    foot, left = picture.shape[0] - 14, 14
-    cv2.rectangle(picture, (left - 3, foot - 4), (left + int(length * scale) + 3, foot + 4), (255, 255, 255), -1)
-    cv2.rectangle(picture, (left, foot - 2), (left + int(length * scale), foot + 2), (30, 30, 30), -1)
+    base, left = picture.shape[0] - 14, 14
+    cv2.rectangle(picture, (left - 3, base - 4), (left + int(length * scale) + 3, base + 4), (255, 255, 255), -1)
+    cv2.rectangle(picture, (left, base - 2), (left + int(length * scale), base + 2), (30, 30, 30), -1)
     return length
 
 

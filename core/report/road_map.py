@@ -19,9 +19,9 @@ MAX_DIAGRAMS = 16         # of curvature; further driving lines are not drawn
 MAX_JOIN_DISTANCE = 0.05  # m between the ends of pieces of one line
 LINE_COLOUR, ELEMENT_COLOUR, CODE_COLOUR = "#2b6ca3", "#009e73", "#d55e00"  # of the curvature diagrams
 SPEEDS_SHOWN = (30, 50, 80)  # km/h, whose least radii are drawn in the curvature diagrams
-STAGE_NAMES = dict(survey="Reading and placing points", curbs="Curbs", edges="Road edges", surface="Road surface",
-                   intensity="Intensity correction", image="Intensity image", markings="Marking extraction",
-                   outliers="Outlier removal", clusters="Clustering", lines="Marking lines", driving="Driving lines")
+STAGE_TITLES = dict(survey="Reading and placing points", curbs="Curbs", edges="Road edges", surface="Road surface",
+                    intensity="Intensity correction", image="Intensity image", markings="Marking extraction",
+                    outliers="Outlier removal", clusters="Clustering", lines="Marking lines", driving="Driving lines")
 MAP_COLOUR_KEY = (("#e63c3c", "road edge, measured"), ("#ff963c", "road edge, bridged"), ("#e63cff", "the two methods more than 5 cm apart"),
                   ("#ffdc50", "marking"), ("#3cc8e6", "marking line"), ("#3cdc5a", "driving line"),
                   ("#bfff3c", "bridged"), ("#c878dc", "inferred"))
@@ -50,7 +50,7 @@ def road_map_report(road_map: Any, image_path: str | None = None, progress: Prog
         _driving(page, road_map)
     page.heading("Time")
     total = sum(road_map.seconds.values())
-    page.table(("Stage", "Seconds"), [*((STAGE_NAMES[k], v) for k, v in road_map.seconds.items()), ("Together", total)])
+    page.table(("Stage", "Seconds"), [*((STAGE_TITLES[k], v) for k, v in road_map.seconds.items()), ("Together", total)])
     return page.html()
 
 
