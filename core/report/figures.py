@@ -37,6 +37,10 @@ class Chart:
         self.levels: list[float] = []
         self.labels = x_label, y_label
 
+    @property
+    def _clip(self) -> str:
+        return f"plot{self.height}"
+
     def _x(self, x):
         return LEFT_MARGIN + (np.asarray(x, float) - self.x0) / (self.x1 - self.x0) * (CHART_WIDTH - LEFT_MARGIN - RIGHT_MARGIN)
 
@@ -75,7 +79,8 @@ class Chart:
         for run in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1):
             if len(run):
                 points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(self._x(np.asarray(x)[run]), self._y(np.asarray(y)[run])))
-                self.parts.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="{width}">{_title(title)}</polyline>')
+                self.parts.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="{width}" '
+                                  f'clip-path="url(#{self._clip})">{_title(title)}</polyline>')
 
     def level(self, y: float, colour: str, label: str = "") -> None:
         """Draw a dashed line across the plot, with its label unless that would lie over another one."""
@@ -88,7 +93,10 @@ class Chart:
 
     def svg(self) -> str:
         """The chart as an SVG element."""
-        inner = "".join([self._grid(), *self.parts])
+        # charts of one page may share the name of the clip path: it is the same rectangle for all of one height
+        clip = (f'<clipPath id="{self._clip}"><rect x="{LEFT_MARGIN}" y="0" width="{PLOT_END - LEFT_MARGIN}" '
+                f'height="{self.height}"/></clipPath>')
+        inner = "".join([clip, self._grid(), *self.parts])
         return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{CHART_WIDTH}" height="{self.height}" viewBox="0 0 {CHART_WIDTH} {self.height}" '
                 f'font-family="DejaVu Sans, Segoe UI, Helvetica, Arial, sans-serif" font-size="12">'
                 f'<rect width="{CHART_WIDTH}" height="{self.height}" fill="white"/>{inner}</svg>')

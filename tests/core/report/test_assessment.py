@@ -37,6 +37,16 @@ def test_a_curve_stops_where_nothing_is_known():
     assert chart.svg().count("<polyline") == 2
 
 
+def test_a_curve_that_begins_before_the_axis_is_not_drawn_over_its_numbers():
+    chart = Chart((10, 20), (0, 1), "m", "")
+    chart.curve(np.array([0.0, 15.0]), np.array([0.5, 0.5]), "#123456")
+    picture = chart.svg()
+    left, width = (float(v) for v in re.search(r'<clipPath id="plot220"><rect x="(\d+)" y="0" width="(\d+)"', picture).groups())
+    grid = [float(x) for x in re.findall(r'<line x1="([\d.]+)" x2="\1"', picture)]
+    assert (left, left + width) == (min(grid), max(grid))
+    assert 'clip-path="url(#plot220)"' in re.search(r'<polyline[^>]*stroke="#123456"[^>]*>', picture).group()
+
+
 def test_names_in_a_chart_cannot_become_markup():
     assert "<b>" not in Chart((0, 1), (0, 1), "<b>", "<b>").svg()
 
