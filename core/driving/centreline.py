@@ -55,7 +55,7 @@ def lane_courses(tracks: list[LaneTrack], s: np.ndarray, road: Road, elements: l
     """
     fits = fit_curves([_known_places(track, s, road) for track in tracks])
     drawn = [fit.curve.sample(STATION_STEP) for fit in fits]
-    stations = road.locate(*np.concatenate(drawn).T)[0] if drawn else []
+    stations = road.locate(*np.concatenate(drawn).T)[0] if drawn else np.empty(0)
     found, first = [], 0
     for fit, places, of_lane in zip(fits, drawn, elements):
         station = stations[first:first + len(places)]

@@ -1,4 +1,7 @@
-"""The points of a window of the road in cells, gone through piece by piece: no array of all of them is made."""
+"""A window of the road as a grid of cells, along the road and across it, so that a bend is straight.
+
+Points are put into the cells piece by piece: no array of all points is made.
+"""
 
 from __future__ import annotations
 
@@ -18,10 +21,10 @@ if TYPE_CHECKING:
     from ...survey.store.road_points import RoadPoints
 
 
-# A window of the road as an array: along the road and across it, so that a bend is straight.
-
 CELL_SIZE = 0.04  # m, along and across the road: the cells in which points and paint are put
 CELL_UNITS = 400  # the same in units of 0.1 mm
+ROWS_PER_PIECE = 125             # rows of cells: 5 m of road at a time
+POINTS_PER_CELL_BLOCK = 1 << 15  # points put into cells at a time: what fits the processor's cache
 
 
 class RoadGrid:
@@ -45,9 +48,6 @@ class RoadGrid:
         x, y = frame.road(road).to_map(self.stations()[:, None], self.offsets())
         return np.asarray(image.sample(x.ravel(), y.ravel(), frame.origin), np.float32).reshape(self.shape)
 
-ROWS_PER_PIECE = 125             # cells: 5 m of road at a time
-POINTS_PER_CELL_BLOCK = 1 << 15  # points put into cells at a time: what fits the processor's cache
-
 
 @dataclass(frozen=True)
 class PieceOfRoad:
@@ -56,8 +56,8 @@ class PieceOfRoad:
     grid : RoadGrid of these rows alone, as wide as the points lie
     cell : (N,) int32 flat number in it of each point
     occupied : (rows, columns) bool, cells that points lie in
-    half_width : (2, rows) uint16, mm to the road's edge on the left and on the right, 0 where no point says
-    offsets : (M,) int32, units of 0.1 mm, of an evenly strewn share of the points
+    half_width : (2, rows) uint16, mm to the road's edge on the left and on the right, 0 where it is not known
+    offsets : (M,) int32, units of 0.1 mm, of an evenly spaced sample of the points
     """
 
     grid: RoadGrid
@@ -68,7 +68,7 @@ class PieceOfRoad:
 
     @classmethod
     def of(cls, points, first, last, step=1):
-        """The points of rows `first` to before `last`; one of `step` tells the offsets."""
+        """The points of rows `first` to before `last`; one of `step` gives the offsets."""
         records = points.records
         d = records["d"]
         grid = RoadGrid(first, last, int(d.min()) // CELL_UNITS - 1, int(d.max()) // CELL_UNITS + 2)
@@ -105,7 +105,7 @@ class RoadCells:
 
     grid : RoadGrid
     occupied : (rows, columns) bool, cells that points lie in
-    half_width : (2, rows) uint16, mm to the road's edge on the left and on the right, 0 where no point says
+    half_width : (2, rows) uint16, mm to the road's edge on the left and on the right, 0 where it is not known
     """
 
     grid: RoadGrid

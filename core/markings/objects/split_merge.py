@@ -1,8 +1,13 @@
-"""Markings that touch taken apart: a stop line that runs into an edge line is two markings.
+"""Markings that touch are separated, and pieces of one marking are joined.
+
+A stop line that runs into an edge line is two markings.
 
 A cluster joins whatever touches. Where it holds a strip that runs on along the
 road, or a bar that runs on across it, and something else beside it, the two are cut
 free, so that the line keeps its width and the rest its shape.
+
+Pieces of one marking that wear has separated are joined: lines along the road, stop
+lines across it, the stripes of a crossing.
 """
 
 from __future__ import annotations
@@ -36,6 +41,12 @@ MAX_PAINT_GAP = 0.24                          # m across the road, closed; the s
 MAX_SCAN_GAP = 0.40                           # m between scan lines, closed
 MORPHOLOGY_CHUNK = 100.0                      # m of road looked at together
 MIN_LEFTOVER_AREA = 0.05                      # m2: smaller left-overs are the frayed rim of the strip
+# Pieces of one marking
+MAX_WORN_GAP, MAX_FRAGMENT_OVERLAP, MAX_FRAGMENT_OFFSET = 0.9, 0.2, 0.08  # m along, along, across
+STOP_LINE_PIECE_THICKNESS = 0.18, 0.90  # m along the road of a stop line's pieces
+MIN_STOP_LINE_PIECE, MAX_STOP_LINE_GAP = 0.8, 0.30  # m across: a row of shorter blocks is a give-way line, and its gaps are painted
+MIN_STRIPE_PIECE, MAX_STRIPE_GAP = 0.8, 0.7  # m along the road: what a stripe of a crossing has left at least, and what wear takes of it
+MAX_SIDE_SHIFT = 0.10  # m by which wear has moved an edge that two pieces share
 
 
 def split_compounds(records: Columns, labels: np.ndarray) -> np.ndarray:
@@ -141,15 +152,6 @@ def _linked(cells, along, across):
     pairs = cKDTree(cells / [along, across]).query_pairs(1.0, p=np.inf, output_type="ndarray")
     graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(len(cells), len(cells)))
     return connected_components(graph, directed=False)[1].astype(np.int64)
-
-
-# Pieces of one marking that wear has parted: lines along the road, stop lines across it, the stripes of a crossing.
-
-MAX_WORN_GAP, MAX_FRAGMENT_OVERLAP, MAX_FRAGMENT_OFFSET = 0.9, 0.2, 0.08  # m along, along, across
-STOP_LINE_PIECE_THICKNESS = 0.18, 0.90  # m along the road of a stop line's pieces
-MIN_STOP_LINE_PIECE, MAX_STOP_LINE_GAP = 0.8, 0.30  # m across: a row of shorter blocks is a give-way line, and its gaps are painted
-MIN_STRIPE_PIECE, MAX_STRIPE_GAP = 0.8, 0.7  # m along the road: what a stripe of a crossing has left at least, and what wear takes of it
-MAX_SIDE_SHIFT = 0.10  # m by which wear has moved an edge that two pieces share
 
 
 def join_fragments(shapes: Sequence[Shape], max_width: float) -> np.ndarray:
