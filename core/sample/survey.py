@@ -20,7 +20,7 @@ from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from ..sample import truth
 from ..survey.trajectory.trajectory import Trajectory
-from .orthophoto import camera_over
+from .camera import camera_over
 from .scanner import OBSTACLE, Scanner, brightness_of, butterfly, cast, label_hits, received
 from .scenes import build_scene
 from .street import LABEL
