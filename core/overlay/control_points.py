@@ -145,7 +145,7 @@ def _lines(path):
     """The lines of the table, and the CRS given above it."""
     try:
         if Path(path).stat().st_size > MAX_TABLE_BYTES:
-            raise RoadExtractionError(f"{path} is too large for a table of control points. Was the image chosen in its place?")
+            raise RoadExtractionError(f"{path} is too large for a table of control points. Was the image given instead?")
         data = Path(path).read_bytes()
     except OSError as problem:
         raise RoadExtractionError(

@@ -230,13 +230,13 @@ class StreetColours:
         origin = np.stack([x[near], y[near], np.full(len(near), obstacle.z + 30.0)])
         down = np.repeat(np.array([[0.0], [0.0], [-1.0]]), len(near), axis=1)
         hit, cosine, brightness = obstacle.hits(origin, down, self._chance(obstacle, x))
-        seen = np.flatnonzero(np.isfinite(hit) & (cosine > 0))
+        visible = np.flatnonzero(np.isfinite(hit) & (cosine > 0))
         if isinstance(obstacle, Car):
             lacquer = _LACQUERS[number % len(_LACQUERS)]
-            glass = (np.abs(brightness[seen] - 0.12) < 1e-9)[:, None]
-            colours[near[seen]] = np.where(glass, _GLASS, lacquer) * (0.45 + 0.55 * cosine[seen])[:, None]
+            glass = (np.abs(brightness[visible] - 0.12) < 1e-9)[:, None]
+            colours[near[visible]] = np.where(glass, _GLASS, lacquer) * (0.45 + 0.55 * cosine[visible])[:, None]
         else:
-            colours[near[seen]] = _LEAVES * (0.45 + 0.9 * cosine[seen])[:, None]
+            colours[near[visible]] = _LEAVES * (0.45 + 0.9 * cosine[visible])[:, None]
 
     def _chance(self, obstacle, x):
         return np.random.default_rng([self.seed, 6, int(1000 * obstacle.x) & 0xFFFF, len(x) & 0xFFFF])
@@ -268,7 +268,7 @@ def write_uav_image(survey: SampleSurvey, path: str | os.PathLike[str], progress
 
     progress = progress or Progress()
     camera = survey.camera
-    seen = StreetColours(survey.scene, camera, survey.settings.seed)
+    street = StreetColours(survey.scene, camera, survey.settings.seed)
     unfinished = Path(path).with_name(Path(path).name + ".unfinished.tif")
     dataset = None
     try:
@@ -279,7 +279,7 @@ def write_uav_image(survey: SampleSurvey, path: str | os.PathLike[str], progress
             width = min(_TILE, camera.width - column)
             for row in range(0, camera.height, 2 * _TILE):
                 height = min(2 * _TILE, camera.height - row)
-                tile = _render(seen, camera, column, row, width, height)
+                tile = _render(street, camera, column, row, width, height)
                 dataset.WriteRaster(column, row, width, height, np.ascontiguousarray(tile.transpose(2, 0, 1)).tobytes(),
                                     buf_type=gdal.GDT_Byte)
         dataset.FlushCache()
@@ -293,15 +293,15 @@ def write_uav_image(survey: SampleSurvey, path: str | os.PathLike[str], progress
     progress.report(1.0)
 
 
-def _render(seen, camera, column, row, width, height):
+def _render(street, camera, column, row, width, height):
     """(height, width, 3) uint8 of one tile."""
     pixel = np.arange(column - _HALO, column + width + _HALO) + 0.5
     line = np.arange(row - _HALO, row + height + _HALO) + 0.5
     across, down = (axis.ravel() for axis in np.meshgrid(pixel, line))
-    colours = seen.colours(*camera.to_map(across, down)).reshape(len(line), len(pixel), 3)
+    colours = street.colours(*camera.to_map(across, down)).reshape(len(line), len(pixel), 3)
     colours = cv2.GaussianBlur(colours, (0, 0), _BLUR)[_HALO:-_HALO, _HALO:-_HALO]
     u = (pixel[_HALO:-_HALO] - camera.width / 2) / camera.half_diagonal
     v = (line[_HALO:-_HALO] - camera.height / 2) / camera.half_diagonal
     fading = 1.0 - 0.14 * (u[None, :] ** 2 + v[:, None] ** 2)
-    noise = np.random.default_rng([seen.seed, 5, column, row]).standard_normal(colours.shape, dtype=np.float32)
+    noise = np.random.default_rng([street.seed, 5, column, row]).standard_normal(colours.shape, dtype=np.float32)
     return np.clip(np.rint(colours * fading[..., None] + _NOISE * noise), 1, 255).astype(np.uint8)

@@ -258,8 +258,8 @@ def samples_near(lines: Scanlines, heights: np.ndarray, rows: tuple[int, int], i
     row = row_of_lines(lines, rows, interval)
     segments, line = _segments_near(lines, row, rows[1] - rows[0], *places, across, along)
     line, d, h, steep = _at_equal_steps(lines, heights, segments, line)
-    kept = np.flatnonzero((h > -MAX_GROUND_DEPTH) & (h <= clipping_height))
-    return ScanlineSamples(rows[0], interval, rows[1] - rows[0], row[line[kept]], d[kept], h[kept], steep[kept])
+    near_ground = np.flatnonzero((h > -MAX_GROUND_DEPTH) & (h <= clipping_height))
+    return ScanlineSamples(rows[0], interval, rows[1] - rows[0], row[line[near_ground]], d[near_ground], h[near_ground], steep[near_ground])
 
 
 def _segments_near(lines, row, count, place_row, place_d, across, along):

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..common.corners import MAX_FACE_SKEW, CurbSteps
+from ..common.pseudo_scanlines import SIGMA_PER_MEAN_DEVIATION
 from .candidates import CurbCandidates, ScanlineSamples
 
 if TYPE_CHECKING:
@@ -36,7 +37,6 @@ MAX_LEVEL_VERTICES, MAX_FACE_VERTICES = 96, 64  # samples of the planes of road 
 MAX_PLANE_ROWS = 9            # scanlines around a candidate; with narrower intervals some are left out
 MIN_PLANE_INLIERS = 15        # inliers of a plane
 MIN_INLIER_SHARE = 0.5        # inliers of a plane among its samples
-SIGMA_PER_MEAN_DEVIATION = 1.2533  # sqrt(pi / 2): sigma of a normal distribution over its mean absolute deviation
 MAX_ROAD_SHARE, MIN_RAISED_SHARE = 0.30, 0.70  # of the rise: road is lower, raised ground is higher
 FACE_SHARE = (0.12, 0.88)     # of the rise: the face lies between
 FACE_HALF_WIDTH = 0.12        # m across from the middle of the rise: the face is nearer

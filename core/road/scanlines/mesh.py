@@ -138,8 +138,8 @@ def scanner_lines(records: Columns | np.ndarray, p: Pass, mirror: MirrorPhase, c
     if len(used) < 2:
         return None
     if not new.all():
-        kept = np.repeat(new, counts)
-        records, time = take_rows(records, kept), time[kept]
+        used_points = np.repeat(new, counts)
+        records, time = take_rows(records, used_points), time[used_points]
         counts = counts[used]
     line = np.repeat(np.arange(len(used), dtype=np.int32), counts)
     length = (begins[1:] - begins[:-1])[used]
@@ -278,7 +278,7 @@ class PlaneVertices:
     gap: float
 
     @classmethod
-    def seen_from(cls, p: Pass, interval: float, mirror: MirrorPhase, plane: np.ndarray, phase: np.ndarray, d: np.ndarray,
+    def from_track(cls, p: Pass, interval: float, mirror: MirrorPhase, plane: np.ndarray, phase: np.ndarray, d: np.ndarray,
                   z: np.ndarray) -> PlaneVertices:
         """The vertices with their places relative to the track of a pass.
 

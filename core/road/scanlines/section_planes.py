@@ -166,7 +166,7 @@ def _cut(records, p, key, mirror, planes, settings, intensity, level):
     order = plane_order(plane - planes[0], phase if mirror.leftward else 1.0 - phase)
     plane, phase, d, z = (values[order] for values in (plane, phase, d, z))
     bright = crossed.of(lines.intensity.astype(np.float64))[order].astype(np.float32) if intensity else np.zeros(len(d), np.float32)
-    order, first = PlaneVertices.seen_from(p, settings.interval, mirror, plane, phase, d, z).lines()
+    order, first = PlaneVertices.from_track(p, settings.interval, mirror, plane, phase, d, z).lines()
     if order is not None:
         plane, d, z, bright = plane[order], d[order], z[order], bright[order] if intensity else bright
     count = len(first) - 1

@@ -34,7 +34,7 @@ WINDOW_ROWS = 10              # rows of cells in memory at a time: 5 m
 TOLERANCE_FLOOR = 0.03        # m, height tolerance of a scanner without noise
 TOLERANCE_SIGMAS = 4.0        # times the noise of the heights, added to it
 TRACK_REACH = 1.5             # m either side of the reference line where ground must be measured
-MIN_ROAD_WIDTH = 0.5          # m between the limits of a row with road
+MIN_SURFACE_WIDTH = 0.5          # m between the limits of a row with road
 
 
 @dataclass(frozen=True)
@@ -177,7 +177,7 @@ def find_carriageway(survey: Survey, road: int, edges: Features | None, settings
             grown = grown_offsets(SurfaceProfiles.joined(profiles), cells, height - prior[:, None], sign, track, settings.max_width)
             offset = np.where(np.isnan(offset), grown, offset)
         limits[side] = offset, known
-    there = _has_road(followed.ground, cells.offsets) & (limits["left"][0] > limits["right"][0] + MIN_ROAD_WIDTH)
+    there = _has_road(followed.ground, cells.offsets) & (limits["left"][0] > limits["right"][0] + MIN_SURFACE_WIDTH)
     tolerance = float(np.clip(TOLERANCE_FLOOR + TOLERANCE_SIGMAS * followed.noise, 0.0, settings.height_tolerance))
     return Carriageway(cells, height, followed.ground, np.where(there, limits["right"][0], np.nan),
                        np.where(there, limits["left"][0], np.nan), limits["right"][1], limits["left"][1], tolerance)

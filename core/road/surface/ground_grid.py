@@ -20,7 +20,7 @@ GROUND_LAYER_DEPTH = 0.12   # m of the lowest layer that count as ground: a wall
 MIN_LAYER_SHARE = 0.08      # of the points of a cell: a smaller lowest layer is multipath below the road
 GOLDEN_RATIO_32 = 0x9E3779B9  # golden ratio times 2^32: its multiples, modulo 2^32, are evenly distributed
 MAX_POINTS_PER_CELL = 100   # denser cells are subsampled: more points do not change the result
-POINTS_PER_BATCH = 1 << 15  # points processed at a time; they fit into the cache of the processor
+GROUND_POINTS_PER_BATCH = 1 << 15  # points processed at a time; they fit into the cache of the processor
 MIN_LAYER_POINTS = 3        # points of a layer
 MIN_PLANE_POINTS = 6        # points of a plane; cells with fewer have a mean height and no roughness
 GROUND_REACH, GROUND_REACH_PER_METRE = 0.7, 0.12  # m above or below the road under the vehicle, and more per m of offset
@@ -112,18 +112,18 @@ def ground_cells(points: Points, first_row: int, rows: int, reach: float, road_h
     half = int(np.ceil(reach / column_size))
     columns = 2 * half
     prior = road_height((first_row + np.arange(rows) + 0.5) * row_size)
-    kept, cell = _near_ground(points.records, first_row, rows, half, prior, row_size, column_size)
-    z = points.records["z"].take(kept)
+    index, cell = _near_ground(points.records, first_row, rows, half, prior, row_size, column_size)
+    z = points.records["z"].take(index)
     order = order_by(z, cell)
-    kept, cell, z = kept[order], cell[order], z[order] * COORDINATE_SCALE
+    index, cell, z = index[order], cell[order], z[order] * COORDINATE_SCALE
     low = np.flatnonzero(_in_lowest_layer(cell, z, np.bincount(cell, minlength=rows * columns)))
-    kept, at, z = kept[low], cell[low], z[low]
+    index, at, z = index[low], cell[low], z[low]
     count = np.bincount(at, minlength=rows * columns)
     row, column = np.divmod(np.arange(rows * columns), columns)
-    u, v = (points.records[name].take(kept) * COORDINATE_SCALE - np.repeat(middle, count) for name, middle in
+    u, v = (points.records[name].take(index) * COORDINATE_SCALE - np.repeat(middle, count) for name, middle in
             (("d", (column - half + 0.5) * column_size), ("s", (row + first_row + 0.5) * row_size)))
     height, rough = _planes(count, u, v, z)
-    brightness, scatter = _medians(at, count, points.intensity[kept])
+    brightness, scatter = _medians(at, count, points.intensity[index])
     shape = rows, columns
     return GroundCells(first_row, -half, row_size, column_size,
                  *(values.reshape(shape).astype(np.float32) for values in (height, rough, brightness, scatter, count)))
@@ -135,8 +135,8 @@ def _near_ground(records, first_row, rows, half, prior, row_size, column_size):
     along, across = (np.int32(round(size / COORDINATE_SCALE)) for size in (row_size, column_size))
     nowhere = rows * 2 * half
     cell, count = np.empty(len(records), np.int32), np.zeros(nowhere + 1, np.int64)
-    for first in range(0, len(records), POINTS_PER_BATCH):
-        s, d, z = (records[name][first:first + POINTS_PER_BATCH] for name in ("s", "d", "z"))
+    for first in range(0, len(records), GROUND_POINTS_PER_BATCH):
+        s, d, z = (records[name][first:first + GROUND_POINTS_PER_BATCH] for name in ("s", "d", "z"))
         row = s // along
         row -= np.int32(first_row)
         column = d // across
@@ -151,20 +151,20 @@ def _near_ground(records, first_row, rows, half, prior, row_size, column_size):
         row *= np.int32(2 * half)
         row += column
         row[~inside] = nowhere
-        cell[first:first + POINTS_PER_BATCH] = row
+        cell[first:first + GROUND_POINTS_PER_BATCH] = row
         count += np.bincount(row, minlength=nowhere + 1)
     # multiples of the golden ratio: an even subset whichever points of a cell come one after the other
     share = np.floor(0xFFFFFFFF * np.minimum(MAX_POINTS_PER_CELL / np.maximum(count, 1), 1.0)).astype(np.uint32)
     share[nowhere] = 0
-    turn = np.arange(1, POINTS_PER_BATCH + 1, dtype=np.uint32) * np.uint32(GOLDEN_RATIO_32)
-    kept = [np.empty(0, np.intp)]
-    for first in range(0, len(cell), POINTS_PER_BATCH):
-        here = share.take(cell[first:first + POINTS_PER_BATCH])
+    turn = np.arange(1, GROUND_POINTS_PER_BATCH + 1, dtype=np.uint32) * np.uint32(GOLDEN_RATIO_32)
+    indices = [np.empty(0, np.intp)]
+    for first in range(0, len(cell), GROUND_POINTS_PER_BATCH):
+        here = share.take(cell[first:first + GROUND_POINTS_PER_BATCH])
         selected = np.flatnonzero(turn[:len(here)] + np.uint32(first * GOLDEN_RATIO_32 % 2**32) < here)
         selected += first
-        kept.append(selected)
-    kept = np.concatenate(kept)
-    return kept, cell.take(kept)
+        indices.append(selected)
+    indices = np.concatenate(indices)
+    return indices, cell.take(indices)
 
 
 def _in_lowest_layer(cell, z, total):

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
     from .extract import Carriageway
 
-MIN_STATUS_LENGTH = 5.0  # m: shorter changes of status are not drawn
+MIN_SURFACE_STATUS_LENGTH = 5.0  # m: shorter changes of status are not drawn
 
 
 def add_outlines(surface: Features, frame: RoadFrame, road: int, carriageway: Carriageway, points_per_row: np.ndarray) -> None:
@@ -30,7 +30,7 @@ def add_outlines(surface: Features, frame: RoadFrame, road: int, carriageway: Ca
     """
     cells = carriageway.cells
     there = np.isfinite(carriageway.left) & np.isfinite(carriageway.right)
-    measured = _without_short_runs(carriageway.left_bounded & carriageway.right_bounded, int(MIN_STATUS_LENGTH / ROW_LENGTH))
+    measured = _without_short_runs(carriageway.left_bounded & carriageway.right_bounded, int(MIN_SURFACE_STATUS_LENGTH / ROW_LENGTH))
     kind = np.where(there, np.where(measured, 2, 1), 0)
     cuts = np.r_[0, np.flatnonzero(np.diff(kind)) + 1, len(kind)]
     for a, b in zip(cuts[:-1], cuts[1:]):

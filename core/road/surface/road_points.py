@@ -9,7 +9,7 @@ import numpy as np
 from scipy import ndimage
 
 from ...survey.store.records import COORDINATE_SCALE, Points
-from .ground_grid import COLUMN_WIDTH, POINTS_PER_BATCH, ROW_LENGTH
+from .ground_grid import COLUMN_WIDTH, GROUND_POINTS_PER_BATCH, ROW_LENGTH
 
 if TYPE_CHECKING:
     from .extract import Carriageway
@@ -50,12 +50,12 @@ def _squares(*points):
     found = []
     for records in points:
         place = np.empty(len(records), np.int32)
-        for first in range(0, len(place), POINTS_PER_BATCH):
-            run = place[first:first + POINTS_PER_BATCH]
-            np.floor_divide(records["s"][first:first + POINTS_PER_BATCH], size, out=run)
+        for first in range(0, len(place), GROUND_POINTS_PER_BATCH):
+            run = place[first:first + GROUND_POINTS_PER_BATCH]
+            np.floor_divide(records["s"][first:first + GROUND_POINTS_PER_BATCH], size, out=run)
             run -= np.int32(low[0])
             run *= np.int32(shape[1])
-            run += records["d"][first:first + POINTS_PER_BATCH] // size
+            run += records["d"][first:first + GROUND_POINTS_PER_BATCH] // size
             run -= np.int32(low[1])
         found.append(place)
     return *found, shape
@@ -101,8 +101,8 @@ def points_on_road(points: Points, carriageway: Carriageway) -> OnRoad:
         return OnRoad(np.empty(0, np.intp), np.empty(0, np.uint16), np.empty(0, np.intp))
     here = _SurfaceTables(carriageway, records["s"], records["d"])
     parts = []
-    for first in range(0, len(records), POINTS_PER_BATCH):
-        found = here.points(*(records[name][first:first + POINTS_PER_BATCH] for name in ("s", "d", "z")))
+    for first in range(0, len(records), GROUND_POINTS_PER_BATCH):
+        found = here.points(*(records[name][first:first + GROUND_POINTS_PER_BATCH] for name in ("s", "d", "z")))
         parts.append((found[0] + first, found[1], found[2] + first))
     return OnRoad(*(np.concatenate(part) for part in zip(*parts)))
 
