@@ -1,22 +1,30 @@
-"""Whether the clock of the points is that of the trajectory: what is scanned on the vehicle's own way, it is near to at that time."""
+"""Check that points and trajectory use the same clock: the road on the own track is scanned when the vehicle is near it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..common.progress import Progress
 
-CLOCK_TRACK_HALF_WIDTH = 2.0     # m either side of the vehicle's own track
-MAX_LOOK_AHEAD = 6.5        # m along the road: mirrors and spinning scanners see road nearer than this in each of their turns
-NEAREST_PERCENTILE = 10           # % of the points on the way that are nearer
-CLOCK_SECTIONS, CLOCK_POINTS_PER_SECTION = 20, 5000  # that are looked at, spread over the survey
-MIN_CLOCK_POINTS = 500         # points that tell
+if TYPE_CHECKING:
+    from .open_survey import Survey
+
+CLOCK_TRACK_HALF_WIDTH = 2.0     # m either side of the own track
+MAX_LOOK_AHEAD = 6.5        # m along the road: every scanner measures road nearer than this in each rotation
+NEAREST_PERCENTILE = 10           # percentile of the distances that must be less than MAX_LOOK_AHEAD
+CLOCK_SECTIONS, CLOCK_POINTS_PER_SECTION = 20, 5000  # sampled, evenly over the survey
+MIN_CLOCK_POINTS = 500         # sampled points that a judgement needs
 
 
-def check_clock(survey, progress=Progress()):
-    """Warn where points were measured at times at which the vehicle was elsewhere.
+def check_clock(survey: Survey, progress: Progress = Progress()) -> None:
+    """Warn if points were measured at times at which the vehicle was elsewhere.
 
     Parameters
     ----------
     survey : Survey with times
+    progress : receives the warning
     """
     ahead, speed = _look_ahead(survey)
     if len(ahead) < MIN_CLOCK_POINTS or np.percentile(np.abs(ahead), NEAREST_PERCENTILE) < MAX_LOOK_AHEAD:
@@ -30,7 +38,7 @@ def check_clock(survey, progress=Progress()):
 
 
 def _look_ahead(survey):
-    """Metres from the vehicle ahead to points on its own track when they were measured, and its speed then (m/s), of a sample."""
+    """Of sampled points on the own track: metres ahead of the vehicle when measured, and its speed then (m/s)."""
     keys = [(road, number) for road in survey.store.roads() for number in survey.store.sections(road)]
     ahead, speed = [np.empty(0)], [np.empty(0)]
     for k in np.unique(np.linspace(0, len(keys) - 1, CLOCK_SECTIONS).astype(int)) if keys else ():

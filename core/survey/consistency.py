@@ -1,40 +1,76 @@
-"""Whether the result of an earlier stage belongs to the road frame it is given with.
+"""Check that the result of an earlier stage belongs to the trajectory it is used with.
 
-Stations count from where a trajectory's road begins, so with another trajectory,
-or another cut of the same one, every station of a file points somewhere else.
+Stations start where the road of a trajectory begins. With another trajectory, or another part of the same one, every
+station in a file refers to another position.
 """
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..common.errors import RoadExtractionError
 
-STATION_TOLERANCE = 1.0    # m that a station may be off: far more than rounding, far less than another drive
-CHECKED_SECTIONS, CHECKED_POINTS_PER_SECTION = 50, 200  # that are looked at, spread over the file
+if TYPE_CHECKING:
+    from ..common.features import Features
+    from .frame.road_frame import RoadFrame
+    from .store.road_points import RoadPoints
+
+STATION_TOLERANCE = 1.0    # m: far more than rounding, far less than the shift of another drive
+CHECKED_SECTIONS, CHECKED_POINTS_PER_SECTION = 50, 200  # evenly over the file
 
 
-def check_features_on_roads(features, frame, label):
-    """Refuse features whose `station_m` is not where they lie on the frame's roads.
+def check_features_on_roads(features: Features, frame: RoadFrame, label: str) -> None:
+    """Refuse features whose field `station_m` disagrees with their position in the road frame.
+
+    Parameters
+    ----------
+    features : Features with the fields `road` and `station_m`
+    frame : RoadFrame
+    label : name of the input, as at the beginning of a sentence
 
     Raises
     ------
     RoadExtractionError
-        If that is so for more than half of them.
+        If more than half of them disagree.
     """
     import shapely
 
-    agree = [_station_agrees(frame, row["road"], *shapely.get_coordinates(geometry).T[:2], row.get("station_m"))
-             for geometry, row in features if row.get("station_m") is not None]
+    agree = []
+    for geometry, row in features:
+        if row.get("station_m") is not None:
+            x, y = shapely.get_coordinates(geometry).T[:2]
+            agree.append(_station_agrees(frame, row["road"], x, y, row["station_m"]))
     _refuse_mismatch(agree, label, "features")
 
 
-def check_road_points_on_roads(road_points, frame, label):
-    """The same for road points: a sample of them, spread over their sections."""
+def check_road_points_on_roads(road_points: RoadPoints, frame: RoadFrame, label: str) -> None:
+    """Refuse road points whose stations disagree with their positions in the road frame, judged by a sample.
+
+    Parameters
+    ----------
+    road_points : RoadPoints
+    frame : RoadFrame
+    label : name of the input, as at the beginning of a sentence
+
+    Raises
+    ------
+    RoadExtractionError
+        If more than half of the sampled points disagree.
+    """
     agree = [np.abs(_stations(frame, road, x, y) - s) <= STATION_TOLERANCE for road, x, y, s in sample_road_points(road_points)]
     _refuse_mismatch(np.concatenate(agree) if agree else [], label, "points looked at")
 
 
-def sample_road_points(road_points):
-    """Some points of every few sections, so that a file is judged quickly: yields road, x, y (map coordinates) and station."""
+def sample_road_points(road_points: RoadPoints) -> Iterator[tuple[int, np.ndarray, np.ndarray, np.ndarray]]:
+    """A sample of road points, evenly over the file.
+
+    Yields
+    ------
+    road number, (N,) x and y in map coordinates, and (N,) stations in metres, section by section
+    """
     keys = road_points.all_sections()
     for k in np.unique(np.linspace(0, len(keys) - 1, CHECKED_SECTIONS).astype(int)) if keys else ():
         road, number = keys[k]
@@ -44,14 +80,14 @@ def sample_road_points(road_points):
 
 
 def _station_agrees(frame, road, x, y, station):
-    """Whether the stations of a feature's vertices reach the one it carries."""
+    """Whether the stations of the vertices of a feature include its field `station_m`."""
     s = _stations(frame, road, x, y)
     s = s[np.isfinite(s)]
     return len(s) > 0 and s.min() - STATION_TOLERANCE <= station <= s.max() + STATION_TOLERANCE
 
 
 def _stations(frame, road, x, y):
-    """(N,) stations of map coordinates on a road; NaN beside it, and where there is no such road."""
+    """(N,) stations of map coordinates on a road; NaN beside it, or if there is no such road."""
     if road is None or not 0 <= road < len(frame.roads):
         return np.full(len(x), np.nan)
     return frame.road(road).locate(*frame.to_local(x, y))[0]

@@ -1,14 +1,22 @@
-"""One block of a point cloud: its points near the road as compact records."""
+"""Reading point cloud files into the section store: blocks are decoded and projected into the road frame in several threads.
+
+Only points near the road are stored, as compact records. The height of the road is estimated from the first blocks.
+"""
+
+from __future__ import annotations
 
 import os
 from collections import deque
-from concurrent.futures import ThreadPoolExecutor, wait
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..common.memory import ScratchBuffers
 from ..common.parallel import POLL_INTERVAL
+from ..common.progress import Progress
 from .frame.projection import POINTS_PER_PROJECTION, RoadProjection
 from .las.parallel_reader import ParallelCloudReader
 from .las.scale import LasAxis
@@ -18,142 +26,48 @@ from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, fill_units, point_dtype, to_units
 from .trajectory.time_systems import SECONDS_PER_WEEK
 
-# Point cloud files into the section store, block by block in several threads.
+if TYPE_CHECKING:
+    import laspy
 
-DECODED_LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags")  # what is decoded of a LAZ file
+    from .frame.road_frame import RoadFrame
+    from .las.reader import CloudHeader
+    from .store.section_store import SectionStore
+
+DECODED_LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags")  # LAZ layers that are decoded
 MAX_WAITING_POINTS = 4_000_000  # points held back at most until the height of the road is known
 HEIGHT_SAMPLES = 5_000     # points on the own track from which the rough height is estimated
 MAX_INGEST_THREADS = 4     # each decodes blocks with all cores (lazrs keeps the others waiting) and projects their points
 BLOCKS_PER_THREAD = 3      # begun or queued per thread: keeps the threads busy while sections are written to the temporary file
-
-
-class SurveyReader:
-    """Reads files into a store and learns on the way what must be known of the whole survey.
-
-    Attributes, complete after `read`
-    ---------------------------------
-    census : ScannerCensus
-    darkest, brightest : the lowest and the highest intensity
-    unplaced_time : points whose time no pass has
-    heights : {pass number: metres from the trajectory down to the road}
-    """
-
-    def __init__(self, frame, store, corridor, has_time, week_ends=False):
-        self.frame, self.store = frame, store
-        self.census, self.darkest, self.brightest, self.unplaced_time = ScannerCensus(), 65535, 0, 0
-        self.tracks = VehicleTracks(frame)
-        self._blocks = BlockProjector(frame, corridor, has_time, week_ends)
-        self._ground = None        # made, as the tally of heights, when the rough height of the road is known
-        self._tally = None
-        self._waiting, self._samples = [], []  # parts of blocks until it is known
-
-    def read(self, files, block, progress):
-        """Read all files, `block` points at a time."""
-        total, done = sum(file.count for file in files), 0
-        threads = min(MAX_INGEST_THREADS, os.cpu_count() or 1)
-        with ParallelCloudReader(DECODED_LAYERS) as readers, ThreadPoolExecutor(threads) as pool:
-            waiting = deque()
-
-            def take():
-                nonlocal done
-                while not wait([waiting[0]], POLL_INTERVAL).done:
-                    progress.report(done / total)
-                done += self._take(*waiting.popleft().result())
-                progress.report(done / total)
-
-            try:
-                for load in readers.blocks(files, block):
-                    waiting.append(pool.submit(self._read_block, load))
-                    # the first blocks tell the road's height, which the others are chosen by
-                    while len(waiting) > (BLOCKS_PER_THREAD * threads if self._ground else 0):
-                        take()
-                while waiting:
-                    take()
-            finally:
-                for coming in waiting:
-                    coming.cancel()
-        self._settle()
-        self.heights, self.uneven = self._tally.heights(), self._tally.uneven()
-
-    def _read_block(self, load):
-        """What the block says of the whole cloud, its points, whether these were chosen by height and parted, and their number in the block."""
-        block, ground, found, parts = load(), self._ground, BlockSummary(), []
-        for road, points, own in self._blocks.read(block, found, ground):
-            parts.append((road, _copied(points, own)) if ground is None else self._parted(road, points, own))
-        return found, parts, ground is not None, len(block)
-
-    def _parted(self, road, points, own):
-        """Points by section, for the store; those on the track are counted."""
-        for number, drops in self.tracks.drops(road, points, own):
-            self._tally.add(number, drops)
-        return self.store.partition(road, points, own)
-
-    def _take(self, found, parts, parted, count):
-        """One block, in the order of the files."""
-        self.darkest, self.brightest = min(self.darkest, found.darkest), max(self.brightest, found.brightest)
-        self.unplaced_time += found.without_time
-        for name, times in found.scanners.items():
-            self.census.take(name, times)
-        if parted:
-            for part in parts:
-                self.store.add(part)
-        elif self._ground is not None:
-            self._choose(parts)
-        else:
-            self._waiting += parts
-            self._samples += [drops[::7] for road, points in parts for _, drops in self.tracks.drops(road, points)]
-            if sum(map(len, self._samples)) > HEIGHT_SAMPLES or sum(len(points) for _, points in self._waiting) > MAX_WAITING_POINTS:
-                self._settle()
-        return count
-
-    def _settle(self):
-        """Settle the rough height of the road and store what waited for it."""
-        if self._ground is not None:
-            return
-        drop = estimate_sensor_height(np.concatenate(self._samples)) if self._samples else None
-        drop = DEFAULT_SENSOR_HEIGHT if drop is None else drop
-        self._tally = HeightHistogram([p.number for p in self.frame.passes], drop)
-        self._ground = HeightFilter(self.frame, drop)
-        waiting, self._waiting, self._samples = self._waiting, [], []
-        self._choose(waiting)
-
-    def _choose(self, parts):
-        """Choose by height what was placed before that was known, and store it."""
-        for road, points in parts:
-            kept = ScratchBuffers().of(len(points))
-            near = self._ground.near(road, points["s"], points["z"], kept)
-            if near.any():
-                self.store.add(self._parted(road, points, near))
-
-
-def _copied(points, own):
-    """Points that are meant (None for all) as Columns that stay."""
-    return points.copy() if own is None else points.take(own).load_all()
-
-KEPT_ABOVE_ROAD, KEPT_BELOW_ROAD = 3.5, 4.0  # m about the road kept: vehicles that hide a curb above, ditches below
-# m more that are stored: the height of the road is rough while reading, and exact when points are handed out,
-# so that what is handed out does not depend on which file came first
+KEPT_ABOVE_ROAD, KEPT_BELOW_ROAD = 3.5, 4.0  # m: vehicles that hide a curb above the road, ditches below it
+# m stored beyond these limits: the height of the road is rough while reading and exact when points are returned,
+# so that the points returned do not depend on the order of the files
 INGEST_HEIGHT_MARGIN = 1.5
-HEIGHT_CELL_BITS = 12       # of a station in units of 0.1 mm: the height of the road is looked up every 0.41 m
+HEIGHT_CELL_BITS = 12      # of a station in units of 0.1 mm: the height of the road is looked up every 0.41 m
 SCANNER_FIELDS = ("point_source_id", "scanner_channel")
 
 
 @dataclass
 class BlockSummary:
-    """What a block says of the whole cloud.
+    """What a block contributes to the knowledge of the whole cloud.
 
     scanners : {LAS field: {value: (first time, last time, count)}}
-    darkest, brightest : intensity
-    without_time : points whose time no pass has
+    darkest, brightest : lowest and highest intensity
+    without_time : number of points at a time of no pass
     """
 
-    scanners: dict = field(default_factory=dict)
+    scanners: dict[str, dict[int, tuple[float, float, int]]] = field(default_factory=dict)
     darkest: int = 65535
     brightest: int = 0
     without_time: int = 0
 
-    def add(self, columns, names):
-        """Take note of some points of the block."""
+    def add(self, columns: dict[str, np.ndarray], names: set[str]) -> None:
+        """Count points of the block.
+
+        Parameters
+        ----------
+        columns : (N,) intensity, source, scanner and time
+        names : LAS fields that the file has
+        """
         self.darkest = min(self.darkest, int(columns["intensity"].min()))
         self.brightest = max(self.brightest, int(columns["intensity"].max()))
         for name, key in zip(SCANNER_FIELDS, ("source", "scanner")):
@@ -165,14 +79,15 @@ class BlockSummary:
 
 
 class HeightFilter:
-    """The rough height of the roads, for choosing points by height.
+    """Selects points near the rough height of the road.
 
     Parameters
     ----------
-    drop : metres from the tracks down to the road
+    frame : RoadFrame
+    drop : metres from the trajectory down to the road
     """
 
-    def __init__(self, frame, drop):
+    def __init__(self, frame: RoadFrame, drop: float):
         self._roads = {}
         for road in frame.roads:
             first, last = (int(station / COORDINATE_SCALE) >> HEIGHT_CELL_BITS for station in (road.start, road.end))
@@ -180,73 +95,92 @@ class HeightFilter:
             lowest = frame.track_height(road.number, stations) - drop - KEPT_BELOW_ROAD - INGEST_HEIGHT_MARGIN
             self._roads[road.number] = first, to_units(lowest)
 
-    def near(self, road, s, z, kept):
-        """(N,) bool: which places of a road, int32 units of 0.1 mm, are near its height. `kept` as of ScratchBuffers."""
+    def near(self, road: int, s: np.ndarray, z: np.ndarray, buffers: Callable[..., np.ndarray]) -> np.ndarray:
+        """Which points lie near the height of the road.
+
+        Parameters
+        ----------
+        road : number
+        s, z : (N,) int32 station and local height, units of 0.1 mm
+        buffers : of `ScratchBuffers.of` for N values
+
+        Returns
+        -------
+        (N,) bool
+        """
         first, lowest = self._roads[int(road)]
-        cell, k = np.right_shift(s, HEIGHT_CELL_BITS, out=kept("cell", np.int32)), kept("k", np.intp)
+        cell, k = np.right_shift(s, HEIGHT_CELL_BITS, out=buffers("cell", np.int32)), buffers("k", np.intp)
         np.copyto(k, np.subtract(cell, first, out=cell))
         above = np.subtract(z, lowest.take(k, out=cell, mode="clip"), out=cell)
-        # what is below becomes a large number
+        # a negative difference becomes a large unsigned number
         return above.view(np.uint32) < np.uint32((KEPT_ABOVE_ROAD + KEPT_BELOW_ROAD + 2 * INGEST_HEIGHT_MARGIN) / COORDINATE_SCALE)
 
 
 class BlockProjector:
-    """Turns blocks into compact records; may be called by several threads.
+    """Turns blocks into compact records in the road frame; safe to use in several threads.
 
     Parameters
     ----------
     frame : RoadFrame
     corridor : metres either side
-    has_time : whether points are placed by their time; else at the nearest foot
+    has_time : whether points are assigned to passes by their time; else by the nearest point on a road
     week_ends : whether the GPS week ends during the scan
     """
 
-    def __init__(self, frame, corridor, has_time, week_ends=False):
+    def __init__(self, frame: RoadFrame, corridor: float, has_time: bool, week_ends: bool = False):
         self.frame, self.corridor, self.has_time, self.week_ends = frame, corridor, has_time, week_ends
         self.dtype = point_dtype(SURVEY_POINT, frame.farthest)
         self.projection = RoadProjection(frame, corridor) if has_time else None
         self.roads = np.array([p.road for p in frame.passes] + [-1])
-        self._kept = ScratchBuffers()
+        self._scratch = ScratchBuffers()
 
-    def read(self, block, found, ground=None):
-        """Yield the points of a laspy point record near a road, those near its height where a HeightFilter is given.
+    def read(self, block: laspy.ScaleAwarePointRecord, found: BlockSummary,
+             ground: HeightFilter | None = None) -> Iterator[tuple[int, Columns, np.ndarray | None]]:
+        """The points of a block near a road, piece by piece; each piece overwrites the Columns of the one before.
 
-        Each time a road's number, the Columns of a piece of the block, and (N,) bool which of them are meant, None for
-        all. The next piece is written over these Columns; what is said of the whole cloud is added to `found`, BlockSummary.
+        Parameters
+        ----------
+        block : laspy point record
+        found : BlockSummary, which is updated
+        ground : HeightFilter; without it points of any height are taken
+
+        Yields
+        ------
+        road number, Columns of a piece, and (N,) bool of the points to use, None for all
         """
         names = set(block.point_format.dimension_names)
         axes = [LasAxis(*axis, self.dtype[axis[0].lower()]) for axis in zip("XYZ", block.scales, block.offsets, self.frame.origin)]
-        # piece by piece, so that what is worked on stays in the processor's cache
+        # small pieces stay in the processor cache
         for first in range(0, len(block), POINTS_PER_PROJECTION):
             yield from self._piece(block[first:first + POINTS_PER_PROJECTION], names, axes, found, ground)
 
     def _piece(self, piece, names, axes, found, ground):
-        kept = self._kept.of(len(piece))
+        buffers = self._scratch.of(len(piece))
         flagged = _flagged(piece)
-        columns = self._columns(piece, names, flagged, kept)
+        columns = self._columns(piece, names, flagged, buffers)
         found.add(columns, names)
         usable = _not_withheld(piece, names) if flagged else None
         for axis, name in zip(axes, "xyz"):
-            columns[name], there = axis.units(piece.array, kept)
+            columns[name], there = axis.units(piece.array, buffers)
             usable = _both(usable, there)
-        columns["s"], columns["d"] = kept("s", np.int32), kept("d", np.int32)
+        columns["s"], columns["d"] = buffers("s", np.int32), buffers("d", np.int32)
         columns["pass_number"], inside, lost = self._placed(columns, usable)
         found.without_time += lost
         if inside is not None:
             if not inside.any():
                 return
-            # so that they are stations of this piece at all
+            # points outside get a valid station of this piece
             columns["s"][~inside] = columns["s"][inside.argmax()]
         points = Columns(columns, self.dtype, len(piece))
         for number, own in self._by_road(columns["pass_number"], inside):
             if ground is not None:
-                near = ground.near(number, columns["s"], columns["z"], kept)
+                near = ground.near(number, columns["s"], columns["z"], buffers)
                 own = _both(own, None if near.all() else near)
             if own is None or own.any():
                 yield number, points, own
 
     def _by_road(self, pass_number, inside):
-        """Number of each road that points with a place are on, and which of them; None for all."""
+        """(road number, (N,) bool of its points or None for all) of every road with points."""
         if len(self.frame.roads) == 1:
             return [(0, inside)]
         road = self.roads[pass_number.view(np.int16)]
@@ -255,10 +189,10 @@ class BlockProjector:
         found = np.unique(road)
         return [(number, None if len(found) == 1 else road == number) for number in found.tolist() if number >= 0]
 
-    def _columns(self, piece, names, flagged, kept):
-        """What is kept of a piece as it is: time, intensity, source, returns, scanner."""
+    def _columns(self, piece, names, flagged, buffers):
+        """Columns copied from the file: time, intensity, source, returns, scanner."""
         raw = piece.array
-        columns = {name: kept(name, SURVEY_POINT[name]) for name in ("time", "intensity", "source", "returns")}
+        columns = {name: buffers(name, SURVEY_POINT[name]) for name in ("time", "intensity", "source", "returns")}
         columns["time"][:] = raw["gps_time"] if "gps_time" in raw.dtype.names else 0.0
         if self.week_ends:
             columns["time"][:] = unwrap_week(columns["time"])
@@ -267,12 +201,12 @@ class BlockProjector:
         columns["scanner"] = np.broadcast_to(np.uint8(0), len(raw))
         if "scanner_channel" in names and flagged:
             columns["scanner"] = np.asarray(piece["scanner_channel"])
-        # LAS 1.4 keeps them so
+        # LAS 1.4 stores both numbers in this way
         columns["returns"][:] = raw["bit_fields"] if "scanner_channel" in names else _returns(piece)
         return columns
 
     def _placed(self, columns, usable):
-        """Put stations and offsets into their columns; passes (uint16), which points have a place (None for all), how many a time of no pass."""
+        """Fill the columns s and d; (N,) uint16 pass numbers, (N,) bool inside the frame (None for all), and the number of points without a pass."""
         names = ("x", "y", "time", "s", "d")
         if usable is None:
             passes, inside = self._located(*map(columns.get, names))
@@ -292,7 +226,7 @@ class BlockProjector:
         return int(np.count_nonzero(passes < 0))
 
     def _located(self, x, y, time, s, d):
-        """The same of points that may all be used, as `RoadProjection.project_units` has it."""
+        """Pass numbers and `inside`, as by `RoadProjection.project_units`, with or without times."""
         if self.has_time:
             return self.projection.project_units(x, y, time, s, d)
         road, along, across = self.frame.locate_nearest(x * COORDINATE_SCALE, y * COORDINATE_SCALE, self.corridor)
@@ -304,8 +238,8 @@ class BlockProjector:
         return passes, road >= 0
 
 
-def unwrap_week(time):
-    """Seconds of the week, those after the week's end carried on."""
+def unwrap_week(time: np.ndarray) -> np.ndarray:
+    """Seconds of the week, continued beyond the end of the week where it ends during the scan; (N,)."""
     return np.where(time < SECONDS_PER_WEEK / 2, time + SECONDS_PER_WEEK, time)
 
 
@@ -331,3 +265,118 @@ def _both(one, other):
     if one is None or other is None:
         return other if one is None else one
     return one & other
+
+
+class SurveyReader:
+    """Reads files into a section store and gathers statistics of the whole survey.
+
+    Parameters
+    ----------
+    frame : RoadFrame
+    store : SectionStore that the points are added to
+    corridor : metres either side
+    has_time : whether points are assigned to passes by their time
+    week_ends : whether the GPS week ends during the scan
+
+    Attributes, complete after `read`
+    ---------------------------------
+    census : ScannerCensus
+    darkest, brightest : lowest and highest intensity
+    unplaced_time : number of points at a time of no pass
+    heights : {pass number: metres from the trajectory down to the road}
+    uneven : see `HeightHistogram.uneven`
+    """
+
+    def __init__(self, frame: RoadFrame, store: SectionStore, corridor: float, has_time: bool, week_ends: bool = False):
+        self.frame, self.store = frame, store
+        self.census, self.darkest, self.brightest, self.unplaced_time = ScannerCensus(), 65535, 0, 0
+        self.tracks = VehicleTracks(frame)
+        self._blocks = BlockProjector(frame, corridor, has_time, week_ends)
+        # created once the rough height of the road is known; until then parts of blocks wait
+        self._ground: HeightFilter | None = None
+        self._histogram: HeightHistogram
+        self._waiting: list[tuple[int, Columns]] = []
+        self._samples: list[np.ndarray] = []
+
+    def read(self, files: list[CloudHeader], block: int, progress: Progress) -> None:
+        """Read all files, `block` points at a time."""
+        total, done = sum(file.count for file in files), 0
+        threads = min(MAX_INGEST_THREADS, os.cpu_count() or 1)
+        with ParallelCloudReader(DECODED_LAYERS) as readers, ThreadPoolExecutor(threads) as pool:
+            waiting: deque[Future] = deque()
+
+            def take():
+                nonlocal done
+                while not wait([waiting[0]], POLL_INTERVAL).done:
+                    progress.report(done / total)
+                done += self._take(*waiting.popleft().result())
+                progress.report(done / total)
+
+            try:
+                for load in readers.blocks(files, block):
+                    waiting.append(pool.submit(self._read_block, load))
+                    # the height of the road is estimated from the first blocks and filters the others
+                    while len(waiting) > (BLOCKS_PER_THREAD * threads if self._ground else 0):
+                        take()
+                while waiting:
+                    take()
+            finally:
+                for coming in waiting:
+                    coming.cancel()
+        self._settle()
+        self.heights, self.uneven = self._histogram.heights(), self._histogram.uneven()
+
+    def _read_block(self, load):
+        """BlockSummary, points by road, whether these are filtered by height and partitioned, and the size of the block."""
+        block, ground, found, parts = load(), self._ground, BlockSummary(), []
+        for road, points, own in self._blocks.read(block, found, ground):
+            parts.append((road, _copied(points, own)) if ground is None else self._partition(road, points, own))
+        return found, parts, ground is not None, len(block)
+
+    def _partition(self, road, points, own):
+        """Points partitioned by section for the store; those on the track enter the height histogram."""
+        for number, drops in self.tracks.drops(road, points, own):
+            self._histogram.add(number, drops)
+        return self.store.partition(road, points, own)
+
+    def _take(self, found, parts, parted, count):
+        """Take the result of a block, in the order of the files."""
+        self.darkest, self.brightest = min(self.darkest, found.darkest), max(self.brightest, found.brightest)
+        self.unplaced_time += found.without_time
+        for name, times in found.scanners.items():
+            self.census.take(name, times)
+        if parted:
+            for part in parts:
+                self.store.add(part)
+        elif self._ground is not None:
+            self._choose(parts)
+        else:
+            self._waiting += parts
+            self._samples += [drops[::7] for road, points in parts for _, drops in self.tracks.drops(road, points)]
+            if sum(map(len, self._samples)) > HEIGHT_SAMPLES or sum(len(points) for _, points in self._waiting) > MAX_WAITING_POINTS:
+                self._settle()
+        return count
+
+    def _settle(self):
+        """Estimate the rough height of the road and store the points that waited for it."""
+        if self._ground is not None:
+            return
+        drop = estimate_sensor_height(np.concatenate(self._samples)) if self._samples else None
+        drop = DEFAULT_SENSOR_HEIGHT if drop is None else drop
+        self._histogram = HeightHistogram([p.number for p in self.frame.passes], drop)
+        self._ground = HeightFilter(self.frame, drop)
+        waiting, self._waiting, self._samples = self._waiting, [], []
+        self._choose(waiting)
+
+    def _choose(self, parts):
+        """Filter by height the points that were projected before it was known, and store them."""
+        for road, points in parts:
+            buffers = ScratchBuffers().of(len(points))
+            near = self._ground.near(road, points["s"], points["z"], buffers)
+            if near.any():
+                self.store.add(self._partition(road, points, near))
+
+
+def _copied(points, own):
+    """A copy of the points to use (None for all) as Columns."""
+    return points.copy() if own is None else points.take(own).load_all()

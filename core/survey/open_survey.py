@@ -1,6 +1,11 @@
-"""A survey opened for work: its points read once and placed in the road frame."""
+"""Opening a survey: its points are read once and projected into the road frame."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,27 +18,35 @@ from .clock_check import check_clock
 from .frame.road_frame import CORRIDOR, build_frame
 from .ingest import KEPT_ABOVE_ROAD, KEPT_BELOW_ROAD, SurveyReader, unwrap_week
 from .las.parallel_reader import ParallelCloudReader
-from .las.reader import POINTS_PER_BLOCK, read_headers
+from .las.reader import POINTS_PER_BLOCK, CloudHeader, read_headers
 from .scanners import numbers_by_value
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, Points, point_dtype
 from .store.section_store import MEMORY_LIMIT, SECTION_LENGTH, SectionStore
 from .trajectory.reprojection import reproject_trajectory
 from .trajectory.time_systems import align_time, wrapped_week
 
-ROAD_HEIGHT_STEP = 0.25     # m between the stations at which the height of the road is taken to choose points by
-INGEST_PROGRESS = 0.7          # of the work where passes are laid on each other afterwards
-SUSPICIOUS_SENSOR_HEIGHT = 5.0, 15.0       # m above the road: higher than survey vehicles carry a sensor, and what 1.5 to 4.5 m are in feet
+if TYPE_CHECKING:
+    from .adjustment.corrections import PassCorrections
+    from .frame.road_frame import RoadFrame
+    from .trajectory.trajectory import Trajectory
+
+ROAD_HEIGHT_STEP = 0.25      # m between the stations at which points are compared with the height of the road
+INGEST_PROGRESS = 0.7        # of the work, where the passes are adjusted afterwards
+SUSPICIOUS_SENSOR_HEIGHT = 5.0, 15.0  # m: higher than any survey vehicle; 1.5 to 4.5 m expressed in feet
 
 
 @dataclass(frozen=True)
 class SurveySettings:
-    """How a survey is read.
+    """Settings of reading a survey.
 
-    corridor : m either side of the road's reference line
+    corridor : m either side of the reference line of a road
     scanner_field : "automatic", "scanner_channel" or "point_source_id"
-    time : how the trajectory counts time: automatic, gps, adjusted, week or day
+    time : time system of the trajectory: automatic, gps, adjusted, week or day
     crs : WKT for clouds that carry none
-    fit_passes : whether passes over one road that lie apart are laid on each other
+    fit_passes : whether passes over one road are adjusted to each other
+    section_length : m of station in a section of the store
+    memory_limit : bytes of points in memory; more go to a temporary file
+    block : points decoded at a time
     """
 
     corridor: float = setting(CORRIDOR, 5.0, 100.0, "The corridor", "m")
@@ -45,49 +58,58 @@ class SurveySettings:
     memory_limit: int = MEMORY_LIMIT
     block: int = POINTS_PER_BLOCK
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_limits(self)
 
 
 @dataclass
 class Survey:
-    """Points in their sections, the road frame, and what was found out on the way.
+    """An open survey: points by section, the road frame and statistics of the whole survey.
 
-    `sensor_height` is metres from the trajectory down to the road, one value per pass. `moves` are the PassMoves by which
-    points and tracks were laid on those of other passes, None where they are as they were measured.
+    files : headers of the point clouds
+    frame : RoadFrame
+    store : SectionStore of the points
+    crs : WKT, "" where unknown
+    sensor_height : {pass number: metres from the trajectory down to the road}
+    scanner_field : LAS field that identifies the scanners, None if there is one
+    scanners : values of that field, see `ScannerCensus.choose`
+    has_intensity : whether intensities differ
+    has_time : whether points are assigned to passes by their time
+    counts : numbers of points read, kept and outside
+    moves : PassCorrections by which points and tracks were moved, None where they are as measured
     """
 
-    files: list
-    frame: object
+    files: list[CloudHeader]
+    frame: RoadFrame
     store: SectionStore
     crs: str
-    sensor_height: dict
-    scanner_field: str
-    scanners: list
+    sensor_height: dict[int, float]
+    scanner_field: str | None
+    scanners: list[Any]
     has_intensity: bool
     has_time: bool
-    counts: dict = field(default_factory=dict)
-    moves: object = None
+    counts: dict[str, int] = field(default_factory=dict)
+    moves: PassCorrections | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         self.store.finish = self._finished
 
-    def window(self, road, start, end):
-        """Points of a road with start <= station < end and near its height, scanners numbered from 0."""
+    def window(self, road: int, start: float, end: float) -> Points:
+        """Points of a road with start <= station < end (m) near its height, scanners numbered from 0."""
         return self.store.window(road, start, end)
 
-    def section(self, road, number):
-        """Points of one section near the road's height."""
+    def section(self, road: int, number: int) -> Points:
+        """Points of one section near the height of the road."""
         return Points(self.store.section(road, number))
 
     def _finished(self, road, records):
-        """Number the scanners of a section's records from 0; tells which lie near the road's height, None where all do."""
+        """Number the scanners of the records of a section from 0; (N,) bool of those near the height of the road, None for all."""
         if self.scanner_field is None:
             records["scanner"] = 0
         else:
             numbers = records["source" if self.scanner_field == "point_source_id" else "scanner"]
             records["scanner"] = numbers_by_value(self.scanners, int(numbers.max()) + 1).take(numbers)
-        # most are near beyond doubt: the others are looked at one by one
+        # only records near the limits are compared with the height at their own station
         z = records["z"]
         first, nodes = self._heights(road, records["s"].min() * COORDINATE_SCALE, records["s"].max() * COORDINATE_SCALE)
         doubtful = np.flatnonzero((z < (nodes.max() - KEPT_BELOW_ROAD) / COORDINATE_SCALE + 1)
@@ -100,22 +122,29 @@ class Survey:
         return None if near[doubtful].all() else near
 
     def _heights(self, road, start, end):
-        """`road_height` at fixed stations about a stretch, so that many points cost little: number of the first, heights."""
+        """`road_height` at fixed stations from start to end: number of the first, heights."""
         first = int(np.floor(start / ROAD_HEIGHT_STEP))
         return first, self.road_height(road, np.arange(first, int(np.floor(end / ROAD_HEIGHT_STEP)) + 2) * ROAD_HEIGHT_STEP)
 
-    def road_height(self, road, s):
-        """(N,) local z of the road under the vehicle's track at stations of a road: a prior, good to decimetres."""
+    def road_height(self, road: int, s: np.ndarray) -> np.ndarray:
+        """(N,) local z of the road under the track at (N,) stations, accurate to decimetres."""
         return self.frame.track_height(road, s, self.sensor_height)
 
 
-def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress()):
-    """Read point clouds once and place every point in the road frame.
+def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
+                progress: Progress = Progress()) -> Survey:
+    """Read point clouds once and project every point into the road frame.
 
     Parameters
     ----------
     paths : LAS, LAZ or COPC files in any order
-    trajectory : Trajectory in the clouds' CRS (any time system)
+    trajectory : Trajectory in any CRS and time system
+    settings : SurveySettings
+    progress : Progress
+
+    Returns
+    -------
+    Survey
 
     Raises
     ------
@@ -174,25 +203,45 @@ def open_survey(paths, trajectory, settings=SurveySettings(), progress=Progress(
     return survey
 
 
-def match_clocks(files, trajectory, settings, progress):
-    """The trajectory in the cloud's time system, a note, whether time can be used, whether the GPS week ends during the scan."""
+def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: SurveySettings,
+                 progress: Progress) -> tuple[Trajectory, str, bool, bool]:
+    """Convert the trajectory to the time system of the cloud.
+
+    Parameters
+    ----------
+    files : headers of the clouds
+    trajectory : Trajectory
+    settings : SurveySettings, of which `time` is used
+    progress : Progress
+
+    Returns
+    -------
+    trajectory : in the time system of the cloud
+    note : for the log, "" without one
+    has_time : whether points can be assigned to passes by their time
+    week_ends : whether the GPS week ends during the scan
+
+    Raises
+    ------
+    RoadExtractionError
+        If the times of cloud and trajectory do not overlap.
+    """
     if not trajectory.has_time:
-        return trajectory, "The trajectory has no time; each point is placed at the nearest foot on it.", False, False
+        return trajectory, "The trajectory has no time; each point is assigned to the nearest position on it.", False, False
     if not all(file.has_time for file in files):
-        return trajectory, "The point cloud has no gps_time; each point is placed at the nearest foot on the trajectory.", False, False
+        return trajectory, "The point cloud has no gps_time; each point is assigned to the nearest position on the trajectory.", False, False
     span = _time_span(files)
     if span is None:
-        return trajectory, "All gps_time values are equal; each point is placed at the nearest foot on the trajectory.", False, False
+        return trajectory, "All gps_time values are equal; each point is assigned to the nearest position on the trajectory.", False, False
     span, week_ends = span
     offset, note = align_time(trajectory.time, span, settings.time, files[0].adjusted_time)
     return trajectory.shifted(offset), note, True, week_ends
 
 
 def _time_span(files):
-    """((first, last) gps_time in samples of every file, whether the week ends between), or None where time stands still.
+    """((first, last) gps_time, whether the week ends in between), of samples of every file; None if all times are equal.
 
-    Whole files are not read for it: points at several places of each, its last
-    among them, give the span to within the overlap test's needs.
+    The samples include the last points of each file.
     """
     with ParallelCloudReader(("gps_time",)) as readers:
         samples = [time[np.isfinite(time)] for file in files if file.count for time in readers.times(file)]
@@ -218,7 +267,7 @@ def _check_extent(files, frame, crs, trajectory_crs):
 
 
 def _what_to_try(low, high, x, y, crs, trajectory_crs, reach):
-    """What to try where cloud and trajectory lie apart."""
+    """The advice of the error message, where cloud and trajectory do not overlap."""
     if ((y > low[0] - reach) & (y < high[0] + reach) & (x > low[1] - reach) & (x < high[1] + reach)).any():
         return "The trajectory's x and y are exchanged: name its columns the other way round, or swap them."
     if (np.abs(high[:2]) <= 180).all() and (np.abs(low[:2]) <= 180).all() and (high - low)[:2].max() < 1.0:

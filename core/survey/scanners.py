@@ -1,27 +1,34 @@
-"""Which scanner measured a point, when a vehicle carries more than one."""
+"""Which scanner measured a point, where a vehicle carries more than one."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from ..common.errors import RoadExtractionError
 
 MAX_SCANNERS = 8
-MIN_INTERLEAVED_SHARE = 0.8   # share of the points whose numbers interleave where numbers tell scanners
+MIN_INTERLEAVED_SHARE = 0.8   # of the points: their values must overlap in time if the values identify scanners
 
 
 @dataclass
 class ScannerCensus:
-    """Counts and time spans of scanner_channel and point_source_id, gathered while reading."""
+    """Counts and time spans of scanner_channel and point_source_id, gathered while reading.
 
-    spans: dict = field(default_factory=lambda: {"scanner_channel": {}, "point_source_id": {}})
+    spans : {LAS field: {value: (first time, last time, count)}}
+    """
 
-    def add(self, name, values, time):
-        """Take note of a block: (N,) values of one LAS field and (N,) gps_time."""
+    spans: dict[str, dict[int, tuple[float, float, int]]] = field(default_factory=lambda: {"scanner_channel": {}, "point_source_id": {}})
+
+    def add(self, name: str, values: np.ndarray, time: np.ndarray) -> None:
+        """Add a block: (N,) values of one LAS field and (N,) gps_time."""
         self.take(name, times_by_value(values, time))
 
-    def take(self, name, times):
-        """Take note of what `times_by_value` found in a block."""
+    def take(self, name: str, times: dict[int, tuple[float, float, int]]) -> None:
+        """Add the result of `times_by_value` for a block."""
         seen = self.spans[name]
         if len(seen) > 4 * MAX_SCANNERS:
             return
@@ -29,18 +36,26 @@ class ScannerCensus:
             first, last, count = seen.get(value, (np.inf, -np.inf, 0))
             seen[value] = min(first, start), max(last, end), count + number
 
-    def choose(self, wanted="automatic"):
-        """The LAS field that tells the scanners apart, or None where there is one scanner.
+    def choose(self, wanted: str | None = "automatic") -> tuple[str | None, list[Any]]:
+        """The LAS field that identifies the scanners.
 
-        `scanner_channel` where it holds more than one value, else `point_source_id`
-        when it has 2 to 32 values that interleave in time (LAS defines it as a flight
-        line or file number, some exporters count frames in it, and others give every
-        recording of every scanner a number of its own).
+        This is `scanner_channel` if it has more than one value, else `point_source_id` if it has 2 to 32 values that
+        overlap in time. LAS defines the latter as a flight line or file number; some exporters count frames in it, others
+        number every recording of every scanner.
+
+        Parameters
+        ----------
+        wanted : "automatic", or the LAS field to use
 
         Returns
         -------
-        (field name or None, list of its values in ascending order; a tuple of them where recordings
-        one after the other are those of one scanner)
+        name : of the field; None if there is one scanner
+        values : one entry per scanner in ascending order, a tuple where successive recordings belong to one scanner
+
+        Raises
+        ------
+        RoadExtractionError
+            If the wanted field is unknown or has too many values.
         """
         if wanted not in ("", "automatic", None):
             if wanted not in self.spans:
@@ -63,11 +78,11 @@ class ScannerCensus:
         return None, [0]
 
 
-def times_by_value(values, time):
-    """{value: (first time, last time, count)} of (N,) small integers and times; of many values those that show there are many."""
+def times_by_value(values: np.ndarray, time: np.ndarray) -> dict[int, tuple[float, float, int]]:
+    """{value: (first time, last time, count)} of (N,) small integers and times; incomplete if there are too many values."""
     if not len(values):
         return {}
-    # of what all have the same one tells
+    # a broadcast column has one value
     few = values if values.strides[0] else values[:1]
     low, high = int(few.min()), int(few.max())
     present = [low, high][:high - low + 1] if high - low < 2 else np.flatnonzero(np.bincount(values))[: 4 * MAX_SCANNERS + 1].tolist()
@@ -78,8 +93,8 @@ def times_by_value(values, time):
     return found
 
 
-def numbers_by_value(scanners, count):
-    """(count,) uint8: the number of the scanner that each value 0 ... count - 1 stands for; scanners as `choose` gives them."""
+def numbers_by_value(scanners: Sequence[Any], count: int) -> np.ndarray:
+    """(count,) uint8 scanner number of each value 0 ... count - 1; `scanners` as returned by `choose`."""
     numbers = np.zeros(count, np.uint8)
     for number, values in enumerate(scanners):
         values = np.atleast_1d(values)
@@ -88,8 +103,8 @@ def numbers_by_value(scanners, count):
 
 
 def _heads(spans):
-    """Values of a field, ascending, those that measured one after the other taken together as one scanner's."""
-    heads = []
+    """Values of a field, ascending; those that measured one after the other are combined into one scanner."""
+    heads: list[list[int]] = []
     for value in sorted(spans):
         free = next((head for head in heads if not any(_together(spans[value], spans[other]) for other in head)), None)
         if free is None:
@@ -100,16 +115,16 @@ def _heads(spans):
 
 
 def _together(one, other):
-    """Whether the shorter of two spans of time shares more than half of its length with the other."""
+    """Whether the overlap of two time spans is more than half of the shorter one."""
     return min(one[1], other[1]) - max(one[0], other[0]) > 0.5 * min(one[1] - one[0], other[1] - other[0])
 
 
 def _interleaved(spans):
-    """Whether most points have a value whose span of time shares more than half of its length with that of some other."""
+    """Whether most points have a value whose time span overlaps that of another by at least half of its length."""
     spans, total, shared = list(spans), 0, 0
     for k, (first, last, count) in enumerate(spans):
         longest = max((min(last, b) - max(first, a) for j, (a, b, _) in enumerate(spans) if j != k), default=0.0)
         total += count
-        # where a recording begins or ends one scanner may see the road alone
+        # at the ends of a recording one scanner may see the road alone
         shared += count * (longest > 0 and longest >= 0.5 * (last - first))
     return shared >= MIN_INTERLEAVED_SHARE * total
