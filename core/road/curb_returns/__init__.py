@@ -1,4 +1,12 @@
 """Curbs that do not run along the road: around corners, into side streets, about islands.
 
-In: a `Survey` and the main curbs. Out: further curb points with their kind.
+In: a `Survey` and its main curbs. Out: further curb points with their kind.
 """
+
+from ...lazy import public
+
+__getattr__, __all__ = public(__name__, {
+    "CurbReturn": "classify",
+    "add_curb_returns": "detect",
+    "find_curb_returns": "detect",
+})

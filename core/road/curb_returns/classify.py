@@ -1,6 +1,10 @@
 """What a line of steps in plan is: a corner, the curb of a side street, an island, or no curb of the road."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -8,23 +12,40 @@ from scipy.spatial import cKDTree
 from ..common.sides import SIDE_SIGNS
 from ..common.tracking import MAX_CHAIN_SCATTER, MAX_JOINED_GAP, MAX_ROAD_ROUGHNESS
 from .steps import PlanSteps
-from .tracking import group_lines
+from .tracking import PlanStepChain, group_lines
+
+if TYPE_CHECKING:
+    from ...survey.frame.passes import Pass
+    from ...survey.frame.road_frame import Road
+    from ..profiles.detect import CurbSettings
+    from .detect import SearchLimit
 
 MIN_RETURN_LENGTH = 1.0       # m of a line
-MAX_STEP_SPACING = 0.6        # m between the steps of a line, on average, at most: scan lines lie apart
-MIN_ROAD_COSINE = np.cos(np.radians(45.0))  # of its angle to the road above which a curb is the road's own
-MAIN_CURB_OVERLAP = 0.5        # m along the road that a piece of main curb may lie beside another
-MAX_STRAIGHT_DEVIATION, MIN_STRAIGHT_LENGTH = 0.05, 2.0  # m off its chord within which a curb that left the road runs straight; m of it
-MIN_ISLAND_SHARE = 0.6   # share of an island's steps behind which it does
-MIN_ISLAND_LENGTH = 2.0  # m of lines about one island
-MAX_ISLAND_GAP = 3.0     # m between them
-MIN_ISOLATED_LENGTH = 5.0          # m of a line that is a side street's although nothing joins it to the main curb
-SIDE_STREET_WIDTHS, MAX_OPPOSITE_SHIFT = (2.5, 16.0), 4.0  # m from it at which its other side lies; m along by which the two may miss each other
+MAX_STEP_SPACING = 0.6        # m between the steps of a line, on average: scan lines lie apart
+MIN_ROAD_COSINE = np.cos(np.radians(45.0))  # of the angle between a line and the road, above which it is the road's own curb
+MAIN_CURB_OVERLAP = 0.5       # m along the road that a piece of main curb may lie beside another
+MAX_STRAIGHT_DEVIATION = 0.05     # m off its chord within which a curb that left the road is straight
+MIN_STRAIGHT_LENGTH = 2.0     # m of straight curb that make a side street
+MIN_ISLAND_SHARE = 0.6        # share of an island's steps behind which the ground comes down again
+MIN_ISLAND_LENGTH = 2.0       # m of lines about one island
+MAX_ISLAND_GAP = 3.0          # m between them
+MIN_ISOLATED_LENGTH = 5.0     # m of a line that belongs to a side street although nothing joins it to the main curb
+SIDE_STREET_WIDTHS = (2.5, 16.0)  # m between the two curbs of a side street
+MAX_OPPOSITE_SHIFT = 4.0      # m along the side street by which its two curbs may miss each other
 
 
 @dataclass
 class CurbReturn:
-    """One line: steps in order, uphill on the right; kind is main (a piece that profiles missed), corner, side_street or island."""
+    """One line of curb away from the road's own.
+
+    Attributes
+    ----------
+    steps : N PlanSteps in order, uphill on the right
+    s, d : (N,) m, station and offset of each
+    side : "left" or "right"
+    kind : "main" (a piece of main curb that profiles missed), "corner", "side_street" or "island"
+    closed : does it go all around an island?
+    """
 
     steps: PlanSteps
     s: np.ndarray
@@ -34,8 +55,16 @@ class CurbReturn:
     closed: bool = False
 
 
-def is_curb_like(chain, steps, scanner_noise, settings):
-    """Is a line long, dense, steep and smooth enough?"""
+def is_curb_like(chain: PlanStepChain, steps: PlanSteps, scanner_noise: np.ndarray, settings: CurbSettings) -> bool:
+    """Is a line long, dense, steep and smooth enough for a curb?
+
+    Parameters
+    ----------
+    chain : PlanStepChain
+    steps : M PlanSteps to which it refers
+    scanner_noise : (M,) m
+    settings : CurbSettings
+    """
     own = steps[chain.steps]
     length = _length(own.x, own.y)
     if length < MIN_RETURN_LENGTH or length > MAX_STEP_SPACING * len(own):
@@ -44,16 +73,16 @@ def is_curb_like(chain, steps, scanner_noise, settings):
     sharp = max(np.quantile(own.run, 0.3) - 2 * noise, 0.0)
     if height < settings.min_height or np.degrees(np.arctan2(height, sharp)) < settings.slope:
         return False
-    return np.median(own.noise) <= max(MAX_ROAD_ROUGHNESS, 2 * noise) and np.mean(own.behind >= 2) >= 0.5 \
-        and _wander(own) <= MAX_CHAIN_SCATTER + noise
+    return bool(np.median(own.noise) <= max(MAX_ROAD_ROUGHNESS, 2 * noise) and np.mean(own.behind >= 2) >= 0.5 \
+        and _chain_scatter(own) <= MAX_CHAIN_SCATTER + noise)
 
 
 def _length(x, y):
     return float(np.hypot(np.diff(x), np.diff(y)).sum())
 
 
-def _wander(own):
-    """Median distance of the steps of a line from the chord of their neighbours."""
+def _chain_scatter(own):
+    """Median distance of the steps of a line from the chord of their neighbours, m."""
     if len(own) < 3:
         return 0.0
     cx, cy = own.x[2:] - own.x[:-2], own.y[2:] - own.y[:-2]
@@ -61,16 +90,19 @@ def _wander(own):
     return float(np.median(off))
 
 
-def classify_curbs(chains, steps, falls, runs, line, limits, passes):
+def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.ndarray, runs: Sequence[tuple], line: Road,
+                   limits: Mapping[str, SearchLimit], passes: Sequence[Pass]) -> list[CurbReturn]:
     """The lines that are curbs, each with its kind and side.
 
     Parameters
     ----------
-    chains : list of PlanChain; steps : PlanSteps that they point into
+    chains : list of PlanStepChain
+    steps : M PlanSteps to which they refer
     falls : (M,) m uphill of each step at which the ground is down again, NaN where it stays up
-    runs : main curbs in plan, uphill on the right: list of (side, (x, y, h))
-    line, passes : Road and its passes
-    limits : side -> how far out the road reaches at stations
+    runs : main curbs in plan, uphill on the right: list of (side, (x, y, h)), local m
+    line : Road
+    limits : side -> SearchLimit
+    passes : of the road
 
     Returns
     -------
@@ -80,7 +112,7 @@ def classify_curbs(chains, steps, falls, runs, line, limits, passes):
     if not chains:
         return []
     group = group_lines(places)
-    sides = {}
+    sides: dict[int, str] = {}
     for number, (side, _) in zip(group, runs):
         sides.setdefault(number, side)
     found, islands = [], []
@@ -92,18 +124,18 @@ def classify_curbs(chains, steps, falls, runs, line, limits, passes):
             side = "left" if np.nanmedian(d - np.mean([p.at_station(s)[0] for p in passes], axis=0)) > 0 else "right"
             if np.mean(np.isfinite(falls[chain.steps]) & ~behind) >= MIN_ISLAND_SHARE:
                 islands.append(CurbReturn(own, s, d, side, "island", chain.closed))
-            elif _length(own.x, own.y) >= MIN_ISOLATED_LENGTH and not behind.any() and np.median(_along(own, s, line)) < MIN_ROAD_COSINE \
-                    and _faced(own, [steps[c.steps] for c in chains]):
-                # of a street whose corner something hides
+            elif _length(own.x, own.y) >= MIN_ISOLATED_LENGTH and not behind.any() and np.median(_road_cosine(own, s, line)) < MIN_ROAD_COSINE \
+                    and _has_opposite_curb(own, [steps[c.steps] for c in chains]):
+                # a side street whose corner is hidden
                 found.append(CurbReturn(own, s, d, side, "side_street"))
             continue
-        found += _away_from(own, s, d, sides[number], line, limits[sides[number]], places[:len(runs)])
-    return found + _whole_islands(islands)
+        found += _classify_continuation(own, s, d, sides[number], line, limits[sides[number]], places[:len(runs)])
+    return found + _long_islands(islands)
 
 
-def _away_from(own, s, d, side, line, limit, runs):
+def _classify_continuation(own, s, d, side, line, limit, runs):
     """A line that continues a main curb: a piece of that curb, or a corner with the straight curb of a side street behind it."""
-    along = _along(own, s, line)
+    along = _road_cosine(own, s, line)
     if np.median(along) > MIN_ROAD_COSINE and not limit.between(np.nanmin(s) + MAIN_CURB_OVERLAP, np.nanmax(s) - MAIN_CURB_OVERLAP):
         return [CurbReturn(own, s, d, side, "main")]
     tips = np.array([(run[0][k], run[1][k]) for run in runs for k in (0, -1)])
@@ -115,8 +147,8 @@ def _away_from(own, s, d, side, line, limit, runs):
     return [CurbReturn(own[np.sort(part)], s[np.sort(part)], d[np.sort(part)], side, kind) for part, kind in parts if len(part) > 1]
 
 
-def _faced(own, lines):
-    """Does another line run along the other side of the street that one bounds?"""
+def _has_opposite_curb(own, lines):
+    """Is there another line along the opposite side of the street that this one bounds?"""
     k = len(own) // 2
     for other in lines:
         dx, dy = other.x - own.x[k], other.y - own.y[k]
@@ -127,7 +159,7 @@ def _faced(own, lines):
     return False
 
 
-def _along(own, s, line):
+def _road_cosine(own, s, line):
     """(N,) cosine of the angle between a line and the road at its steps."""
     k = np.arange(len(own))
     a, b = np.maximum(k - 2, 0), np.minimum(k + 2, len(own) - 1)
@@ -148,15 +180,15 @@ def _where_straight(own, order, along):
     return len(x)
 
 
-def _whole_islands(lines):
-    """Lines about islands that are long enough together."""
+def _long_islands(lines):
+    """Lines about islands that are long enough, together with those nearby."""
     if not lines:
         return []
     trees = [cKDTree(np.c_[line.steps.x, line.steps.y]) for line in lines]
     length = np.array([_length(line.steps.x, line.steps.y) for line in lines])
-    kept = []
+    long = []
     for k, line in enumerate(lines):
         near = [j for j in range(len(lines)) if j == k or trees[k].count_neighbors(trees[j], MAX_ISLAND_GAP)]
         if length[near].sum() >= MIN_ISLAND_LENGTH:
-            kept.append(line)
-    return kept
+            long.append(line)
+    return long

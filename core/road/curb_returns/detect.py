@@ -1,10 +1,15 @@
 """Curbs that do not run along the road: around corners, into side streets, about islands.
 
-They are sought in plan where the road is not bounded yet: between the main curbs,
-and where a main curb ends. A line of steps that continues a main curb is a corner,
-and a side street where it runs on straight; one behind which the ground comes down
-again is an island. Any other step is somebody's garden.
+They are looked for in plan where the road has no boundary yet: between the main curbs,
+and where a main curb ends. A line of steps that continues a main curb is a corner, and
+a side street where it continues straight. A line behind which the ground comes down
+again is an island. Any other step does not belong to the road.
 """
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
@@ -13,36 +18,43 @@ from scipy.spatial import cKDTree
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...survey.frame.road_frame import CORRIDOR
-from ..common.decimation import POINTS_PER_LEVEL_CELL_IN_PLAN
+from ..common.decimation import POINTS_PER_LEVEL_CELL_IN_PLAN, PointDecimation
 from ..common.sides import MAX_LOOK_ALONG, SIDE_SIGNS, ahead_of_vehicle, expected_height, work_sections
 from ..common.tracking import MAX_JOINED_GAP
-from .classify import classify_curbs, is_curb_like
+from .classify import CurbReturn, classify_curbs, is_curb_like
 from .raster import PLAN_CELL, averaged, driven_ground, falls_again, ground_raster, ground_slopes, step_places
 from .steps import PlanSteps, measure_plan_steps
 from .tracking import join_chains, link_plan_steps
 
+if TYPE_CHECKING:
+    from ...common.features import Features
+    from ..profiles.detect import CurbSettings
+
 KIND_TITLES = {"main": "of the road's own", "corner": "of corners", "side_street": "of side streets", "island": "of islands"}
-MIN_OPENING_LENGTH = 6.0        # m without main curb that are an opening and no driveway
-OPENING_MARGIN = 6.0     # m of main curb beside an opening behind which corners are sought
-SEARCH_BEHIND_CURB = 0.6    # m behind a main curb that are looked at elsewhere
-INNER_MARGIN, MAX_INNER_HEIGHT = 0.5, 0.3  # m from a main curb, and about the expected road, where ground inside is road for certain
-LIMIT_NODE_SPACING = 0.05          # m along the road between the stations at which that is decided
-SECTION_MARGIN = 2.0         # m of road either side of a section that its own steps need
-NOISY_RASTER_SHARE = 0.12   # share of the least curb height that heights within a cell scatter, above which they are averaged
-MIN_AVERAGING_POINTS = 6    # points in a cell, on average, that averaging needs
-MAIN_CURB_DISTANCE = 0.25       # m from a main curb within which a step is that curb
-MAX_RUN_JUMP = 0.5     # m across between such points
-MAX_ISLAND_WIDTH = 8.0   # m within which the ground behind an island's curb comes down again
+MIN_OPENING_LENGTH = 6.0      # m without main curb that are an opening and no driveway
+OPENING_MARGIN = 6.0          # m of main curb beside an opening behind which corners are looked for
+SEARCH_BEHIND_CURB = 0.6      # m behind a main curb that are searched elsewhere
+INNER_MARGIN = 0.5            # m from a main curb from which the ground inside is certainly road, if it lies within
+MAX_INNER_HEIGHT = 0.3        # m above or below the expected road
+LIMIT_NODE_SPACING = 0.05     # m along the road between the stations at which this is decided
+SECTION_MARGIN = 2.0          # m of road on either side of a section that its own steps need
+NOISY_RASTER_SHARE = 0.12     # share of the least curb height that heights within a cell scatter, above which they are averaged
+MIN_AVERAGING_POINTS = 6      # points in a cell, on average, that averaging needs
+MAIN_CURB_DISTANCE = 0.25     # m from a main curb within which a step belongs to it
+MAX_RUN_JUMP = 0.5            # m across between points of one run of main curb
+MAX_ISLAND_WIDTH = 8.0        # m within which the ground behind an island's curb comes down again
 
 
-def add_curb_returns(curb_points, decimation, settings, progress=Progress()):
+def add_curb_returns(curb_points: Features, decimation: PointDecimation, settings: CurbSettings,
+                     progress: Progress = Progress()) -> None:
     """Add the points of corners, side streets and islands to those of the main curbs.
 
     Parameters
     ----------
-    curb_points : Features CURB_POINTS of every road, kind main; more are added at the end
-    decimation : Crowds of the survey
+    curb_points : CURB_POINTS of every road, of kind main; more are added at the end
+    decimation : PointDecimation of the survey
     settings : CurbSettings
+    progress : Progress
     """
     survey = decimation.survey
     length = dict.fromkeys(KIND_TITLES, 0.0)
@@ -57,7 +69,7 @@ def add_curb_returns(curb_points, decimation, settings, progress=Progress()):
 
 
 def _main_curbs(curb_points, survey, road):
-    """Main curbs of a road, side -> (N, 4) station, offset, height and whether it was seen, and the first chain number that is free."""
+    """Main curbs of a road, side -> (N, 4) station, offset, height and whether it was seen, and the first free chain number."""
     main, chain = {}, 0
     for side in SIDE_SIGNS:
         rows = [(r["station_m"], r["offset_m"], g.z - survey.frame.origin[2], r["status"] == "measured") for g, r in curb_points
@@ -86,22 +98,25 @@ def _add_points(curb_points, survey, road, curb, chain):
     return float(along[-1])
 
 
-def find_curb_returns(decimation, road, main, settings, progress=Progress()):
+def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str, np.ndarray], settings: CurbSettings,
+                      progress: Progress = Progress()) -> list[CurbReturn]:
     """Corners, side streets and islands of one road.
 
     Parameters
     ----------
-    decimation : Crowds of the survey
-    main : dict side -> (N, 4) of the main curb's points, ascending: station, offset, height above the
-        expected road, 1 where it was measured and 0 where it is hidden
+    decimation : PointDecimation of the survey
+    road : number of the road
+    main : side -> (N, 4) points of the main curb, by station: station, offset, height above the expected road in m,
+        1 where it was measured and 0 where it is hidden
     settings : CurbSettings
+    progress : Progress
 
     Returns
     -------
-    list of TurnedCurb
+    list of CurbReturn
     """
     survey = decimation.survey
-    limits = {side: _Limit(points, SIDE_SIGNS[side]) for side, points in main.items()}
+    limits = {side: SearchLimit(points, SIDE_SIGNS[side]) for side, points in main.items()}
     line = survey.frame.road(road)
     known, barrier = cKDTree(_places_along(line, main, MAX_JOINED_GAP)), _places_along(line, main, MIN_OPENING_LENGTH).T
 
@@ -117,17 +132,23 @@ def find_curb_returns(decimation, road, main, settings, progress=Progress()):
     return classify_curbs(chains, steps, falls, _runs(main, line), line, limits, survey.frame.passes_of(road))
 
 
-class _Limit:
-    """How far out one side is looked at: to a little behind the main curb, everywhere at openings."""
+class SearchLimit:
+    """How far out one side is searched: to a little behind the main curb, and everywhere at openings.
 
-    def __init__(self, points, sign):
+    Parameters
+    ----------
+    points : (N, 4) of the main curb, as of `find_curb_returns`
+    sign : of the side's offsets
+    """
+
+    def __init__(self, points: np.ndarray, sign: int):
         self.sign = sign
         self.s, self.u, self.seen = points[:, 0], sign * points[:, 1], points[points[:, 3] > 0, 0]
         cuts = np.flatnonzero(np.diff(self.s) > MIN_OPENING_LENGTH) + 1
         self.runs = [(part[0], part[-1]) for part in np.split(self.s, cuts) if len(part)]
 
-    def __call__(self, s, behind=SEARCH_BEHIND_CURB, at_opening=OPENING_MARGIN):
-        """(N,) largest outward offset at stations: `behind` metres behind the curb, but for its last metres beside openings."""
+    def __call__(self, s: np.ndarray, behind: float = SEARCH_BEHIND_CURB, at_opening: float = OPENING_MARGIN) -> np.ndarray:
+        """(N,) m, largest outward offset at (N,) stations: `behind` metres behind the curb, except for its last metres beside openings."""
         if not len(self.s):
             return np.full(len(s), CORRIDOR)
         bounded = np.zeros(len(s), bool)
@@ -135,13 +156,13 @@ class _Limit:
             bounded |= (s > a + at_opening) & (s < b - at_opening)
         return np.where(bounded, np.interp(s, self.s, self.u) + behind, CORRIDOR)
 
-    def between(self, start, end):
+    def between(self, start: float, end: float) -> bool:
         """Was a point of main curb measured between two stations?"""
         return bool(((self.seen > start) & (self.seen < end)).any())
 
 
 def _places_along(line, main, gap):
-    """(N, 2) local places along the main curbs, gaps up to `gap` metres between their points closed."""
+    """(N, 2) local places along the main curbs, with gaps of up to `gap` metres between their points closed."""
     places = [np.empty((0, 2))]
     for points in main.values():
         for run in _split(points, gap):
@@ -168,15 +189,16 @@ def _runs(main, line):
     return found
 
 
-def _steps_of_section(decimation, road, section, limits, known, barrier, settings, few=POINTS_PER_LEVEL_CELL_IN_PLAN):
+def _steps_of_section(decimation, road, section, limits, known, barrier, settings,
+                      points_per_cell=POINTS_PER_LEVEL_CELL_IN_PLAN):
     """(PlanSteps of a section, where the ground behind each falls again, the scanner's noise); None where there are none."""
     survey, width = decimation.survey, decimation.width
     margin = int(np.ceil(SECTION_MARGIN / width))
     profiles = section[0] - margin, section[1] + margin
     start, end, first, last = (k * width for k in (*section, *profiles))
     reach = _Reach(limits, first, last)
-    most = None if few is None or decimation.mostly_uneven(road, sum(section) // 2) else few
-    seen = [_beside_vehicle(survey, road, part, reach) for part in decimation.decimated_points(road, profiles, most)]
+    limit = None if points_per_cell is None or decimation.mostly_uneven(road, sum(section) // 2) else points_per_cell
+    seen = [_beside_vehicle(survey, road, part, reach) for part in decimation.decimated_points(road, profiles, limit)]
     if not seen:
         return None
     *place, along, inner = (np.concatenate(column) for column in zip(*seen))
@@ -185,9 +207,9 @@ def _steps_of_section(decimation, road, section, limits, known, barrier, setting
         return None
     dense = len(raster.x) >= MIN_AVERAGING_POINTS * np.isfinite(raster.low).sum()
     noisy = dense and raster.noise > NOISY_RASTER_SHARE * settings.min_height
-    if noisy and most is not None:
-        # where averages are wanted every point counts
-        return _steps_of_section(decimation, road, section, limits, known, barrier, settings, few=None)
+    if noisy and limit is not None:
+        # averages need every point
+        return _steps_of_section(decimation, road, section, limits, known, barrier, settings, points_per_cell=None)
     line = survey.frame.road(road)
     slopes = ground_slopes(raster.low)
     driven, stepped = driven_ground(raster, slopes, *_track(survey, road, first, last), [v[inner] for v in place[:2]], *barrier,
@@ -206,7 +228,7 @@ def _steps_of_section(decimation, road, section, limits, known, barrier, setting
         return None
     views = _averaged_views(raster, place, along, settings.layer_jump) if noisy else [raster]
     steps = measure_plan_steps(views, x[fresh], y[fresh], nx[fresh], ny[fresh], 0.5 * settings.min_height, settings.max_height)
-    # within a tight bend a step may be measured beyond where stations end
+    # inside a tight bend a step may be measured outside the range of stations
     steps = steps[np.isfinite(line.locate(steps.x, steps.y)[0])]
     lean = [float(np.median(slope[driven])) for slope in slopes]
     falls = falls_again(raster, lean, steps.x, steps.y, steps.nx, steps.ny, steps.h, steps.height, MAX_ISLAND_WIDTH)
@@ -214,9 +236,9 @@ def _steps_of_section(decimation, road, section, limits, known, barrier, setting
 
 
 def _beside_vehicle(survey, road, points, reach):
-    """Of points within reach and near the vehicle: local x, y, height above the expected road, metres ahead of the vehicle,
-    and whether each lies between the road's own curbs: the far side of a long island is road, too, but may not be
-    connected with the track by as short a stretch as a section."""
+    """Points within reach and near the vehicle: local x, y, height above the expected road, metres ahead of the vehicle,
+    and whether each lies between the road's own curbs. The far side of a long island is road, too, but it may not be
+    connected with the track within a section."""
     s, d = points.s, points.d
     inside, inner = reach(s, d)
     own = np.flatnonzero(inside)
@@ -230,7 +252,7 @@ def _beside_vehicle(survey, road, points, reach):
 
 
 class _Reach:
-    """How far out both sides are looked at between two stations, at nodes, so that many points cost little."""
+    """How far out both sides are searched between two stations, tabulated at nodes LIMIT_NODE_SPACING apart."""
 
     def __init__(self, limits, first, last):
         self.first = int(np.floor(first / LIMIT_NODE_SPACING))
@@ -241,14 +263,14 @@ class _Reach:
                       for sign, limit in ((-1, right), (1, left))]
 
     def __call__(self, s, d):
-        """(N,) bool: within the limits, and between the road's own curbs for certain."""
+        """(N,) bool, within the limits, and (N,) bool, certainly between the road's own curbs."""
         k = np.rint(s * (1.0 / LIMIT_NODE_SPACING)).astype(np.intp)
         k -= self.first
         return tuple((d >= low.take(k)) & (d <= high.take(k)) for low, high in (self.inside, self.inner))
 
 
 def _averaged_views(raster, place, along, layer_jump):
-    """Averages of all points, of those seen from before and of those from behind: positions that drifted in between blur a curb."""
+    """Averages of all points, of those seen ahead and of those seen behind the vehicle: a drift of positions in between blurs a curb."""
     halves = (ground_raster(*(v[half] for v in place), layer_jump) for half in (along > 0, along <= 0))
     return [averaged(view, layer_jump) for view in (raster, *halves) if view is not None]
 

@@ -1,10 +1,13 @@
-"""Steps of the ground in plan, in any direction: a raster of the lowest layer, and where it rises beside driven ground.
+"""A raster of the ground in plan, and the places where it rises beside driven ground, in any direction.
 
-Profiles across the road see a curb that runs along it. A curb that turns into a
-side street, or goes round an island, may run any way: it is sought where level
+Profiles across the road show a curb that runs along it. A curb that turns into a side
+street, or goes around an island, may have any direction: it is looked for where level
 ground that is connected with the driven track ends at a rise.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -13,35 +16,41 @@ import numpy as np
 from ...common.order_statistics import order_by
 from ..common.pseudo_scanlines import DEFAULT_SCANNER_NOISE, MIN_SCANNER_NOISE, lowest_layers
 
-PLAN_CELL = 0.10          # m
-PLAN_GROUND_DEPTH, PLAN_GROUND_HEIGHT = 1.0, 1.0  # m about the expected road within which ground is sought
-AVERAGING_CELL = 0.05     # m, cells whose points are averaged for a noisy scanner
-OUT_OF_RANGE_HEIGHT = 1e6        # m, farther up and down than any ground
-MAX_LEVEL_SHARE = 0.7         # share of the least step that level ground may differ within LEVEL_WINDOW_CELLS cells
-LEVEL_WINDOW_CELLS = 5           # cells, a square of which is looked at together
-SLOPE_BLOCK_CELLS, SLOPE_WINDOW_BLOCKS = 5, 5  # cells a side of a block, and blocks a side of the window, that tell the slope of the ground
-MAX_GROUND_SLOPE = 0.12      # rise over run of a road
-DRIVEN_HALF_WIDTH = 0.75    # m beside a driven track that is road for certain
-MAX_BRIDGED_CELLS = 3      # cells without ground that a vehicle would drive over between others: scan lines lie apart
-MAX_CELLS_FROM_ROAD = 4      # cells from driven ground within which it may end at a step
-STEPS_PER_BATCH = 512        # steps looked at together: what fits the processor's cache
-PATCH_CELLS = 4            # cells about a step whose ground tells its direction and height
-STEP_HALF_WIDTH, PATCH_HALF_LENGTH = 0.11, 0.31  # m from the middle of a step beyond which ground is before or after it; m along it
-MAX_PLAN_ROUGHNESS_SHARE = 0.25         # share of a step's height that the road before it may scatter
-MIN_PLAN_RISE_SHARE = 0.6       # share of the least step that the cells of one must show
-ISLAND_DROP_SHARE = 0.4      # share of a step's height that the ground behind an island may lie above its bottom
-MIN_NOISE_POINTS, MIN_NOISE_CELLS = 4, 50  # points in a cell, and such cells, that tell the scanner's noise
-NOISE_QUANTILE = 0.3       # quantile of them that does
+PLAN_CELL = 0.10              # m
+PLAN_GROUND_DEPTH = 1.0       # m below, and
+PLAN_GROUND_HEIGHT = 1.0      # m above the expected road within which ground is looked for
+AVERAGING_CELL = 0.05         # m, cells whose points are averaged for a noisy scanner
+OUT_OF_RANGE_HEIGHT = 1e6     # m, farther up and down than any ground
+LEVEL_WINDOW_CELLS = 5        # cells, side of the square in which ground is tested for being level
+MAX_LEVEL_SHARE = 0.7         # share of the least step that level ground may differ within that square
+SLOPE_BLOCK_CELLS = 5         # cells, side of a block, and
+SLOPE_WINDOW_BLOCKS = 5       # blocks, side of the window from which the slope of the ground is estimated
+MAX_GROUND_SLOPE = 0.12       # rise over run of a road
+DRIVEN_HALF_WIDTH = 0.75      # m beside a driven track that is certainly road
+MAX_BRIDGED_CELLS = 3         # cells without points that count as drivable between others: scan lines lie apart
+MAX_CELLS_FROM_ROAD = 4       # cells from driven ground within which it may end at a step
+STEPS_PER_BATCH = 512         # steps that are measured together: they fit the processor's cache
+PATCH_CELLS = 4               # cells about a step whose ground gives its direction and height
+STEP_HALF_WIDTH = 0.11        # m from the middle of a step, beyond which ground is before or after it
+PATCH_HALF_LENGTH = 0.31      # m along a step of the ground that is compared
+MAX_PLAN_ROUGHNESS_SHARE = 0.25   # share of a step's height that the road before it may scatter
+MIN_PLAN_RISE_SHARE = 0.6     # share of the least step that the cells of one must show
+ISLAND_DROP_SHARE = 0.4       # share of a step's height that the ground behind an island may lie above its bottom
+MIN_NOISE_POINTS = 4          # points of a cell, and
+MIN_NOISE_CELLS = 50          # such cells that an estimate of the scanner's noise needs
+NOISE_QUANTILE = 0.3          # quantile of the cells' spreads that is the estimate
 
 
 @dataclass
 class GroundRaster:
     """Ground of a stretch of road on a grid of local map coordinates.
 
+    Attributes
+    ----------
     x0, y0 : m, the grid's corner, a whole number of cells from 0
-    x, y, h : (N,) the points of the lowest layer; h above the expected road
+    x, y, h : (N,) m, the points of the lowest layer; h above the expected road
     place : (N,) the cell of each, row * columns + column
-    low : (rows, columns) m, mean height of the lowest layer, NaN where no point lies
+    low : (rows, columns) m, mean height of the lowest layer, NaN where there is no point
     noise : m, spread of heights within a cell of level ground
     """
 
@@ -54,23 +63,23 @@ class GroundRaster:
     low: np.ndarray
     noise: float
 
-    def inside(self, x, y):
-        """(row, column) of those local places that lie on the grid."""
+    def inside(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(row, column) of those local places, (N,) m, that lie on the grid."""
         row, column = (np.floor(np.asarray(v) / PLAN_CELL - np.rint(v0 / PLAN_CELL)).astype(np.int64)
                        for v, v0 in ((y, self.y0), (x, self.x0)))
         on = (row >= 0) & (column >= 0) & (row < self.low.shape[0]) & (column < self.low.shape[1])
         return row[on], column[on]
 
-    def middle(self, row, column):
+    def middle(self, row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Local x, y of the middle of cells."""
         return self.x0 + (column + 0.5) * PLAN_CELL, self.y0 + (row + 0.5) * PLAN_CELL
 
-    def by_cell(self, x, y, reach):
+    def by_cell(self, x: np.ndarray, y: np.ndarray, reach: float) -> tuple[np.ndarray, ...]:
         """The points within `reach` metres of local places, sorted by cell.
 
         Returns
         -------
-        x, y, h : (M,) of the points
+        x, y, h : (M,) m, the points
         starts : (rows * columns + 1,) index of the first point of every cell
         """
         near = np.zeros(self.low.shape, np.uint8)
@@ -83,18 +92,19 @@ class GroundRaster:
         return self.x.take(order), self.y.take(order), self.h.take(order), np.r_[0, np.cumsum(count)]
 
 
-def ground_raster(x, y, h, layer_jump):
+def ground_raster(x: np.ndarray, y: np.ndarray, h: np.ndarray, layer_jump: float) -> GroundRaster | None:
     """The ground of points, cell by cell; None where there are none.
 
     Parameters
     ----------
-    x, y : (N,) local metres; h : (N,) m above the expected road
-    layer_jump : m of height that parts ground from what is above it
+    x, y : (N,) local m
+    h : (N,) m above the expected road
+    layer_jump : m of height between ground and what is above it
     """
-    kept = np.flatnonzero((h > -PLAN_GROUND_DEPTH) & (h < PLAN_GROUND_HEIGHT))
-    if not len(kept):
+    near = np.flatnonzero((h > -PLAN_GROUND_DEPTH) & (h < PLAN_GROUND_HEIGHT))
+    if not len(near):
         return None
-    x, y, h = (v if len(kept) == len(h) else v.take(kept) for v in (x, y, h))
+    x, y, h = (v if len(near) == len(h) else v.take(near) for v in (x, y, h))
     column, row = np.floor(x / PLAN_CELL).astype(np.int32), np.floor(y / PLAN_CELL).astype(np.int32)
     first_column, first_row = int(column.min()), int(row.min())
     columns, rows = int(column.max()) - first_column + 1, int(row.max()) - first_row + 1
@@ -111,9 +121,9 @@ def ground_raster(x, y, h, layer_jump):
     with np.errstate(invalid="ignore", divide="ignore"):
         low = total / n
         spread = np.sqrt(np.maximum(squares - total * low, 0.0) / (n - 1))
-    # curbs and grass are rough with any scanner, so the smoother cells tell
-    tell = spread[n >= MIN_NOISE_POINTS]
-    noise = max(float(np.quantile(tell, NOISE_QUANTILE)), MIN_SCANNER_NOISE) if len(tell) >= MIN_NOISE_CELLS else DEFAULT_SCANNER_NOISE
+    # curbs and grass are rough to any scanner, so the smoother cells give the estimate
+    spread = spread[n >= MIN_NOISE_POINTS]
+    noise = max(float(np.quantile(spread, NOISE_QUANTILE)), MIN_SCANNER_NOISE) if len(spread) >= MIN_NOISE_CELLS else DEFAULT_SCANNER_NOISE
     return GroundRaster(first_column * PLAN_CELL, first_row * PLAN_CELL, x, y, h, place, low.reshape(rows, columns), noise)
 
 
@@ -138,10 +148,10 @@ def _sums(place, h, cells):
     return np.bincount(place, minlength=cells), np.bincount(place, h, cells), np.bincount(place, h * h, cells)
 
 
-def averaged(raster, layer_jump):
-    """A raster of means: the points of every AVERAGING_CELL made one, so that the noise of single heights goes down.
+def averaged(raster: GroundRaster | None, layer_jump: float) -> GroundRaster | None:
+    """A raster of the mean points of cells AVERAGING_CELL wide, which reduces the noise; `noise` is what remains of it.
 
-    None where there are no points. `noise` is what is left of it.
+    None where there are no points.
     """
     if raster is None:
         return None
@@ -150,15 +160,25 @@ def averaged(raster, layer_jump):
     count = np.bincount(cell)
     held = np.flatnonzero(count)
     count = count[held]
-    mean = ground_raster(*(np.bincount(cell, v)[held] / count for v in (raster.x, raster.y, raster.h)), layer_jump)
+    x, y, h = (np.bincount(cell, v)[held] / count for v in (raster.x, raster.y, raster.h))
+    mean = ground_raster(x, y, h, layer_jump)
+    assert mean is not None
     mean.noise = max(raster.noise / np.sqrt(np.median(count)), MIN_SCANNER_NOISE)
     return mean
 
 
-def ground_slopes(low):
-    """Slope of the ground about every cell: two (rows, columns) arrays, m per m along columns and rows.
+def ground_slopes(low: np.ndarray) -> list[np.ndarray]:
+    """Slope of the ground about every cell.
 
-    The median over a few metres, so that the steps in it do not count; no more than a road's, so that banks are not level.
+    It is the median over a few metres, so that steps do not contribute, and no more than a road's, so that banks are not level.
+
+    Parameters
+    ----------
+    low : (rows, columns) m
+
+    Returns
+    -------
+    two (rows, columns) arrays, m per m along columns and along rows
     """
     rows, columns = low.shape
     padded = np.pad(low, ((0, -rows % SLOPE_BLOCK_CELLS), (0, -columns % SLOPE_BLOCK_CELLS)), constant_values=np.nan)
@@ -189,26 +209,29 @@ def _median_about(values, size):
     return middle
 
 
-def driven_ground(raster, slopes, track_x, track_y, inner, barrier_x, barrier_y, least):
+def driven_ground(raster: GroundRaster, slopes: Sequence[np.ndarray], track_x: np.ndarray, track_y: np.ndarray,
+                  inner: Sequence[np.ndarray], barrier_x: np.ndarray, barrier_y: np.ndarray,
+                  min_height: float) -> tuple[np.ndarray, np.ndarray]:
     """Level ground connected with the driven track, and where the ground is stepped.
 
     Parameters
     ----------
-    slopes : of `ground_slopes`
-    track_x, track_y : local places along the driven tracks, less than PLAN_CELL apart
-    inner : (x, y) of local places that lie between the road's own curbs
-    barrier_x, barrier_y : the same along lines that are known to bound the road
-    least : m, the least step that is sought
+    raster : GroundRaster
+    slopes : result of `ground_slopes`
+    track_x, track_y : (N,) local m, places along the driven tracks, less than PLAN_CELL apart
+    inner : (x, y), each (K,) local m, places between the road's own curbs
+    barrier_x, barrier_y : (L,) local m, places along lines that are known to bound the road
+    min_height : m, the least step
 
     Returns
     -------
     driven : (rows, columns) bool
-    stepped : (rows, columns) bool, occupied cells in whose neighbourhood the ground rises more than its slope says
+    stepped : (rows, columns) bool, occupied cells about which the ground rises more than its slope explains
     """
     there = np.isfinite(raster.low)
     window = np.ones((LEVEL_WINDOW_CELLS, LEVEL_WINDOW_CELLS), np.uint8)
     span = cv2.dilate(np.where(there, raster.low, -OUT_OF_RANGE_HEIGHT), window) - cv2.erode(np.where(there, raster.low, OUT_OF_RANGE_HEIGHT), window)
-    level = span <= MAX_LEVEL_SHARE * least + (np.abs(slopes[0]) + np.abs(slopes[1])) * (LEVEL_WINDOW_CELLS - 1) * PLAN_CELL
+    level = span <= MAX_LEVEL_SHARE * min_height + (np.abs(slopes[0]) + np.abs(slopes[1])) * (LEVEL_WINDOW_CELLS - 1) * PLAN_CELL
     passable = level & _grown(there, _diamond(MAX_BRIDGED_CELLS))
     barrier = np.zeros(there.shape, bool)
     barrier[raster.inside(barrier_x, barrier_y)] = True
@@ -235,14 +258,21 @@ def _diamond(reach):
     return (away[:, None] + away <= reach).astype(np.uint8)
 
 
-def step_places(raster, slopes, driven, stepped, least, highest, wanted=None):
-    """Where the ground rises beside driven ground: place and direction, one for every 0.2 m square at most.
+def step_places(raster: GroundRaster, slopes: Sequence[np.ndarray], driven: np.ndarray, stepped: np.ndarray, min_height: float,
+                max_height: float, wanted: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None) -> tuple[np.ndarray, ...]:
+    """Where the ground rises beside driven ground: place and direction, at most one for every square of two cells.
 
-    wanted : function, local x, y -> bool: squares without such a cell may be left out
+    Parameters
+    ----------
+    raster : GroundRaster
+    slopes : result of `ground_slopes`
+    driven, stepped : result of `driven_ground`
+    min_height, max_height : m, of a step
+    wanted : function, local x, y -> (N,) bool: squares without such a cell may be left out
 
     Returns
     -------
-    x, y : (M,) local metres
+    x, y : (M,) local m
     nx, ny : (M,) unit vector uphill
     """
     beside = _grown(driven, _diamond(MAX_CELLS_FROM_ROAD))
@@ -253,17 +283,17 @@ def step_places(raster, slopes, driven, stepped, least, highest, wanted=None):
         own = np.flatnonzero(np.bincount(square, wanted(x, y))[square])
         row, column = row[own], column[own]
     ground = np.pad(raster.low, PATCH_CELLS, constant_values=np.nan)
-    parts = [_rises_at(raster, ground, slopes, row[a:a + STEPS_PER_BATCH], column[a:a + STEPS_PER_BATCH], least, highest)
+    parts = [_rises_at(raster, ground, slopes, row[a:a + STEPS_PER_BATCH], column[a:a + STEPS_PER_BATCH], min_height, max_height)
              for a in range(0, len(row), STEPS_PER_BATCH)]
     x, y, nx, ny, cost = np.concatenate(parts, axis=1) if parts else np.empty((5, 0))
     best = _one_of_each_square(x, y, cost)
     return x[best], y[best], nx[best], ny[best]
 
 
-def _rises_at(raster, ground, slopes, row, column, least, highest):
-    """Of some cells those at which the ground rises like a step: x, y, unit vector uphill, and how far the middle is off; (5, M).
+def _rises_at(raster, ground, slopes, row, column, min_height, max_height):
+    """The cells at which the ground rises like a step: x, y, unit vector uphill, and how far the middle of the step is off; (5, M).
 
-    ground : the raster's, with PATCH_CELLS cells of nothing about it
+    ground : of the raster, padded by PATCH_CELLS empty cells
     """
     reach = np.arange(-PATCH_CELLS, PATCH_CELLS + 1)
     down, along = (v.ravel() for v in np.meshgrid(reach, reach, indexing="ij"))
@@ -271,8 +301,8 @@ def _rises_at(raster, ground, slopes, row, column, least, highest):
     dx, dy = along * PLAN_CELL, down * PLAN_CELL
     sx, sy = (v[row, column] for v in slopes)
     around -= sx[:, None] * dx + sy[:, None] * dy
-    # what belongs to the step at this cell: neither the wall behind a curb nor what lies under a bridge
-    near = np.isfinite(around) & (np.abs(around - raster.low[row, column][:, None]) <= highest + 0.05)
+    # heights of the step at this cell, without the wall behind a curb and the ground below a bridge
+    near = np.isfinite(around) & (np.abs(around - raster.low[row, column][:, None]) <= max_height + 0.05)
     gx, gy = _gradient(around, near, dx, dy)
     size = np.maximum(np.hypot(gx, gy), 1e-9)
     nx, ny = gx / size, gy / size
@@ -283,7 +313,7 @@ def _rises_at(raster, ground, slopes, row, column, least, highest):
     rough = np.sqrt(_mean((around - before[:, None]) ** 2, strip & (u < -STEP_HALF_WIDTH)))
     with np.errstate(invalid="ignore", divide="ignore"):
         part = (at - before) / rise
-        good = (part > 0.15) & (part < 0.85) & (rise >= MIN_PLAN_RISE_SHARE * least) & (rise <= highest + 0.05) \
+        good = (part > 0.15) & (part < 0.85) & (rise >= MIN_PLAN_RISE_SHARE * min_height) & (rise <= max_height + 0.05) \
             & (rough <= MAX_PLAN_ROUGHNESS_SHARE * rise)
     # the middle of the step, not of the cell
     return np.array([*raster.middle(row[good], column[good]), nx[good], ny[good], np.abs(part - 0.5)[good]])
@@ -318,18 +348,30 @@ def _squares(x, y):
     return np.floor(y / (2 * PLAN_CELL)).astype(np.int64) * 10_000_000 + np.floor(x / (2 * PLAN_CELL)).astype(np.int64)
 
 
-def falls_again(raster, lean, x, y, nx, ny, bottom, height, farthest):
-    """(M,) metres uphill of each step at which the ground is back at the step's bottom; NaN where it stays up.
+def falls_again(raster: GroundRaster, road_slope: Sequence[float], x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray,
+                bottom: np.ndarray, height: np.ndarray, farthest: float) -> np.ndarray:
+    """Where the ground behind steps is down again.
 
-    lean : m per m along columns and rows, the slope of the road; bottom, height : (M,) metres; farthest : metres
+    Parameters
+    ----------
+    raster : GroundRaster
+    road_slope : m per m along columns and along rows
+    x, y : (M,) local m, places of the steps
+    nx, ny : (M,) unit vectors uphill
+    bottom, height : (M,) m, of the steps
+    farthest : m uphill that are searched
+
+    Returns
+    -------
+    (M,) m uphill of each step at which the ground is back at the step's bottom, NaN where it stays up
     """
-    lean = nx * lean[0] + ny * lean[1]
+    slope = nx * road_slope[0] + ny * road_slope[1]
     out = (np.arange(int(round(farthest / PLAN_CELL))) + 2) * PLAN_CELL
     column = np.floor((x[:, None] + out * nx[:, None]) / PLAN_CELL - np.rint(raster.x0 / PLAN_CELL)).astype(np.int64)
     row = np.floor((y[:, None] + out * ny[:, None]) / PLAN_CELL - np.rint(raster.y0 / PLAN_CELL)).astype(np.int64)
     on = (row >= 0) & (column >= 0) & (row < raster.low.shape[0]) & (column < raster.low.shape[1])
     there = np.where(on, raster.low[np.where(on, row, 0), np.where(on, column, 0)], np.nan)
     with np.errstate(invalid="ignore"):
-        down = there < (bottom + ISLAND_DROP_SHARE * height)[:, None] + lean[:, None] * out
+        down = there < (bottom + ISLAND_DROP_SHARE * height)[:, None] + slope[:, None] * out
     first = np.argmax(down, axis=1)
     return np.where(down.any(1), out[first], np.nan)

@@ -1,5 +1,8 @@
-"""Bottom corners of curbs that run in any direction, measured across their own direction."""
+"""Bottom corners of curbs of any direction, measured across their own direction."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,27 +10,35 @@ from scipy.spatial import cKDTree
 
 from ..common.corners import BEHIND_LENGTH, FACE_MARGIN, REMEASURE_SKEW, ROAD_SIDE_LENGTH, StepPatches
 from ..common.pseudo_scanlines import expand_ranges
-from .raster import PLAN_CELL
+from .raster import PLAN_CELL, GroundRaster
 
-SHORT_HALF_LENGTH, LONG_HALF_LENGTH = 0.30, 0.90  # m either way along the curb of the points that tell one step: dense scans, sparse ones
-LINE_RADIUS = 1.0     # m about a step within which others tell the direction of their line
-MIN_LINE_STEPS = 3       # others that do
-MAX_LINE_SCATTER = 0.12    # m, scatter across it
-MAX_FACE_OFFSET = 0.10    # m that a step may lie from the place where it is looked for
-PATCH_HALF_WIDTH = max(ROAD_SIDE_LENGTH + FACE_MARGIN, BEHIND_LENGTH) + MAX_FACE_OFFSET  # m either way across of the points that tell one step
-MEASURING_RADIUS = 2.0          # m from where steps are looked for within which they are measured, however they turn
-CELL_ROUNDING = 1e-3          # cells: rounding leaves no point out
-MEASURING_ROUNDS = 3           # measurements of a step, each turned by what the one before saw
-REMEASURE_OFFSET = 0.04         # m from where it was looked for beyond which it is
+SHORT_HALF_LENGTH = 0.30      # m either way along the curb of the points that measure one step, in dense scans,
+LONG_HALF_LENGTH = 0.90       # m, and in sparse ones
+LINE_RADIUS = 1.0             # m about a step within which others give the direction of their line
+MIN_LINE_STEPS = 3            # others that this needs
+MAX_LINE_SCATTER = 0.12       # m, scatter across that line
+MAX_FACE_OFFSET = 0.10        # m that a step may lie from the place where it is looked for
+# m either way across of the points that measure one step
+PATCH_HALF_WIDTH = max(ROAD_SIDE_LENGTH + FACE_MARGIN, BEHIND_LENGTH) + MAX_FACE_OFFSET
+MEASURING_RADIUS = 2.0        # m from where steps are looked for within which they are measured, in whatever direction
+CELL_ROUNDING = 1e-3          # cells, so that rounding leaves no point out
+MEASURING_ROUNDS = 3          # measurements of a step, each across the direction that the one before gave
+REMEASURE_OFFSET = 0.04       # m from where it was looked for above which a step is measured again
 
 
 @dataclass
 class PlanSteps:
     """Bottom corners found in plan, one entry each.
 
-    x, y : (M,) local metres; nx, ny : (M,) unit vector across the curb, uphill
-    h : (M,) m above the expected road; height : (M,) m of the step; run : (M,) m across of the face
-    noise : (M,) m, heights about the road side's line; support, behind : (M,) points of road side and face, of the raised ground
+    Attributes
+    ----------
+    x, y : (M,) local m
+    nx, ny : (M,) unit vector across the curb, uphill
+    h : (M,) m above the expected road
+    height : (M,) m of the step
+    run : (M,) m across of the face
+    noise : (M,) m, scatter of heights about the line of the road side
+    support, behind : (M,) points of road side and face, and of the raised ground
     """
 
     x: np.ndarray
@@ -41,68 +52,70 @@ class PlanSteps:
     support: np.ndarray
     behind: np.ndarray
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.x)
 
-    def __getitem__(self, which):
+    def __getitem__(self, which: np.ndarray) -> PlanSteps:
         return PlanSteps(*(getattr(self, name)[which] for name in self.__dataclass_fields__))
 
     @staticmethod
-    def join(parts):
+    def join(parts: Sequence[PlanSteps]) -> PlanSteps:
+        """The entries of all parts, one after the other."""
         return PlanSteps(*(np.concatenate([getattr(p, name) for p in parts]) for name in PlanSteps.__dataclass_fields__))
 
 
-def measure_plan_steps(rasters, x, y, nx, ny, least, highest):
-    """The steps at places in plan that prove to be ones.
+def measure_plan_steps(rasters: Sequence[GroundRaster], x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray,
+                       min_height: float, max_height: float) -> PlanSteps:
+    """The steps at those places in plan where the points prove one.
 
     Parameters
     ----------
-    rasters : list of GroundRaster: views of the ground; what one does not show is sought in the next
-    x, y : (M,) local metres near which a step lies
+    rasters : list of GroundRaster, views of the ground; what one does not show is looked for in the next
+    x, y : (M,) local m near which a step lies
     nx, ny : (M,) unit vectors uphill, good to some 30 degrees
-    least, highest : metres
+    min_height, max_height : m, of a step
 
     Returns
     -------
     PlanSteps, at most M
     """
     line_x, line_y, in_line = _line_directions(x, y, nx, ny)
-    # the slope of the ground tells the direction where it is densely seen, else the line that the steps make
+    # the slope of the ground gives the direction where points are dense, else the line that the steps make
     found, left = [], np.arange(len(x))
     for raster in rasters:
         points = raster.by_cell(x[left], y[left], MEASURING_RADIUS)
-        steps, good = _measured(raster, points, x[left], y[left], nx[left], ny[left], SHORT_HALF_LENGTH, least, highest)
+        steps, good = _measured(raster, points, x[left], y[left], nx[left], ny[left], SHORT_HALF_LENGTH, min_height, max_height)
         found.append(steps)
         left = left[~good & in_line[left]]
         for half in (SHORT_HALF_LENGTH, LONG_HALF_LENGTH):
-            steps, good = _measured(raster, points, x[left], y[left], line_x[left], line_y[left], half, least, highest)
+            steps, good = _measured(raster, points, x[left], y[left], line_x[left], line_y[left], half, min_height, max_height)
             found.append(steps)
             left = left[~good]
     return PlanSteps.join(found)
 
 
-def _measured(raster, points, x, y, nx, ny, half, least, highest):
-    """The steps, and (M,) bool: which places proved to be ones; `points` are the raster's by cell."""
+def _measured(raster, points, x, y, nx, ny, half, min_height, max_height):
+    """The steps, and (M,) bool: which places proved to be steps; `points` are the raster's by cell."""
     proved, place, found = np.zeros(len(x), bool), np.arange(len(x)), []
     for turn in range(MEASURING_ROUNDS):
         owner, u, v, h = _points_about(raster, points, x, y, nx, ny, half)
-        seen = StepPatches(owner, u, v, h, np.full(len(x), raster.noise), least, highest).corners()
-        # a step that runs askew or lies aside is measured again, across its own direction and from its own place
+        seen = StepPatches(owner, u, v, h, np.full(len(x), raster.noise), min_height, max_height).corners()
+        # a step of another direction or place is measured again, across its own direction and from its own place
         settled = seen["good"] & ((np.abs(seen["skew"]) <= REMEASURE_SKEW) & (np.abs(seen["u"]) <= REMEASURE_OFFSET) | (turn == MEASURING_ROUNDS - 1))
         proved[place[settled]] = True
-        # the tangent is uphill turned to the left
-        steps = PlanSteps(x + seen["u"] * nx - seen["s"] * ny, y + seen["u"] * ny + seen["s"] * nx, *_turned(nx, ny, seen["skew"]),
+        # the tangent is the uphill direction turned to the left
+        steps = PlanSteps(x + seen["u"] * nx - seen["s"] * ny, y + seen["u"] * ny + seen["s"] * nx, *_rotated(nx, ny, seen["skew"]),
                           *(seen[name] for name in ("h", "height", "run", "noise", "support", "behind")))
         found.append(steps[settled])
         again = seen["good"] & ~settled
         if not again.any():
             break
-        place, x, y, nx, ny = place[again], *(getattr(steps, name)[again] for name in ("x", "y", "nx", "ny"))
+        place, x, y, nx, ny = place[again], steps.x[again], steps.y[again], steps.nx[again], steps.ny[again]
     return PlanSteps.join(found), proved
 
 
 def _line_directions(x, y, nx, ny):
-    """Uphill directions across the line that the places about each one make, and (M,) bool: do they make one?"""
+    """Uphill directions across the line that the places about each place make, and (M,) bool: do they make a line?"""
     pairs = cKDTree(np.c_[x, y]).query_pairs(LINE_RADIUS, output_type="ndarray")
     # places on the other side of an island face the other way
     pairs = pairs[nx[pairs[:, 0]] * nx[pairs[:, 1]] + ny[pairs[:, 0]] * ny[pairs[:, 1]] > 0.3]
@@ -118,7 +131,7 @@ def _line_directions(x, y, nx, ny):
     return side * lx, side * ly, (n >= MIN_LINE_STEPS) & (across <= MAX_LINE_SCATTER**2)
 
 
-def _turned(nx, ny, skew):
+def _rotated(nx, ny, skew):
     """Uphill unit vectors of faces that run `skew` uphill per metre along."""
     size = np.hypot(1.0, skew)
     return (nx + skew * ny) / size, (ny - skew * nx) / size
@@ -132,7 +145,7 @@ def _points_about(raster, points, x, y, nx, ny, half):
     row = np.floor(y / PLAN_CELL - np.rint(raster.y0 / PLAN_CELL)).astype(np.int64)
     column = np.floor(x / PLAN_CELL - np.rint(raster.x0 / PLAN_CELL)).astype(np.int64)
     line = row[:, None] + np.arange(-reach, reach + 1)
-    # of every row of cells those between which the oblong about the place lies
+    # the columns that the rectangle about the place covers in every row of cells
     low = raster.y0 + line * PLAN_CELL - y[:, None]
     left, right = _between(nx[:, None], ny[:, None], low, low + PLAN_CELL, half)
     first = np.clip(np.floor((x[:, None] + left - raster.x0) / PLAN_CELL - CELL_ROUNDING), column[:, None] - reach, column[:, None] + reach + 1)

@@ -1,5 +1,8 @@
-"""Lines of steps in plan: what continues in place, direction and height is one curb."""
+"""Lines of steps in plan: steps that continue each other in place, direction and height are one curb."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,32 +11,42 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ..common.tracking import HEIGHT_TOLERANCE, MAX_JOINED_GAP
+from .steps import PlanSteps
 
-DUPLICATE_ALONG, DUPLICATE_ACROSS = 0.12, 0.06  # m within which the better supported of two steps stands for both
-MAX_PLAN_LINK = 1.2     # m along a curb that a link may span
-PLAN_LINK_TOLERANCE = 0.03         # m across that two steps of one line may differ
-PLAN_LINK_DRIFT, DRIFT_PER_TURN = 0.06, 0.2  # the same per m along, and per m along and radian of turn
-MIN_CURB_RADIUS = 0.4       # m, radius of the sharpest curb; it is that of an island's nose
+DUPLICATE_ALONG = 0.12        # m along, and
+DUPLICATE_ACROSS = 0.06       # m across within which the better supported of two steps stands for both
+MAX_PLAN_LINK = 1.2           # m along a curb that a link may span
+PLAN_LINK_TOLERANCE = 0.03    # m across that two steps of one line may differ in any case,
+PLAN_LINK_DRIFT = 0.06        # m per m along besides, and
+DRIFT_PER_TURN = 0.2          # m per m along and radian of turn
+MIN_CURB_RADIUS = 0.4         # m, of the sharpest curb, the nose of an island
 TURN_TOLERANCE = np.radians(25.0)
-MAX_HEIGHT_GRADE = 0.08  # m per m along that bottoms of neighbours may differ besides
-MAX_JOIN_TURN = np.radians(45.0)
-MAX_NOSE_GAP, NOSE_RADIUS = 1.5, 0.6  # m between ends that the nose of an island may lie between, and its radius
-JOIN_DRIFT = 0.25  # m, and as much per m, that two such chains may miss each other
-END_DIRECTION_LENGTH = 0.6            # m at the end of a chain that gives its direction
-MAX_JOIN_OVERLAP = 0.3           # m that two such chains may overlap
-JOIN_TOLERANCE = 0.05          # m across that they may miss each other anyway
+MAX_HEIGHT_GRADE = 0.08       # m per m along that bottoms of neighbours may differ besides HEIGHT_TOLERANCE
+MAX_JOIN_TURN = np.radians(45.0)   # between two chains of one line
+MAX_NOSE_GAP = 1.5            # m between ends that may enclose the nose of an island
+NOSE_RADIUS = 0.6             # m, of that nose
+JOIN_DRIFT = 0.25             # m across per m that two such chains may miss each other, and
+JOIN_TOLERANCE = 0.05         # m in any case
+END_DIRECTION_LENGTH = 0.6    # m at the end of a chain that give its direction
+MAX_JOIN_OVERLAP = 0.3        # m that two such chains may overlap
 
 
 @dataclass
 class PlanStepChain:
-    """Steps of one line in order, uphill on the right: indices into the steps; closed where it goes round an island."""
+    """Steps of one line.
+
+    Attributes
+    ----------
+    steps : (K,) indices into the PlanSteps, in order, uphill on the right
+    closed : does the line go all around an island?
+    """
 
     steps: np.ndarray
     closed: bool = False
 
 
-def link_plan_steps(steps):
-    """Chains of steps, the uphill side of each on the right of its direction.
+def link_plan_steps(steps: PlanSteps) -> list[PlanStepChain]:
+    """Chains of steps; the uphill side of each is on the right of its direction.
 
     Parameters
     ----------
@@ -43,20 +56,20 @@ def link_plan_steps(steps):
     -------
     list of PlanStepChain
     """
-    kept = without_duplicates(steps)
-    ahead = _links(steps[kept])
-    return [PlanStepChain(kept[members], closed) for members, closed in _paths(ahead)]
+    distinct = without_duplicates(steps)
+    ahead = _links(steps[distinct])
+    return [PlanStepChain(distinct[members], closed) for members, closed in _paths(ahead)]
 
 
-def without_duplicates(steps):
-    """Indices of the steps that no better supported one stands for."""
+def without_duplicates(steps: PlanSteps) -> np.ndarray:
+    """Indices of the steps that have no better supported duplicate."""
     if not len(steps):
         return np.empty(0, np.int64)
     a, b = cKDTree(np.c_[steps.x, steps.y]).query_pairs(DUPLICATE_ALONG, output_type="ndarray").T
     dx, dy = steps.x[b] - steps.x[a], steps.y[b] - steps.y[a]
     same = (steps.nx[a] * steps.nx[b] + steps.ny[a] * steps.ny[b] > 0.5) & (np.abs(dx * steps.nx[a] + dy * steps.ny[a]) < DUPLICATE_ACROSS)
     a, b = a[same], b[same]
-    # ties go to the place, not to the order of the work
+    # of equal support the place decides, so that the order of the work does not
     rank = np.empty(len(steps), np.int64)
     rank[np.lexsort((steps.y, steps.x, -steps.support))] = np.arange(len(steps))
     beaten = np.zeros(len(steps), bool)
@@ -79,7 +92,7 @@ def _links(steps):
     across, along = np.abs(dx * nx + dy * ny) / size, (dy * nx - dx * ny) / size
     turn = np.abs(np.arctan2(steps.nx[a] * steps.ny[b] - steps.ny[a] * steps.nx[b], steps.nx[a] * steps.nx[b] + steps.ny[a] * steps.ny[b]))
     up = np.abs(steps.h[b] - steps.h[a])
-    # where a curb bends sharply its direction is not so well known
+    # where a curb bends sharply its direction is less certain
     good = (along > 0.02) & (across <= PLAN_LINK_TOLERANCE + (PLAN_LINK_DRIFT + DRIFT_PER_TURN * turn) * along) \
         & (turn <= TURN_TOLERANCE + along / MIN_CURB_RADIUS) \
         & (up <= HEIGHT_TOLERANCE + MAX_HEIGHT_GRADE * along)
@@ -128,18 +141,24 @@ def _paths(following):
     return [(run, bool(ring[label[run[0]]])) for run in runs]
 
 
-def join_chains(chains, steps):
-    """Chains with those that lie in one line, a short gap apart, made one."""
+def join_chains(chains: Sequence[PlanStepChain], steps: PlanSteps) -> list[PlanStepChain]:
+    """The chains, those that lie in one line a short gap apart joined to one."""
     open_ones = [c for c in chains if not c.closed]
     tips = LineEnds.of([(steps.x[c.steps], steps.y[c.steps], steps.h[c.steps]) for c in open_ones])
     runs = _paths(tips.successors(MAX_NOSE_GAP))
     return [PlanStepChain(np.concatenate([open_ones[k].steps for k in run]), ring) for run, ring in runs] + [c for c in chains if c.closed]
 
 
-def group_lines(places):
-    """(K,) number of the line that each of K polylines belongs to; all have their uphill side on the same hand.
+def group_lines(places: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> np.ndarray:
+    """Which polylines continue each other.
 
-    places : list of (x, y, h), each (N,) metres
+    Parameters
+    ----------
+    places : list of K polylines (x, y, h), each (N,) local m, all with their uphill side on the same hand
+
+    Returns
+    -------
+    (K,) number of the line to which each belongs
     """
     following = LineEnds.of(places).successors()
     linked = np.flatnonzero(following >= 0)
@@ -149,19 +168,31 @@ def group_lines(places):
 
 @dataclass
 class LineEnds:
-    """Heads and tails of K polylines: (K, 5) x, y, h and the unit vector that leads out of the line."""
+    """Both ends of K polylines.
+
+    Attributes
+    ----------
+    heads, tails : (K, 5) local x, y and h, m, and the unit vector that points out of the line
+    """
 
     heads: np.ndarray
     tails: np.ndarray
 
     @staticmethod
-    def of(places):
+    def of(places: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> LineEnds:
+        """The ends of polylines (x, y, h)."""
         return LineEnds(*(np.array([_tip(*(v[::step] for v in place)) for place in places]).reshape(-1, 5) for step in (-1, 1)))
 
-    def successors(self, nose=0.0):
-        """(K,) the line whose head goes on where the tail of each one ends, -1 where none does.
+    def successors(self, nose: float = 0.0) -> np.ndarray:
+        """The line whose head continues the tail of each line.
 
+        Parameters
+        ----------
         nose : m of gap within which a line may bend about its uphill side as sharply as the nose of an island
+
+        Returns
+        -------
+        (K,) indices, -1 where no line continues
         """
         count = len(self.heads)
         following = np.full(count, -1)
@@ -191,10 +222,10 @@ class LineEnds:
 
 
 def _tip(x, y, h):
-    """Where a line ends and the unit vector in which it leaves: x, y, h, tx, ty."""
+    """Where a line ends, and the unit vector of its direction there: x, y, h, tx, ty."""
     back = np.hypot(x - x[-1], y - y[-1])
     far = np.flatnonzero(back >= END_DIRECTION_LENGTH)
-    # a curb that turns leaves in the direction of the last half metre or so
+    # of a curb that bends, its last half metre or so gives the direction
     k = int(far[-1]) if len(far) else 0
     tx, ty = x[-1] - x[k], y[-1] - y[k]
     size = max(np.hypot(tx, ty), 1e-9)

@@ -2,3 +2,10 @@
 
 In: curb points. Out: smooth lines, cut into pieces by what was measured and what was bridged.
 """
+
+from ...lazy import public
+
+__getattr__, __all__ = public(__name__, {
+    "EdgeSettings": "fit",
+    "fit_road_edges": "fit",
+})

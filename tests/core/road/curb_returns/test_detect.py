@@ -32,7 +32,7 @@ def in_plan(edges, *kinds):
     return [shapely.affinity.translate(shapely.force_2d(g), -EAST, -NORTH) for g, row in edges if row["kind"] in kinds]
 
 
-def turned(edges):
+def curb_returns(edges):
     return in_plan(edges, "corner", "side_street", "island")
 
 
@@ -103,7 +103,7 @@ def test_the_kind_of_a_line_is_told_by_where_it_leads():
 
 
 def test_a_straight_street_has_no_other_curbs():
-    assert not turned(edges_of(scan(sidewalks())))
+    assert not curb_returns(edges_of(scan(sidewalks())))
 
 
 def test_a_garden_step_behind_a_driveway_is_no_curb():
@@ -113,12 +113,12 @@ def test_a_garden_step_behind_a_driveway_is_no_curb():
     edges = edges_of(scan(shapely.union_all([street, garden])))
     assert not in_plan(edges, "island")
     step = shapely.LineString([(15.6, 7), (20.4, 7)])
-    assert all(line.distance(step) > 0.3 for line in turned(edges))
+    assert all(line.distance(step) > 0.3 for line in curb_returns(edges))
 
 
 def test_a_parked_car_is_no_island():
     points = parked_car(scan(sidewalks(5.0)), 12.0, near=2.0, far=3.8)
-    assert not turned(edges_of(points))
+    assert not curb_returns(edges_of(points))
 
 
 def test_a_wall_across_an_opening_is_no_curb():
@@ -126,14 +126,14 @@ def test_a_wall_across_an_opening_is_no_curb():
     street = shapely.difference(sidewalks(), shapely.box(14, 3.0, 24, 30))
     wall = rng.uniform(14.0, 24.0, 6000), 9.0 + rng.normal(0, 0.003, 6000), rng.uniform(0.0, 1.5, 6000)
     points = with_points(scan(street, hidden=shapely.box(10, 9.02, 28, 30)), *wall)
-    for line in turned(edges_of(points)):
+    for line in curb_returns(edges_of(points)):
         assert line.distance(shapely.LineString([(15, 9), (23, 9)])) > 0.3
 
 
 def test_a_speed_hump_is_no_island():
     x, y, z, time = scan(sidewalks())
     z = z + np.where(np.abs(y) < 3.5, np.clip(0.10 - 0.15 * np.abs(x - 20.0), 0.0, 0.06), 0.0)
-    assert not turned(edges_of((x, y, z, time)))
+    assert not curb_returns(edges_of((x, y, z, time)))
 
 
 @pytest.mark.parametrize("grade", [-0.06, 0.06])
@@ -171,4 +171,4 @@ def test_steps_measured_just_beyond_the_corridor_are_left_out(monkeypatch):
     monkeypatch.setattr(curbs, "measure_plan_steps", farther_out)
     edges = edges_of(scan(side_street(radius=4.0), spacing=0.1))
     assert np.isfinite(np.concatenate([shapely.get_coordinates(line, include_z=True) for line in edges.geometries])).all()
-    assert 23.0 < shapely.union_all(turned(edges)).bounds[3] <= 25.0
+    assert 23.0 < shapely.union_all(curb_returns(edges)).bounds[3] <= 25.0
