@@ -1,4 +1,6 @@
-"""How far apart two sets of road edges run, where they tell of one curb, and which of the two to draw."""
+"""How far apart two sets of road edges lie where both follow one curb, and which of the two to draw."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 
@@ -7,25 +9,30 @@ import shapely
 
 from ..common.features import Features
 from ..common.schemas import AGREE, END, LENGTH, ROAD, SIDE, STATION, of_main_curb
+from ..survey.frame.road_frame import RoadFrame
 from .common.sides import SIDE_SIGNS
 
-COMPARISON_STEP = 0.5           # m along the road between places that are compared
-MAX_SAME_CURB_DISTANCE = 0.25     # m across within which two lines are of one curb
-MIN_REPORTED_DIFFERENCE = 0.05         # m across beyond which a stretch is reported
-AGREEMENT_QUANTILE = 0.95    # quantile of the distances that stands for a piece
-MIN_REPORTED_LENGTH = 1.0       # m of a stretch that is reported
-MIN_SINGLE_METHOD_LENGTH = 2.0  # m that one line must go on alone to be drawn in place of the other
-SECOND_METHOD_CHAIN_OFFSET = 100_000  # parts the chains of the two methods
+COMPARISON_STEP = 0.5             # m along the road between places that are compared
+MAX_SAME_CURB_DISTANCE = 0.25     # m across within which two lines follow one curb
+MIN_REPORTED_DIFFERENCE = 0.05    # m across above which a stretch is reported
+AGREEMENT_QUANTILE = 0.95         # quantile of the distances that stands for a piece
+MIN_REPORTED_LENGTH = 1.0         # m of a stretch that is reported
+MIN_SINGLE_METHOD_LENGTH = 2.0    # m that one line must continue beyond the other to be drawn in its place
+SECOND_METHOD_CHAIN_OFFSET = 100_000  # added to the chain numbers of the second method, to keep both apart
 
 BOUNDARY_DIFFERENCES = [ROAD, SIDE, STATION, END, AGREE, LENGTH]
 
 
 @dataclass
 class EdgeSamples:
-    """The edges of one side of a road at places COMPARISON_STEP apart.
+    """The edges of one side of a road at N places COMPARISON_STEP apart.
 
-    s : (N,) m; d, z : (N,) m, offset and local height, NaN where there is no edge; measured : (N,) bool;
-    scatter : (N,) m of the curb points about the piece
+    Attributes
+    ----------
+    s : (N,) m, station
+    d, z : (N,) m, offset and local height, NaN where there is no edge
+    measured : (N,) bool
+    scatter : (N,) m, of the curb points about the piece of edge
     """
 
     s: np.ndarray
@@ -35,8 +42,16 @@ class EdgeSamples:
     scatter: np.ndarray
 
 
-def sample_edges(edges, frame, road, side):
-    """EdgeTrace of one side of a road (number)."""
+def sample_edges(edges: Features, frame: RoadFrame, road: int, side: str) -> EdgeSamples:
+    """The edges of one side of a road at regular stations.
+
+    Parameters
+    ----------
+    edges : Features ROAD_EDGES
+    frame : RoadFrame
+    road : number of the road
+    side : "left" or "right"
+    """
     line = frame.road(road)
     first, last = int(np.floor(line.start / COMPARISON_STEP)), int(np.ceil(line.end / COMPARISON_STEP))
     s = np.arange(first, last + 1) * COMPARISON_STEP
@@ -61,16 +76,16 @@ def sample_edges(edges, frame, road, side):
     return trace
 
 
-def select_curb_points(points, others, edges, other_edges, frame):
-    """Of two sets of points of the road's own curbs, at every place those whose edge measures better there.
+def select_curb_points(points: Features, others: Features, edges: Features, other_edges: Features, frame: RoadFrame) -> Features:
+    """At every place the curb points of that method whose edge measures better there.
 
     Where one method alone measured, its points are taken. Where both measured one curb
-    (MAX_SAME_CURB_DISTANCE), along each such stretch those that scatter less about their line; where
-    they found different ones, those of the first, which asks more of a curb.
+    (MAX_SAME_CURB_DISTANCE), each such stretch takes the points that scatter less about their
+    line. Where they found different curbs, those of the first method are taken.
 
     Parameters
     ----------
-    points, others : Features CURB_POINTS of two methods, that which asks more of a curb first
+    points, others : Features CURB_POINTS of two methods, the one with the stricter model of a curb first
     edges, other_edges : Features ROAD_EDGES fitted through each
     frame : RoadFrame
 
@@ -84,9 +99,9 @@ def select_curb_points(points, others, edges, other_edges, frame):
             first, second = (sample_edges(e, frame, road.number, side) for e in (edges, other_edges))
             take_second = _second_is_better(first, second)
             for number, features in enumerate((points, others)):
-                mine = take_second if number else ~take_second
+                better = take_second if number else ~take_second
                 for geometry, row in features:
-                    if row["road"] == road.number and row["side"] == side and mine[_node(first.s, row["station_m"])]:
+                    if row["road"] == road.number and row["side"] == side and better[_node(first.s, row["station_m"])]:
                         chain = row.get("chain")
                         found.add(geometry, **dict(row, chain=None if chain is None else chain + number * SECOND_METHOD_CHAIN_OFFSET))
     return found
@@ -106,7 +121,7 @@ def _second_is_better(first, second):
     better |= ~first.measured & ~second.measured & np.isfinite(second.d) & np.isnan(first.d)
     for a, b in mask_runs(one_curb):
         better[a:b] = second.scatter[a:b].mean() < first.scatter[a:b].mean()
-    # a line that begins a little before the other is no reason to change over
+    # no change of method for a line that begins a little before the other
     for a, b in mask_runs(first.measured ^ second.measured):
         if (b - a) * COMPARISON_STEP < MIN_SINGLE_METHOD_LENGTH:
             if a > 0 and one_curb[a - 1]:
@@ -116,17 +131,23 @@ def _second_is_better(first, second):
     return better
 
 
-def mask_runs(mask):
-    """(first, last + 1) of every run of True."""
+def mask_runs(mask: np.ndarray) -> list[tuple[int, int]]:
+    """(first, last + 1) of every run of True in (N,) bool."""
     change = np.flatnonzero(np.diff(np.r_[False, mask, False].astype(np.int8)))
     return list(zip(change[::2].tolist(), change[1::2].tolist()))
 
 
-def measure_agreement(edges, first_edges, second_edges, frame):
-    """Write into `agree_cm` of every edge how far apart two sets of edges run beside it, and tell where it is much.
+def measure_agreement(edges: Features, first_edges: Features, second_edges: Features, frame: RoadFrame) -> Features:
+    """Write into `agree_cm` of every edge how far apart two sets of edges lie beside it, and report where that is much.
 
-    The number is the distance that 95 % of the piece keeps to, NULL where one of the two has
-    no line. It is measured along the road's offset, every COMPARISON_STEP metres.
+    The number is the distance that 95 % of the piece does not exceed, NULL where one of the
+    two sets has no line. It is measured across the road, every COMPARISON_STEP metres.
+
+    Parameters
+    ----------
+    edges : Features ROAD_EDGES that are drawn; `agree_cm` is filled in
+    first_edges, second_edges : Features ROAD_EDGES of two methods
+    frame : RoadFrame
 
     Returns
     -------
@@ -145,8 +166,8 @@ def measure_agreement(edges, first_edges, second_edges, frame):
                     if len(beside):
                         row["agree_cm"] = round(100 * float(np.quantile(beside, AGREEMENT_QUANTILE)), 1)
             with np.errstate(invalid="ignore"):
-                doubtful = (apart > MIN_REPORTED_DIFFERENCE) & np.isfinite(drawn.d)
-            for a, b in mask_runs(doubtful):
+                differing = (apart > MIN_REPORTED_DIFFERENCE) & np.isfinite(drawn.d)
+            for a, b in mask_runs(differing):
                 if (b - a) * COMPARISON_STEP < MIN_REPORTED_LENGTH:
                     continue
                 x, y, z = frame.to_map(road.number, first.s[a:b], drawn.d[a:b], drawn.z[a:b])

@@ -1,7 +1,11 @@
-"""Road boundaries by either method or by both: the one door that the road map and its dialogs use."""
+"""Road boundaries by either method or by both; the road map and the algorithms use this file alone."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,20 +23,28 @@ from .scanlines.detect import ScanlineBoundarySettings, curbs_from_scanlines
 from .scanlines.section_planes import ScanlineSettings
 from .scanlines.source import SurveyScanlines
 
+if TYPE_CHECKING:
+    from ..survey.frame.road_frame import RoadFrame
+    from ..survey.open_survey import Survey
+    from .common.level_strip import LevelStrip
+
 BOUNDARY_METHODS = ("profiles", "scanlines", "both")
-PROFILES_PROGRESS = 0.3    # of the work with both methods; of the rest,
-LATTICE_PROGRESS = 0.1     # the lattice ends here,
-RETURNS_PROGRESS = 0.85     # and what turns away begins here
-LEVEL_STRIP_MARGIN = 0.20      # m about what corners are measured from in which scanlines still go on
+PROFILES_PROGRESS = 0.3       # share of the work that profiles are, with both methods; of the rest,
+LATTICE_PROGRESS = 0.1        # share at which the scan lattice is known, and
+RETURNS_PROGRESS = 0.85       # share at which the search for curb returns begins
+LEVEL_STRIP_MARGIN = 0.20     # m beyond the points from which corners are measured, in which scanlines still continue
 
 
 @dataclass(frozen=True)
 class BoundarySettings:
     """How road boundaries are found.
 
+    Attributes
+    ----------
     method : "profiles", "scanlines", or "both": the two check each other
-    curbs, scanlines : settings of the one and of the other
-    planes : where the scanlines lie
+    curbs : settings of the profiles method
+    scanlines : settings of the scanlines method
+    planes : settings of the planes in which scanlines lie
     """
 
     method: str = "both"
@@ -40,7 +52,7 @@ class BoundarySettings:
     scanlines: ScanlineBoundarySettings = ScanlineBoundarySettings()
     planes: ScanlineSettings = ScanlineSettings()
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.method not in BOUNDARY_METHODS:
             raise RoadExtractionError(f"The boundary method {self.method!r} is not known; "
                                       f"choose {', '.join(BOUNDARY_METHODS[:-1])} or {BOUNDARY_METHODS[-1]}.")
@@ -48,29 +60,43 @@ class BoundarySettings:
 
 @dataclass
 class RoadBoundaries:
-    """Curb points and the edges through them; with both methods also where these lie apart (else None)."""
+    """Curb points and the edges through them.
+
+    Attributes
+    ----------
+    curb_points : Features CURB_POINTS
+    edges : Features ROAD_EDGES
+    differences : Features BOUNDARY_DIFFERENCES, where the edges of the two methods lie apart; None with one method
+    length_by_method : method -> m of measured edges; empty with one method
+    """
 
     curb_points: Features
     edges: Features
-    differences: Features = None
+    differences: Features | None = None
     length_by_method: dict = field(default_factory=dict)
 
 
-def find_curb_points(survey, settings=BoundarySettings(), progress=Progress()):
-    """Curb points of the methods asked for.
+def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettings(), progress: Progress = Progress()) -> dict[str, Features]:
+    """Curb points of the methods that the settings name.
+
+    Parameters
+    ----------
+    survey : Survey
+    settings : BoundarySettings
+    progress : Progress
 
     Returns
     -------
-    {method: Features CURB_POINTS}; with both, "profiles" and "scanlines" hold the road's own
-    curbs and "both" those of the two that measure better (`select_curb_points`). Corners, side streets and
-    islands are found in plan, once, from the curbs that are drawn.
+    {method: Features CURB_POINTS}; with both methods, "profiles" and "scanlines" hold the road's own
+    curbs and "both" those of the two that measure better (`select_curb_points`). Corners, side streets
+    and islands are found in plan, once, and belong to the curbs that are drawn.
     """
     with closing(PointDecimation(survey, settings.curbs.profile_width, settings.curbs.point_spacing, settings.scanlines.min_height)) as decimation:
         return _find_curb_points(decimation, settings, progress)
 
 
 def _find_curb_points(decimation, settings, progress):
-    """`find_curb_points`, points taken from PointDecimation."""
+    """`find_curb_points` with the points of a PointDecimation."""
     survey, both, found = decimation.survey, settings.method == "both", {}
     if settings.method != "scanlines":
         part = progress.part(0.0, PROFILES_PROGRESS) if both else progress
@@ -89,8 +115,8 @@ def _find_curb_points(decimation, settings, progress):
     return found
 
 
-def _level_for(decimation, settings):
-    """The function by which SurveyScanlines leaves out where no corner can be."""
+def _level_for(decimation: PointDecimation, settings: ScanlineBoundarySettings) -> Callable[[int, int, float, float], LevelStrip]:
+    """The function by which SurveyScanlines leaves out ground that can have no corner."""
     across, along = (distance + LEVEL_STRIP_MARGIN for distance in (settings.distance_across, settings.distance_along + GAP_FILL_REACH))
 
     def level(road, number, start, end):
@@ -101,23 +127,25 @@ def _level_for(decimation, settings):
 
 
 def _better_points(found, frame):
-    """Of scanlines and profiles, at every place the curb points that measure better."""
-    # scanlines first: three planes ask more of a curb than a profile does
+    """At every place the curb points of that method which measures better."""
+    # scanlines first: three planes are a stricter model of a curb than a profile
     methods = ("scanlines", "profiles")
     return select_curb_points(*(found[method] for method in methods), *(fit_road_edges(found[method], frame) for method in methods), frame)
 
 
-def draw_boundaries(found, frame, settings=EdgeSettings(), progress=Progress()):
+def draw_boundaries(found: dict[str, Features], frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),
+                    progress: Progress = Progress()) -> RoadBoundaries:
     """Edges through the curb points of one method, or of two that check each other.
 
-    Of two, the one that measures better is drawn at every place (`select_curb_points`), and
-    `agree_cm` of every piece says how far apart they are.
+    With both methods, the one that measures better is drawn at every place
+    (`select_curb_points`), and `agree_cm` of every piece says how far apart they lie.
 
     Parameters
     ----------
-    found : what `find_curb_points` gave
+    found : result of `find_curb_points`
     frame : RoadFrame
     settings : EdgeSettings
+    progress : Progress
 
     Returns
     -------
@@ -126,12 +154,12 @@ def draw_boundaries(found, frame, settings=EdgeSettings(), progress=Progress()):
     if "both" not in found:
         points, = found.values()
         return RoadBoundaries(points, fit_road_edges(points, frame, settings, progress))
-    alone = {method: fit_road_edges(found[method], frame, settings) for method in ("scanlines", "profiles")}
+    single = {method: fit_road_edges(found[method], frame, settings) for method in ("scanlines", "profiles")}
     edges = fit_road_edges(found["both"], frame, settings, progress)
-    differences = measure_agreement(edges, alone["scanlines"], alone["profiles"], frame)
-    lengths = {method: sum(row["length_m"] for row in lines.rows if row["status"] == "measured") for method, lines in alone.items()}
-    doubtful = sum(row["length_m"] for row in differences.rows)
+    differences = measure_agreement(edges, single["scanlines"], single["profiles"], frame)
+    lengths = {method: sum(row["length_m"] for row in lines.rows if row["status"] == "measured") for method, lines in single.items()}
+    differing = sum(row["length_m"] for row in differences.rows)
     if any(lengths.values()):
         progress.info(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "
-                     f"they lie more than 5 cm apart along {doubtful:.0f} m.")
+                     f"they lie more than 5 cm apart along {differing:.0f} m.")
     return RoadBoundaries(found["both"], edges, differences, lengths)

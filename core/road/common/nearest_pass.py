@@ -27,7 +27,8 @@ def assign_nearest_pass(features: Features, frame: RoadFrame) -> None:
             s, d = np.array([(features.rows[k]["station_m"], features.rows[k]["offset_m"]) for k in rows], float).T
         else:
             middle = np.array([_middle_vertex(features.geometries[k]) for k in rows])
-            s, d = road.locate(*frame.to_local(*middle.T[:2]))
+            x, y = frame.to_local(middle[:, 0], middle[:, 1])
+            s, d = road.locate(x, y)
             # the line of a side street may leave the road's frame
             s = np.where(np.isfinite(s), s, [features.rows[k]["station_m"] for k in rows])
             d = np.where(np.isfinite(d), d, 0.0)

@@ -1,32 +1,39 @@
-"""Edges of corners, side streets and islands: smooth lines along the curb's own course, from the main edge's end on."""
+"""Edges of corners, side streets and islands: smooth lines along the curb's own course, from the end of the main edge."""
+
+from __future__ import annotations
 
 import numpy as np
 import shapely
 from scipy.interpolate import Akima1DInterpolator
 
+from ...common.features import Features
 from ...common.schemas import of_main_curb
 from ..common.pseudo_scanlines import expand_ranges
 from ..common.tracking import MAX_JOINED_GAP
 
-RETURN_VERTEX_SPACING = 0.25     # m between vertices: the nose of an island has a radius below a metre
-MIN_CORNER_TURN = np.radians(50.0)  # of turn from the chord before to the chord after, and
-MAX_CORNER_RADIUS = 0.45   # m of radius that such a turn would have, for a corner to be one
-SMOOTHING_HALF_LENGTH = 0.5      # m along a curb within which its points tell its course
-SAME_PLACE_DISTANCE = 0.02       # m within which two places are one
+RETURN_VERTEX_SPACING = 0.25  # m between vertices: the nose of an island has a radius below a metre
+MIN_CORNER_TURN = np.radians(50.0)  # from the chord before to the chord after a sharp corner
+MAX_CORNER_RADIUS = 0.45      # m, radius that such a turn would have
+SMOOTHING_HALF_LENGTH = 0.5   # m along a curb within which its points give its course
+SAME_PLACE_DISTANCE = 0.02    # m within which two places are one
 
 
-def curb_return_lines(curb_points):
-    """The measured curb points that are not of a main curb, by road and chain, each in order along its chain.
+def curb_return_lines(curb_points: Features) -> dict[int, list[tuple[list[dict], np.ndarray]]]:
+    """The measured curb points that are not of a main curb, by road and chain, in order along each chain.
+
+    Parameters
+    ----------
+    curb_points : Features CURB_POINTS
 
     Returns
     -------
     dict road -> list of (rows, (N, 3) map coordinates), chains ascending
     """
-    chains = {}
+    chains: dict = {}
     for geometry, row in curb_points:
         if not of_main_curb(row) and row["status"] == "measured" and row.get("part", "bottom") == "bottom":
             chains.setdefault((row["road"], row["chain"]), []).append((row["along_m"], geometry, row))
-    found = {}
+    found: dict = {}
     for (road, _), members in sorted(chains.items()):
         members.sort(key=lambda m: m[0])
         places = np.array([(g.x, g.y, g.z) for _, g, _ in members])
@@ -35,10 +42,21 @@ def curb_return_lines(curb_points):
     return found
 
 
-def draw_curb_returns(edges, road, lines, number):
-    """Add the edges of one road that lead away from it; returns the next free line number.
+def draw_curb_returns(edges: Features, road: int, lines: list[tuple[list[dict], np.ndarray]], number: int) -> int:
+    """Add the edges of corners, side streets and islands of one road.
 
     A corner begins with the vertex at which the main edge ends, so that the two touch.
+
+    Parameters
+    ----------
+    edges : Features ROAD_EDGES with the main edges, to which these are added
+    road : number of the road
+    lines : of this road, from `curb_return_lines`
+    number : of the first line
+
+    Returns
+    -------
+    The next free line number
     """
     ends = _main_ends(edges, road)
     for rows, places in lines:
@@ -67,14 +85,14 @@ def draw_curb_returns(edges, road, lines, number):
 
 
 def _drawn(places):
-    """Vertices of the smooth line through places, with its sharp corners, and how far each place lies off it."""
+    """Vertices of the smooth line through places, with its sharp corners, and the distance of each place from it."""
     smooth = _smoothed(places)
     bounds = np.r_[0, _sharp_chords(places) + 1, len(places)]
     vertices, residuals = [], []
     for k, (first, last) in enumerate(zip(bounds[:-1], bounds[1:])):
         if k:
             vertices.append(_corner(places[bounds[k - 1]:first], places[first:last])[None])
-        # a piece between two sharp corners is not rounded by what lies beyond them
+        # a piece between two sharp corners is smoothed alone, so that the corners stay sharp
         part = _smoothed(places[first:last]) if len(bounds) > 2 else smooth
         vertices.append(_through(part))
         residuals.append(np.hypot(*(part - places[first:last])[:, :2].T))
@@ -82,7 +100,7 @@ def _drawn(places):
 
 
 def _sharp_chords(places):
-    """Chords that cut a corner, the curb running one way before them and another after them: index of each one's first place."""
+    """Chords that cut a sharp corner of the curb: index of the first place of each."""
     x, y = places[:, 0], places[:, 1]
     heading, length = np.arctan2(np.diff(y), np.diff(x)), np.hypot(np.diff(x), np.diff(y))
     turn = np.zeros(len(length))
@@ -95,7 +113,7 @@ def _sharp_chords(places):
 
 
 def _corner(before, after):
-    """Where two pieces of curb meet, each drawn on straight; the middle between their ends where that is not between them."""
+    """Where two pieces of curb meet if continued straight; the middle between their ends where that place is not between them."""
     a, b = before[-1], after[0]
     p, q = a - before[max(len(before) - 4, 0)], b - after[min(3, len(after) - 1)]
     cross = p[0] * q[1] - p[1] * q[0]
@@ -108,25 +126,25 @@ def _corner(before, after):
 
 
 def _smoothed(places):
-    """Places moved onto the parabolas through their neighbours within SMOOTHING_HALF_LENGTH metres: noise goes, arcs stay."""
+    """Places moved onto the parabolas fitted to their neighbours within SMOOTHING_HALF_LENGTH, which keeps arcs (local regression)."""
     t = _chord_length(places[:, 0], places[:, 1])
     owner, index = expand_ranges(np.searchsorted(t, t - SMOOTHING_HALF_LENGTH), np.searchsorted(t, t + SMOOTHING_HALF_LENGTH, side="right"))
     u = t[index] - t[owner]
     weight = 1.0 - (u / (SMOOTHING_HALF_LENGTH * 1.1)) ** 2
     count = np.bincount(owner, minlength=len(t))
     powers = [np.bincount(owner, weight * u**k, len(t)) for k in range(5)]
-    # a stretch with few neighbours is drawn to its own places
+    # the small term keeps the equations of few neighbours solvable
     normal = np.array([[powers[i + j] for j in range(3)] for i in range(3)]).transpose(2, 0, 1) + 1e-9 * np.eye(3)
     right = np.array([[np.bincount(owner, weight * u**k * (places[index, c] - places[owner, c]), len(t)) for c in range(3)]
                       for k in range(3)]).transpose(2, 0, 1)
     moved = places + np.linalg.solve(normal, right)[:, 0]
-    # the ends stay: other lines begin there
+    # the ends keep their places, since other lines begin there
     moved[[0, -1]] = places[[0, -1]]
     return np.where((count >= 4)[:, None], moved, places)
 
 
 def _through(places):
-    """(M, 3) vertices of a curve through places, RETURN_VERTEX_SPACING apart."""
+    """(M, 3) vertices of an Akima curve through places, RETURN_VERTEX_SPACING apart."""
     if len(places) < 3:
         return places
     t = _chord_length(places[:, 0], places[:, 1])
@@ -139,7 +157,7 @@ def _chord_length(x, y):
 
 
 def _main_ends(edges, road):
-    """(K, 3) end vertices of the main edges of a road, those where two pieces touch left out."""
+    """(K, 3) end vertices of the main edges of a road, except those where two pieces touch."""
     ends = [np.array(geometry.coords[k]) for geometry, row in edges if row["road"] == road and of_main_curb(row) for k in (0, -1)]
     if not ends:
         return np.empty((0, 3))

@@ -1,5 +1,7 @@
 """Road edges: smooth lines through the curb points of each side, cut by what was measured and what was bridged."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,44 +14,52 @@ from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...common.schemas import ROAD_EDGES, of_main_curb
 from ...common.setting import check_limits, setting
+from ...survey.frame.road_frame import RoadFrame
 from ..common.nearest_pass import assign_nearest_pass
 from ..common.occlusion import HIDDEN_POINT_SPACING
 from ..common.tracking import MAX_JOINED_GAP
 from .curb_returns import curb_return_lines, draw_curb_returns
 
-MEDIAN_WINDOW = 5.0    # m of running median
-OUTLIER_MADS, OUTLIER_FLOOR = 3.0, 0.05  # MAD; m
-MIN_HIDDEN_SHARE = 0.5     # share of a gap that must be hidden for a bridge
-GAP_END_ALLOWANCE = 1.0         # m of a gap next to its ends, half in view, of which nothing is asked
-MAX_EDGE_SKEW = 1.0         # m across per m along that a joined edge may run
-MAX_EDGE_JUMP = 0.25     # m across that two joined points may differ at any distance
-EDGE_VERTEX_SPACING = 0.5           # m between vertices
+MEDIAN_WINDOW = 5.0           # m of running median
+OUTLIER_MADS = 3.0            # median absolute deviations, as sigmas, and
+OUTLIER_FLOOR = 0.05          # m, the least distance from it at which a point is an outlier
+MIN_HIDDEN_SHARE = 0.5        # share of a gap that must be hidden for a bridge
+GAP_END_ALLOWANCE = 1.0       # m of a gap, half at each end, that need not be hidden
+MAX_EDGE_SKEW = 1.0           # m across per m along of a joined edge
+MAX_EDGE_JUMP = 0.25          # m across that two joined points may differ in any case
+EDGE_VERTEX_SPACING = 0.5     # m between vertices
 MIN_EDGE_LENGTH = 2.0         # m of a piece with curb points
-MIN_POINT_SIGMA = 0.001    # m, noise of a curb point at least: more would let the spline cut bends
+MIN_POINT_SIGMA = 0.001       # m, least noise of a curb point
+MAD_TO_SIGMA = 1.4826         # sigma of a normal distribution per median absolute deviation
 
 
 @dataclass(frozen=True)
 class EdgeSettings:
     """How curb points become lines.
 
-    max_gap : m that are bridged where something hides the curb; longer gaps break the edge
-    fallback_width : m from edge to edge of a road drawn where no curb was found; 0 draws none
+    Attributes
+    ----------
+    max_gap : m that are bridged where something hides the curb; longer gaps interrupt the edge
+    fallback_width : m between the edges that are drawn where no curb was found; 0 draws none
     """
 
     max_gap: float = setting(15.0, 0.0, 100.0, "The longest bridged gap", "m")
     fallback_width: float = setting(0.0, 2.0, 50.0, "The fallback width", "m", "for none")
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_limits(self)
 
 
-def fit_road_edges(curb_points, frame, settings=EdgeSettings(), progress=Progress()):
+def fit_road_edges(curb_points: Features, frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),
+                   progress: Progress = Progress()) -> Features:
     """Fit a smoothing cubic B-spline through the curb points of each side.
 
     Parameters
     ----------
-    curb_points : Features CURB_POINTS (rows of part `top` are left aside)
+    curb_points : Features CURB_POINTS (rows of part `top` are not used)
     frame : RoadFrame
+    settings : EdgeSettings
+    progress : Progress
 
     Returns
     -------
@@ -58,7 +68,7 @@ def fit_road_edges(curb_points, frame, settings=EdgeSettings(), progress=Progres
     vertices and `chain`.
     """
     edges = Features("LineStringZ", list(ROAD_EDGES), crs=curb_points.crs)
-    table, turned = _table(curb_points), curb_return_lines(curb_points)
+    table, returns = _table(curb_points), curb_return_lines(curb_points)
     lines = 0
     for road in frame.roads:
         for side in ("left", "right"):
@@ -69,14 +79,14 @@ def fit_road_edges(curb_points, frame, settings=EdgeSettings(), progress=Progres
                 lines += 1
             if settings.fallback_width:
                 lines = _draw_fallback(edges, frame, road, side, drawn, settings.fallback_width, lines)
-        lines = draw_curb_returns(edges, road.number, turned.get(road.number, []), lines)
+        lines = draw_curb_returns(edges, road.number, returns.get(road.number, []), lines)
     assign_nearest_pass(edges, frame)
     length = {status: sum(r["length_m"] for r in edges.rows if r["status"] == status) for status in ("measured", "bridged")}
     if len(edges):
         progress.info(f"Road edges: {length['measured']:.0f} m measured, {length['bridged']:.0f} m bridged.")
     else:
-        progress.warn("No curb was found along this road, so there are no road edges. A verge is none; a lower minimum curb "
-                      "height finds low curbs, an assumed road width draws edges all the same.")
+        progress.warn("No curb was found along this road, so there are no road edges. A verge is not a curb; a lower minimum curb "
+                      "height finds low curbs, and an assumed road width draws edges without curbs.")
     progress.report(1.0)
     return edges
 
@@ -92,7 +102,7 @@ def _table(curb_points):
 
 
 def _pieces(rows, max_gap):
-    """Curb points of one side parted into edges: lists of (points, is each gap to the next bridged)."""
+    """Curb points of one side divided into edges: list of (points, is each gap to the next bridged?)."""
     hidden = rows["s"][~rows["measured"]]
     points = without_outliers(rows[rows["measured"]])
     if len(points) < 2:
@@ -112,9 +122,18 @@ def _pieces(rows, max_gap):
     return pieces
 
 
-def without_outliers(points):
-    """Points that stay near the running median of the offsets of their chain."""
-    kept = np.ones(len(points), bool)
+def without_outliers(points: np.ndarray) -> np.ndarray:
+    """Points near the running median of the offsets of their chain.
+
+    Parameters
+    ----------
+    points : (N,) structured array, by station, with the fields `chain`, `s` and `d` (m)
+
+    Returns
+    -------
+    (K,) of the same type
+    """
+    inliers = np.ones(len(points), bool)
     for chain in np.unique(points["chain"]):
         rows = np.flatnonzero(points["chain"] == chain)
         if len(rows) < 5:
@@ -122,44 +141,58 @@ def without_outliers(points):
         s, d = points["s"][rows], points["d"][rows]
         spacing = np.median(np.diff(s))
         window = int(np.clip(2 * round(0.5 * MEDIAN_WINDOW / max(spacing, 0.05)) + 1, 3, len(rows) | 1))
-        # an edge that turns away is no outlier: its own running direction is taken out first
+        # an edge that changes direction is no outlier: its own running direction is subtracted first
         direction = median_filter(np.diff(d) / np.maximum(np.diff(s), 0.05), window, mode="nearest")
         off = d - np.r_[0.0, np.cumsum(direction * np.diff(s))]
         away = np.abs(off - median_filter(off, window, mode="nearest"))
-        limit = max(OUTLIER_MADS * 1.4826 * np.median(away), OUTLIER_FLOOR)
-        kept[rows] = away <= limit
-    return points[kept]
+        limit = max(OUTLIER_MADS * MAD_TO_SIGMA * np.median(away), OUTLIER_FLOOR)
+        inliers[rows] = away <= limit
+    return points[inliers]
 
 
 class EdgeCurve:
-    """A parametric smoothing cubic B-spline through curb points, by chord length."""
+    """A parametric smoothing cubic B-spline through curb points, by chord length.
 
-    def __init__(self, points):
+    The smoothing follows from the noise of the points, so that their weighted squared residuals
+    have the expected sum (Dierckx 1993, Curve and Surface Fitting with Splines).
+
+    Parameters
+    ----------
+    points : (N,) structured array with the fields `x`, `y`, `z`, `d` (m)
+
+    Attributes
+    ----------
+    t : (N,) m, chord length at the points
+    residual : (N,) m, distance in plan of the points from the curve
+    """
+
+    def __init__(self, points: np.ndarray):
         x, y, z = points["x"], points["y"], points["z"]
         self.middle = np.array([x.mean(), y.mean(), z.mean()])
         x, y, z = x - self.middle[0], y - self.middle[1], z - self.middle[2]
         self.t = np.r_[0.0, np.cumsum(np.maximum(np.hypot(np.diff(x), np.diff(y)), 1e-3))]
         order = min(3, len(x) - 1)
         across, up = _noise(self.t, points["d"]), _noise(self.t, points["z"])
-        # x and y share the noise across; together 2 m values of variance sigma²
+        # the noise across divides between x and y: N points have the sum N sigma²
         self.plan, _ = splprep([x, y], u=self.t, k=order, s=len(x) * across**2)
         self.height = splrep(self.t, z, k=order, s=len(x) * up**2)
         fx, fy = splev(self.t, self.plan)
         self.residual = np.hypot(fx - x, fy - y)
 
-    def at(self, t):
+    def at(self, t: np.ndarray) -> np.ndarray:
+        """(K, 3) m, map coordinates at (K,) m of chord length."""
         x, y = splev(t, self.plan)
         return np.c_[x, y, splev(t, self.height)] + self.middle
 
 
 def _noise(t, values):
-    """Scatter of single points about a smooth line, from how each differs from its neighbours' chord."""
+    """Scatter of single points about a smooth line, from their distances to the chord of their neighbours."""
     if len(values) < 4:
         return MIN_POINT_SIGMA
     left, right = np.diff(t)[:-1], np.diff(t)[1:]
     f = left / (left + right)
     off = values[1:-1] - ((1 - f) * values[:-2] + f * values[2:])
-    return max(float(np.median(np.abs(off) / np.sqrt(1 + f**2 + (1 - f) ** 2))) * 1.4826, MIN_POINT_SIGMA)
+    return max(float(np.median(np.abs(off) / np.sqrt(1 + f**2 + (1 - f) ** 2))) * MAD_TO_SIGMA, MIN_POINT_SIGMA)
 
 
 def _draw(edges, frame, road, side, piece, number):
@@ -183,7 +216,7 @@ def _draw(edges, frame, road, side, piece, number):
 
 
 def _draw_fallback(edges, frame, road, side, drawn, width, number):
-    """Add lines half the width beside the middle of the driven tracks where no edge was found."""
+    """Add lines at half the width beside the middle of the driven tracks where no edge was found."""
     passes = frame.passes_of(road.number)
     start, end = min(p.span[0] for p in passes), max(p.span[1] for p in passes)
     free, at = [], max(start, 0.0)
