@@ -34,7 +34,7 @@ WINDOW_ROWS = 10              # rows of cells in memory at a time: 5 m
 TOLERANCE_FLOOR = 0.03        # m, height tolerance of a scanner without noise
 TOLERANCE_SIGMAS = 4.0        # times the noise of the heights, added to it
 TRACK_REACH = 1.5             # m either side of the reference line where ground must be measured
-MIN_SURFACE_WIDTH = 0.5          # m between the limits of a row with road
+MIN_SURFACE_WIDTH = 0.5       # m between the limits of a row with road
 
 
 @dataclass(frozen=True)

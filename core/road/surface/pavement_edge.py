@@ -22,7 +22,7 @@ MAX_HEIGHT_CHANGE = 0.025    # m from the median height of the cells before
 UNEVENNESS_FACTOR = 2.0      # times the unevenness of the road, added to either height limit
 ROUGHNESS_FACTOR, ROUGHNESS_FLOOR = 1.6, 0.0025  # times the roughness of the road, and m added to it
 MIN_TILT_CHANGE = 0.10       # m per m: change of tilt at which a bank or a ditch begins
-MAX_EMPTY_PROFILE_CELLS = 5          # consecutive cells without points at which the road ends,
+MAX_EMPTY_GROUND_CELLS = 5   # consecutive cells without points at which the road ends,
 MAX_BLIND_CELLS = 12         # unless at most so many are empty and road follows: the blind zone beside the vehicle
 MAX_STRIP_CELLS = 8          # cells before the edge in which a strip of gravel is searched
 INNER_CELLS = 3              # cells of road with which the strip is compared
@@ -185,7 +185,7 @@ class HalfProfile:
         blind = 0
         for k in range(start, stop):
             ahead = slice(k, k + MIN_CHANGE_CELLS)
-            if k >= blind and np.isnan(self.off[k:k + MAX_EMPTY_PROFILE_CELLS]).all():
+            if k >= blind and np.isnan(self.off[k:k + MAX_EMPTY_GROUND_CELLS]).all():
                 blind = self._road_behind(k, uneven)
                 if not blind:
                     return self.u[k] - PROFILE_COLUMN / 2
