@@ -242,7 +242,7 @@ class StepPatches:
         first = _mean(np.bincount(up, to, count), np.bincount(up, minlength=count))
         alike = np.flatnonzero(np.abs(to - first.take(up)) < 0.05)
         up, out, to = up.take(alike), out.take(alike), to.take(alike)
-        # a ramp goes on rising where the ground behind a curb is as level as a road
+        # a ramp continues to rise, while the ground behind a curb is as level as a road
         _, climb, _, n_behind = _line_per_owner(up, out, to, count)
         level = (n_behind < 4) | (np.abs(climb) <= MAX_ROAD_SLOPE + SLOPE_PER_NOISE * self.scanner_noise)
         peak = np.zeros(count)

@@ -171,8 +171,8 @@ def pseudo_scan_lines(u: np.ndarray, s: np.ndarray, h: np.ndarray, along: np.nda
     PseudoScanLines
     """
     cells = max(int(np.ceil((reach - origin) / spacing)), 1)
-    kept, place = cells_of_points(u, s, h, np.arange(len(u)), profiles, cells, width, spacing, origin)
-    run = ground_of_profiles((u, s, h, along), kept, place, profiles, cells, layer_jump)
+    inside, place = cells_of_points(u, s, h, np.arange(len(u)), profiles, cells, width, spacing, origin)
+    run = ground_of_profiles((u, s, h, along), inside, place, profiles, cells, layer_jump)
     return join_profile_runs([run], profiles, width, spacing, origin)
 
 

@@ -130,7 +130,7 @@ def _rises(sums, min_rise):
         rough, uneven = before.scatter(cells), behind.scatter(cells)
         doubt = 2.0 * np.sqrt(rough**2 / before.n.take(cells) + uneven**2 / behind.n.take(cells))
         bottom = before.level.take(cells)
-        # where the profile crosses half the height: mean height of the face tells how far from this cell
+        # where the profile crosses half the height: the mean height of the face gives the distance from this cell
         shift = (0.5 - (sums.mean(-gap, gap).take(cells) - bottom) / height) * (2 * gap + 1) * spacing
         shift = np.nan_to_num(np.clip(shift, -BLURRED_FACE_HALF_WIDTH, BLURRED_FACE_HALF_WIDTH))
     return cells, dict(rise=rise.take(cells), height=height, doubt=doubt, scatter=np.maximum(rough, uneven), shift=shift, bottom=bottom,

@@ -1,4 +1,4 @@
-"""Two ways of finding road boundaries behind one door, and how they check each other."""
+"""Two methods of finding road boundaries, and how they check each other."""
 
 import numpy as np
 import pytest
@@ -79,16 +79,16 @@ def test_of_two_curbs_that_of_the_first_method_is_drawn_and_its_gaps_are_filled_
     np.testing.assert_allclose(d[s > 41], 5.0)
 
 
-def test_a_stretch_where_the_two_lie_eight_centimetres_apart_is_told(frame):
+def test_a_stretch_where_the_two_lie_eight_centimetres_apart_is_reported(frame):
     one = fit_road_edges(curb_points(frame, 3.5), frame)
     other = fit_road_edges(curb_points(frame, lambda s: 3.5 + 0.08 * np.exp(-((s - 30) / 6) ** 4)), frame)
     drawn = fit_road_edges(curb_points(frame, 3.5), frame)
-    told = measure_agreement(drawn, one, other, frame)
-    row, = told.rows
+    reported = measure_agreement(drawn, one, other, frame)
+    row, = reported.rows
     assert 23 < row["station_m"] < 27 and 33 < row["end_m"] < 37
     assert row["agree_cm"] == pytest.approx(8.0, abs=0.5)
     assert drawn.rows[0]["agree_cm"] == pytest.approx(8.0, abs=1.0)
-    np.testing.assert_allclose(np.array(told.geometries[0].coords)[:, 1] - NORTH, 3.5, atol=0.001)
+    np.testing.assert_allclose(np.array(reported.geometries[0].coords)[:, 1] - NORTH, 3.5, atol=0.001)
 
 
 def test_a_method_that_is_not_known_is_refused():

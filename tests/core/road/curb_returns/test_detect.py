@@ -43,7 +43,7 @@ def farthest(lines, truth):
 
 
 @pytest.mark.parametrize("radius", [3.0, 6.0])
-def test_the_curb_goes_round_the_corner_into_the_side_street(radius):
+def test_the_curb_goes_around_the_corner_into_the_side_street(radius):
     ground = side_street(radius=radius)
     edges = edges_of_a_side_street(radius)
     truth = shapely.boundary(ground)
@@ -84,7 +84,7 @@ def test_a_corner_begins_where_the_main_edge_ends():
 
 @pytest.mark.parametrize(("island", "within"), [(shapely.buffer(shapely.LineString([(12, 2.2), (26, 2.2)]), 0.75), 0.05),
                                                 (shapely.box(12, 1.6, 26, 2.8), 0.3)])
-def test_an_island_is_gone_round(island, within):
+def test_an_island_is_surrounded(island, within):
     edges = edges_of(scan(shapely.union_all([sidewalks(7.0), island])), offset=-1.0)
     lines = in_plan(edges, "island")
     around = shapely.boundary(island)
@@ -93,7 +93,7 @@ def test_an_island_is_gone_round(island, within):
     assert not in_plan(edges, "corner", "side_street")
 
 
-def test_the_kind_of_a_line_is_told_by_where_it_leads():
+def test_the_kind_of_a_line_follows_from_where_it_leads():
     edges = edges_of_a_side_street()
     for line in in_plan(edges, "side_street"):
         # its curbs run along x = 16 and x = 23, beyond the corners
@@ -151,7 +151,7 @@ def test_the_order_of_the_points_does_not_matter():
     assert first.rows == second.rows
 
 
-def test_the_width_of_the_road_is_told_by_its_own_curbs_alone():
+def test_the_width_of_the_road_follows_from_its_own_curbs_alone():
     survey = survey_along(scan(shapely.union_all([sidewalks(7.0), shapely.box(12, 1.6, 26, 2.8)])), offset=-1.0)
     edges = fit_road_edges(detect_curbs(survey), survey.frame)
     assert in_plan(edges, "island")
