@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.markings.objects import outliers
-from lanewright.core.markings.objects.outliers import OutlierSettings, mean_distances, outlier_candidates, remove_outliers
+from lanewright.core.markings.objects.nearest_neighbours import mean_distances
+from lanewright.core.markings.objects.outliers import OutlierSettings, outlier_candidates, remove_outliers
 from painted_streets import assert_same_points, drive, paint, road_points, shuffled, strip
 from scipy.spatial.distance import cdist
 
