@@ -1,6 +1,10 @@
 """What a survey's files hold: points, density, time, scanners, intensity, and whether the trajectory fits."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -15,12 +19,13 @@ from .open_survey import SurveySettings, match_clocks
 from .scanners import ScannerCensus
 from .sensor_height import HEIGHT_PEAK_REACH, OWN_TRACK_HALF_WIDTH, sensor_height_of
 from .trajectory.reprojection import reproject_trajectory
-from .trajectory.trajectory import clean_trajectory
+from .trajectory.trajectory import Trajectory, clean_trajectory
 
-NEAR_TRAJECTORY = 25.0        # m from the trajectory that counts as measured from it
-SAMPLING_INTERVAL = 50       # every how manyth point the distance to the trajectory is taken of
+NEAR_TRAJECTORY = 25.0        # m: points within this distance count as measured from the trajectory
+SAMPLING_INTERVAL = 50       # the distance to the trajectory is measured for every 50th point
 INTENSITY_VALUES = 65536
 MAX_DENSITY_CELLS = 40_000_000  # of the density raster
+PROFILE_STEP = 2.0         # m driven between the heights of the profile
 
 
 @dataclass(frozen=True)
@@ -30,7 +35,7 @@ class InspectionSettings:
     cell_size: float = setting(1.0, 0.05, 100.0, "The density cell", "m")
     cube_size: float = setting(1.0, 0.05, 100.0, "The density cube", "m")
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_limits(self)
 
 
@@ -63,26 +68,28 @@ class Inspection:
     returns: dict
     classes: dict
     settings: InspectionSettings
-    near_share: float = None
-    in_time_share: float = None
-    trajectory: object = None
-    drive: object = None
+    near_share: float | None = None
+    in_time_share: float | None = None
+    trajectory: Trajectory | None = None
+    drive: InspectedDrive | None = None
     notes: list = field(default_factory=list)
 
 
-def inspect_survey(paths, trajectory=None, settings=InspectionSettings(), crs="", progress=Progress()):
-    """Read every point once and count.
+def inspect_survey(paths: Sequence[str | Path], trajectory: Trajectory | None = None,
+                   settings: InspectionSettings = InspectionSettings(), crs: str = "", progress: Progress = Progress()) -> Inspection:
+    """Read every point once and gather statistics.
 
     Parameters
     ----------
     paths : LAS, LAZ or COPC files
     trajectory : Trajectory in any known CRS and time system, or None
+    settings : InspectionSettings
     crs : WKT for clouds that carry none
 
     Returns
     -------
-    Inspection. What the road map would refuse (a geographic CRS, no overlap, no
-    time, no intensity) stands in `notes`, each with a way on.
+    Inspection. Its `notes` name what the road map would refuse (a geographic CRS, no overlap, no time, no intensity) and
+    what to try.
 
     Raises
     ------
@@ -102,7 +109,7 @@ def inspect_survey(paths, trajectory=None, settings=InspectionSettings(), crs=""
 
 
 def _usable(trajectory, wkt):
-    """The trajectory in the clouds' CRS, or None where it cannot be brought there."""
+    """The trajectory in the CRS of the clouds, or None if it cannot be reprojected."""
     if trajectory is None:
         return None
     try:
@@ -112,7 +119,7 @@ def _usable(trajectory, wkt):
 
 
 class _Counter:
-    """Counts block by block; memory grows with the ground covered, not with the points."""
+    """Counts block by block; memory grows with the area covered, not with the points."""
 
     def __init__(self, files, settings, trajectory):
         self.settings = settings
@@ -170,7 +177,7 @@ class _Counter:
         if not self.intensity[1:].any():
             found.notes.append("All intensities are 0: road edges can be found, markings and driving lines cannot.")
         if not has_time:
-            found.notes.append("There is no usable gps_time: each point is placed at the nearest foot on the trajectory, "
+            found.notes.append("There is no usable gps_time: each point is assigned to the nearest position on the trajectory, "
                                "which mixes the passes where a street was driven twice. Export the point clouds with gps_time, or process "
                                "each drive with its own files.")
         return found
@@ -191,7 +198,7 @@ class _Counter:
 
 
 class _Tally:
-    """How often each key was seen, kept sorted by key."""
+    """Counts of keys, sorted by key."""
 
     def __init__(self):
         self.keys, self.counts = np.empty(0, np.int64), np.empty(0, np.int64)
@@ -269,36 +276,35 @@ def _judge_trajectory(found, wkt, has_time, progress):
             f"No point lies within {NEAR_TRAJECTORY:.0f} m of the trajectory. Check that both belong to one survey and use one CRS.")
 
 
-# What the drive was: roads, passes, speed, and how high the sensor rode above the road.
-
-PROFILE_STEP = 2.0  # m of driving between the heights of the profile
-
-
 @dataclass(frozen=True)
 class InspectedDrive:
     """Findings about a trajectory; metres and seconds.
 
     roads : length of each road
     passes : rows of (number, road, direction, first station, last station, first time, last time)
-    driven : metres driven, standstills' tremble left out
+    driven : metres driven, without the position noise at standstills
     sensor_height : metres from the trajectory down to the road, None where too few points lie on the track
     profile : (M, 3) metres driven, map height of the trajectory, map height of the road (NaN where unseen)
     """
 
-    roads: list
-    passes: list
+    roads: list[float]
+    passes: list[tuple]
     driven: float
-    sensor_height: float
+    sensor_height: float | None
     profile: np.ndarray
 
 
-def inspect_drive(trajectory, rows, heights):
-    """An InspectedDrive.
+def inspect_drive(trajectory: Trajectory, rows: np.ndarray, heights: np.ndarray) -> InspectedDrive:
+    """Roads, passes and sensor height of a trajectory.
 
     Parameters
     ----------
     trajectory : Trajectory, cleaned and in the clouds' CRS
-    rows, heights : (N,) for points on the vehicle's track, the trajectory row next to each and its map height
+    rows, heights : (N,) of points on the track of the vehicle: the nearest trajectory row and the map height in m
+
+    Returns
+    -------
+    InspectedDrive
     """
     frame = build_frame(trajectory)
     passes = [(p.number, p.road, p.direction, *(p.span if p.direction > 0 else p.span[::-1]), float(p.time[0]), float(p.time[-1]))

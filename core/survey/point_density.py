@@ -1,6 +1,11 @@
-"""Points per cubic metre, counted section by section."""
+"""Point density: per cubic metre, counted section by section, and per square metre as a GeoTIFF."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -8,15 +13,21 @@ from ..common.parallel import ordered_map
 from ..common.progress import Progress
 from ..io.gdal_errors import gdal_exceptions
 
+if TYPE_CHECKING:
+    from .inspection import Inspection
+    from .store.records import Points
+
 CUBE_SIDE = 10_000       # units of 0.1 mm: 1 m
-POINTS_PER_CHUNK = 1 << 15   # points counted at a time: what fits the processor's cache
+POINTS_PER_CHUNK = 1 << 15   # points counted at a time: fits the processor cache
 
 
 @dataclass(frozen=True)
 class CubeDensity:
-    """Points per m³ in cubes of 1 m.
+    """Point density in cubes of 1 m.
 
-    mean : over occupied cubes; of_a_point : mean over points of the number in their own cube, what a point sees
+    points : number of points
+    mean : points per m³, mean over occupied cubes
+    of_a_point : points per m³, mean over points of the density of their own cube
     """
 
     points: int
@@ -24,15 +35,19 @@ class CubeDensity:
     of_a_point: float
 
 
-def cube_density(sections, points_of=lambda section: section, progress=Progress()):
-    """CubeDensity of points, counted side by side.
-
-    A cube that two sections share counts once: the cubes are those of the map, and only their numbers are kept.
+def cube_density(sections: Iterable[Any], points_of: Callable[[Any], Points] = lambda section: section,
+                 progress: Progress = Progress()) -> CubeDensity:
+    """Density of points in cubes aligned with the local coordinates, so that a cube shared by two sections counts once.
 
     Parameters
     ----------
-    sections : one for each section of road
-    points_of : function of one of them that returns its points, Points
+    sections : one entry per section of road
+    points_of : function of an entry that returns its Points
+    progress : Progress
+
+    Returns
+    -------
+    CubeDensity
     """
     keys, counts = [], []
     for found in ordered_map(lambda section: _counted(points_of(section)), sections, progress):
@@ -48,7 +63,7 @@ def cube_density(sections, points_of=lambda section: section, progress=Progress(
 
 
 def _counted(points):
-    """Keys of the occupied cubes and how many points each holds; None without points."""
+    """Keys of the occupied cubes and their counts; None without points."""
     if not len(points):
         return None
     low, size = [], []
@@ -70,10 +85,8 @@ def _counted(points):
     return ((z + 2**15) << 46) | ((y + half) << 23) | (x + half), count[held]
 
 
-# Point density as a GeoTIFF.
-
 @gdal_exceptions()
-def write_density(found, path):
+def write_density(found: Inspection, path: str | Path) -> None:
     """Write the density of an Inspection: float32 points per m², NaN where no point lies.
 
     Parameters
@@ -96,7 +109,7 @@ def write_density(found, path):
     band = dataset.GetRasterBand(1)
     band.SetNoDataValue(float("nan"))
     band.SetDescription("Points per m²")
-    # bytes, not an array: osgeo's numpy bridge breaks wherever numpy is not the one it was built with
+    # bytes, not an array: osgeo fails with a numpy other than the one it was built with
     band.WriteRaster(0, 0, width, height, np.ascontiguousarray(density, np.float32).tobytes())
     band.FlushCache()
     del band, dataset

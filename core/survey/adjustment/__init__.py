@@ -1,4 +1,8 @@
-"""Several passes over one road brought into agreement.
+"""Several passes over one road, adjusted to each other.
 
-In: a `Survey` whose passes lie apart. Out: shifts along each pass, by which its points and its track are corrected.
+In: a `Survey` whose passes disagree. Out: corrections along each pass, which are applied to its points and its track.
 """
+
+from ...lazy import public
+
+__getattr__, __all__ = public(__name__, {"adjust_passes": "adjust", "pass_offsets": "register", "PassCorrections": "corrections"})

@@ -1,12 +1,14 @@
-"""Passes over one road laid on each other, where navigation drifted between them.
+"""Strip adjustment: passes over one road are adjusted to each other, where navigation drifted between them.
 
-Every pass is moved by a smooth function of station: what is known of the offsets
-between passes is met, changes along the road are small, and no pass is moved more
-than another without a reason. Two passes meet in their middle, as nothing tells
-which of them the navigation served better.
+The correction of each pass is a smooth function of station. It is the least-squares solution for the measured offsets
+between passes, with small changes along the road and small corrections as prior. Two passes meet in their middle,
+because nothing shows which of them is more accurate.
 """
 
+from __future__ import annotations
+
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from scipy import sparse
@@ -17,25 +19,26 @@ from ...common.progress import Progress
 from ..store.records import COORDINATE_SCALE, to_units
 from ..store.section_store import SectionStore
 from .corrections import CORRECTION_STEP, PassCorrections
-from .register import AXES, MAX_OFFSET, WINDOW_LENGTH, pass_offsets
+from .register import AXES, MAX_OFFSET, WINDOW_LENGTH, PassOffsets, pass_offsets
 
 MOVED_COLUMNS = "x", "y", "z", "s", "d"
-AGREEMENT_PLAN, AGREEMENT_HEIGHT = 0.020, 0.007    # m: where nine tenths of a road's offsets are less, it stays as it was measured
+AGREEMENT_PLAN, AGREEMENT_HEIGHT = 0.020, 0.007    # m: a road stays as measured if nine tenths of its offsets are less
 OFFSET_SIGMA = 0.003           # m, sigma of a measured offset
-OUTLIER_SCALE = 0.010              # m off its neighbours, from where on an offset is weighted less
-REWEIGHTING_ROUNDS = 5                 # of weighing offsets by how well they fit
+OUTLIER_SCALE = 0.010              # m of residual at which the weight of an offset is one half (Cauchy weights)
+REWEIGHTING_ROUNDS = 5                 # iterations of robust weights
 DRIFT_CHANGE_SIGMA = 0.010             # m, sigma of the drift from window to window
 DRIFT_SIGMA = 0.20                # m, sigma of the drift itself
 
 
-def adjust_passes(survey, progress=Progress()):
-    """Lay the passes over every road on each other where they measurably lie apart.
+def adjust_passes(survey: Any, progress: Progress = Progress()) -> None:
+    """Adjust the passes over every road to each other where they measurably disagree.
 
-    Points and tracks are moved in place and height; the roads' reference lines stay.
+    Points and tracks are moved in plan and height; the reference lines of the roads stay.
 
     Parameters
     ----------
-    survey : Survey with times; its store and frame give way to others where something is to be done
+    survey : Survey with times; its store and frame are replaced where passes are moved
+    progress : Progress
     """
     roads = [road for road in survey.store.roads() if len(survey.frame.passes_of(road)) > 1]
     moves = {}
@@ -49,16 +52,16 @@ def adjust_passes(survey, progress=Progress()):
         _replace_points(survey, _map_corrections(survey.frame, moves), progress.part(0.5, 1.0))
 
 
-def solve_corrections(offsets):
-    """How each pass is moved, from the offsets between them.
+def solve_corrections(offsets: list[PassOffsets]) -> dict[int, tuple[np.ndarray, np.ndarray]]:
+    """Corrections of passes from the offsets between them, by least squares with robust weights.
 
     Parameters
     ----------
-    offsets : list of PassOffsets of one road
+    offsets : PassOffsets of one road
 
     Returns
     -------
-    {pass number: (stations (N,), (3, N) metres along, left and up)}
+    {pass number: ((N,) stations, (3, N) metres along, left and up)}
     """
     numbers = sorted({number for pair in offsets for number in (pair.one, pair.other)})
     first, last = (end(np.concatenate([pair.stations for pair in offsets])) for end in (np.min, np.max))
@@ -69,15 +72,15 @@ def solve_corrections(offsets):
     prior = sparse.kron(sparse.identity(len(numbers)), step.T @ step / DRIFT_CHANGE_SIGMA**2 + sparse.identity(count) / DRIFT_SIGMA**2)
     found = np.zeros((len(numbers), len(AXES), count))
     for k, axis in enumerate(AXES):
-        rows, values = [], []
+        places, measured = [], []
         for pair in offsets:
             known = np.flatnonzero(np.isfinite(getattr(pair, axis)))
             at = np.rint((pair.stations[known] - first) / CORRECTION_STEP).astype(np.int64)
-            rows.append(np.c_[numbers.index(pair.one) * count + at, numbers.index(pair.other) * count + at])
-            values.append(getattr(pair, axis)[known])
-        rows, values = np.concatenate(rows), np.concatenate(values)
+            places.append(np.c_[numbers.index(pair.one) * count + at, numbers.index(pair.other) * count + at])
+            measured.append(getattr(pair, axis)[known])
+        columns, values = np.concatenate(places), np.concatenate(measured)
         of = np.repeat(np.arange(len(values)), 2)
-        between = sparse.csr_matrix((np.tile([-1.0, 1.0], len(values)), (of, rows.ravel())), (len(values), len(numbers) * count))
+        between = sparse.csr_matrix((np.tile([-1.0, 1.0], len(values)), (of, columns.ravel())), (len(values), len(numbers) * count))
         weight = np.ones(len(values))
         for _ in range(REWEIGHTING_ROUNDS):
             precision = sparse.diags(weight / OFFSET_SIGMA**2)
@@ -88,7 +91,7 @@ def solve_corrections(offsets):
 
 
 def _separations(offsets):
-    """(N,) metres in plan and (M,) in height between passes, where they are known."""
+    """(N,) known distances between passes in plan and (M,) in height, m."""
     plan = np.concatenate([np.hypot(np.nan_to_num(pair.along), np.nan_to_num(pair.left))[np.isfinite(pair.left) | np.isfinite(pair.along)]
                            for pair in offsets] or [np.empty(0)])
     up = np.concatenate([np.abs(pair.up[np.isfinite(pair.up)]) for pair in offsets] or [np.empty(0)])
@@ -100,7 +103,7 @@ def _disagree(offsets):
 
 
 def _report_offsets(road, offsets, moved, progress):
-    """What was found and done, in a line; a warning where it is beyond what drifts."""
+    """Log the offsets; warn where they are too large for drift."""
     if moved:
         plan, up = (f"{100 * np.median(v):.1f} cm (at most {100 * v.max():.1f})" if len(v) else "an unknown distance" for v in _separations(offsets))
         progress.info(f"Road {road}: its passes lay {plan} beside and {up} above each other, as navigation drifts between two drives. "
@@ -117,7 +120,7 @@ def _report_offsets(road, offsets, moved, progress):
 
 
 def _map_corrections(frame, found):
-    """PassCorrections of what `solve_corrections` gives."""
+    """PassCorrections of the result of `solve_corrections`."""
     moves = {}
     for number, (stations, (along, left, up)) in found.items():
         heading = frame.road(frame.passes[number].road).heading(stations)
@@ -127,7 +130,7 @@ def _map_corrections(frame, found):
 
 
 def _coordinate_changes(frame, moves, number, s, d):
-    """Changes of x, y, z, s and d, each (N,) metres, of places of a pass."""
+    """Changes of x, y, z, s and d, (N,) metres each, at stations and offsets of a pass."""
     east, north, up = moves.metres(number, s)
     road = frame.road(frame.passes[number].road)
     heading = road.heading(s)
@@ -136,7 +139,7 @@ def _coordinate_changes(frame, moves, number, s, d):
 
 
 def _moved_points(frame, moves, records):
-    """The Columns of a section with its points moved."""
+    """The Columns of a section with corrected coordinates."""
     moved = {name: np.array(records[name]) for name in MOVED_COLUMNS}
     numbers = records["pass_number"]
     for number in np.unique(numbers).tolist():
@@ -149,7 +152,7 @@ def _moved_points(frame, moves, records):
 
 
 def _moved_track(frame, moves, p):
-    """A pass with its track moved."""
+    """A pass with a corrected track."""
     if p.number not in moves.by_pass:
         return p
     change = _coordinate_changes(frame, moves, p.number, p.s, p.d)
@@ -158,7 +161,7 @@ def _moved_track(frame, moves, p):
 
 
 def _replace_points(survey, moves, progress):
-    """Put the moved points into a store of their own, and the moved tracks into the frame."""
+    """Replace the store by one of corrected points, and the passes of the frame by corrected ones."""
     before, frame = survey.store, survey.frame
     store = SectionStore(before.dtype, before.section_length, before.memory_limit)
 

@@ -1,34 +1,43 @@
-"""How passes were moved to lie on each other, as it travels with their points: measured coordinates can always be told."""
+"""Corrections of passes that were adjusted to each other; stored with the points, so that measured coordinates can be restored."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..store.records import COORDINATE_SCALE, to_units
 
-CORRECTION_STEP = 10.0        # m of station between the nodes
-VLR_USER_ID = "Lanewright"  # of the records in LAS files, one for each pass, numbered from 1
+if TYPE_CHECKING:
+    import laspy
+
+    from ..store.columns import Columns
+
+CORRECTION_STEP = 10.0        # m of station between nodes
+VLR_USER_ID = "Lanewright"    # of the LAS records, one per pass; the record id is the pass number + 1
 _HEAD = np.dtype([("first", "<f8"), ("count", "<u4")])
 
 
 @dataclass(frozen=True)
 class PassCorrections:
-    """East, north and up of every pass that was moved, by station.
+    """East, north and up corrections of every pass that was moved, by station.
 
-    by_pass : {pass number: (station of the first node, (3, N) int16 in 0.1 mm)}, nodes CORRECTION_STEP metres apart; a pass goes
-        on beyond its first and last node as there
+    by_pass : {pass number: (station of the first node in m, (3, N) int16 in 0.1 mm)}, nodes CORRECTION_STEP apart; constant
+        beyond the first and the last node
     """
 
-    by_pass: dict
+    by_pass: dict[int, tuple[float, np.ndarray]]
 
-    def metres(self, number, s):
-        """East, north and up, (N,) metres, of a pass at (N,) stations."""
+    def metres(self, number: int, s: np.ndarray) -> tuple[np.ndarray, ...]:
+        """East, north and up corrections, (N,) metres each, of a pass at (N,) stations."""
         first, values = self.by_pass[number]
         nodes = first + CORRECTION_STEP * np.arange(values.shape[1])
         return tuple(np.interp(s, nodes, row) * COORDINATE_SCALE for row in values)
 
-    def units(self, records):
-        """(3, N) int32 in 0.1 mm that the x, y and z of moved points, Columns or structured, lie off what was measured."""
+    def units(self, records: Columns | np.ndarray) -> np.ndarray:
+        """(3, N) int32 corrections of x, y and z of moved points (Columns or structured records), in units of 0.1 mm."""
         numbers, found = records["pass_number"], np.zeros((3, len(records)), np.int32)
         for number in np.unique(numbers).tolist():
             if number in self.by_pass:
@@ -36,8 +45,8 @@ class PassCorrections:
                 found[:, own] = [to_units(v) for v in self.metres(number, records["s"].take(own) * COORDINATE_SCALE)]
         return found
 
-    def to_records(self):
-        """laspy VLRs."""
+    def to_records(self) -> list[laspy.VLR]:
+        """The corrections as LAS variable length records, one per pass."""
         import laspy
 
         return [laspy.VLR(VLR_USER_ID, number + 1, "Move of a pass",
@@ -45,8 +54,8 @@ class PassCorrections:
                 for number, (first, values) in sorted(self.by_pass.items())]
 
     @classmethod
-    def of_records(cls, records):
-        """What `to_records` wrote, from the VLRs of a file; None where there is nothing of it."""
+    def of_records(cls, records: Iterable[laspy.VLR]) -> PassCorrections | None:
+        """Read what `to_records` wrote, from the records of a file; None where there is nothing."""
         found = {}
         for record in records:
             if record.user_id.rstrip("\0") == VLR_USER_ID:

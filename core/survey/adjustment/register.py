@@ -1,13 +1,15 @@
-"""How far apart two passes lie over the same stretch of road: across, along and up.
+"""Offsets between two passes over the same stretch of road: across, along and up.
 
-Navigation drifts between two drives by centimetres, and every curb and line is
-then seen twice. Both passes are turned into strips of cells, height and
-brightness freed of what varies slowly, and laid on each other with every offset
-up to 30 cm; the offset at which they agree best is how far the one lies off the
-other. What only one of them saw (vehicles) agrees nowhere and tells nothing.
+Navigation drifts by centimetres between two drives, so that every curb and line appears twice. Both passes are
+rasterised as strips of cells; slow variations of height and intensity are removed; the strips are correlated at every
+offset up to 30 cm. The offset of best correlation is the offset between the passes. Objects that only one pass
+measured, such as vehicles, do not correlate and have no effect.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import Any
 
 import cv2
 import numpy as np
@@ -19,36 +21,37 @@ from .corrections import CORRECTION_STEP
 
 AXES = "along", "left", "up"
 CHANNELS = "steps", "paint"
-CHANNEL_SCALE = {"steps": 1e4, "paint": 64.0}  # in 0.1 mm and in parts of a spread
+CHANNEL_SCALE = {"steps": 1e4, "paint": 64.0}  # units per m, and per standard deviation of intensity
 WINDOW_LENGTH = CORRECTION_STEP          # m of road compared at a time, counted from station 0
 STRIP_HALF_WIDTH = 12.0           # m either side of the reference line
-LAG_CELL, ROW_CELL = 0.02, 0.25  # m: cells in the direction of an offset, and across it
+LAG_CELL, ROW_CELL = 0.02, 0.25  # m: cell size along an offset, and across it
 MAX_OFFSET = 0.30            # m between two passes
 LAGS = np.arange(-int(round(MAX_OFFSET / LAG_CELL)), int(round(MAX_OFFSET / LAG_CELL)) + 1)
 MIN_CELL_HEIGHT, MAX_CELL_HEIGHT = -0.3, 0.4   # m about the road's expected height: ground and curbs
 HEIGHT_BLUR_CELLS = 3               # cells over which heights are averaged
-DETREND_CELLS = 51            # cells: what varies over more than a metre is no curb and no paint
-MAX_STEP, MAX_CONTRAST = 0.05, 4.0  # m of height, and spreads of brightness, beyond which a cell tells no more
-MAX_CORRELATION = 0.999           # correlation: more tells no more
-FLAT_STEP = 0.01           # m: cells that lie flat tell how far one pass lies above the other
+DETREND_CELLS = 51            # cells: variations over more than a metre are neither curbs nor paint
+MAX_STEP, MAX_CONTRAST = 0.05, 4.0  # m of height, and standard deviations of intensity, at which cells are clipped
+MAX_CORRELATION = 0.999           # at which the correlation is clipped
+FLAT_STEP = 0.01           # m: the height offset is measured on cells flatter than this
 MIN_SHARED_CELLS = 300           # cells that two passes must share in a window
-CORRELATED_CELLS = 6.0            # neighbouring cells whose errors are alike
-POOLING_SIGMA = 15.0          # m, sigma: over so much road drift changes little
-MAX_OFFSET_SIGMA = 0.006           # m, sigma of an offset that counts
-PRIOR_OFFSET_SIGMA = 0.10           # m, sigma of what is expected at all: of two offsets as good the smaller one
-MIN_LIKELIHOOD_RATIO = 25.0           # by how much the best offset must be likelier (twice the logarithm) than none
-MAX_RUNNER_UP = 0.7            # of that at most, another offset that stands out may reach
-PARABOLA_CELLS = 2                # cells either side of the best that tell where between cells it lies
-PEAK_CELLS = 2             # cells beside the best that are no others
+CORRELATED_CELLS = 6.0            # neighbouring cells whose errors are correlated
+POOLING_SIGMA = 15.0          # m of road, over which drift changes little
+MAX_OFFSET_SIGMA = 0.006           # m: standard deviation of an accepted offset at most
+PRIOR_OFFSET_SIGMA = 0.10           # m: prior standard deviation of offsets; of two equally good ones the smaller is chosen
+MIN_LIKELIHOOD_RATIO = 25.0           # twice the log likelihood ratio of the best offset against none
+MAX_RUNNER_UP = 0.7            # of that ratio, for the second best offset
+PARABOLA_CELLS = 2                # cells either side of the best, for the parabola
+PEAK_CELLS = 2             # cells beside the best that belong to its peak
 
 
 @dataclass(frozen=True)
 class PassOffsets:
-    """What must be added to pass `other` to lay it on pass `one`, window by window of a road.
+    """Offsets to be added to pass `other` to match pass `one`, window by window of a road.
 
-    stations : (N,) middles of the windows
-    along, left, up : (N,) metres, NaN where nothing tells
-    beyond : windows in which they seem to lie more than MAX_OFFSET apart
+    one, other : pass numbers
+    stations : (N,) middles of the windows, m
+    along, left, up : (N,) metres, NaN where unknown
+    beyond : number of windows in which the offset seems to exceed MAX_OFFSET
     """
 
     one: int
@@ -61,9 +64,10 @@ class PassOffsets:
 
 
 class _Strips:
-    """One pass in one window: rows of cells in which height and brightness are known but for what varies slowly.
+    """One pass in one window: rows of cells of height and intensity without their slow variations.
 
-    `heights`, `steps` (m) and `paint` (spreads), (rows, cells) float32 with NaN where nothing was seen; offsets lie along a row.
+    heights, steps : (rows, cells) float32, m, NaN where unknown; offsets are measured along a row
+    paint : (rows, cells) float32, intensity in units of its robust standard deviation, NaN where unknown
     """
 
     def __init__(self, fine, coarse, h, intensity, shape):
@@ -72,7 +76,7 @@ class _Strips:
         place = (row * shape[1] + cell)[inside]
 
         def means(values, cells):
-            # of a cell and those beside it where points may lie farther apart than cells
+            # over neighbouring cells, where points are farther apart than cells
             total, count = (_box_sum(np.bincount(place, some, shape[0] * shape[1]).reshape(shape).astype(np.float32), cells)
                             for some in (values[inside], None))
             with np.errstate(invalid="ignore", divide="ignore"):
@@ -87,28 +91,28 @@ class _Strips:
 
 
 def _detrended(values):
-    """Rows of values less their mean over DETREND_CELLS cells; NaN stays."""
+    """Values minus their mean over DETREND_CELLS cells of the row; NaN stays."""
     known = np.isfinite(values)
     return values - _box_sum(np.where(known, values, np.float32(0)), DETREND_CELLS) / np.maximum(_box_sum(known.astype(np.float32), DETREND_CELLS), 1)
 
 
 def _box_sum(values, cells):
-    """Sums over so many cells of a row."""
+    """Moving sums over a number of cells of each row."""
     return cv2.boxFilter(values, cv2.CV_32F, (cells, 1), normalize=False, borderType=cv2.BORDER_CONSTANT)
 
 
 def _shifted(one, other, lag):
-    """The cells of two strips that lie on each other when `other` is moved by `lag` cells."""
+    """The overlapping cells of two strips when `other` is moved by `lag` cells."""
     size = one.shape[1]
     return one[:, max(lag, 0):size + min(lag, 0)], other[:, max(-lag, 0):size - max(lag, 0)]
 
 
 def _correlation_sums(one, other):
-    """(2, 4, L) of steps and paint, for every lag: sums of products and of either's squares over the cells both saw, and how many these are."""
+    """(2, 4, L) per channel and lag: sums of products, of squares of either strip, and counts, over the cells known in both."""
     found = np.zeros((2, 4, len(LAGS)))
     for k, name in enumerate(CHANNELS):
         known = [np.isfinite(getattr(strips, name)) for strips in (one, other)]
-        # whole numbers sum exactly, in whatever order a library does it
+        # integers sum exactly, in whatever order the library adds them
         values = [np.where(there, np.rint(getattr(strips, name) * CHANNEL_SCALE[name]), 0.0) for there, strips in zip(known, (one, other))]
         known = [there.astype(float) for there in known]
         squares = [v * v for v in values]
@@ -119,29 +123,30 @@ def _correlation_sums(one, other):
 
 
 def _height_offset(one, other, lag):
-    """Median metres that `one` lies above `other` moved by `lag`, of level cells; NaN of too few."""
+    """Median height of `one` above `other` moved by `lag`, of flat cells, m; NaN for too few cells."""
     off = np.subtract(*_shifted(one.heights, other.heights, lag))
     level = np.maximum(*map(np.abs, _shifted(one.steps, other.steps, lag))) < FLAT_STEP
     off = off[level & np.isfinite(off)]
     return float(np.median(off)) if len(off) >= MIN_SHARED_CELLS else np.nan
 
 
-def pass_offsets(survey, road, progress=Progress()):
-    """How far the passes over a road lie apart, each from the next one that was there.
+def pass_offsets(survey: Any, road: int, progress: Progress = Progress()) -> list[PassOffsets]:
+    """Offsets between the passes over a road, each with the next one there.
 
     Parameters
     ----------
     survey : Survey with times
     road : number
+    progress : Progress
 
     Returns
     -------
-    list of PassOffsets
+    list of PassOffsets, one per pair of passes
     """
     start, end = survey.store.span(road)
     windows = [number for number in range(int(np.floor(start / WINDOW_LENGTH)), int(np.ceil(end / WINDOW_LENGTH)))
                if _several_passes(survey.frame.passes_of(road), number * WINDOW_LENGTH, (number + 1) * WINDOW_LENGTH)]
-    seen = {}
+    seen: dict[tuple[int, int], list] = {}
     for number, found in zip(windows, ordered_map(lambda number: _window_evidence(survey, road, number), windows, progress)):
         for pair, evidence in found.items():
             seen.setdefault(pair, []).append((number, *evidence))
@@ -149,12 +154,12 @@ def pass_offsets(survey, road, progress=Progress()):
 
 
 def _several_passes(passes, start, end):
-    """Whether two passes were there."""
+    """Whether at least two passes drove there."""
     return sum(p.span[0] < end and p.span[1] > start for p in passes) > 1
 
 
 def _window_evidence(survey, road, number):
-    """What a window says of passes, each against the next: {(one, other): (likeness across, likeness along, rise)}."""
+    """{(one, other): (correlation sums across, correlation sums along, height offset)} of a window, each pass with the next."""
     points = survey.window(road, number * WINDOW_LENGTH, (number + 1) * WINDOW_LENGTH)
     nodes = number * WINDOW_LENGTH + np.arange(int(WINDOW_LENGTH / ROW_CELL) + 1) * ROW_CELL
     s, d = points.s, points.d
@@ -174,13 +179,13 @@ def _window_evidence(survey, road, number):
 
 
 def _combine_windows(pair, evidence):
-    """PassOffsets of two passes from what their windows say, each window helped by those beside it."""
+    """PassOffsets of two passes from the evidence of their windows, pooled with neighbouring windows."""
     numbers = np.array([row[0] for row in evidence])
     across, lengthwise = (_pool(numbers, np.array([row[k] for row in evidence])) for k in (1, 2))
     (steps, steps_far), (paint, paint_far) = (_best_offsets(across[:, k]) for k in range(len(CHANNELS)))
-    # a curb face looks another way from the other lane: it tells where no paint does
+    # a curb face looks different from the other lane, so it is used only where no paint is found
     left, far = np.where(np.isnan(paint), steps, paint), np.where(np.isnan(paint), steps_far | paint_far, False)
-    # along the road, it is hit here on its face and there on its top by scan lines as regular as any pattern
+    # along the road, regular scan lines hit a curb face in a periodic pattern, so only paint is used
     along, _ = _best_offsets(lengthwise[:, CHANNELS.index("paint")])
     rises = np.array([row[3] for row in evidence])
     known = np.isfinite(rises)
@@ -191,7 +196,7 @@ def _combine_windows(pair, evidence):
 
 
 def _pool(numbers, values):
-    """(N, ...) sums over the windows of numbers (N,) and those beside them, which count the less the farther they are."""
+    """(N, ...) sums over each window and its neighbours, with Gaussian weights of POOLING_SIGMA."""
     sigma = POOLING_SIGMA / WINDOW_LENGTH
     whole = np.zeros((numbers[-1] - numbers[0] + 1, *values.shape[1:]))
     whole[numbers - numbers[0]] = values
@@ -199,9 +204,9 @@ def _pool(numbers, values):
 
 
 def _best_offsets(likeness):
-    """PassOffsets, (N,) metres or NaN, at which passes are most alike, from (N, 4, L) of `_correlation_sums`; and where that is at the very limit.
+    """Offsets of best correlation, (N,) metres or NaN, from (N, 4, L) of `_correlation_sums`, and (N,) bool where it is at the limit.
 
-    Correlation, unlike the mean difference, says nothing where there is but noise, however that is spread over the cells.
+    Correlation, unlike the mean difference, is not affected by noise, however it is distributed over the cells.
     """
     products, squares, others, counts = np.moveaxis(likeness, 1, 0)
     enough = counts[:, len(LAGS) // 2]
@@ -212,7 +217,7 @@ def _best_offsets(likeness):
     least = unlikely.min(axis=1)
     clear = (least < -MIN_LIKELIHOOD_RATIO) & (_second_best(unlikely, best) > MAX_RUNNER_UP * least)
     limit = clear & ((best == 0) | (best == len(LAGS) - 1))
-    # a parabola through the best and those about it
+    # sub-cell position from a parabola through the best lag and its neighbours
     k = np.clip(best, PARABOLA_CELLS, len(LAGS) - 1 - PARABOLA_CELLS)[:, None] + np.arange(-PARABOLA_CELLS, PARABOLA_CELLS + 1)
     bend, slope, _ = np.polyfit(np.arange(-PARABOLA_CELLS, PARABOLA_CELLS + 1.0), np.take_along_axis(unlikely, k, 1).T, 2)
     bend = np.maximum(bend, 1e-12)
@@ -221,9 +226,9 @@ def _best_offsets(likeness):
 
 
 def _second_best(unlikely, best):
-    """(N,) the least of (N, L) values that is less than its neighbours and none of those beside the best; infinite where there is none.
+    """(N,) the smallest local minimum of (N, L) values apart from the best; infinite where there is none.
 
-    Slabs and cobbles fit themselves again one stone farther.
+    Slabs and cobbles correlate again one stone farther.
     """
     dips = np.zeros(unlikely.shape, bool)
     dips[:, 1:-1] = (unlikely[:, 1:-1] <= unlikely[:, :-2]) & (unlikely[:, 1:-1] <= unlikely[:, 2:])
