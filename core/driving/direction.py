@@ -18,7 +18,19 @@ MIN_DRIVEN_SHARE = 0.6
 
 
 def driven_offsets(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(P, K) offset of every pass over a road where it drove, NaN elsewhere, and (P,) its direction."""
+    """Where the vehicle drove.
+
+    Parameters
+    ----------
+    frame : RoadFrame
+    road : int, number of the road
+    s : (K,) metres, stations
+
+    Returns
+    -------
+    d : (P, K) metres, offset of every pass; NaN where it did not drive
+    direction : (P,) int, 1 along the road's reference line, -1 against it
+    """
     passes = frame.passes_of(road)
     d = np.full((len(passes), len(s)), np.nan)
     for row, p in zip(d, passes):
@@ -29,7 +41,7 @@ def driven_offsets(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.ndarr
 
 
 def divide(lines: CrossSections, tracks: list[LaneTrack], driven: np.ndarray, directions: np.ndarray) -> np.ndarray:
-    """(K,) offset of what parts the two directions of traffic, NaN where nothing does.
+    """(K,) metres, offset of what separates the two directions of traffic, NaN where nothing does.
 
     A line called centre line or drawn double with lanes on both sides; passes that
     drove against each other; else the middle between an even number of lanes.

@@ -62,7 +62,7 @@ def road_heights(road_points: RoadPoints, road: int, s: np.ndarray, tracks: list
 
 def _heights(sections, s, lanes):
     """Median heights along lanes, each (cells, offsets), of sections of road points about grid stations s."""
-    # of crowded points those right beside the grid stations say the same
+    # where points are dense, those right beside the grid stations are enough
     found = _Near(sections, s, np.arange(len(s)), DENSE_SLICE, lanes).medians(lanes)
     few = [np.flatnonzero(count < DENSE_COUNT) for _, count in found]
     lacking = [(cells[which], d[which]) for (cells, d), which in zip(lanes, few)]
@@ -74,7 +74,7 @@ def _heights(sections, s, lanes):
 
 
 def _beside(lanes):
-    """Where, in grains across the road, a table begins that tells which offsets lie within reach of lanes (offsets in metres), and the table."""
+    """A table by offset, in grains, of what lies within reach of lanes (offsets in metres): its first grain, and the table."""
     spans = np.array([(d.min() - HEIGHT_REACH, d.max() + HEIGHT_REACH) for d in lanes]) / COORDINATE_SCALE
     spans = np.stack([np.floor(spans[:, 0]), np.ceil(spans[:, 1])], axis=1).astype(np.int32) >> OFFSET_GRAIN_BITS
     first = np.int32(spans[:, 0].min() - 1)

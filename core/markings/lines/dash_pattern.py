@@ -1,4 +1,4 @@
-"""Solid or dashed, and with what rhythm: what the painted intervals of a line say."""
+"""Solid or dashed, and with what dash length and period, from the painted intervals of a line."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ class MarkingLineSettings:
 
     curve : one of core.curves.model_selection.CURVES; degree : of the polynomial
     max_gap : m along the road over which paint of one line is linked
-    max_bridge : m over which it is linked where the line's own rhythm or a neighbouring line carries over
+    max_bridge : m over which it is linked where the line's own dash pattern or a neighbouring line continues
     min_paint : m of paint without which there is no line (unless it fits another one's dashes)
     """
 

@@ -337,7 +337,7 @@ def _off_centre(one, selected):
 
 
 def label_isolated_centre(selected: list[SelectedLine], passes: Sequence[Pass]) -> None:
-    """A dashed line alone on its road, with room for one lane on either side, parts the two directions.
+    """A dashed line alone on its road, with the width of one lane on either side, separates the two directions.
 
     The lane that was driven is taken to reach as far beyond the vehicle as the line lies on
     its other side; beyond the line the road's edge says how much room there is. Not

@@ -288,7 +288,7 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, max_gap: fl
                         same_dash_pattern: Callable[[LinkedLine, LinkedLine], bool], allowed: float = 0.25) -> list[LinkedLine]:
     """Link over longer gaps, up to `max_bridge`, where something carries over.
 
-    Either both sides have one rhythm of dashes and the gap is a whole multiple of
+    Either both sides have one dash pattern and the gap is a whole multiple of
     it (`same_dash_pattern(before, after)`), or another line runs on beside the gap
     without one, so that the road does not end there.
     """
@@ -313,7 +313,7 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, max_gap: fl
             if a not in follows and b not in preceded:
                 follows[a] = b
                 preceded.add(b)
-        # a longer line knows its rhythm and its course better: look again
+        # the pattern and the course of a longer line are known better: search again
         lines = _joined(lines, follows, preceded)
 
 

@@ -18,17 +18,17 @@ if TYPE_CHECKING:
     from ...survey.store.columns import Columns
     from ..objects.marking_objects import MarkingObjects
 
-RUN_BIN_UNITS = 5000                                       # units of 0.1 mm: 0.5 m of station in which runs of paint are told apart
-PLACE_STEP_UNITS = 2500                                    # 0.25 m: one place of the line each, so that neighbouring places are nearly independent
-RUN_GAP_UNITS = 600                                        # 6 cm across without paint separate two runs ...
-MAX_WORN_LINE_WIDTH_UNITS = 2200                           # ... unless together they are no wider than one worn line
-MAX_LINE_WIDTH_UNITS = 3600                                # 36 cm: wider is no line, or it is a double line whose middle is hazy
-MAX_MIXED_WIDTH_UNITS = 6000                               # 60 cm: where a mixed marking reaches farther across, it is hatching or a stop line there
-MIN_MIXED_STRAND = 2.0                                     # m of paint in a strand of a mixed marking
-MIN_MIXED_MARKING = 9.0                                    # m: no arrow or letter is this long; a longer mixed marking has a line in it
-MIN_POINTS_PER_RUN = 3                                     # points in a run
-MIN_STRAND_LENGTH = 0.8                                    # m of paint in a strand
-MAX_BIN_STEP = 3                                           # bins that a strand may leap: 1.5 m of wear
+RUN_BIN_UNITS = 5000  # units of 0.1 mm: 0.5 m of station in which runs of paint are separated
+PLACE_STEP_UNITS = 2500  # 0.25 m: one place of the line each, so that neighbouring places are nearly independent
+RUN_GAP_UNITS = 600  # 6 cm across without paint separate two runs ...
+MAX_WORN_LINE_WIDTH_UNITS = 2200  # ... unless together they are no wider than one worn line
+MAX_LINE_WIDTH_UNITS = 3600  # 36 cm: wider is no line, or it is a double line whose middle is hazy
+MAX_MIXED_WIDTH_UNITS = 6000  # 60 cm: where a mixed marking reaches farther across, it is hatching or a stop line there
+MIN_MIXED_STRAND = 2.0  # m of paint in a strand of a mixed marking
+MIN_MIXED_MARKING = 9.0  # m: no arrow or letter is this long; a longer mixed marking has a line in it
+MIN_POINTS_PER_RUN = 3  # points in a run
+MIN_STRAND_LENGTH = 0.8  # m of paint in a strand
+MAX_BIN_STEP = 3  # bins that a strand may leap: 1.5 m of wear
 LATERAL_STEP_UNITS, LATERAL_STEP_PER_BIN_UNITS = 600, 400  # units: 6 cm, and 4 cm more per bin, that a strand may move across
 
 

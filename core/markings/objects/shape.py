@@ -77,7 +77,7 @@ def measure(s: np.ndarray, d: np.ndarray) -> Shape:
     Notes
     -----
     Width is the 95 % range across the local tangent, scaled to the full range of
-    evenly strewn points: a principal axis would call every bend wide.
+    evenly spread points: a principal axis would call every bend wide.
     """
     cells, _ = occupied(s // CELL_UNITS, d // CELL_UNITS)
     direction = _principal_direction(cells)
@@ -139,7 +139,7 @@ def _stems(cells):
 
 
 def full_width(across: np.ndarray) -> float:
-    """Full width of evenly strewn values from their 95 % range."""
+    """Full width of evenly spread values from their 95 % range."""
     low, high = percentiles(across, ((100 - WIDTH_PERCENT) / 2, (100 + WIDTH_PERCENT) / 2))
     return (high - low) / (WIDTH_PERCENT / 100)
 
