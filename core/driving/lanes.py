@@ -254,7 +254,7 @@ def typical_lane_width(tracks: list[LaneTrack], painted: bool = True) -> float:
 
 def single_line_lanes(lines: CrossSections, bounding: np.ndarray, tracks: list[LaneTrack], driven: np.ndarray,
                       half_lane: Callable[[np.ndarray, int], np.ndarray], shortest: float, clear: Clear) -> list[LaneTrack]:
-    """Lanes beside a line that has no second line on the other side of the lane: where the vehicle drove, and on both sides of a centre line that is alone.
+    """Lanes with a line on one side only: where the vehicle drove, and on both sides of a centre line that is alone.
 
     half_lane : a function of offsets (K,) of a painted line and a side, 1 or -1, that gives the (K,) distance of the
         driving line from it
