@@ -55,7 +55,7 @@ def sample_edges(edges: Features, frame: RoadFrame, road: int, side: str) -> Edg
     line = frame.road(road)
     first, last = int(np.floor(line.start / COMPARISON_STEP)), int(np.ceil(line.end / COMPARISON_STEP))
     s = np.arange(first, last + 1) * COMPARISON_STEP
-    trace = EdgeSamples(s, *(np.full(len(s), np.nan) for _ in range(2)), np.zeros(len(s), bool), np.full(len(s), np.inf))
+    samples = EdgeSamples(s, np.full(len(s), np.nan), np.full(len(s), np.nan), np.zeros(len(s), bool), np.full(len(s), np.inf))
     for geometry, row in edges:
         if row["road"] != road or row["side"] != side or row["status"] == "inferred" or row.get("part", "bottom") != "bottom" \
                 or not of_main_curb(row):
@@ -70,10 +70,10 @@ def sample_edges(edges: Features, frame: RoadFrame, road: int, side: str) -> Edg
         order = np.argsort(at, kind="stable")
         at, d, z = at[order], d[order], z[order]
         inside = np.flatnonzero((s >= at[0] - COMPARISON_STEP / 2) & (s <= at[-1] + COMPARISON_STEP / 2))
-        trace.d[inside], trace.z[inside] = np.interp(s[inside], at, d), np.interp(s[inside], at, z)
-        trace.measured[inside] = row["status"] == "measured"
-        trace.scatter[inside] = row["rmse_m"]
-    return trace
+        samples.d[inside], samples.z[inside] = np.interp(s[inside], at, d), np.interp(s[inside], at, z)
+        samples.measured[inside] = row["status"] == "measured"
+        samples.scatter[inside] = row["rmse_m"]
+    return samples
 
 
 def select_curb_points(points: Features, others: Features, edges: Features, other_edges: Features, frame: RoadFrame) -> Features:
