@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from .lane_tracking import LaneTrack
 
 MAX_PARALLEL_DEVIATION = 0.06  # m: 95 % of a lane's places are nearer than this to a parallel of the others
-MIN_SHARED_LENGTH = 10.0       # m that a lane must share with others to be compared
+MIN_SHARED_LANE_LENGTH = 10.0       # m that a lane must share with others to be compared
 MIN_ARC_LENGTH = 25.0          # m: a shorter arc may be a stair of a transition
 MAX_TRANSITION_MISFIT = 0.02   # m
 DIVISION_SPACING = 1.0         # m between places that are divided: fitted lines err alike over metres
@@ -90,7 +90,7 @@ def _parallel_lanes(tracks):
             shared = weight[rows] > 0
             offset = float(np.median(track.d))
             if members:
-                if shared.sum() * STATION_STEP < min(MIN_SHARED_LENGTH, 0.5 * len(track) * STATION_STEP):
+                if shared.sum() * STATION_STEP < min(MIN_SHARED_LANE_LENGTH, 0.5 * len(track) * STATION_STEP):
                     continue
                 apart = track.d[shared] - total[rows[shared]] / weight[rows[shared]]
                 offset = float(np.median(apart))

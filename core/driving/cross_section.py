@@ -14,7 +14,7 @@ from .road_edges import RoadEdges
 STATION_STEP = 0.5                             # m of station between places where lanes are looked for
 MAX_LINE_OBLIQUITY = np.tan(np.radians(25.0))  # a line that runs more across the road than this bounds no lane
 MIN_BOUNDARY_SPACING = 0.8                     # m: lines nearer than this are one boundary, a lane ends at the nearer one
-MAX_LATERAL_JUMP = 0.3                         # m across by which a line may jump where it goes on as another
+MAX_LINE_JUMP = 0.3                         # m across by which a line may jump where it goes on as another
 MAX_DASH_GAP = 9.5                             # m that a dashed line may be silent at its ends before it is known to end
 
 
@@ -152,7 +152,7 @@ def _joined(lines):
         last = ends[k][0]
         away = np.abs(lines.d[k, last] - at_end)
         gap = (last - end) * STATION_STEP
-        behind = np.flatnonzero((gap > 0) & (gap <= MAX_DASH_GAP) & (away <= MAX_LATERAL_JUMP))
+        behind = np.flatnonzero((gap > 0) & (gap <= MAX_DASH_GAP) & (away <= MAX_LINE_JUMP))
         if not len(behind):
             continue
         j = int(behind[np.argmin(away[behind])])
