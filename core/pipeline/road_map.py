@@ -1,10 +1,15 @@
-"""The whole chain in one call: survey in, road map out.
+"""The whole chain in one call: from a survey to a road map.
 
 The stages are the same functions that the single algorithms call, handed on in
 memory; nothing but the intensity image, which is one of the results, goes to disk.
 """
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -31,9 +36,13 @@ from ..road.scanlines.detect import ScanlineBoundarySettings
 from ..road.scanlines.section_planes import ScanlineSettings
 from ..road.surface.extract import SurfaceSettings, extract_road_surface
 from ..survey.open_survey import SurveySettings, open_survey
-from ..survey.point_density import cube_density
+from ..survey.point_density import CubeDensity, cube_density
 from ..survey.store.records import Points, join_columns
 from .stages import INTENSITY_STAGES, Extent, Stages
+
+if TYPE_CHECKING:
+    from ..survey.frame.road_frame import RoadFrame
+    from ..survey.trajectory.trajectory import Trajectory
 
 
 @dataclass(frozen=True)
@@ -57,50 +66,61 @@ class RoadMapSettings:
     driving: DrivingSettings = DrivingSettings()
 
     @property
-    def boundaries(self):
+    def boundaries(self) -> BoundarySettings:
+        """The settings of boundary detection."""
         return BoundarySettings(self.boundary_method, self.curbs, self.scanlines, self.planes)
 
 
 @dataclass
 class RoadMap:
-    """Every result of the chain; `seconds` and `counts` tell of each stage.
+    """All results of the chain.
 
-    `road_points` keep the survey's store; `road_points.close()` gives its disk space back.
-
-    `boundary_differences` tells where the two boundary methods lie apart, None where one was asked for.
-    `without_paint` is the sentence that says why there are no markings, "" where
-    there are.
+    frame : RoadFrame
+    crs : WKT, "" where unknown
+    curb_points, edges, surface, markings, marking_lines, driving_lines, curve_elements : layers; None where not made
+    road_points : RoadPoints; `road_points.close()` frees the disk space of the store
+    boundary_differences : where the two boundary methods disagree, None if one method was used
+    length_by_method : {method: metres of measured edges}
+    intensity_report : of the correction, None without it
+    image : IntensityImage, None without intensity
+    without_paint : the reason why there are no markings, "" where there are
+    seconds : {stage: run time in s}
+    counts : numbers of curb points, road points and marking points
+    survey_facts : numbers of files, scanners, passes, roads and points, and the sensor heights
+    density : CubeDensity of the points near the road and of the road points
+    marking_curvature : MarkingCurvature, None without lines
     """
 
-    frame: object
+    frame: RoadFrame
     crs: str
     curb_points: Features
     edges: Features
     surface: Features
-    road_points: object
-    boundary_differences: Features = None
+    road_points: Any
+    boundary_differences: Features | None = None
     length_by_method: dict = field(default_factory=dict)
-    intensity_report: object = None
-    image: object = None
-    markings: Features = None
-    marking_lines: Features = None
-    driving_lines: Features = None
-    curve_elements: Features = None
+    intensity_report: Any = None
+    image: Any = None
+    markings: Features | None = None
+    marking_lines: Features | None = None
+    driving_lines: Features | None = None
+    curve_elements: Features | None = None
     without_paint: str = ""
     seconds: dict = field(default_factory=dict)
     counts: dict = field(default_factory=dict)
     survey_facts: dict = field(default_factory=dict)
-    density: tuple = ()                 # CubeDensity of the points near the road, and of the road surface
-    marking_curvature: object = None    # MarkingCurvature, None without lines
+    density: tuple[CubeDensity, ...] = ()
+    marking_curvature: Any = None
 
 
-def make_road_map(paths, trajectory, image_path, settings=RoadMapSettings(), progress=Progress()):
+def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_path: str | Path,
+                  settings: RoadMapSettings = RoadMapSettings(), progress: Progress = Progress()) -> RoadMap:
     """Run the chain.
 
     Parameters
     ----------
     paths : point cloud files
-    trajectory : Trajectory in the clouds' CRS
+    trajectory : Trajectory
     image_path : where the intensity image is written (.tif)
 
     Returns
@@ -110,8 +130,8 @@ def make_road_map(paths, trajectory, image_path, settings=RoadMapSettings(), pro
     Raises
     ------
     RoadExtractionError
-        If a stage cannot work with what it is given. A cloud without intensity still
-        yields edges and surface; `without_paint` then says why markings are missing.
+        If a stage cannot use its input. A cloud without intensity still yields edges and surface; `without_paint` then
+        gives the reason why markings are missing.
     """
     stages = Stages(progress, Extent.expected(paths, trajectory, settings.survey.crs), settings.boundary_method,
                     () if settings.correct else ("intensity",))
@@ -126,7 +146,7 @@ def make_road_map(paths, trajectory, image_path, settings=RoadMapSettings(), pro
 def _map_of(survey, image_path, settings, stages):
     """The map of an open survey, whose store the road points keep."""
     extent = Extent(survey.store.count / 1e6, sum(road.length for road in survey.frame.roads) / 1e3)
-    stages.know(extent, () if survey.has_intensity else INTENSITY_STAGES)
+    stages.plan(extent, () if survey.has_intensity else INTENSITY_STAGES)
     if survey.has_intensity:
         # before hours of work, not after
         check_fits(*_span(survey), settings.image)

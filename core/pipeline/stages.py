@@ -1,7 +1,12 @@
-"""The stages of a chain, run one after the other: each with its share of the bar, and its time taken."""
+"""The stages of the road map, run one after the other: their shares of the progress bar and their run times."""
+
+from __future__ import annotations
 
 import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,25 +16,45 @@ from ..survey.frame.road_frame import CORRIDOR
 from ..survey.las.reader import read_headers
 from ..survey.trajectory.reprojection import reproject_trajectory
 
-# How long each stage takes, in proportions, by points and by length of road: of a million points, of a kilometre (`make bench`).
-# What is read packed is decoded; boundaries by both methods take what either does.
+if TYPE_CHECKING:
+    from ..common.progress import Progress
+    from ..survey.trajectory.trajectory import Trajectory
+
+# Relative run time of each stage (per million points, per kilometre of road), measured by `make bench`
 STAGE_COSTS = dict(survey=(0.31, 0.1), profiles=(0.105, 4.6), scanlines=(0.2, 8.0), edges=(0.0, 0.04), surface=(0.05, 1.5), intensity=(0.037, 0.7),
              image=(0.047, 1.1), markings=(0.017, 2.4), outliers=(0.018, 0.26), clusters=(0.019, 1.1), lines=(0.007, 0.6), driving=(0.005, 0.85))
-MIN_STAGE_COST = 0.01                # the same, of a stage that has nothing to do
-LAZ_READ_COST, LAS_READ_COST = 1.0, 0.42  # of what the stage of the survey takes for a point of a LAZ and of a LAS file
+MIN_STAGE_COST = 0.01  # of a stage without work
+LAZ_READ_COST, LAS_READ_COST = 1.0, 0.42  # relative run time of reading a point of a LAZ and of a LAS file
 
 
 @dataclass(frozen=True)
 class Extent:
-    """How much there is to work on: millions of points and kilometres of road, as far as is known."""
+    """The amount of work, as far as it is known.
+
+    points : millions of points
+    length : kilometres of road
+    plain : share of the points in uncompressed files
+    """
 
     points: float
     length: float
-    plain: float = 0.0  # share of the points that lie in files that are not compressed
+    plain: float = 0.0
 
     @classmethod
-    def expected(cls, paths, trajectory, crs=""):
-        """What headers and trajectory tell before anything is read; refuses what `open_survey` would refuse of them."""
+    def expected(cls, paths: Sequence[str | Path], trajectory: Trajectory, crs: str = "") -> Extent:
+        """The extent by file headers and trajectory, before any point is read.
+
+        Parameters
+        ----------
+        paths : point cloud files
+        trajectory : Trajectory
+        crs : WKT for clouds that carry none
+
+        Raises
+        ------
+        RoadExtractionError
+            If a header cannot be read or the CRS is unsuitable, as in `open_survey`.
+        """
         files = read_headers(paths)
         trajectory = reproject_trajectory(trajectory, check_projected(files, crs, trajectory.crs))
         held = [file for file in files if file.count]
@@ -40,8 +65,8 @@ class Extent:
         driven = np.hypot(*np.diff(places, axis=0).T)[within[1:]].sum()
         return cls(points / 1e6, float(driven) / 1e3, sum(file.count for file in held if file.chunk == 1) / max(points, 1))
 
-    def cost(self, name, method):
-        """How long a stage takes, in proportion to others."""
+    def cost(self, name: str, method: str) -> float:
+        """Relative run time of a stage, with the given method of boundary detection."""
         if name == "curbs":
             return sum(self.cost(one, method) for one in ("profiles", "scanlines") if method in (one, "both"))
         of_points, of_length = STAGE_COSTS[name]
@@ -50,32 +75,40 @@ class Extent:
         return MIN_STAGE_COST + of_points * self.points + of_length * self.length
 
 
-INTENSITY_STAGES = ("intensity", "image", "markings", "outliers", "clusters", "lines", "driving")   # stages that look at intensity
+INTENSITY_STAGES = ("intensity", "image", "markings", "outliers", "clusters", "lines", "driving")   # stages that need intensity
 STAGE_NAMES = ("survey", "curbs", "edges", "surface", *INTENSITY_STAGES)
 
 
 class Stages:
-    """Runs the stages of a road map one after the other; `seconds` of each are noted.
+    """Runs the stages of a road map one after the other and measures their run times.
 
     Parameters
     ----------
+    progress : Progress of the whole run
     extent : Extent
-    method : that boundaries are found by
-    left_out : names of stages that will not be run
+    method : of boundary detection: profiles, scanlines or both
+    left_out : names of stages that will not run
+
+    Attributes
+    ----------
+    done : fraction of the bar that is done
+    seconds : {stage: run time in s}
     """
 
-    def __init__(self, progress, extent, method, left_out=()):
-        self.progress, self.done, self.seconds, self.method = progress, 0.0, {}, method
+    def __init__(self, progress: Progress, extent: Extent, method: str, left_out: Sequence[str] = ()):
+        self.progress, self.done, self.method = progress, 0.0, method
+        self.seconds: dict[str, float] = {}
         self.waiting = list(STAGE_NAMES)
-        self.know(extent, left_out)
+        self.plan(extent, left_out)
 
-    def know(self, extent, left_out=()):
-        """Divide what is left of the bar among the stages that are left, now that more is known; some will not be run."""
+    def plan(self, extent: Extent, left_out: Sequence[str] = ()) -> None:
+        """Divide the rest of the bar among the remaining stages by a better known extent; some will not run."""
         self.waiting = [name for name in self.waiting if name not in left_out]
         costs = {name: extent.cost(name, self.method) for name in self.waiting}
         self.shares = {name: (1.0 - self.done) * cost / max(sum(costs.values()), 1e-9) for name, cost in costs.items()}
 
-    def run(self, name, title, function, *arguments, **options):
+    def run(self, name: str, title: str, function: Callable[..., Any], *arguments: Any, **options: Any) -> Any:
+        """Run a stage: log its title, call the function with its part of the progress, and return its result."""
         share = self.shares[name]
         self.progress.info(title)
         began = time.perf_counter()

@@ -1,4 +1,8 @@
-"""Road points as a LAZ file: what a later stage must know travels in extra fields."""
+"""Road points as a LAZ file, with the road frame in extra fields for the later stages."""
+
+from __future__ import annotations
+
+from pathlib import Path
 
 import numpy as np
 
@@ -12,24 +16,33 @@ from .store.road_points import RoadPoints
 from .store.section_store import SectionStore
 
 ROAD_CLASS = 11  # ASPRS: road surface
-MAX_CORRECTION = 10.0  # m: no pass is moved so far
+MAX_CORRECTION = 10.0  # m: larger than any correction of a pass
 
-# Stations and offsets are stored as integers of 0.1 mm, so that what is read
-# back is to the bit what was passed on in memory.
+# stations and offsets are integers of 0.1 mm, so that reading returns exactly the records that were written
 EXTRA_FIELDS = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", None), ("scanner", "uint8", "Scanner", None),
-         ("station_m", "int32", "Station along the road", COORDINATE_SCALE), ("offset_m", "int32", "Offset, left positive", COORDINATE_SCALE),
-         ("half_width", "uint16", "Half width of the road", 1e-3), ("covered", "uint8", "Beneath something on the road", None)]
+                ("station_m", "int32", "Station along the road", COORDINATE_SCALE), ("offset_m", "int32", "Offset, left positive", COORDINATE_SCALE),
+                ("half_width", "uint16", "Half width of the road", 1e-3), ("covered", "uint8", "Beneath something on the road", None)]
 CORRECTED_FIELD = ("intensity_corrected", "float32", "Intensity, range corrected", None)
 CLUSTER_FIELD = ("cluster", "int32", "Cluster of paint", None)
 REQUIRED_FIELDS = ("road", "pass", "station_m", "offset_m", "half_width")
 
 
-def write_road_points(road_points, path, progress=Progress()):
-    """Write road points as LAS 1.4 class 11 in road order; the file appears whole or not at all.
+def write_road_points(road_points: RoadPoints, path: str | Path, progress: Progress = Progress()) -> None:
+    """Write road points as LAS 1.4, class 11, in road order; a failed run leaves no file.
 
-    Coordinates are those that were measured, to 0.1 mm, or to 1 mm where they lie more than 214 km from the origin and to 1 cm beyond
-    2,147 km; how passes were moved is kept beside them and done again on reading.
-    `path` ends in .laz or .las. Raises RoadExtractionError where it cannot be written.
+    Coordinates are written as measured, with a scale of 0.1 mm, of 1 mm beyond 214 km from the origin and of 1 cm beyond
+    2,147 km. Corrections of passes are written beside them and applied again on reading.
+
+    Parameters
+    ----------
+    road_points : RoadPoints
+    path : of the file, .laz or .las
+    progress : Progress
+
+    Raises
+    ------
+    RoadExtractionError
+        If the file cannot be written.
     """
     sections = road_points.all_sections()
     header = _header(road_points)
@@ -45,7 +58,7 @@ def _header(road_points):
     header = laspy.LasHeader(point_format=6, version="1.4")
     header.scales = np.full(3, scale_for(_farthest(road_points)))
     header.offsets = np.asarray(road_points.origin, float)
-    # The time values are handed on as they came
+    # times are written as they were read
     header.global_encoding.gps_time_type = laspy.header.GpsTimeType.STANDARD
     header.generating_software = "Lanewright"
     extra = EXTRA_FIELDS + ([CORRECTED_FIELD] if road_points.has_corrected else []) + ([CLUSTER_FIELD] if road_points.has_cluster else [])
@@ -63,7 +76,7 @@ def _header(road_points):
 
 
 def _farthest(road_points):
-    """Metres of x or y of any point from the origin; of points whose x and y have 32 bits what these can hold."""
+    """The largest |local x| or |local y| of a point, m; 0 where x and y have 32 bits, which need no coarser scale."""
     if road_points.store.dtype["x"] == np.int32:
         return 0.0
     ends = [int(np.abs(road_points.store.section(road, number)[name]).max(initial=0))
@@ -72,7 +85,7 @@ def _farthest(road_points):
 
 
 def _whole(units, share):
-    """Units of 0.1 mm in those of a file, of which one unit is a share."""
+    """Coordinates in units of the file, of which one unit of 0.1 mm is `share`."""
     return units if abs(share - 1.0) < 1e-12 else np.rint(units * share)
 
 
@@ -100,13 +113,22 @@ def _record(road_points, road, number, header):
     return out
 
 
-def read_road_points(path, progress=Progress()):
-    """RoadPoints from a LAZ file that Lanewright wrote.
+def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadPoints:
+    """Read a LAZ file written by `write_road_points`.
+
+    Parameters
+    ----------
+    path : of the file
+    progress : Progress
+
+    Returns
+    -------
+    RoadPoints
 
     Raises
     ------
     RoadExtractionError
-        If the file lacks the extra fields of road points.
+        If the file lacks the extra fields of road points, or holds no points.
     """
     with open_cloud(path) as reader:
         header = reader.header

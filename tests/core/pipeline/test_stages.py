@@ -41,7 +41,7 @@ def test_the_bar_never_goes_back_and_ends_full_whatever_is_learnt_on_the_way(met
     for name in STAGE_NAMES:
         stages.run(name, name, nothing)
         if name == "survey":
-            stages.know(known)
+            stages.plan(known)
     assert (np.diff(bar.places) >= 0).all()
     assert bar.places[-1] == pytest.approx(1.0)
     assert set(stages.seconds) == set(STAGE_NAMES)
@@ -51,7 +51,7 @@ def test_stages_that_are_left_out_take_no_share():
     bar = Bar()
     stages = Stages(bar, DENSE, "profiles")
     stages.run("survey", "", nothing)
-    stages.know(DENSE, INTENSITY_STAGES)
+    stages.plan(DENSE, INTENSITY_STAGES)
     for name in ("curbs", "edges", "surface"):
         stages.run(name, "", nothing)
     assert bar.places[-1] == pytest.approx(1.0)
