@@ -11,7 +11,7 @@ FILES = sorted(path for path in CORE.rglob("*.py") if "__pycache__" not in path.
 MODULES = [path for path in FILES if path.name != "__init__.py"]
 # Each folder imports only from those before it
 ORDER = ("common", "countries", "io", "curves", "survey", "road", "intensity", "markings", "driving", "assess", "overlay", "sample",
-         "report", "pipeline", "declarations")
+         "report", "pipeline")
 MOST_FILES = 15   # of a folder: more cannot be taken in at a glance
 
 
@@ -21,10 +21,13 @@ def name_of(path):
 
 
 def imported(path):
-    """(module imported, line) of every import from within core, also those inside functions."""
+    """(module imported, line) of every import from within core, also those inside functions; not those for type checkers alone."""
     package = list(name_of(path))[:-1]
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if not isinstance(node, ast.ImportFrom) or not node.level:
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    for_types = {inner for node in ast.walk(tree) if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
+                 for inner in ast.walk(node)}
+    for node in ast.walk(tree):
+        if node in for_types or not isinstance(node, ast.ImportFrom) or not node.level:
             continue
         base = package[:len(package) - (node.level - 1)] + (node.module.split(".") if node.module else [])
         for alias in node.names:
@@ -81,3 +84,52 @@ def test_the_core_never_imports_qgis():
             names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else \
                 [node.module or ""] if isinstance(node, ast.ImportFrom) and not node.level else []
             assert not any(name.split(".")[0] == "qgis" for name in names), path
+
+
+def test_a_constant_has_one_value():
+    """The same name for two numbers sends a reader to the wrong one."""
+    values = defaultdict(lambda: defaultdict(list))
+    for path in MODULES:
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            if not isinstance(node, ast.Assign):
+                continue
+            for target in node.targets:
+                pairs = zip(target.elts, node.value.elts) if isinstance(target, ast.Tuple) and isinstance(node.value, ast.Tuple) \
+                    else [(target, node.value)]
+                for one, value in pairs:
+                    if isinstance(one, ast.Name) and one.id.isupper() and not one.id.startswith("_"):
+                        values[one.id][ast.unparse(value)].append("/".join(name_of(path)))
+    twice = {name: dict(found) for name, found in values.items() if len(found) > 1}
+    assert not twice
+
+
+def public(path):
+    """(qualified name, node) of public functions and methods."""
+    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.FunctionDef) and not node.name.startswith("_"):
+            yield node.name, node
+        if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+            for inner in node.body:
+                if isinstance(inner, ast.FunctionDef) and not inner.name.startswith("_"):
+                    yield f"{node.name}.{inner.name}", inner
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: "/".join(name_of(path)))
+def test_public_functions_say_what_types_they_take_and_give(path):
+    bare = []
+    for name, node in public(path):
+        arguments = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
+        if arguments and arguments[0].arg in ("self", "cls"):
+            arguments = arguments[1:]
+        if node.returns is None or any(argument.annotation is None for argument in arguments):
+            bare.append(name)
+    assert not bare
+
+
+def test_a_public_class_or_function_has_a_name_of_its_own():
+    places = defaultdict(list)
+    for path in MODULES:
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            if isinstance(node, (ast.ClassDef, ast.FunctionDef)) and not node.name.startswith("_"):
+                places[node.name].append("/".join(name_of(path)))
+    assert not {name: found for name, found in places.items() if len(found) > 1}
