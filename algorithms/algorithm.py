@@ -118,9 +118,9 @@ class Algorithm:
         self.add(RasterSpec(name, label, text, optional))
 
     def add_settings(self, specs, only=None, advanced=None):
-        """Fields of a core Settings class, all or `only` those of the names given."""
+        """Fields of a core Settings class, all or `only` those of the names given; what two stages share is asked for once."""
         for spec in specs:
-            if only is None or spec.name in only:
+            if (only is None or spec.name in only) and self.parameter(spec.name) is None:
                 self.add(spec if advanced is None else replace(spec, advanced=advanced))
 
     def add_sink(self, name, label, text="", geometry="any", optional=False, by_default=True, fields=()):

@@ -12,6 +12,7 @@ if ! cmp -s requirements-lint.txt "$stamp"; then
 fi
 "$lint/bin/ruff" check --quiet .
 "$lint/bin/codespell"
+"$lint/bin/mypy" --no-error-summary --python-executable "$LANEWRIGHT_BUILD/venv/bin/python"
 "$lint/bin/bandit" -q -c pyproject.toml -r .
 git ls-files -z | xargs -0 "$lint/bin/detect-secrets-hook"
 echo "No complaints."

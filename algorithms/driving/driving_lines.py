@@ -1,6 +1,7 @@
 """Driving lines and their curve elements."""
 
 from ...core.common.schemas import CURVE_ELEMENTS, DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES
+from ...core.countries.catalogue import COUNTRIES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
 from ..survey_input import frame_of, road_points_of
@@ -9,6 +10,12 @@ from ..texts import tr
 DRIVING = "driving.settings:DrivingSettings"
 
 DRIVING_SETTINGS = (
+    SettingSpec(
+        "COUNTRY", DRIVING, "country", tr("Country"),
+        tr("Whose dashes are looked for, whose usual lane is assumed where the data do not decide, and whose design code curves are checked "
+           "against. It is never guessed; neutral holds for roads of all countries of the catalogue and checks curves against CJJ 37-2012."),
+        choices=tuple(COUNTRIES), advanced=True,
+    ),
     SettingSpec(
         "LANE_WIDTH", DRIVING, "lane_width", tr("Lane width, 0 = as seen on the road (m)"),
         tr("Where only the outer lines are painted, the number of lanes follows from their distance and this width. "

@@ -69,6 +69,7 @@ class RoadMap(Algorithm):
         ))
         for specs in STAGES.values():
             self.add_settings(specs, only=BASIC)
+        self.add_settings(DRIVING_SETTINGS, only=("COUNTRY",))
         for specs in STAGES.values():
             self.add_settings(specs, only=ADVANCED, advanced=True)
         self.add_settings(SURVEY_SETTINGS)

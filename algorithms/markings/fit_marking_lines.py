@@ -1,6 +1,7 @@
 """Markings as curves."""
 
 from ...core.common.schemas import MARKING_LINES, MARKINGS
+from ...core.countries.catalogue import COUNTRIES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
 from ..survey_input import frame_of, paint_of
@@ -9,6 +10,11 @@ from ..texts import tr
 LINES = "markings.lines.fit:MarkingLineSettings"
 
 LINE_SETTINGS = (
+    SettingSpec(
+        "COUNTRY", LINES, "country", tr("Country"),
+        tr("Whose dashes are looked for. It is never guessed; neutral holds for roads of all countries of the catalogue."),
+        choices=tuple(COUNTRIES), advanced=True,
+    ),
     SettingSpec(
         "CURVE", LINES, "curve", tr("Curve fitted to marking lines"),
         tr("Automatic takes the simplest curve that fits (Bayesian information criterion). Choose one to force it "

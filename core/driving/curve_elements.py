@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from ..countries.model import Country
+from ..countries.neutral import NEUTRAL
 from ..curves.base import Arc
 
 FOOT = 0.3048
-# CJJ 37-2012 as printed in the driving-line thesis, table 4.11:
-# design speed km/h, least radius m, least length of a curve m
-DESIGN_CODE = ((30, 85.0, 25.0), (40, 150.0, 35.0), (50, 200.0, 40.0), (60, 300.0, 50.0), (80, 400.0, 70.0))
 MAX_CURVE_RADIUS = 5000.0    # m: flatter arcs are straights to any driver
 MIN_TURN = np.radians(1.0)
 MAX_TURN = np.pi * 0.95   # the tangents of a half circle do not meet
@@ -74,29 +73,33 @@ def curve_points(start: Sequence[float], heading: float, radius: float, delta: f
     return pc, pi, pt
 
 
-def design_check(radius: float, length: float, complete: bool = True) -> tuple[int | None, str]:
-    """Check a curve against CJJ 37-2012, as printed in the driving-line thesis, table 4.11.
+def design_check(radius: float, length: float, complete: bool = True, code: Country = NEUTRAL) -> tuple[int | None, str]:
+    """Check a curve against the design code of a country.
 
     Parameters
     ----------
     radius, length : metres
     complete : False where the arc runs on beyond the line, so that its length is not known
+    code : Country, whose `design_speeds` are asked, slowest first
 
     Returns
     -------
     speed : the highest design speed that the code allows, km/h; None where it allows none
-    text : a sentence
+    text : a sentence that names the code
     """
-    by_radius = max((speed for speed, least, _ in DESIGN_CODE if radius >= least), default=0)
-    by_length = max((speed for speed, _, least in DESIGN_CODE if length >= least), default=0)
+    slowest = code.design_speeds[0]
+    by_radius = max((row.speed for row in code.design_speeds if radius >= row.radius), default=0)
+    by_length = max((row.speed for row in code.design_speeds if length >= row.length), default=0)
     speed = min(by_radius, by_length) if complete else by_radius
     if not by_radius:
-        return None, f"CJJ 37-2012: radius {radius:.0f} m is below {DESIGN_CODE[0][1]:.0f} m, the least for 30 km/h"
-    text = f"CJJ 37-2012: radius allows {by_radius} km/h"
+        return None, f"{code.design_code}: radius {radius:.0f} m is below {slowest.radius:.0f} m, the least for {slowest.speed} km/h"
+    text = f"{code.design_code}: radius allows {by_radius} km/h"
     if not complete:
         return speed, text + "; the curve goes on beyond the line"
+    if not any(row.length for row in code.design_speeds):
+        return speed, text
     if not by_length:
-        return None, text + f", length {length:.0f} m is below {DESIGN_CODE[0][2]:.0f} m, the least for 30 km/h"
+        return None, text + f", length {length:.0f} m is below {slowest.length:.0f} m, the least for {slowest.speed} km/h"
     return speed, text + f", length {by_length} km/h"
 
 
@@ -105,7 +108,7 @@ def is_curve(arc: Arc) -> bool:
     return bool(arc.bend and arc.radius <= MAX_CURVE_RADIUS and MIN_TURN < abs(arc.bend) * arc.length < MAX_TURN)
 
 
-def element_row(arc: Arc, complete: bool, rmse: float, origin: np.ndarray) -> dict[str, Any]:
+def element_row(arc: Arc, complete: bool, rmse: float, origin: np.ndarray, code: Country = NEUTRAL) -> dict[str, Any]:
     """Fields of CURVE_ELEMENTS of an arc.
 
     Parameters
@@ -114,6 +117,7 @@ def element_row(arc: Arc, complete: bool, rmse: float, origin: np.ndarray) -> di
     complete : False where the arc runs on beyond the line
     rmse : metres, of the line from the arc
     origin : (2,) or (3,) map coordinates of the local origin
+    code : Country, whose design code the curve is checked against
 
     Returns
     -------
@@ -121,7 +125,7 @@ def element_row(arc: Arc, complete: bool, rmse: float, origin: np.ndarray) -> di
     """
     delta, left = abs(arc.bend) * arc.length, arc.bend > 0
     pc, pi, pt = curve_points((arc.x + origin[0], arc.y + origin[1]), arc.direction, arc.radius, delta, left)
-    speed, code = design_check(arc.radius, arc.length, complete)
+    speed, text = design_check(arc.radius, arc.length, complete, code)
     return dict(circular_curve_elements(arc.radius, delta), turn="left" if left else "right", pc_x=float(pc[0]), pc_y=float(pc[1]),
                 pi_x=float(pi[0]), pi_y=float(pi[1]), pt_x=float(pt[0]), pt_y=float(pt[1]), rmse_m=float(rmse),
-                speed_kmh=speed, code=code)
+                speed_kmh=speed, code=text)

@@ -11,6 +11,8 @@ import shapely
 
 from ..common.features import Features
 from ..common.schemas import CURVE_ELEMENTS, DRIVING_LINES
+from ..countries.catalogue import country
+from ..countries.neutral import NEUTRAL
 from ..curves.base import Arc, Curve
 from .curve_elements import element_row
 
@@ -73,6 +75,7 @@ class CurveElements:
     complete : (C,) bool, False where the arc runs on beyond the lane
     rmse : (C,) metres, of the lane's places from the arc
     crs : WKT, "" where unknown
+    country : whose design code they are checked against
     """
 
     road: np.ndarray
@@ -83,6 +86,7 @@ class CurveElements:
     complete: np.ndarray
     rmse: np.ndarray
     crs: str = ""
+    country: str = NEUTRAL.name
 
     def __len__(self) -> int:
         return len(self.road)
@@ -139,5 +143,6 @@ def curve_elements_to_features(elements: CurveElements, frame: RoadFrame) -> Fea
     table = Features("None", CURVE_ELEMENTS, crs=elements.crs)
     for k, arc in enumerate(elements.arc):
         table.add(None, road=int(elements.road[k]), lane=int(elements.lane[k]), station_m=float(elements.station[k]),
-                  end_m=float(elements.end[k]), **element_row(arc, bool(elements.complete[k]), float(elements.rmse[k]), frame.origin))
+                  end_m=float(elements.end[k]), **element_row(arc, bool(elements.complete[k]), float(elements.rmse[k]), frame.origin,
+                                                        country(elements.country)))
     return table

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..common.progress import Progress
+from ..countries.catalogue import country
 from ..markings.lines.painted_lines import PaintedLines
 from ..markings.objects.marking_objects import MarkingObjects
 from .alignment import Element, lane_elements
@@ -82,7 +83,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
         progress.report(0.4 + 0.6 * (count + 1) / len(found))
     lines = _driving_lines(rows, marking_lines.crs)
     _report_lengths(lines, side, progress)
-    return lines, _curve_elements(arcs, marking_lines.crs)
+    return lines, _curve_elements(arcs, marking_lines.crs, settings.country)
 
 
 def road_lanes(lines: CrossSections, driven: np.ndarray, settings: DrivingSettings, area: DrivableArea) -> list[LaneTrack]:
@@ -96,10 +97,11 @@ def road_lanes(lines: CrossSections, driven: np.ndarray, settings: DrivingSettin
     area : DrivableArea
     """
     clear = area.clear
-    bounding = select_lane_lines(lines, driven)
+    usual_width = country(settings.country).usual_lane
+    bounding = select_lane_lines(lines, driven, usual_width)
     all_strips = lane_strips(lines, bounding)
     tracks = paired_lanes(lines, all_strips, driven, clear)
-    lane_width = settings.lane_width or typical_lane_width(tracks)
+    lane_width = settings.lane_width or typical_lane_width(tracks, usual_width=usual_width)
     gaps = settings.max_bridge, settings.max_inferred
     tracks = connect(tracks, lines, 0.0, 0.0)
     tracks = [track for track in tracks if len(track) * STATION_STEP >= settings.shortest]
@@ -195,10 +197,10 @@ def _driving_lines(rows: list[dict[str, Any]], crs: str) -> DrivingLines:
         np.append(0, np.cumsum([len(some) for some in places], dtype=int)), crs)
 
 
-def _curve_elements(rows: list[dict[str, Any]], crs: str) -> CurveElements:
+def _curve_elements(rows: list[dict[str, Any]], crs: str, country_name: str) -> CurveElements:
     return CurveElements(
         _column(rows, "road", int), _column(rows, "lane", int), _column(rows, "station", float), _column(rows, "end", float),
-        [row["arc"] for row in rows], _column(rows, "complete", bool), _column(rows, "rmse", float), crs)
+        [row["arc"] for row in rows], _column(rows, "complete", bool), _column(rows, "rmse", float), crs, country_name)
 
 
 def _report_lengths(lines: DrivingLines, side: str, progress: Progress) -> None:

@@ -6,9 +6,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ..countries.neutral import NEUTRAL
 from .cross_section import MIN_BOUNDARY_SPACING, STATION_STEP, CrossSections
 from .lane_tracking import BRIDGED, INFERRED, MEASURED, LaneTrack
-from .settings import DEFAULT_LANE_WIDTH, MAX_LANE_WIDTH, MIN_LANE_WIDTH
+from .settings import MAX_LANE_WIDTH, MIN_LANE_WIDTH
 
 FULL_TRUST_LENGTH = 40.0          # m of measured length that make a line as good as any other
 NARROW_GAP_COST = 0.5             # what two lines too near for a lane between them cost, in lines
@@ -28,7 +29,7 @@ Strip = tuple[int, int, int, int]            # left line, right line, first and 
 Clear = Callable[[LaneTrack], bool]          # whether a lane can be there
 
 
-def select_lane_lines(lines: CrossSections, driven: np.ndarray) -> np.ndarray:
+def select_lane_lines(lines: CrossSections, driven: np.ndarray, usual_width: float = NEUTRAL.usual_lane) -> np.ndarray:
     """Which of the present lines bound lanes.
 
     Strokes of symbols, outlines and gutters make lines too, which cut a lane in two
@@ -41,12 +42,13 @@ def select_lane_lines(lines: CrossSections, driven: np.ndarray) -> np.ndarray:
     ----------
     lines : CrossSections
     driven : (P, K) offset of the passes, NaN where a pass was not
+    usual_width : metres, of a lane of the country
 
     Returns
     -------
     (L, K) bool
     """
-    present = np.isfinite(lines.d) & ~isolated_lines(lines)[:, None]
+    present = np.isfinite(lines.d) & ~isolated_lines(lines, usual_width)[:, None]
     bounding = np.zeros_like(present)
     trust = np.clip(lines.seen_length / FULL_TRUST_LENGTH, 0.02, 1.0)
     for first, last in runs_of_columns(present):
@@ -66,7 +68,7 @@ def select_lane_lines(lines: CrossSections, driven: np.ndarray) -> np.ndarray:
     return bounding
 
 
-def isolated_lines(lines: CrossSections) -> np.ndarray:
+def isolated_lines(lines: CrossSections, usual_width: float = NEUTRAL.usual_lane) -> np.ndarray:
     """(L,) True for short lines between two longer ones that do not part the road as lanes would."""
     present = np.isfinite(lines.d)
     found = np.zeros(len(present), bool)
@@ -84,7 +86,7 @@ def isolated_lines(lines: CrossSections) -> np.ndarray:
         if not len(left) or not len(right) or (np.abs(apart) <= MIN_BOUNDARY_SPACING).any():
             continue
         width = left.min() - right.max()
-        count = lane_count(width, DEFAULT_LANE_WIDTH)
+        count = lane_count(width, usual_width)
         places = width * np.arange(1, count) / max(count, 1)
         found[k] = count > 0 and not (np.abs(places + right.max()) < MAX_DIVIDER_OFFSET).any()
     return found
@@ -245,11 +247,11 @@ def lane_count(width: float, lane_width: float) -> int:
     return min(likely, key=lambda n: (abs(width / n - lane_width), n)) if likely else 0
 
 
-def typical_lane_width(tracks: list[LaneTrack], painted: bool = True) -> float:
-    """The median width of lanes (of those between two painted lines), 3.5 m where there is none."""
+def typical_lane_width(tracks: list[LaneTrack], painted: bool = True, usual_width: float = NEUTRAL.usual_lane) -> float:
+    """The median width of lanes (of those between two painted lines), `usual_width` where there is none."""
     widths = [track.width[track.status == MEASURED] if painted else track.width for track in tracks]
     every = np.concatenate([*widths, np.empty(0)])
-    return float(np.median(every)) if len(every) else DEFAULT_LANE_WIDTH
+    return float(np.median(every)) if len(every) else usual_width
 
 
 def single_line_lanes(lines: CrossSections, bounding: np.ndarray, tracks: list[LaneTrack], driven: np.ndarray,

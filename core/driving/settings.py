@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 from ..common.errors import RoadExtractionError
 from ..common.setting import check_limits, setting
+from ..countries.catalogue import country
+from ..countries.neutral import NEUTRAL
 
-MIN_LANE_WIDTH = 2.2  # m between the lines of a lane
-MAX_LANE_WIDTH = 5.0
-DEFAULT_LANE_WIDTH = 3.5  # where no lane of the road shows its width
+MIN_LANE_WIDTH, MAX_LANE_WIDTH = NEUTRAL.narrowest_lane, NEUTRAL.widest_lane  # m between the lines of a lane, in any country
 MIN_PLACES_PER_FIT = 8    # grid stations of a lane that a curve is fitted to
 TRAFFIC_SIDES = ("automatic", "right", "left")
 
@@ -17,12 +17,13 @@ class DrivingSettings:
     """Lengths in metres.
 
     lane_width : how wide a lane is where only outer lines are painted, or only one line;
-        0 takes the width seen elsewhere on the road, 3.5 m where there is none
+        0 takes the width seen elsewhere on the road, the usual one of the country where there is none
     line_distance : driving line to a line without partner; 0 is half a lane
     traffic_side : the side of the road that is driven on; automatic asks the trajectory
     max_bridge : gaps of all lines (crossings, stop lines) longer than this stay open
     max_inferred : gaps through which some other line of the road leads are closed up to this
     shortest : shorter driving lines are not worth a line
+    country : whose design code curves are checked against; one of core.countries.COUNTRIES
     """
 
     lane_width: float = setting(3.5, MIN_LANE_WIDTH, MAX_LANE_WIDTH, "The lane width", "m", "to take the width from the lines themselves")
@@ -31,9 +32,11 @@ class DrivingSettings:
     max_bridge: float = setting(20.0, 0.0, 200.0, "The longest gap of all lines that is bridged", "m")
     max_inferred: float = setting(60.0, 0.0, 500.0, "The longest gap beside another line that is closed", "m")
     shortest: float = setting(8.0, 0.0, 200.0, "The shortest driving line", "m")
+    country: str = NEUTRAL.name
 
     def __post_init__(self):
         check_limits(self)
+        country(self.country)
         if self.traffic_side not in TRAFFIC_SIDES:
             raise RoadExtractionError(
                 f"There is no traffic side called {self.traffic_side!r}. Choose one of {', '.join(TRAFFIC_SIDES)}.")

@@ -89,6 +89,7 @@ class RoadMap:
     survey_facts : numbers of files, scanners, passes, roads and points, and the sensor heights
     density : CubeDensity of the points near the road and of the road points
     marking_curvature : MarkingCurvature, None without lines
+    country : whose design code the curves are checked against
     """
 
     frame: RoadFrame
@@ -111,6 +112,7 @@ class RoadMap:
     survey_facts: dict = field(default_factory=dict)
     density: tuple[CubeDensity, ...] = ()
     marking_curvature: Any = None
+    country: str = DrivingSettings.country
 
 
 def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_path: str | Path,
@@ -161,7 +163,7 @@ def _map_of(survey, image_path, settings, stages):
     survey.store.clear_cache()
     result = RoadMap(survey.frame, survey.crs, boundaries.curb_points, boundaries.edges, surface, road_points,
                      boundaries.differences, boundaries.length_by_method, seconds=stages.seconds, survey_facts=facts,
-                     density=density)
+                     density=density, country=settings.driving.country)
     result.counts.update(curb_points=len(boundaries.curb_points), road_points=len(road_points))
     if survey.has_intensity:
         _paint(result, image_path, settings, stages)

@@ -10,7 +10,7 @@ import shapely
 
 from ..assess.curvature import CURVATURE_BASE, curvature_along
 from ..common.progress import Progress
-from ..driving.curve_elements import DESIGN_CODE
+from ..countries.catalogue import country
 from .figures import Chart
 from .map_figure import draw_map, grey_background, png
 from .page import Page
@@ -18,7 +18,6 @@ from .page import Page
 MAX_DIAGRAMS = 16         # of curvature; further driving lines are not drawn
 MAX_JOIN_DISTANCE = 0.05  # m between the ends of pieces of one line
 LINE_COLOUR, ELEMENT_COLOUR, CODE_COLOUR = "#2b6ca3", "#009e73", "#d55e00"  # of the curvature diagrams
-SPEEDS_SHOWN = (30, 50, 80)  # km/h, whose least radii are drawn in the curvature diagrams
 STAGE_TITLES = dict(survey="Reading and placing points", curbs="Curbs", edges="Road edges", surface="Road surface",
                     intensity="Intensity correction", image="Intensity image", markings="Marking extraction",
                     outliers="Outlier removal", clusters="Clustering", lines="Marking lines", driving="Driving lines")
@@ -185,21 +184,21 @@ def _curvature_diagrams(page, road_map):
     if not lanes:
         return
     page.heading("Curvature along the driving lines")
-    elements = road_map.curve_elements.rows
+    elements, code = road_map.curve_elements.rows, country(road_map.country)
     for road, lane in list(sorted(lanes))[:MAX_DIAGRAMS]:
         arcs = [row for row in elements if (row["road"], row["lane"]) == (road, lane)]
-        chart = _diagram(sorted(lanes[road, lane], key=lambda piece: piece[1]["station_m"]), arcs)
+        chart = _diagram(sorted(lanes[road, lane], key=lambda piece: piece[1]["station_m"]), arcs, code)
         if chart is not None:
             page.drawing(chart, f"Road {road}, lane {lane}." if len({key[0] for key in lanes}) > 1 else f"Lane {lane}.")
     page.colour_key(((LINE_COLOUR, "the line as drawn"), (ELEMENT_COLOUR, "arcs of the table of curve elements"),
-                     (CODE_COLOUR, "least radius for the speed, CJJ 37-2012")))
+                     (CODE_COLOUR, f"least radius for the speed, {code.design_code}")))
     page.note(f"In 1/m, in the direction of travel, positive to the left; from the headings of the {CURVATURE_BASE:g} m behind and ahead. "
               "Stations are the road's.")
     if len(lanes) > MAX_DIAGRAMS:
         page.note(f"{len(lanes) - MAX_DIAGRAMS} further driving lines are not drawn.")
 
 
-def _diagram(pieces, arcs):
+def _diagram(pieces, arcs, code):
     """SVG of one lane; None where its pieces are too short for a curvature."""
     curves = []
     for line, station in _joined(pieces):
@@ -214,10 +213,11 @@ def _diagram(pieces, arcs):
     reach = max(1.25 * float(np.abs(bends).max()), 0.004)
     stations = np.concatenate([station for station, _ in curves])
     chart = Chart((stations.min(), stations.max()), (-reach, reach), "station (m)", "1/m", height=170)
-    for speed, radius, _ in DESIGN_CODE:
-        if 1 / radius < reach and speed in SPEEDS_SHOWN:
-            chart.level(1 / radius, CODE_COLOUR, f"R {radius:.0f} m, {speed} km/h")
-            chart.level(-1 / radius, CODE_COLOUR)
+    shown = code.design_speeds[::max(1, (len(code.design_speeds) + 1) // 3)]   # three at most: more would lie on each other
+    for row in shown:
+        if 1 / row.radius < reach:
+            chart.level(1 / row.radius, CODE_COLOUR, f"R {row.radius:.0f} m, {row.speed} km/h")
+            chart.level(-1 / row.radius, CODE_COLOUR)
     for first, last, bend in steps:
         chart.curve(np.array([first, last]), np.array([bend, bend]), ELEMENT_COLOUR, f"R {abs(1 / bend):.1f} m", width=5)
     for station, bend in curves:
@@ -247,8 +247,10 @@ def _design_code(page, road_map):
     elements = road_map.curve_elements.rows
     if not elements:
         return
-    page.heading("Design code check, CJJ 37-2012")
+    code = country(road_map.country)
+    page.heading(f"Design code check, {code.design_code}")
     page.table(("Lane", "From (m)", "R (m)", "L (m)", "Allows (km/h)", "Why"),
-               [(row["lane"], row["station_m"], row["radius_m"], row["length_m"], str(row["speed_kmh"] or f"less than {DESIGN_CODE[0][0]}"),
-                 row["code"].removeprefix("CJJ 37-2012: ")) for row in elements])
-    page.table(("Speed (km/h)", "Least radius (m)", "Least length of a curve (m)"), DESIGN_CODE)
+               [(row["lane"], row["station_m"], row["radius_m"], row["length_m"], str(row["speed_kmh"] or f"less than {code.design_speeds[0].speed}"),
+                 row["code"].removeprefix(f"{code.design_code}: ")) for row in elements])
+    page.table(("Speed (km/h)", "Least radius (m)", "Least length of a curve (m)"),
+               [(row.speed, round(row.radius), row.length or "–") for row in code.design_speeds])

@@ -178,12 +178,12 @@ class Side:
         """Height of border `k` (a number or one per point) above the edge of the carriageway."""
         return self.rises[k] + self.on_curb[k] * self.curb(s)
 
-    def rise(self, s, away):
+    def rise(self, s: np.ndarray, away: np.ndarray) -> np.ndarray:
         """Height above the edge of the carriageway at distances `away` from the axis, beyond the edge."""
         strip = np.clip(np.searchsorted(self.borders, away, side="right") - 1, 0, len(self.strips) - 1)
         return self.rise_in_strip(strip, s, away)
 
-    def rise_in_strip(self, strip, s, away):
+    def rise_in_strip(self, strip: np.ndarray, s: np.ndarray, away: np.ndarray) -> np.ndarray:
         """The same on the plane of a given strip, also a little beyond its borders."""
         curb = self.curb(s)
         inner = self.rises[strip] + self.on_curb[strip] * curb

@@ -745,6 +745,16 @@
         </message>
         <message>
             <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>Country</source>
+            <translation>Land</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>Whose dashes are looked for, whose usual lane is assumed where the data do not decide, and whose design code curves are checked against. It is never guessed; neutral holds for roads of all countries of the catalogue and checks curves against CJJ 37-2012.</source>
+            <translation>Dessen Strichlängen gesucht werden, dessen übliche Fahrstreifenbreite gilt, wo die Daten nicht entscheiden, und an dessen Entwurfsrichtlinie Kurven geprüft werden. Es wird nie geraten; neutral gilt für Straßen aller Länder des Katalogs und prüft Kurven nach CJJ 37-2012.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
             <source>Lane width, 0 = as seen on the road (m)</source>
             <translation>Breite der Fahrstreifen, 0 = wie auf der Straße gesehen (m)</translation>
         </message>
@@ -1262,6 +1272,11 @@
             <location filename="../../algorithms/markings/fit_marking_lines.py" />
             <source>spline</source>
             <translation>Spline</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>Whose dashes are looked for. It is never guessed; neutral holds for roads of all countries of the catalogue.</source>
+            <translation>Dessen Strichlängen gesucht werden. Es wird nie geraten; neutral gilt für Straßen aller Länder des Katalogs.</translation>
         </message>
         <message>
             <location filename="../../algorithms/markings/fit_marking_lines.py" />

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...countries.neutral import NEUTRAL
+
 if TYPE_CHECKING:
     from .linking import LinkedLine
 
 MAX_WORN_HOLE = 0.8            # m: a shorter hole is wear within a dash
-MAX_DASH_LENGTH = 10.5         # m: longer paint is solid line
 MIN_GAP_PER_DASH = 0.4         # of the dash length: road markings leave gaps of half a dash (6 m and 3 m) or more
 DASH_PAIR_LENGTH = (1.5, 8.0)  # m: dashes of which two alone are taken for a dashed line
 PERIOD_TOLERANCE = 0.16        # of the period: how evenly dashes must follow each other
@@ -73,10 +74,13 @@ def _painted(strand):
     return list(map(tuple, parts.tolist()))
 
 
-def stretches(line: LinkedLine) -> list[Stretch]:
-    """The stretches of a line: dashed where short intervals follow a dash pattern, solid elsewhere."""
+def stretches(line: LinkedLine, longest_dash: float = NEUTRAL.longest_dash) -> list[Stretch]:
+    """The stretches of a line: dashed where short intervals follow a dash pattern, solid elsewhere.
+
+    longest_dash : metres, longer paint is solid line; of the catalogue of countries
+    """
     spans = painted_intervals(line)
-    long = np.diff(spans, axis=1)[:, 0] > MAX_DASH_LENGTH
+    long = np.diff(spans, axis=1)[:, 0] > longest_dash
     cuts = np.flatnonzero(np.r_[True, np.diff(long.astype(int)) != 0, True])
     found: list[tuple[np.ndarray, DashPattern | None]] = []
     for a, b in zip(cuts[:-1], cuts[1:]):
@@ -139,9 +143,9 @@ def _period(steps):
     return best if best_share >= 0.65 else None
 
 
-def same_dash_pattern(before: LinkedLine, after: LinkedLine) -> bool:
+def same_dash_pattern(before: LinkedLine, after: LinkedLine, longest_dash: float = NEUTRAL.longest_dash) -> bool:
     """Whether two lines are dashed alike and the gap between them is a whole multiple of the period."""
-    ends, begins = stretches(before)[-1], stretches(after)[0]
+    ends, begins = stretches(before, longest_dash)[-1], stretches(after, longest_dash)[0]
     if not ends.dashes or not begins.dashes:
         return False
     period = (ends.dashes.period + begins.dashes.period) / 2

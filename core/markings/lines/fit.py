@@ -12,6 +12,8 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
+from ...countries.catalogue import country
+from ...countries.neutral import NEUTRAL
 from ...curves.model_selection import CURVES
 from ...survey.store.records import join_columns
 from ..objects.marking_objects import MarkingObjects
@@ -38,6 +40,7 @@ class MarkingLineSettings:
     max_gap : m along the road over which paint of one line is linked
     max_bridge : m over which it is linked where the line's own dash pattern or a neighbouring line continues
     min_paint : m of paint without which there is no line (unless it fits another one's dashes)
+    country : whose dashes are looked for; one of core.countries.COUNTRIES
     """
 
     curve: str = "automatic"
@@ -45,9 +48,11 @@ class MarkingLineSettings:
     max_gap: float = setting(13.0, 0.1, 100.0, "The longest gap that is linked", "m")
     max_bridge: float = setting(30.0, 0.1, 200.0, "The longest gap that is bridged", "m")
     min_paint: float = setting(4.0, 0.0, 100.0, "The least paint of a line", "m")
+    country: str = NEUTRAL.name
 
     def __post_init__(self):
         check_limits(self)
+        country(self.country)
         if self.curve not in CURVES:
             raise RoadExtractionError(f"There is no curve called {self.curve!r}. Choose one of {', '.join(CURVES)}.")
         if self.max_gap > self.max_bridge:
@@ -97,7 +102,7 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
             lines, trend = _linked(strands, settings)
         part.report(0.5)
         selected = select_lines(lines, trend, crossings(markings, road), settings.min_paint,
-                                    hatched, frame.passes_of(road))
+                                    hatched, frame.passes_of(road), country(settings.country).longest_dash)
         dropped += len(lines) - len(selected)
         shapes, unwanted = fit_line_shapes([one.line for one in selected], [one.span for one in selected], frame.road(road), trend,
                                      partial(frame.track_height, road), settings)
@@ -118,7 +123,8 @@ def _linked(strands, settings):
     """Lines of strands, and the CommonTrend they have in common."""
     trend = CommonTrend(strands)
     lines = link_lines([LinkedLine([strand]) for strand in strands], trend, settings.max_gap)
-    lines = link_over_long_gaps(lines, trend, settings.max_gap, settings.max_bridge, same_dash_pattern)
+    lines = link_over_long_gaps(lines, trend, settings.max_gap, settings.max_bridge,
+                                 partial(same_dash_pattern, longest_dash=country(settings.country).longest_dash))
     return [without_strays(line, trend) for line in lines], trend
 
 

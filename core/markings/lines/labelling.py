@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...countries.neutral import NEUTRAL
 from ...curves.robust import median
 from ..objects.classify import LANE_CLEARANCE
-from .dash_pattern import MAX_DASH_LENGTH, LinePiece, line_pieces, merged_pieces, stretches
+from .dash_pattern import LinePiece, line_pieces, merged_pieces, stretches
 from .linking import DOUBLE_LINE_SPACING, LinkedLine
 
 if TYPE_CHECKING:
@@ -77,7 +78,7 @@ def _extents(markings, road, kinds):
 
 
 def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarray, min_paint: float, hatched: np.ndarray = np.empty((0, 4)),
-                 passes: Sequence[Pass] = ()) -> list[SelectedLine]:
+                 passes: Sequence[Pass] = (), longest_dash: float = NEUTRAL.longest_dash) -> list[SelectedLine]:
     """The lines worth drawing.
 
     A line needs paint: `min_paint` metres of it, or two dashes of a pattern, or one dash
@@ -93,6 +94,7 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
     min_paint : metres
     hatched : (K, 4) as `hatching_bars` gives it
     passes : the drives over the road
+    longest_dash : metres, longer paint is solid line
 
     Returns
     -------
@@ -100,17 +102,17 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
     """
     if not lines:
         return []
-    parts = [stretches(line) for line in lines]
+    parts = [stretches(line, longest_dash) for line in lines]
     level = [_level(line, trend) for line in lines]
     patterns = [_dash_patterns(stretch) for stretch in parts]
     painted_to = max(line.last for line in lines)
     painted_from = min(line.first for line in lines)
-    frayed, double = _beside(lines, trend)
+    frayed, double = _beside(lines, trend, longest_dash)
     outside = _beyond_the_edge(lines, level)
     found = []
     for k, line in enumerate(lines):
         single = None
-        if not patterns[k] and line.painted < MAX_DASH_LENGTH:
+        if not patterns[k] and line.painted < longest_dash:
             single = _dash_of_another(k, lines, patterns, level)
         if frayed[k] or outside[k] or _frames_hatching(line, hatched) or not (line.painted >= min_paint or patterns[k] or single):
             continue
@@ -156,7 +158,7 @@ def _dash_of_another(k, lines, patterns, level):
     return None
 
 
-def _beside(lines, trend):
+def _beside(lines, trend, longest_dash):
     """(N,) frayed: a sliver beside a longer line; (N,) double: one of two equal lines side by side."""
     frayed, double = np.zeros(len(lines), bool), np.zeros(len(lines), bool)
     tracks = []
@@ -178,7 +180,7 @@ def _beside(lines, trend):
                 # between two junctions both lines of a double are short, and one of them may go on farther beyond
                 least = max(MIN_TWIN_PAINT, MIN_SHARED_PAINT * _painted_there(lines[j], lines[k]))
                 twin = away >= DOUBLE_LINE_SPACING[0] and lines[k].painted >= least
-                if not twin and lines[k].painted < MAX_FRAYED_SHARE * lines[j].painted and lines[k].painted < MAX_DASH_LENGTH:
+                if not twin and lines[k].painted < MAX_FRAYED_SHARE * lines[j].painted and lines[k].painted < longest_dash:
                     frayed[k] = True
                 elif away >= DOUBLE_LINE_SPACING[0]:
                     double[k] = True

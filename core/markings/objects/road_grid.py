@@ -5,7 +5,7 @@ Points are put into the cells piece by piece: no array of all points is made.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -67,7 +67,7 @@ class PieceOfRoad:
     offsets: np.ndarray
 
     @classmethod
-    def of(cls, points, first, last, step=1):
+    def of(cls, points: Points, first: int, last: int, step: int = 1) -> PieceOfRoad:
         """The points of rows `first` to before `last`; one of `step` gives the offsets."""
         records = points.records
         d = records["d"]
@@ -113,7 +113,7 @@ class RoadCells:
     half_width: np.ndarray
 
     @classmethod
-    def of(cls, parts, first, last):
+    def of(cls, parts: Iterable[PieceOfRoad], first: int, last: int) -> RoadCells | None:
         """RoadCells of the rows from `first` to before `last` of some PieceOfRoad; None where no point lies in them."""
         parts = [part for part in parts if part.grid.first < last and part.grid.last > first]
         if not parts:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from lanewright.core.countries.catalogue import country
 from lanewright.core.driving.curve_elements import FOOT, circular_curve_elements, curve_points, design_check
 from lined_streets import EAST, NORTH, Street
 
@@ -67,3 +68,13 @@ def test_the_table_of_a_bend_has_a_row_per_lane_with_its_own_radius_in_the_direc
             away = np.hypot(row[f"{point}_x"] - EAST, row[f"{point}_y"] - NORTH - 100.0)
             assert away == pytest.approx(row["radius_m"], abs=0.1)
     assert outer["pc_x"] < outer["pt_x"] and inner["pc_x"] > inner["pt_x"]
+
+
+@pytest.mark.parametrize("name, radius, speed, code", [
+    ("neutral", 210.0, 50, "CJJ 37-2012"), ("japan", 160.0, 60, "Road Structure Ordinance"), ("germany", 500.0, 100, "RAA 2008"),
+    ("united-states", 240.0, 80, "AASHTO"), ("germany", 200.0, None, "RAA 2008"),
+])
+def test_a_curve_is_checked_against_the_code_of_the_country_and_the_text_names_it(name, radius, speed, code):
+    found, text = design_check(radius, 80.0, code=country(name))
+    assert found == speed
+    assert text.startswith(code)
