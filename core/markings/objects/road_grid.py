@@ -142,7 +142,7 @@ def road_pieces(road_points: RoadPoints, road: int, first: int, last: int) -> It
             yield begin, end, points
 
 
-def cell_numbers(records: Columns, grid: RoadGrid) -> Iterator[tuple[slice, np.ndarray]]:
+def cell_numbers(records: np.ndarray | Columns, grid: RoadGrid) -> Iterator[tuple[slice, np.ndarray]]:
     """Yield (slice of the records, (n,) int32 flat numbers of their cells in a grid), some thousand at a time."""
     s, d = records["s"], records["d"]
     width = np.int32(grid.shape[1])

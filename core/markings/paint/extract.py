@@ -324,6 +324,8 @@ class WindowExtractor:
             return self._nothing()
         parts = cells_of_road(self.road_points, self.road, first - WINDOW_HALO, last + WINDOW_HALO)
         cells = RoadCells.of(parts, first - WINDOW_HALO, last + WINDOW_HALO)
+        if cells is None:
+            return self._nothing()
         points = self._points(first - WINDOW_HALO, last + WINDOW_HALO)
         cell = np.concatenate([cell for _, cell in cell_numbers(points.records, cells.grid)])
         averages = CellAverages.of(cell, points.value, points.records["z"], cells.grid.shape)
