@@ -7,13 +7,13 @@ from importlib import import_module
 from typing import Any
 
 
-def public(package: str, modules: dict[str, str]) -> tuple[Callable[[str], Any], list[str]]:
+def public(package: str, modules: dict[str, tuple[str, ...]]) -> tuple[Callable[[str], Any], list[str]]:
     """What an `__init__` needs to offer names of the modules beside it.
 
     Parameters
     ----------
     package : `__name__` of the folder
-    modules : public name -> module that defines it, relative to the folder
+    modules : module, relative to the folder -> public names that it defines
 
     Returns
     -------
@@ -22,16 +22,18 @@ def public(package: str, modules: dict[str, str]) -> tuple[Callable[[str], Any],
 
     Examples
     --------
-    `__getattr__, __all__ = public(__name__, {"open_survey": "open_survey", "Survey": "open_survey"})`
+    `__getattr__, __all__ = public(__name__, {"open_survey": ("open_survey", "Survey")})`
     """
 
+    module_of = {name: module for module, names in modules.items() for name in names}
+
     def get(name: str) -> Any:
-        if name not in modules:
+        if name not in module_of:
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
-        module = import_module(f".{modules[name]}", package)
+        module = import_module(f".{module_of[name]}", package)
         # a module may have the name of its function: importing it set the folder's attribute to the module
         value = getattr(module, name)
         setattr(import_module(package), name, value)
         return value
 
-    return get, sorted(modules)
+    return get, sorted(module_of)

@@ -9,9 +9,13 @@ from __future__ import annotations
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "AssessedLayer": "inputs", "BoundaryAccuracy": "boundaries", "BoundaryAccuracySettings": "boundaries", "LineAccuracy": "driving_lines",
-    "LineAccuracySettings": "driving_lines", "LineMatch": "driving_lines", "MarkingAccuracy": "markings", "MarkingAccuracySettings": "markings",
-    "OutcomeRaster": "burn", "Rates": "metrics", "assess_boundaries": "boundaries", "assess_markings": "markings", "boundary_layer": "layers",
-    "compare_lines": "driving_lines", "curvature_along": "curvature", "driving_line_layer": "layers", "f1_of": "metrics",
-    "marking_curvature": "curvature", "marking_layer": "layers", "match_lines": "driving_lines", "polygons_of_raster": "raster_polygons",
+    "boundaries": ("BoundaryAccuracy", "BoundaryAccuracySettings", "assess_boundaries"),
+    "burn": ("OutcomeRaster",),
+    "curvature": ("curvature_along", "marking_curvature"),
+    "driving_lines": ("LineAccuracy", "LineAccuracySettings", "LineMatch", "compare_lines", "match_lines"),
+    "inputs": ("AssessedLayer",),
+    "layers": ("boundary_layer", "driving_line_layer", "marking_layer"),
+    "markings": ("MarkingAccuracy", "MarkingAccuracySettings", "assess_markings"),
+    "metrics": ("Rates", "f1_of"),
+    "raster_polygons": ("polygons_of_raster",),
 })

@@ -2,3 +2,15 @@
 
 In: arrays, items of work and settings of any stage. Out: ordered results, `Features` and `RoadExtractionError`.
 """
+
+from ..lazy import public
+
+__getattr__, __all__ = public(__name__, {
+    "errors": ("Cancelled", "RoadExtractionError"),
+    "features": ("Features", "Field"),
+    "memory": ("ScratchBuffers", "trim_heap"),
+    "order_statistics": ("above_least", "ascending", "bucket_argsort", "decimate_cells", "order_by", "quantile_in_order", "quantiles", "ranked"),
+    "parallel": ("cancellation_scope", "check_cancelled", "ordered_map"),
+    "progress": ("Progress", "RemainingTime"),
+    "setting": ("Limits", "check_limits", "limits_of"),
+})

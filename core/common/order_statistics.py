@@ -30,7 +30,8 @@ def order_by(*keys: np.ndarray) -> np.ndarray:
         for shift in range(0, max(int(key.max()).bit_length(), 1), RADIX_BITS):
             digit = (key >> shift).astype(np.uint16)
             order = np.argsort(digit, kind="stable") if order is None else order.take(np.argsort(digit.take(order), kind="stable"))
-    assert order is not None, "at least one key is needed"
+    if order is None:
+        raise ValueError("at least one key is needed")
     return order
 
 

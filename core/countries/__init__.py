@@ -7,5 +7,6 @@ from __future__ import annotations
 
 from ..lazy import public
 
-__getattr__, __all__ = public(__name__, {"Country": "catalogue", "DesignSpeed": "catalogue",
-                                            "COUNTRIES": "catalogue", "country": "catalogue"})
+__getattr__, __all__ = public(__name__, {
+    "catalogue": ("COUNTRIES", "Country", "DesignSpeed", "country"),
+})

@@ -9,10 +9,13 @@ from __future__ import annotations
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "Arc": "base", "Clothoid": "clothoid", "Curve": "base", "CurveFit": "curve_fit", "Ellipse": "ellipse", "Polynomial": "polynomial",
-    "Spline": "bspline",
-    "curve_from_params": "model_selection", "element_ranges": "segmentation", "fit_circle": "line_circle", "fit_circles": "line_circle",
-    "fit_clothoid": "clothoid", "fit_clothoids": "clothoid", "fit_curve": "model_selection", "fit_curves": "model_selection",
-    "fit_ellipse": "ellipse", "fit_line": "line_circle", "fit_lines": "line_circle", "fit_polynomial": "polynomial",
-    "fit_spline": "bspline", "fit_splines": "bspline", "segment_line": "segmentation", "select_each": "model_selection", "smooth_profiles": "bspline",
+    "base": ("Arc", "Curve"),
+    "bspline": ("Spline", "fit_spline", "fit_splines", "smooth_profiles"),
+    "clothoid": ("Clothoid", "fit_clothoid", "fit_clothoids"),
+    "curve_fit": ("CurveFit",),
+    "ellipse": ("Ellipse", "fit_ellipse"),
+    "line_circle": ("fit_circle", "fit_circles", "fit_line", "fit_lines"),
+    "model_selection": ("curve_from_params", "fit_curve", "fit_curves", "select_each"),
+    "polynomial": ("Polynomial", "fit_polynomial"),
+    "segmentation": ("element_ranges", "segment_line"),
 })

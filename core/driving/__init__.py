@@ -7,7 +7,9 @@ In: `PaintedLines`, with `MarkingObjects`, `RoadEdges` and road points where the
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "CurveElements": "driving_layers", "DrivingLines": "driving_layers", "DrivingSettings": "settings", "RoadEdges": "road_edges",
-    "circular_curve_elements": "curve_elements", "curve_elements_to_features": "driving_layers", "design_check": "curve_elements",
-    "driving_lines_to_features": "driving_layers", "edges_from_features": "road_edges", "make_driving_lines": "driving_lines",
+    "curve_elements": ("circular_curve_elements", "design_check"),
+    "driving_layers": ("CurveElements", "DrivingLines", "curve_elements_to_features", "driving_lines_to_features"),
+    "driving_lines": ("make_driving_lines",),
+    "road_edges": ("RoadEdges", "edges_from_features"),
+    "settings": ("DrivingSettings",),
 })

@@ -8,9 +8,9 @@ from __future__ import annotations
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "IntensitySettings": "correction", "IntensityReport": "correction", "correct_intensity": "correction",
-    "ImageSettings": "image", "make_intensity_image": "image", "write_intensity_image": "image", "check_fits": "image",
-    "IntensityRaster": "tiled_image", "TiledImage": "tiled_image",
-    "check_image_shows": "coverage",
-    "Saturation": "saturation", "saturation_of": "saturation",
+    "correction": ("IntensityReport", "IntensitySettings", "correct_intensity"),
+    "coverage": ("check_image_shows",),
+    "image": ("ImageSettings", "check_fits", "make_intensity_image", "write_intensity_image"),
+    "saturation": ("Saturation", "saturation_of"),
+    "tiled_image": ("IntensityRaster", "TiledImage"),
 })

@@ -6,17 +6,8 @@ In: text tables, tiled GeoTIFFs, CRS definitions. Out: arrays with their metadat
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "IntensityImage": "geotiff",
-    "NumberTable": "text_table",
-    "check_metric": "crs",
-    "check_projected": "crs",
-    "crs_note": "crs",
-    "filled_tiles": "geotiff",
-    "gdal_exceptions": "gdal_errors",
-    "horizontal_part": "crs",
-    "new_geotiff": "geotiff",
-    "parse_crs": "crs",
-    "read_number_table": "text_table",
-    "same_crs": "crs",
-    "write_display_image": "geotiff",
+    "crs": ("check_metric", "check_projected", "crs_note", "horizontal_part", "parse_crs", "same_crs"),
+    "gdal_errors": ("gdal_exceptions",),
+    "geotiff": ("IntensityImage", "filled_tiles", "new_geotiff", "write_display_image"),
+    "text_table": ("NumberTable", "read_number_table"),
 })

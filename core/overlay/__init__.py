@@ -6,12 +6,8 @@ In: an image and ground control points. Out: a polynomial, its residuals, and th
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "ControlPoints": "control_points",
-    "GeoreferenceSettings": "georeference",
-    "Georeferencing": "georeference",
-    "SourceImage": "source_image",
-    "draw_image": "warp",
-    "open_image": "source_image",
-    "read_control_points": "control_points",
-    "residual_vectors": "georeference",
+    "control_points": ("ControlPoints", "read_control_points"),
+    "georeference": ("GeoreferenceSettings", "Georeferencing", "residual_vectors"),
+    "source_image": ("SourceImage", "open_image"),
+    "warp": ("draw_image",),
 })

@@ -8,6 +8,10 @@ from __future__ import annotations
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "Page": "page", "boundary_report": "assessment", "driving_report": "assessment", "georeferencing_report": "georeferencing",
-    "inspection_report": "inspection", "intensity_correction_report": "intensity", "marking_report": "assessment", "road_map_report": "road_map",
+    "assessment": ("boundary_report", "driving_report", "marking_report"),
+    "georeferencing": ("georeferencing_report",),
+    "inspection": ("inspection_report",),
+    "intensity": ("intensity_correction_report",),
+    "page": ("Page",),
+    "road_map": ("road_map_report",),
 })

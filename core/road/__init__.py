@@ -6,8 +6,5 @@ In: a `Survey`. Out: curb points, road edges, road points and the outline of the
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "BoundarySettings": "detect_boundaries",
-    "RoadBoundaries": "detect_boundaries",
-    "draw_boundaries": "detect_boundaries",
-    "find_curb_points": "detect_boundaries",
+    "detect_boundaries": ("BoundarySettings", "RoadBoundaries", "draw_boundaries", "find_curb_points"),
 })

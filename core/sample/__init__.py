@@ -6,9 +6,6 @@ In: `SampleSettings`. Out: a `SampleSurvey` with points, trajectory and truth, a
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "SampleSettings": "survey",
-    "SampleSurvey": "survey",
-    "make_sample_survey": "survey",
-    "uav_control_points": "orthophoto",
-    "write_uav_image": "orthophoto",
+    "orthophoto": ("uav_control_points", "write_uav_image"),
+    "survey": ("SampleSettings", "SampleSurvey", "make_sample_survey"),
 })

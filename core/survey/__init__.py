@@ -6,9 +6,7 @@ In: point cloud files and a trajectory. Out: a `Survey`, whose points lie in the
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "Survey": "open_survey",
-    "SurveySettings": "open_survey",
-    "inspect_survey": "inspection",
-    "read_road_points": "road_points_las",
-    "write_road_points": "road_points_las",
+    "inspection": ("inspect_survey",),
+    "open_survey": ("Survey", "SurveySettings"),
+    "road_points_las": ("read_road_points", "write_road_points"),
 })

@@ -1,6 +1,7 @@
 """The order of the folders of `core`, and the words in it, read from the code itself."""
 
 import ast
+import importlib
 from collections import defaultdict
 from pathlib import Path
 
@@ -133,3 +134,13 @@ def test_a_public_class_or_function_has_a_name_of_its_own():
             if isinstance(node, (ast.ClassDef, ast.FunctionDef)) and not node.name.startswith("_"):
                 places[node.name].append("/".join(name_of(path)))
     assert not {name: found for name, found in places.items() if len(found) > 1}
+
+
+@pytest.mark.parametrize("folder", sorted({path.parent for path in FILES} - {CORE}), ids=lambda folder: folder.relative_to(CORE).as_posix())
+def test_a_folder_offers_its_public_names(folder):
+    package = importlib.import_module(".".join(("lanewright.core", *folder.relative_to(CORE).parts)))
+    names = getattr(package, "__all__", [])
+    assert names or not [path for path in folder.glob("*.py") if path.name != "__init__.py"]
+    for name in names:
+        offered = getattr(package, name)
+        assert type(offered) is not type(ast), f"{name} is a file of the folder and no public name"

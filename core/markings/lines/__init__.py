@@ -7,7 +7,8 @@ dashes linked and gaps marked as bridged.
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "FrameLines": "frame_lines", "MarkingLineSettings": "fit", "PaintedLines": "painted_lines", "fit_marking_lines": "fit",
-    "lines_from_features": "painted_lines", "lines_in_frame": "frame_lines", "lines_to_features": "painted_lines",
-    "named_by_lines": "naming",
+    "fit": ("MarkingLineSettings", "fit_marking_lines"),
+    "frame_lines": ("FrameLines", "lines_in_frame"),
+    "naming": ("named_by_lines",),
+    "painted_lines": ("PaintedLines", "lines_from_features", "lines_to_features"),
 })

@@ -8,6 +8,7 @@ from __future__ import annotations
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "MarkingSettings": "extract", "extract_markings": "extract",
-    "PeakSettings": "peaks", "SegmentSettings": "point_segments",
+    "extract": ("MarkingSettings", "extract_markings"),
+    "peaks": ("PeakSettings",),
+    "point_segments": ("SegmentSettings",),
 })

@@ -6,7 +6,6 @@ In: a `Survey` and its main curbs. Out: further curb points with their kind.
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "CurbReturn": "classify",
-    "add_curb_returns": "detect",
-    "find_curb_returns": "detect",
+    "classify": ("CurbReturn",),
+    "detect": ("add_curb_returns", "find_curb_returns"),
 })

@@ -162,7 +162,8 @@ def averaged(raster: GroundRaster | None, layer_jump: float) -> GroundRaster | N
     count = count[held]
     x, y, h = (np.bincount(cell, v)[held] / count for v in (raster.x, raster.y, raster.h))
     mean = ground_raster(x, y, h, layer_jump)
-    assert mean is not None
+    if mean is None:
+        raise ValueError("a raster with points has an average")
     mean.noise = max(raster.noise / np.sqrt(np.median(count)), MIN_SCANNER_NOISE)
     return mean
 

@@ -6,6 +6,5 @@ In: curb points. Out: smooth lines, cut into pieces by what was measured and wha
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "EdgeSettings": "fit",
-    "fit_road_edges": "fit",
+    "fit": ("EdgeSettings", "fit_road_edges"),
 })

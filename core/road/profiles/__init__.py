@@ -6,9 +6,8 @@ In: a `Survey`. Out: curb points found as steps on profiles across the road, and
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "CurbSettings": "detect",
-    "detect_curbs": "detect",
-    "find_averaged_steps": "averaged_steps",
-    "find_steps": "steps",
-    "find_principal_points": "principal_points",
+    "averaged_steps": ("find_averaged_steps",),
+    "detect": ("CurbSettings", "detect_curbs"),
+    "principal_points": ("find_principal_points",),
+    "steps": ("find_steps",),
 })

@@ -5,4 +5,7 @@ In: a `Survey` and, optionally, road edges. Out: the points of the road and the 
 
 from ...lazy import public
 
-__getattr__, __all__ = public(__name__, {"SurfaceSettings": "extract", "extract_road_surface": "extract", "edge_offsets": "limits"})
+__getattr__, __all__ = public(__name__, {
+    "extract": ("SurfaceSettings", "extract_road_surface"),
+    "limits": ("edge_offsets",),
+})

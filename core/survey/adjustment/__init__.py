@@ -5,4 +5,8 @@ In: a `Survey` whose passes disagree. Out: corrections along each pass, which ar
 
 from ...lazy import public
 
-__getattr__, __all__ = public(__name__, {"adjust_passes": "adjust", "pass_offsets": "register", "PassCorrections": "corrections"})
+__getattr__, __all__ = public(__name__, {
+    "adjust": ("adjust_passes",),
+    "corrections": ("PassCorrections",),
+    "register": ("pass_offsets",),
+})

@@ -5,4 +5,7 @@ In: a `Trajectory`. Out: a `RoadFrame` that gives the station and offset of any 
 
 from ...lazy import public
 
-__getattr__, __all__ = public(__name__, {"build_frame": "road_frame", "RoadFrame": "road_frame", "Road": "road_frame", "Pass": "passes"})
+__getattr__, __all__ = public(__name__, {
+    "passes": ("Pass",),
+    "road_frame": ("Road", "RoadFrame", "build_frame"),
+})

@@ -6,13 +6,8 @@ In: paths. Out: checked headers, blocks of points in file order, and files that 
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "CloudHeader": "reader",
-    "ParallelCloudReader": "parallel_reader",
-    "find_damage": "guard",
-    "new_laz": "writer",
-    "open_cloud": "reader",
-    "read_blocks": "reader",
-    "read_header": "reader",
-    "read_headers": "reader",
-    "scale_for": "writer",
+    "guard": ("find_damage",),
+    "parallel_reader": ("ParallelCloudReader",),
+    "reader": ("CloudHeader", "open_cloud", "read_blocks", "read_header", "read_headers"),
+    "writer": ("new_laz", "scale_for"),
 })

@@ -6,9 +6,6 @@ In: time and place of points. Out: rotation rate, mirror phase, and line and pha
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "MirrorPhase": "mirror_phase",
-    "ScanLattice": "scan_lattice",
-    "find_lattice": "scan_lattice",
-    "scanner_runs": "scan_lattice",
-    "time_order": "scan_lattice",
+    "mirror_phase": ("MirrorPhase",),
+    "scan_lattice": ("ScanLattice", "find_lattice", "scanner_runs", "time_order"),
 })

@@ -6,13 +6,9 @@ In: compact point records in any order. Out: the points of one section, in an or
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "COORDINATE_SCALE": "records",
-    "Columns": "columns",
-    "PointSubset": "point_subset",
-    "Points": "records",
-    "ROAD_POINT": "records",
-    "RoadPoints": "road_points",
-    "SURVEY_POINT": "records",
-    "SectionStore": "section_store",
-    "to_units": "records",
+    "columns": ("Columns",),
+    "point_subset": ("PointSubset",),
+    "records": ("COORDINATE_SCALE", "Points", "ROAD_POINT", "SURVEY_POINT", "to_units"),
+    "road_points": ("RoadPoints",),
+    "section_store": ("SectionStore",),
 })

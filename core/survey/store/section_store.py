@@ -191,7 +191,8 @@ class SectionStore:
         return part[name].take(rows, mode="clip") if isinstance(part, Columns) else self._spilled(part[name], rows)
 
     def _spilled(self, stored, rows=None):
-        assert self._file is not None  # a StoredColumn exists only where something was spilled
+        if self._file is None:  # a StoredColumn exists only where something was spilled
+            raise ValueError("nothing was written to a temporary file")
         return self._file.get(stored, rows=rows)
 
     def first_unit(self, section: int) -> int:

@@ -6,12 +6,9 @@ In: text tables, SBET files or columns of a layer. Out: a cleaned `Trajectory` i
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "Trajectory": "trajectory",
-    "align_time": "time_systems",
-    "clean_trajectory": "trajectory",
-    "columns_by_role": "columns",
-    "read_trajectory": "reader",
-    "reproject_trajectory": "reprojection",
-    "trajectory_from_columns": "reader",
-    "unwrap_time": "time_systems",
+    "columns": ("columns_by_role",),
+    "reader": ("read_trajectory", "trajectory_from_columns"),
+    "reprojection": ("reproject_trajectory",),
+    "time_systems": ("align_time", "unwrap_time"),
+    "trajectory": ("Trajectory", "clean_trajectory"),
 })
