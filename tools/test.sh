@@ -6,7 +6,7 @@
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/env.sh"
 cd "$LANEWRIGHT_ROOT"
-cores="$(nproc)"
+cores="$(env -u OMP_NUM_THREADS nproc)" # nproc believes that variable, and env.sh sets it
 part=("$LANEWRIGHT_BUILD/venv/bin/python" -m pytest -q
   -n "${LANEWRIGHT_TEST_WORKERS:-$((cores < 8 ? cores : 8))}" --dist loadfile --no-loadscope-reorder)
 # With -k a part may have nothing to run (pytest says 5); without arguments that is a failure.
