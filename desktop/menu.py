@@ -30,7 +30,7 @@ class Menu(QObject):
         self.manual = ManualWindow(iface.mainWindow())
         theme = QgsApplication.getThemeIcon
         self._add(tr("Road map…"), self.open_road_map, tr("From a survey to driving lines in one call"), QIcon(str(ICON)))
-        self._add(tr("Run the sample survey"), self.sample.start, tr("A made street through the whole chain, into this project"),
+        self._add(tr("Run the sample survey"), self.sample.start, tr("A simulated street through the whole chain, into this project"),
                   theme("/mActionStart.svg"))
         self._add(tr("Print layout of the road map"), self.open_layout, tr("A map of the layers that Lanewright made"),
                   theme("/mActionNewLayout.svg"))

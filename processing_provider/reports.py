@@ -15,5 +15,5 @@ def note_report(path: str) -> None:
 
 
 def last_report() -> str:
-    """Path of the last report of this session of QGIS; "" where there was none, or it is gone."""
+    """Path of the last report since QGIS was started; "" where there was none, or it is gone."""
     return _last if _last and Path(_last).is_file() else ""

@@ -97,7 +97,7 @@ SEGMENT_SETTINGS = (
 
 class ExtractMarkings(Algorithm):
     ID, TITLE, GROUP = "extractmarkings", "Extract markings", "Markings"
-    SUMMARY = "Tells paint from asphalt by its intensity and takes the points of it."
+    SUMMARY = "Separates paint from asphalt by intensity and keeps the points of the paint."
     TAGS = ("road marking", "lane marking", "paint", "threshold", "otsu", "intensity peak", "density")
 
     def declare(self):

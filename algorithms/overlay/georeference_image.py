@@ -54,7 +54,7 @@ NUMBERS = (
 
 class GeoreferenceImage(Algorithm):
     ID, TITLE, GROUP = "georeferenceimage", "Georeference image", "Orthoimages"
-    SUMMARY = "Places a UAV image on the map by ground control points, and tells how well it lies there."
+    SUMMARY = "Places a UAV image on the map by ground control points, and reports its accuracy."
     HELP = ("Control points come as a layer or as a file, each with pixel, line, easting and northing; pixel and line count from the "
             "outer corner of the first pixel. The result is a GeoTIFF in the CRS of the control points.\n\n"
             "Spread the points over the whole image, its corners first: between them the polynomial is held, outside it runs away. Take twice "

@@ -25,7 +25,7 @@ PLANE_SETTINGS = tuple(replace(spec, advanced=True) for spec in SCANLINE_SETTING
 
 class DetectBoundaries(Algorithm):
     ID, TITLE, GROUP = "detectboundaries", "Detect road boundaries", "Road"
-    SUMMARY = "Road edges straight from the point clouds: one door to every way of finding them."
+    SUMMARY = "Road edges straight from the point clouds, by profiles, by scanlines or by both."
     TAGS = ("curb", "kerb", "road edge", "boundary", "scanline")
 
     def declare(self):

@@ -32,7 +32,7 @@ NUMBERS = (
 
 class InspectSurvey(Algorithm):
     ID, TITLE, GROUP = "inspectsurvey", "Inspect survey", "Survey"
-    SUMMARY = "Tells what point clouds and trajectory hold, and whether they fit together, before work is done on them."
+    SUMMARY = "Reports what point clouds and trajectory contain, and whether they fit together, before any processing."
     HELP = "What the road map would stumble over, such as a geographic CRS or two clocks, is said with a way on."
     TAGS = ("density", "report", "las", "header", "overlap")
 

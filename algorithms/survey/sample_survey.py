@@ -65,7 +65,7 @@ TRUTHS = (
 
 class SampleSurvey(Algorithm):
     ID, TITLE, GROUP = "samplesurvey", "Sample survey", "Survey"
-    SUMMARY = "Makes a mobile laser scanning survey of a street that exists only on paper, together with the truth about it."
+    SUMMARY = "Simulates a mobile laser scanning survey of a street, together with its known truth."
     HELP = "Every pulse of two scanners is followed to what it meets first. Figures reached on it are figures on simulated data."
     TAGS = ("sample", "simulation", "test data")
 

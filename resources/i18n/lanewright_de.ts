@@ -825,7 +825,7 @@
         </message>
         <message>
             <location filename="../../algorithms/driving/driving_lines.py" />
-            <source>With it a lane is led through zebra crossings and past stop lines, and gaps are told apart.</source>
+            <source>With it a lane continues through zebra crossings and past stop lines, and kinds of gaps are distinguished.</source>
             <translation>Damit wird ein Fahrstreifen über Zebrastreifen und Haltlinien geführt, und Lücken werden unterschieden.</translation>
         </message>
         <message>
@@ -1040,7 +1040,7 @@
         </message>
         <message>
             <location filename="../../algorithms/markings/extract_markings.py" />
-            <source>Tells paint from asphalt by its intensity and takes the points of it.</source>
+            <source>Separates paint from asphalt by intensity and keeps the points of the paint.</source>
             <translation>Unterscheidet Farbe an ihrer Intensität vom Asphalt und nimmt ihre Punkte.</translation>
         </message>
         <message>
@@ -1495,7 +1495,7 @@
         </message>
         <message>
             <location filename="../../algorithms/overlay/georeference_image.py" />
-            <source>Places a UAV image on the map by ground control points, and tells how well it lies there.</source>
+            <source>Places a UAV image on the map by ground control points, and reports its accuracy.</source>
             <translation>Bringt ein UAV-Bild über Passpunkte auf die Karte und sagt, wie gut es dort liegt.</translation>
         </message>
         <message>
@@ -1925,7 +1925,7 @@
         </message>
         <message>
             <location filename="../../algorithms/road/detect_boundaries.py" />
-            <source>Road edges straight from the point clouds: one door to every way of finding them.</source>
+            <source>Road edges straight from the point clouds, by profiles, by scanlines or by both.</source>
             <translation>Straßenränder direkt aus den Punktwolken: eine Tür zu allen Wegen, sie zu finden.</translation>
         </message>
         <message>
@@ -2315,7 +2315,7 @@
         </message>
         <message>
             <location filename="../../algorithms/survey/inspect_survey.py" />
-            <source>Tells what point clouds and trajectory hold, and whether they fit together, before work is done on them.</source>
+            <source>Reports what point clouds and trajectory contain, and whether they fit together, before any processing.</source>
             <translation>Sagt, was Punktwolken und Trajektorie enthalten und ob sie zueinander passen, bevor an ihnen gearbeitet wird.</translation>
         </message>
         <message>
@@ -2430,7 +2430,7 @@
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />
-            <source>Makes a mobile laser scanning survey of a street that exists only on paper, together with the truth about it.</source>
+            <source>Simulates a mobile laser scanning survey of a street, together with its known truth.</source>
             <translation>Erzeugt die Laserscan-Vermessung einer Straße, die es nur auf dem Papier gibt, zusammen mit der Wahrheit über sie.</translation>
         </message>
         <message>
@@ -2775,7 +2775,7 @@
         </message>
         <message>
             <location filename="../../desktop/menu.py" />
-            <source>A made street through the whole chain, into this project</source>
+            <source>A simulated street through the whole chain, into this project</source>
             <translation>Eine erdachte Straße durch die ganze Kette, in dieses Projekt</translation>
         </message>
         <message>
