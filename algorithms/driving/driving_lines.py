@@ -57,7 +57,8 @@ class DrivingLines(Algorithm):
         self.add_layer("MARKING_LINES", tr("Marking lines"), tr("The layer written by Fit marking lines."), "LineStringZ")
         self.add_trajectory()
         self.add_layer(
-            "MARKINGS", tr("Markings"), tr("With it a lane continues through zebra crossings and past stop lines, and kinds of gaps are distinguished."),
+            "MARKINGS", tr("Markings"),
+            tr("With it a lane continues through zebra crossings and past stop lines, and kinds of gaps are distinguished."),
             "PolygonZ", optional=True,
         )
         self.add_layer(
