@@ -14,6 +14,7 @@ from ...common.parallel import check_cancelled
 from ...common.progress import Progress
 from ...common.schemas import ROAD_EDGES, of_main_curb
 from ...common.setting import check_limits, setting
+from ...curves.robust import MAD_TO_SIGMA
 from ...survey.frame.road_frame import RoadFrame
 from ..common.nearest_pass import assign_nearest_pass
 from ..common.occlusion import HIDDEN_POINT_SPACING
@@ -30,7 +31,6 @@ MAX_EDGE_JUMP = 0.25          # m across that two joined points may differ in an
 EDGE_VERTEX_SPACING = 0.5     # m between vertices
 MIN_EDGE_LENGTH = 2.0         # m of a piece with curb points
 MIN_POINT_SIGMA = 0.001       # m, least noise of a curb point
-MAD_TO_SIGMA = 1.4826         # sigma of a normal distribution per median absolute deviation
 
 
 @dataclass(frozen=True)
