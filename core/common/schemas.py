@@ -45,6 +45,16 @@ DRIVING_LINES = [ROAD, Field("lane", int, "Lane"), Field("kind", str, "Kind"), F
                  Field("direction", int, "Direction (1 along, -1 against the road)"),
                  Field("source", str, "Source (pair/offset)"), STATUS, Field("curve", str, "Curve"), RADIUS, RMSE,
                  STATION, END, OFFSET, LENGTH, WIDTH, Field("params", str, "Fitted function (JSON)")]
+# left and right as seen in the direction of travel; along the road where nobody drives
+LANES = [ROAD, Field("lane", int, "Lane"), Field("lane_id", str, "Lane and piece (road.lane.piece)"),
+         Field("type", str, "Type (driving/shoulder/parking/bicycle/hatched/median/connector)"),
+         Field("direction", int, "Direction (1 along, -1 against the road, 0 not driven)"),
+         Field("left_line", str, "What its left border is (line or edge and its number)"),
+         Field("right_line", str, "What its right border is (line or edge and its number)"),
+         Field("left_kind", str, "Kind of its left border"), Field("right_kind", str, "Kind of its right border"),
+         Field("left_patt", str, "Pattern of its left border"), Field("right_patt", str, "Pattern of its right border"),
+         Field("successors", str, "Lanes that follow, by lane_id"), STATUS, Field("confidence", float, "Confidence (0 to 1)"),
+         STATION, END, WIDTH, LENGTH]
 CURVE_ELEMENTS = [ROAD, Field("lane", int, "Lane"), STATION, END, Field("turn", str, "Turn (left/right)"),
                   Field("radius_m", float, "R (m)"), Field("radius_ft", float, "R (ft)"),
                   Field("delta_deg", float, "Δ (°)"), Field("degree_ft", float, "D (° per 100 ft)"),

@@ -1,7 +1,7 @@
 """Where to drive.
 
 In: `PaintedLines`, with `MarkingObjects`, `RoadEdges` and road points where there are any. Out: `DrivingLines`, one per lane, and
-`CurveElements`.
+`CurveElements`; the areas of the lanes as `Lanes`.
 """
 
 from ..lazy import public
@@ -10,6 +10,7 @@ __getattr__, __all__ = public(__name__, {
     "curve_elements": ("circular_curve_elements", "design_check"),
     "driving_layers": ("CurveElements", "DrivingLines", "curve_elements_to_features", "driving_lines_to_features"),
     "driving_lines": ("make_driving_lines",),
+    "lanes_layer": ("LANE_TYPES", "Lanes", "lanes_from_features", "lanes_to_features"),
     "road_edges": ("RoadEdges", "edges_from_features"),
     "settings": ("DrivingSettings",),
 })
