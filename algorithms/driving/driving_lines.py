@@ -72,9 +72,9 @@ class DrivingLines(Algorithm):
     def work(self, call, progress):
         from ...core.driving.driving_layers import curve_elements_to_features, driving_lines_to_features
         from ...core.driving.driving_lines import make_driving_lines
-        from ...core.driving.road_edges import edges_from_features
         from ...core.markings.lines.painted_lines import lines_from_features
         from ...core.markings.objects.marking_objects import markings_from_features
+        from ...core.road.edges.road_edges import edges_from_features
 
         marking_lines = call.features("MARKING_LINES", MARKING_LINES, "LineStringZ")
         markings = call.features("MARKINGS", MARKINGS, "PolygonZ")

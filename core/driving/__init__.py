@@ -11,6 +11,5 @@ __getattr__, __all__ = public(__name__, {
     "driving_layers": ("CurveElements", "DrivingLines", "curve_elements_to_features", "driving_lines_to_features"),
     "driving_lines": ("make_driving_lines",),
     "lanes_layer": ("LANE_TYPES", "Lanes", "lanes_from_features", "lanes_to_features"),
-    "road_edges": ("RoadEdges", "edges_from_features"),
     "settings": ("DrivingSettings",),
 })

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..curves.robust import median
-from ..markings.lines.frame_lines import FrameLines
 from ..markings.lines.painted_lines import PaintedLines
-from .road_edges import RoadEdges
+from ..road.edges.road_edges import RoadEdges
+from ..survey.frame.frame_lines import FrameLines
 
 STATION_STEP = 0.5                             # m of station between places where lanes are looked for
 MAX_LINE_OBLIQUITY = np.tan(np.radians(25.0))  # a line that runs more across the road than this bounds no lane

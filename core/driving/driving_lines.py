@@ -11,6 +11,7 @@ from ..common.progress import Progress
 from ..countries.catalogue import country
 from ..markings.lines.painted_lines import PaintedLines
 from ..markings.objects.marking_objects import MarkingObjects
+from ..road.edges.road_edges import RoadEdges
 from .alignment import Element, lane_elements
 from .centreline import Course, element_of, lane_courses, status_pieces, without_short_status
 from .cross_section import STATION_STEP, CrossSections, sections_of_edges, sections_of_lines
@@ -21,7 +22,6 @@ from .driving_layers import CurveElements, DrivingLines
 from .heights import lane_heights
 from .lane_tracking import LANE_STATUS, LaneTrack, connect, extend
 from .lanes import divided_strips, lane_strips, paired_lanes, select_lane_lines, single_line_lanes, typical_lane_width
-from .road_edges import RoadEdges
 from .settings import DrivingSettings
 
 if TYPE_CHECKING:

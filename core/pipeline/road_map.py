@@ -18,7 +18,6 @@ from ..common.features import Features
 from ..common.progress import Progress
 from ..driving.driving_layers import curve_elements_to_features, driving_lines_to_features
 from ..driving.driving_lines import DrivingSettings, make_driving_lines
-from ..driving.road_edges import edges_from_features
 from ..intensity.correction import IntensitySettings, correct_intensity
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image
 from ..io.geotiff import IntensityImage
@@ -31,6 +30,7 @@ from ..markings.objects.outliers import OutlierSettings, remove_outliers
 from ..markings.paint.extract import MarkingSettings, extract_markings
 from ..road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from ..road.edges.fit import EdgeSettings
+from ..road.edges.road_edges import edges_from_features
 from ..road.profiles.detect import CurbSettings
 from ..road.scanlines.detect import ScanlineBoundarySettings
 from ..road.scanlines.section_planes import ScanlineSettings

@@ -7,7 +7,6 @@ from importlib import import_module
 
 from lanewright.core.driving.driving_layers import driving_lines_to_features
 from lanewright.core.driving.driving_lines import make_driving_lines
-from lanewright.core.driving.road_edges import edges_from_features
 from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.intensity.image import write_intensity_image
 from lanewright.core.io.geotiff import IntensityImage
@@ -18,6 +17,7 @@ from lanewright.core.markings.objects.outliers import remove_outliers
 from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.pipeline.road_map import RoadMapSettings
 from lanewright.core.road.detect_boundaries import draw_boundaries, find_curb_points
+from lanewright.core.road.edges.road_edges import edges_from_features
 from lanewright.core.road.surface.extract import extract_road_surface
 
 

@@ -8,7 +8,6 @@ from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "fit": ("MarkingLineSettings", "fit_marking_lines"),
-    "frame_lines": ("FrameLines", "lines_in_frame"),
     "naming": ("named_by_lines",),
     "painted_lines": ("PaintedLines", "lines_from_features", "lines_to_features"),
 })

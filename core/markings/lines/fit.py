@@ -15,10 +15,10 @@ from ...common.setting import check_limits, setting
 from ...countries.catalogue import country
 from ...countries.neutral import NEUTRAL
 from ...curves.model_selection import CURVES
+from ...survey.frame.frame_lines import lines_in_frame
 from ...survey.store.records import join_columns
 from ..objects.marking_objects import MarkingObjects
 from .dash_pattern import same_dash_pattern
-from .frame_lines import lines_in_frame
 from .geometry import LineShape, fit_line_shapes
 from .labelling import SelectedLine, crossings, hatching_bars, hatching_borders, select_lines
 from .linking import CommonTrend, LinkedLine, link_lines, link_over_long_gaps, without_strays

@@ -13,7 +13,7 @@ from ...curves.bspline import fit_splines, smooth_profiles
 from ...curves.curve_fit import CurveFit
 from ...curves.model_selection import fit_curve, fit_curves
 from ...curves.robust import median
-from .frame_lines import LINE_VERTEX_SPACING
+from ...survey.frame.frame_lines import LINE_VERTEX_SPACING
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import Road

@@ -16,7 +16,7 @@ import shapely
 from ...common.features import Features
 from ...common.schemas import MARKING_LINES
 from ...curves.base import Curve
-from .frame_lines import FrameLines, line_parts, lines_in_frame
+from ...survey.frame.frame_lines import FrameLines, line_parts, lines_in_frame
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame

@@ -15,7 +15,7 @@ import shapely
 
 from ...common.features import Features
 from ...common.schemas import MARKINGS
-from .placement import located
+from ...survey.frame.placement import located
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame

@@ -7,4 +7,5 @@ from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "fit": ("EdgeSettings", "fit_road_edges"),
+    "road_edges": ("RoadEdges", "edges_from_features"),
 })

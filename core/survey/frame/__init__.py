@@ -1,11 +1,14 @@
 """The road frame: passes, roads and their reference lines.
 
-In: a `Trajectory`. Out: a `RoadFrame` that gives the station and offset of any position, and map coordinates of any station and offset.
+In: a `Trajectory`. Out: a `RoadFrame` that gives the station and offset of any position, and map coordinates of any station and offset;
+`FrameLines` are lines in it.
 """
 
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
+    "frame_lines": ("FrameLines", "line_parts", "lines_in_frame"),
     "passes": ("Pass",),
+    "placement": ("located",),
     "road_frame": ("Road", "RoadFrame", "build_frame"),
 })

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
-from ..objects.placement import located
+from .placement import located
 
 if TYPE_CHECKING:
-    from ...survey.frame.road_frame import RoadFrame
+    from .road_frame import RoadFrame
 
 LINE_VERTEX_SPACING = 0.5  # m between vertices at most: straight on the map is not straight in the road frame
 

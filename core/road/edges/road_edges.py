@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..common.features import Features
-from ..markings.lines.frame_lines import FrameLines, line_parts, lines_in_frame
+from ...common.features import Features
+from ...survey.frame.frame_lines import FrameLines, line_parts, lines_in_frame
 
 if TYPE_CHECKING:
-    from ..survey.frame.road_frame import RoadFrame
+    from ...survey.frame.road_frame import RoadFrame
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from ...survey.frame.road_frame import RoadFrame
+    from .road_frame import RoadFrame
 
 
 def located(frame: RoadFrame, road: np.ndarray, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
