@@ -1,6 +1,6 @@
 """Road maps of many surveys with default parameters, by the real qgis_process: one folder of results for each.
 
-A survey is a folder with cloud.laz (or .copc.laz, .las) and trajectory.csv (time, x, y, z in the cloud's CRS). The three scenes of
+A survey is a folder with cloud.laz (or .copc.laz, .las) and trajectory.csv (time, x, y, z in the cloud's CRS). The scenes of
 the sample survey come along: made first, with their truth, in the folder `survey` of their results. Two such folders of results
 are compared by tools/compare_results.sh, for example before and after a change of the code.
 """
@@ -12,7 +12,11 @@ import sys
 import time
 from pathlib import Path
 
-from plugin_package import ROOT
+from plugin_package import ROOT, load
+
+load()
+
+from lanewright.core.sample.scenes import SCENES  # noqa: E402
 
 CLOUDS = ("cloud.laz", "cloud.copc.laz", "cloud.las")
 TRAJECTORY = "trajectory.csv"
@@ -30,7 +34,6 @@ RESULTS = {
     "REPORT": "report.html",
 }
 LOG = "log.txt"
-SCENES = ("street", "rural", "urban")
 # Output of lanewright:samplesurvey -> layer in truth.gpkg, named as tools/accuracy reads them
 TRUTH = {
     "TRUTH_BOUNDARIES": "boundaries",

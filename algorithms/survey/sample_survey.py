@@ -11,9 +11,10 @@ SAMPLE = "sample.survey:SampleSettings"
 SAMPLE_SETTINGS = (
     SettingSpec(
         "SCENE", SAMPLE, "scene", tr("Scene"),
-        tr("Street is a curved two-lane road with curbs and parked cars, rural has verges instead of curbs, urban is "
-           "broader with more lanes and gutters."),
-        choices=("street", "rural", "urban"),
+        tr("street: two lanes in bends, with curbs and parked cars. rural: a country road without curbs. urban: four lanes with gutters. "
+           "one-lane and wide-lane: a single lane of 5.8 or 7 m with arrows in its middle. no-centre-line: two lanes without a line "
+           "between them. hatched-island: two directions held apart by a hatched area."),
+        choices=("street", "rural", "urban", "one-lane", "wide-lane", "no-centre-line", "hatched-island"),
     ),
     SettingSpec(
         "LENGTH", SAMPLE, "length", tr("Length of the road (m)"),

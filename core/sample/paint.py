@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from statistics import NormalDist
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Union
 
 import numpy as np
 
@@ -56,6 +56,49 @@ class PaintedLine:
         """Outlines of its painted pieces, (n, 2) m of station and offset each."""
         low, high = self.offset - self.width / 2, self.offset + self.width / 2
         return [np.array([(s0, low), (s1, low), (s1, high), (s0, high)]) for s0, s1 in self.pieces()]
+
+
+@dataclass(frozen=True)
+class TaperedLine:
+    """A solid line whose offset changes along the road, such as the border of a hatched island.
+
+    Attributes
+    ----------
+    kind : class of the marking
+    line : number of the line
+    places : (K, 2) m, station and offset, stations increasing; straight between them
+    width : m
+    wear : 0 to 1, share of the paint that is worn off
+    """
+
+    kind: str
+    line: int
+    places: tuple[tuple[float, float], ...]
+    width: float
+    wear: float = 0.1
+
+    @property
+    def start(self) -> float:
+        """Station of its beginning, m."""
+        return self.places[0][0]
+
+    @property
+    def end(self) -> float:
+        """Station of its end, m."""
+        return self.places[-1][0]
+
+    def _offsets(self, s):
+        return np.interp(s, *np.transpose(self.places))
+
+    def covers(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
+        """(N,) bool, places within the marking, at (N,) stations and offsets."""
+        return (np.abs(d - self._offsets(s)) <= self.width / 2) & (s >= self.start) & (s <= self.end)
+
+    def outlines(self) -> list[np.ndarray]:
+        """Its outline, (n, 2) m of station and offset."""
+        places = np.array(self.places)
+        aside = np.array([0.0, self.width / 2])
+        return [np.concatenate([places - aside, (places + aside)[::-1]])]
 
 
 @dataclass(frozen=True)
@@ -142,16 +185,44 @@ def hatching(start: float, end: float, right: float, left: float, bar: float = 0
     return tuple(np.array([(s, right), (s + bar, right), (s + bar + width, left), (s + width, left)]) for s in starts)
 
 
+def hatched_area(outline: np.ndarray, bar: float = 0.5, gap: float = 1.0) -> tuple[np.ndarray, ...]:
+    """Bars at 45 degrees within an area.
+
+    Parameters
+    ----------
+    outline : (n, 2) m, station and offset
+    bar, gap : m along the road
+
+    Returns
+    -------
+    tuple of (m, 2) polygons
+    """
+    import shapely
+
+    area = shapely.Polygon(outline)
+    low, right, high, left = area.bounds
+    bars = []
+    for s in np.arange(low - (left - right), high, bar + gap):
+        slanted = np.array([(s, right), (s + bar, right), (s + bar + left - right, left), (s + left - right, left)])
+        for piece in shapely.get_parts(shapely.intersection(area, shapely.Polygon(slanted))):
+            if piece.geom_type == "Polygon" and piece.area > 0.02:
+                bars.append(shapely.get_coordinates(piece.exterior)[:-1])
+    return tuple(bars)
+
+
+Marking = Union[PaintedLine, TaperedLine, PaintedFigure]
+
+
 class Paint:
     """All markings of a road.
 
     Parameters
     ----------
-    markings : PaintedLine and PaintedFigure
+    markings : PaintedLine, TaperedLine and PaintedFigure
     texture : Texture of the wear
     """
 
-    def __init__(self, markings: Sequence[PaintedLine | PaintedFigure], texture: Texture):
+    def __init__(self, markings: Sequence[Marking], texture: Texture):
         self.markings = list(markings)
         self._texture = texture
 

@@ -22,11 +22,10 @@ from ..sample import truth
 from ..survey.trajectory.trajectory import Trajectory
 from .camera import camera_over
 from .scanner import OBSTACLE, Scanner, brightness_of, butterfly, cast, label_hits, received
-from .scenes import build_scene
+from .scenes import SCENES, build_scene
 from .street import LABEL
 from .vehicle import Drive
 
-SCENES = ("street", "rural", "urban")
 _SURVEY_DAY = datetime(2025, 5, 14, 2, 30)
 # Adjusted standard GPS time: seconds since 1980-01-06, leap seconds (18) not taken out, minus 1e9.
 _START_TIME = (_SURVEY_DAY - datetime(1980, 1, 6)) / timedelta(seconds=1) + 18.0 - 1e9
@@ -49,7 +48,7 @@ class SampleSettings:
 
     Attributes
     ----------
-    scene : street, rural or urban
+    scene : one of SCENES
     length : m of road
     seed : of all random numbers
     speed_kmh : km/h, of the vehicle

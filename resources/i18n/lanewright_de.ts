@@ -2460,8 +2460,8 @@
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />
-            <source>Street is a curved two-lane road with curbs and parked cars, rural has verges instead of curbs, urban is broader with more lanes and gutters.</source>
-            <translation>Street ist eine gekrümmte zweistreifige Straße mit Bordsteinen und parkenden Autos, rural hat Bankette statt Bordsteinen, urban ist breiter, mit mehr Fahrstreifen und Rinnen.</translation>
+            <source>street: two lanes in bends, with curbs and parked cars. rural: a country road without curbs. urban: four lanes with gutters. one-lane and wide-lane: a single lane of 5.8 or 7 m with arrows in its middle. no-centre-line: two lanes without a line between them. hatched-island: two directions held apart by a hatched area.</source>
+            <translation>street: zwei Fahrstreifen in Bögen, mit Bordsteinen und parkenden Autos. rural: eine Landstraße ohne Bordsteine. urban: vier Fahrstreifen mit Rinnen. one-lane und wide-lane: ein einziger Fahrstreifen von 5,8 oder 7 m mit Pfeilen in seiner Mitte. no-centre-line: zwei Fahrstreifen ohne Linie dazwischen. hatched-island: zwei Richtungen, von einer Sperrfläche getrennt.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />
@@ -3097,6 +3097,61 @@
             <location filename="../../core/common/schemas.py" />
             <source>Source (pair/offset)</source>
             <translation>Herkunft (pair/offset)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Lane and piece (road.lane.piece)</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Type (driving/shoulder/parking/bicycle/hatched/median/connector)</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Direction (1 along, -1 against the road, 0 not driven)</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>What its left border is (line or edge and its number)</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>What its right border is (line or edge and its number)</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Kind of its left border</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Kind of its right border</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Pattern of its left border</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Pattern of its right border</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Lanes that follow, by lane_id</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Confidence (0 to 1)</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />

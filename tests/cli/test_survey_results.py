@@ -4,6 +4,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from lanewright.core.sample.scenes import SCENES
 
 TOOLS = Path(__file__).resolve().parents[2] / "tools"
 FILES = {"edges.gpkg", "surface.gpkg", "markings.gpkg", "lines.gpkg", "driving.gpkg", "elements.gpkg", "curb_points.gpkg", "road.laz",
@@ -53,7 +54,8 @@ def test_every_survey_has_its_results_one_that_fails_stops_no_other_and_a_second
 def test_a_name_that_no_survey_has_is_refused_with_those_there_are(surveys, tmp_path):
     run = call("survey_results.sh", tmp_path / "results", "--surveys", surveys, "--only", "street,avenue")
     assert run.returncode == 1 and not (tmp_path / "results").exists()
-    assert run.stderr.strip() == "There is no survey avenue; there are broken, street, sample_street, sample_rural, sample_urban."
+    scenes = ", ".join(f"sample_{scene}" for scene in SCENES)
+    assert run.stderr.strip() == f"There is no survey avenue; there are broken, street, {scenes}."
 
 
 def test_a_folder_without_surveys_is_refused(surveys, tmp_path):

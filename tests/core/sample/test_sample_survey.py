@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
+from lanewright.core.sample.scenes import SCENES
 from lanewright.core.sample.street import CARRIAGEWAY_LABELS, LABEL
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 
@@ -36,7 +37,7 @@ def above_ground(sample, points):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", ["street", "rural", "urban"])
+@pytest.mark.parametrize("scene", SCENES)
 def test_without_noise_every_ground_point_lies_on_the_true_surface(scene):
     sample = survey(scene, length=130.0)
     points = sample.points(noise=False)
@@ -239,7 +240,7 @@ def test_painted_points_lie_in_the_true_markings(street, true_points):
     assert not shapely.contains_xy(shapely.buffer(union, -0.005), road["x"], road["y"]).any()
 
 
-@pytest.mark.parametrize("scene", ["street", "rural", "urban"])
+@pytest.mark.parametrize("scene", SCENES)
 def test_true_shapes_are_valid_and_carry_heights(scene):
     sample = survey(scene, length=130.0)
     for layer in (sample.truth_markings, sample.truth_surface, sample.truth_boundaries, sample.truth_driving_lines):

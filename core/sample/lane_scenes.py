@@ -1,0 +1,127 @@
+"""Simulated streets whose lanes cannot be told from the width alone: one broad lane, no centre line, an island of paint."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .paint import hatched_area, straight_arrow
+from .street import Scene, sidewalk
+from .street_builder import MODULE, SceneBuilder
+
+_PARKING = 2.3       # m from an edge line to the curb beyond the parked cars
+_MARGIN = 0.45       # m from an edge line to a curb without parking
+_LINE = 0.12         # m, width of the lines
+_ISLAND = (34.0, 48.0, 76.0, 90.0)  # m in each module: the island of paint opens, is full, begins to close, is closed
+_ISLAND_HALF = 1.0   # m, half the width of the island, to the middle of its border
+_WARNING = 15.0      # m of solid centre line before and after the island
+
+
+def one_lane(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:
+    """One lane of 5.8 m between two edge lines, driven in its middle, with arrows there; cars parked on the right.
+
+    Parameters
+    ----------
+    length, seed, radius, curb_height, gutter : as in `scenes.build_scene`
+
+    Returns
+    -------
+    Scene
+    """
+    return _between_edge_lines("one-lane", 5.8, True, length, seed, radius, curb_height, gutter)
+
+
+def wide_lane(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:
+    """The same as `one_lane` with a lane of 7 m, as broad as two."""
+    return _between_edge_lines("wide-lane", 7.0, True, length, seed, radius, curb_height, gutter)
+
+
+def no_centre_line(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:
+    """The street of `wide_lane` as two lanes, one each way, without arrows and without a line between; driven on the right."""
+    return _between_edge_lines("no-centre-line", 7.0, False, length, seed, radius, curb_height, gutter)
+
+
+def _between_edge_lines(name, width, one_way, length, seed, radius, curb_height, gutter):
+    road = SceneBuilder(length, seed, radius)
+    half = width / 2
+    left_edge, right_edge = half + _MARGIN, half + _PARKING
+    lowered_left, lowered_right = [], []
+    road.line("edge line", 1, half, 0.0, length, width=_LINE)
+    road.line("edge line", 2, -half, 0.0, length, width=_LINE)
+    for base in road.modules():
+        lowered_left.append((base + 63.0, base + 68.0))
+        lowered_right.append((base + 96.0, base + 101.0))
+        if one_way:
+            for station in (18.0, 58.0, 98.0):
+                road.figure("arrow", straight_arrow(base + station, 0.0, 1))
+        road.manhole(base + 31.0, 0.9)
+        road.manhole(base + 77.0, -1.6)
+        road.repair(base + 24.0, base + 33.5, -2.4, -0.9, 1.40)
+        road.repair(base + 82.0, base + 90.0, 0.6, 2.2, 0.70)
+        road.parked_cars(base + 4.0, base + 54.0, -right_edge)
+        road.parked_cars(base + 70.0, base + 94.0, -right_edge)
+        road.trees(base + 9.0, base + MODULE - 3.0, left_edge + 2.5, 14.0)
+        road.trees(base + 5.0, base + MODULE - 3.0, -right_edge - 2.6, 18.0)
+        road.poles(base + 20.0, base + MODULE, left_edge + 0.6, 32.0)
+    if one_way:
+        road.lane(1, 1, (0.0, 0.0), (length, 0.0))
+    else:
+        road.lane(1, -1, (0.0, half / 2), (length, half / 2))
+        road.lane(2, 1, (0.0, -half / 2), (length, -half / 2))
+    track = 0.0 if one_way else -half / 2
+    return road.scene(name, sidewalk(1, left_edge, curb_height, lowered_left), sidewalk(-1, right_edge, curb_height, lowered_right),
+                      [(1, track, 1.0)], gutter)
+
+
+def hatched_island(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:
+    """A lane each way, held apart by an island of paint that opens from the centre line and closes again; driven both ways.
+
+    Parameters
+    ----------
+    length, seed, radius, curb_height, gutter : as in `scenes.build_scene`
+
+    Returns
+    -------
+    Scene
+    """
+    road = SceneBuilder(length, seed, radius)
+    half = 4.2
+    edge = half + _MARGIN
+    opens, full, closing, closed = _ISLAND
+    tip = _LINE / 2      # where the two borders lie side by side
+    lowered = []
+    middle = [(0.0, 0.0)]
+    for base in road.modules():
+        lowered.append((base + 12.0, base + 17.0))
+        road.line("centre line", 1, 0.0, base, base + opens - _WARNING, width=_LINE, dash=(4.0, 6.0))
+        road.line("centre line", 2, 0.0, base + opens - _WARNING, base + opens, width=_LINE)
+        road.line("centre line", 5, 0.0, base + closed, base + closed + _WARNING, width=_LINE)
+        road.line("centre line", 6, 0.0, base + closed + _WARNING, base + MODULE, width=_LINE, dash=(4.0, 6.0))
+        border = [(base + opens, tip), (base + full, _ISLAND_HALF), (base + closing, _ISLAND_HALF), (base + closed, tip)]
+        border = _cut(border, length)
+        if len(border) > 1:
+            road.tapered("centre line", 3, border, width=_LINE)
+            road.tapered("centre line", 4, [(s, -d) for s, d in border], width=_LINE)
+            inside = np.array([(s, d - tip) for s, d in border])
+            road.figure("hatching", *hatched_area(np.concatenate([inside, (inside * [1, -1])[::-1]])))
+        middle += [(base + opens, 0.0), *border, (base + closed, 0.0)]
+        road.manhole(base + 24.0, -1.9)
+        road.manhole(base + 84.0, 2.6)
+        road.repair(base + 50.0, base + 60.0, -3.6, -1.9, 1.35)
+        road.repair(base + 100.0, base + 108.0, 0.9, 2.6, 0.70)
+        road.trees(base + 6.0, base + MODULE - 3.0, edge + 2.6, 13.0)
+        road.trees(base + 11.0, base + MODULE - 3.0, -edge - 2.6, 17.0)
+        road.poles(base + 22.0, base + MODULE, -edge - 0.6, 34.0)
+    road.line("edge line", 7, half, 0.0, length, width=_LINE)
+    road.line("edge line", 8, -half, 0.0, length, width=_LINE)
+    middle = _cut([*middle, (middle[-1][0] + MODULE, 0.0)], length)
+    road.lane(1, -1, *((s, (d + half) / 2) for s, d in middle))
+    road.lane(2, 1, *((s, -(d + half) / 2) for s, d in middle))
+    return road.scene("hatched-island", sidewalk(1, edge, curb_height, lowered), sidewalk(-1, edge, curb_height, lowered),
+                      [(1, -2.35, 1.0), (-1, 2.35, 1.1)], gutter)
+
+
+def _cut(places, end):
+    """(station, offset) places with increasing stations, cut at a station."""
+    stations, offsets = np.array(places).T
+    kept = [(s, d) for s, d in places if s < end]
+    return [*kept, (end, float(np.interp(end, stations, offsets)))] if len(kept) < len(places) else kept

@@ -1,0 +1,111 @@
+"""Collects the markings and objects of a simulated street."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from .obstacles import Car, Crown, Post, car_bodies
+from .paint import Marking, Paint, PaintedFigure, PaintedLine, TaperedLine
+from .street import LABEL, Lane, RoadAxis, Scene, Side, Texture, winding_road
+
+MODULE = 120.0  # m, length after which the objects of a street repeat
+_RUN_IN = 70.0   # m of road before station 0
+
+
+class SceneBuilder:
+    """Collects markings and objects of one road; everything follows from the seed."""
+
+    def __init__(self, length: float, seed: int, radius: float):
+        self.length = length
+        self.random = np.random.default_rng([seed, 1])
+        self.axis = RoadAxis(winding_road(length, radius, run_in=_RUN_IN), -_RUN_IN, np.radians(68.0))
+        self.texture = Texture(seed)
+        self.markings: list[Marking] = []
+        self.manholes: list[tuple[float, float, float]] = []
+        self.repairs: list[tuple[float, float, float, float, float]] = []
+        self.objects: list[tuple[str, float, float, tuple[float, ...]]] = []
+        self.lanes: list[Lane] = []
+
+    def modules(self) -> np.ndarray:
+        """Stations at which the objects of the street repeat, m."""
+        return np.arange(0.0, self.length, MODULE)
+
+    def line(self, kind: str, line: int, offset: float, start: float, end: float, width: float = 0.15,
+             dash: tuple[float, float] | None = None) -> None:
+        """Add a line along the road, cut at its ends."""
+        start, end = max(start, 0.0), min(end, self.length)
+        if end - start > 0.5:
+            self.markings.append(PaintedLine(kind, line, offset, width, start, end, dash, self.random.uniform(0.05, 0.22)))
+
+    def tapered(self, kind: str, line: int, places: Sequence[tuple[float, float]], width: float = 0.12) -> None:
+        """Add a solid line through (station, offset) places, cut at the end of the road."""
+        places = [place for place in places if 0.0 <= place[0] <= self.length]
+        if len(places) > 1:
+            self.markings.append(TaperedLine(kind, line, tuple(places), width, self.random.uniform(0.05, 0.22)))
+
+    def figure(self, kind: str, *polygons: np.ndarray) -> None:
+        """Add those polygons of a marking that lie on the road."""
+        inside = tuple(p for p in polygons if p[:, 0].min() >= 0 and p[:, 0].max() <= self.length)
+        if inside:
+            self.markings.append(PaintedFigure(kind, None, inside, self.random.uniform(0.08, 0.25)))
+
+    def lane(self, number: int, direction: int, *places: tuple[float, float]) -> None:
+        """Add a lane through (station, offset) places, cut at the end of the road."""
+        stations, offsets = np.array(places, dtype=float).T
+        end = min(stations[-1], self.length)
+        if end - stations[0] < 2.0:
+            return
+        before = stations < end
+        self.lanes.append(Lane(number, direction, np.append(stations[before], end),
+                               np.append(offsets[before], np.interp(end, stations, offsets))))
+
+    def manhole(self, station: float, offset: float, radius: float = 0.35) -> None:
+        """Add a cover of cast iron."""
+        if station < self.length:
+            self.manholes.append((station, offset, radius))
+
+    def repair(self, start: float, end: float, right: float, left: float, factor: float) -> None:
+        """Add a patch of asphalt that is so many times as bright."""
+        self.repairs.append((start, end, right, left, factor))
+
+    def parked_cars(self, start: float, end: float, curb_offset: float, taken: float = 0.75) -> None:
+        """Add a row of cars beside the curb at `curb_offset`, with some places empty."""
+        sign, at = np.sign(curb_offset), start
+        while at + 5.2 < min(end, self.length):
+            length, width = self.random.uniform(3.9, 4.8), self.random.uniform(1.70, 1.86)
+            gap, brightness, height = self.random.uniform(0.15, 0.40), self.random.uniform(0.10, 0.55), self.random.uniform(1.42, 1.62)
+            if self.random.random() < taken:
+                self.objects.append(("car", at + 2.6, curb_offset - sign * (gap + width / 2), (length, width, height, brightness)))
+            at += length + self.random.uniform(0.8, 2.0)
+
+    def trees(self, start: float, end: float, offset: float, spacing: float, crown: tuple[float, float] = (1.5, 2.2)) -> None:
+        """Add a row of trees whose crowns have radii in a range, m."""
+        for station in np.arange(start, min(end, self.length), spacing):
+            place = offset + self.random.uniform(-0.2, 0.2)
+            shape = (self.random.uniform(0.10, 0.17), self.random.uniform(*crown), self.random.uniform(1.2, 1.7), self.random.uniform(3.6, 4.4))
+            self.objects.append(("tree", station + self.random.uniform(-1.0, 1.0), place, shape))
+
+    def poles(self, start: float, end: float, offset: float, spacing: float, height: float = 6.0) -> None:
+        """Add a row of poles."""
+        for station in np.arange(start, min(end, self.length), spacing):
+            self.objects.append(("pole", station, offset, (0.09, height)))
+
+    def scene(self, name: str, left: Side, right: Side, passes: list[tuple[int, float, float]], gutter: float) -> Scene:
+        """The Scene of what was collected, between two sides."""
+        paint = Paint(self.markings, self.texture)
+        scene = Scene(name, self.axis, self.length, left, right, paint, self.texture, [], self.lanes, passes, gutter_width=gutter)
+        scene.manholes = np.array(self.manholes).reshape(-1, 3)
+        scene.repairs = np.array(self.repairs).reshape(-1, 5)
+        for kind, s, d, shape in self.objects:
+            x, y, z = (float(value[0]) for value in scene.to_map(np.array([s]), np.array([d])))
+            if kind == "car":
+                scene.obstacles.append(Car(x, y, z, float(self.axis.heading(np.array([s]))[0]), car_bodies(*shape)))
+            elif kind == "pole":
+                scene.obstacles.append(Post(x, y, z, z + shape[1], shape[0], LABEL["pole"], 0.35))
+            else:
+                trunk, reach, half, middle = shape
+                scene.obstacles.append(Post(x, y, z, z + middle, trunk, LABEL["tree"], 0.18))
+                scene.obstacles.append(Crown(x, y, z + middle, reach, half, z + middle + half))
+        return scene
