@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
 ROAD_HEIGHT_STEP = 0.25      # m between the stations at which points are compared with the height of the road
 INGEST_PROGRESS = 0.7        # of the work, where the passes are adjusted afterwards
+LOWEST_SENSOR = 0.5          # m above the road: no scanner rides lower, but lines and places drawn on the road lie within
 SUSPICIOUS_SENSOR_HEIGHT = 5.0, 15.0  # m: higher than any survey vehicle; 1.5 to 4.5 m expressed in feet
 
 
@@ -166,8 +167,8 @@ def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: S
     for note in frame.notes:
         progress.info(note)
     if not has_time and len(frame.passes) > len(frame.roads):
-        progress.warn(f"The trajectory drives {len(frame.passes)} times over {len(frame.roads)} road(s), and without time in the points and the "
-                      "trajectory the passes are mixed: whatever they differ by blurs the map. Export both with gps_time, or process "
+        progress.warn(f"The trajectory drives {len(frame.passes)} times over {len(frame.roads)} road(s), and as {_without_time(files, trajectory)} "
+                      "the passes are mixed: whatever they differ by blurs the map. Export points and trajectory with their time, or process "
                       "the files of each drive with its own part of the trajectory.")
     _check_extent(files, frame, crs, trajectory.crs)
     store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length, settings.memory_limit)
@@ -185,6 +186,11 @@ def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: S
                       f"{reader.uneven[0]:.2f} m off {reader.uneven[1]:.2f} m below it, and curbs are missed for that. Its heights may be in feet "
                       "where the cloud's are in metres, or not be those that the cloud was made with: export both anew from one solution.")
     height = float(np.mean(list(reader.heights.values())))
+    if abs(height) < LOWEST_SENSOR:
+        raise RoadExtractionError(
+            f"The trajectory lies {height:.2f} m above the road; a scanner rides at least {LOWEST_SENSOR} m above it. It seems to be a line on the "
+            "road, such as a driving line of a map, and not where the scanner was: choose the trajectory that the navigation system recorded. "
+            "If it is that of the vehicle's wheels, add the height of the scanner to its heights.")
     if not crs and SUSPICIOUS_SENSOR_HEIGHT[0] < height < SUSPICIOUS_SENSOR_HEIGHT[1]:
         progress.warn(f"The sensor seems to ride {height:.1f} m above the road, as if cloud and trajectory were in feet, and no CRS tells their "
                       "unit: everything is measured in metres, so curbs and markings would be missed. If they are in feet, convert both to metres "
@@ -236,6 +242,15 @@ def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: Sur
     span, week_ends = span
     offset, note = align_time(trajectory.time, span, settings.time, files[0].adjusted_time)
     return trajectory.shifted(offset), note, True, week_ends
+
+
+def _without_time(files, trajectory):
+    """What lacks the time that would tell the passes apart."""
+    if not trajectory.has_time:
+        return "the trajectory has no time"
+    if not all(file.has_time for file in files):
+        return "the points have no gps_time"
+    return "all points have the same gps_time"
 
 
 def _time_span(files):

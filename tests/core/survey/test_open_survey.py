@@ -120,12 +120,21 @@ def test_without_gps_time_each_point_goes_to_the_nearest_foot(street, tmp_path):
         assert survey.sensor_height[0] == pytest.approx(2.0, abs=0.01)
 
 
-def test_several_passes_without_time_are_warned_of_with_a_way_on(tmp_path):
+@pytest.mark.parametrize("lacking, said", [("points", "all points have the same gps_time"), ("trajectory", "the trajectory has no time")])
+def test_several_passes_without_time_are_warned_of_by_the_name_of_what_lacks_it(tmp_path, lacking, said):
     there, back = drive(PATH), drive(PATH[::-1] + [0.0, 3.0], start=3000.0)
     both = [np.r_[a, b] for a, b in zip(surveyed_points(there), surveyed_points(back))]
+    driven = replace(joined(there, back), has_time=lacking != "trajectory")
     heard = Heard()
-    open_survey([write_cloud(tmp_path / "twice.laz", *both[:3], crs=CRS)], joined(there, back), progress=heard)
-    assert any(re.search("drives 2 times over 1 road.*passes are mixed.*Export both with gps_time", text) for text in heard.warnings)
+    open_survey([write_cloud(tmp_path / "twice.laz", *both[:3 if lacking == "points" else 4], crs=CRS)], driven, progress=heard)
+    assert any(re.search(f"drives 2 times over 1 road.*{said}.*passes are mixed.*Export points and trajectory", text) for text in heard.warnings)
+
+
+@pytest.mark.parametrize("height", [0.0, 0.45, -0.3])
+def test_a_line_on_the_road_is_refused_as_a_trajectory_with_a_way_on(street, height):
+    trajectory, _, path = street
+    with pytest.raises(RoadExtractionError, match="above the road.*a line on the road.*choose the trajectory"):
+        open_survey([path], replace(trajectory, z=trajectory.z - 2.0 + height))
 
 
 def test_a_scanner_channel_tells_the_scanners_apart(street, tmp_path):
