@@ -91,7 +91,8 @@ class Algorithm:
     def add_survey(self, trajectory_optional=False):
         """Point clouds, trajectory and the CRS for clouds that carry none."""
         self.add(PointCloudsSpec("POINT_CLOUDS", tr("Point clouds"),
-                                 tr("LAS, LAZ or COPC files of one survey. Files may overlap and come in any order.")))
+                                 tr("LAS, LAZ or COPC files of one survey, or a folder that holds them, or names with wildcards "
+                                    "(/data/B12/tile_*.laz). Files may overlap and come in any order.")))
         self.add_trajectory(trajectory_optional)
         self.add_crs()
 

@@ -4,11 +4,13 @@
 which knows how values are given there and how layers are read and written.
 """
 
+import os
 import tempfile
 from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
 from ..core.common.parallel import cancellation_scope
+from .cloud_files import cloud_files
 from .destinations import UnfinishedFiles, check_suffix, check_writable, destination_path
 from .parameters import settings_class
 from .texts import tr
@@ -113,12 +115,15 @@ class Call:
         return self.parameters.get(name) not in (None, "", [])
 
     def point_clouds(self):
-        """Paths of the clouds, each proven to be there."""
-        return [existing_file(path, self.label("POINT_CLOUDS")) for path in self.files("POINT_CLOUDS")]
+        """Paths of the clouds, each proven to be there; of folders and wildcards the files they hold."""
+        return [existing_file(path, self.label("POINT_CLOUDS")) for path in self._cloud_files()]
+
+    def _cloud_files(self):
+        return cloud_files(self.files("POINT_CLOUDS"), self.label("POINT_CLOUDS"))
 
     def surveyed(self):
         """The point clouds whose name the results go by; none where a stage starts from another's result."""
-        return [] if self.algorithm.parameter("POINT_CLOUDS") is None else self.files("POINT_CLOUDS")
+        return [] if self.algorithm.parameter("POINT_CLOUDS") is None else self._cloud_files()
 
     def cloud(self, name):
         """The path of one point cloud; "" where the optional parameter is empty."""
@@ -184,7 +189,7 @@ class Call:
             if path is None:
                 continue
             check_suffix(path, spec, self.VECTOR_SUFFIXES)
-            read = self.read_as(value, path)
+            read = self.read_as(value, path) or self._cloud_at(path)
             if read:
                 raise RoadExtractionError(
                     tr("{label} would be written over {path}, which is read as {input}: inputs are never changed. Give it another name.").format(
@@ -200,6 +205,11 @@ class Call:
                 )
             taken[place] = spec.label
             check_writable(path, spec.label)
+
+    def _cloud_at(self, path):
+        """The label of the point clouds where one of them, maybe by the name of its folder alone, is at a path; otherwise ""."""
+        is_cloud = path.exists() and any(Path(cloud).is_file() and os.path.samefile(cloud, path) for cloud in self.surveyed())
+        return self.label("POINT_CLOUDS") if is_cloud else ""
 
     def new_file(self, name):
         """A temporary path for a file or raster output; "" where it is not wanted."""

@@ -16,7 +16,7 @@ from ..algorithms.destinations import ReplacedFiles, destination_path
 from ..algorithms.parameters import RasterOutput
 from ..core.common.errors import RoadExtractionError
 from .embedded_style import embed_style
-from .input_files import close_database, input_files, written_over
+from .input_files import close_database, input_files, layer_file, written_over
 from .layers import WKB_TYPES, QgisSource, crs_text, keeps_aliases, qgis_fields, write_features
 from .reports import note_report
 from .styling import group_of, style_on_load
@@ -39,7 +39,10 @@ class QgisCall(Call):
     # -- in ---------------------------------------------------------------------------------
 
     def files(self, name):
-        return self.processing.parameterAsFileList(self.parameters, name, self.context)
+        given = self.parameters.get(name)
+        if not isinstance(given, (list, tuple)) and not hasattr(given, "source"):
+            given = self.processing.parameterAsFileList(self.parameters, name, self.context)
+        return [layer_file(one, self.context) for one in (given if isinstance(given, (list, tuple)) else [given])]
 
     def file(self, name):
         return self.processing.parameterAsFile(self.parameters, name, self.context)

@@ -37,6 +37,17 @@ def written_over(destination, path, inputs):
     return ""
 
 
+def layer_file(value, context):
+    """The file of a point cloud that a value names: a path, or a layer, its name or its id in the project; else the value as text."""
+    if isinstance(value, QgsMapLayer):
+        return value.source()
+    text = str(value)
+    if os.path.exists(text):
+        return text
+    layer = QgsProcessingUtils.mapLayerFromString(text, context, False)
+    return text if layer is None else layer.source()
+
+
 def close_database(destination, context):
     """Let go of the layers that were read, for this run alone, from the database that a table is about to be added to.
 

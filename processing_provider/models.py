@@ -17,7 +17,7 @@ def read_model(path):
 
 
 def explain(model):
-    """Give a model the labels and the help of the parameters it hands its own on to.
+    """Give a model the labels, the help and the widgets of the parameters it hands its own on to.
 
     Those texts are written once, on the parameters of the stages, and are translated there.
     Results keep their names: a model's results are called by them.
@@ -25,11 +25,12 @@ def explain(model):
     said = model.helpContent()
     said["ALG_DESC"] = tr(said.get("ALG_DESC", ""))
     said["HELP_URL"] = MANUAL_PAGE
-    for name, (label, text) in asked_for(model).items():
-        said[name] = text
+    for name, asked in asked_for(model).items():
+        said[name] = asked.help()
         definition = model.parameterDefinition(name).clone()
-        definition.setDescription(label)
-        definition.setHelp(text)
+        definition.setDescription(asked.description())
+        definition.setHelp(asked.help())
+        definition.setMetadata(asked.metadata())  # which names the widget of the dialog
         model.updateModelParameter(definition)
     said.update(handed_back(model))
     model.setHelpContent(said)
@@ -37,7 +38,7 @@ def explain(model):
 
 
 def asked_for(model):
-    """{input of the model: (label, help) of the parameter it goes to}, of the first stage that takes it."""
+    """{input of the model: the parameter it goes to}, of the first stage that takes it."""
     found = {}
     for child in model.childAlgorithms().values():
         algorithm = child.algorithm()
@@ -46,8 +47,8 @@ def asked_for(model):
         for name, sources in child.parameterSources().items():
             for source in sources:
                 if source.source() == Qgis.ProcessingModelChildParameterSource.ModelParameter:
-                    definition = algorithm.parameterDefinition(name)
-                    found.setdefault(source.parameterName(), (definition.description(), definition.help()))
+                    # a copy: the stage may go before its parameter is asked
+                    found.setdefault(source.parameterName(), algorithm.parameterDefinition(name).clone())
     return found
 
 

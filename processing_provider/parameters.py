@@ -26,6 +26,10 @@ from ..algorithms.vector_source import KIND_OF, LINE, POINT, POLYGON
 
 # fileFilter is enforced and case-sensitive, and `extension=` accepts one suffix only
 CLOUD_FILTER = "Point clouds (*.las *.laz *.LAS *.LAZ);;All files (*.*)"
+# Found by name when a dialog is made, which happens in a window only
+WIDGETS = f"{__name__.split('.')[0]}.desktop"
+CLOUDS_WIDGET = {"widget_wrapper": {"class": f"{WIDGETS}.cloud_widget.PointCloudsWrapper"}}
+TRAJECTORY_WIDGET = {"widget_wrapper": {"class": f"{WIDGETS}.trajectory_widget.TrajectoryWrapper"}}
 LAZ_FILTER = "LAZ (*.laz);;LAS (*.las)"
 HTML_FILTER = "HTML (*.html)"
 DECIMALS = 3  # millimetres; QGIS would show six
@@ -33,6 +37,13 @@ DECIMALS = 3  # millimetres; QGIS would show six
 SourceType = QgsProcessing.SourceType
 SOURCE_TYPES = {POINT: SourceType.TypeVectorPoint, LINE: SourceType.TypeVectorLine, POLYGON: SourceType.TypeVectorPolygon}
 PAINTED = [SourceType.TypeVectorPolygon, SourceType.TypeVectorLine, SourceType.TypeRaster]
+
+
+class PointCloudFiles(QgsProcessingParameterMultipleLayers):
+    """Several files; the dialogs of a batch list point clouds, where QGIS would list everything."""
+
+    def createFileFilter(self):
+        return CLOUD_FILTER
 
 
 def qgis_parameter(spec):
@@ -99,7 +110,9 @@ def _(spec: specs.CrsSpec):
 
 @_parameter.register
 def _(spec: specs.PointCloudsSpec):
-    return QgsProcessingParameterMultipleLayers(spec.name, spec.label, SourceType.TypeFile, optional=spec.optional)
+    parameter = PointCloudFiles(spec.name, spec.label, SourceType.TypeFile, optional=spec.optional)
+    parameter.setMetadata(CLOUDS_WIDGET)
+    return parameter
 
 
 @_parameter.register
@@ -110,6 +123,13 @@ def _(spec: specs.CloudSpec):
 @_parameter.register
 def _(spec: specs.FileSpec):
     return QgsProcessingParameterFile(spec.name, spec.label, fileFilter=spec.file_filter, optional=spec.optional)
+
+
+@_parameter.register
+def _(spec: specs.TrajectorySpec):
+    parameter = QgsProcessingParameterFeatureSource(spec.name, spec.label, [_source_type(spec.geometry)], optional=spec.optional)
+    parameter.setMetadata(TRAJECTORY_WIDGET)
+    return parameter
 
 
 @_parameter.register

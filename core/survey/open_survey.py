@@ -188,9 +188,9 @@ def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: S
     height = float(np.mean(list(reader.heights.values())))
     if abs(height) < LOWEST_SENSOR:
         raise RoadExtractionError(
-            f"The trajectory lies {height:.2f} m above the road; a scanner rides at least {LOWEST_SENSOR} m above it. It seems to be a line on the "
-            "road, such as a driving line of a map, and not where the scanner was: choose the trajectory that the navigation system recorded. "
-            "If it is that of the vehicle's wheels, add the height of the scanner to its heights.")
+            f"The trajectory lies {height:.2f} m above the road; a scanner rides at least {LOWEST_SENSOR} m above it. "
+            "It seems to be a line on the road, such as a driving line of a map, and not where the scanner was: choose the "
+            "trajectory that the navigation system recorded. If it is that of the vehicle's wheels, add the height of the scanner to its heights.")
     if not crs and SUSPICIOUS_SENSOR_HEIGHT[0] < height < SUSPICIOUS_SENSOR_HEIGHT[1]:
         progress.warn(f"The sensor seems to ride {height:.1f} m above the road, as if cloud and trajectory were in feet, and no CRS tells their "
                       "unit: everything is measured in metres, so curbs and markings would be missed. If they are in feet, convert both to metres "

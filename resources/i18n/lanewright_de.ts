@@ -45,8 +45,8 @@
         </message>
         <message>
             <location filename="../../algorithms/algorithm.py" />
-            <source>LAS, LAZ or COPC files of one survey. Files may overlap and come in any order.</source>
-            <translation>LAS-, LAZ- oder COPC-Dateien einer Vermessung. Dateien dürfen sich überlappen und in beliebiger Reihenfolge kommen.</translation>
+            <source>LAS, LAZ or COPC files of one survey, or a folder that holds them, or names with wildcards (/data/B12/tile_*.laz). Files may overlap and come in any order.</source>
+            <translation>LAS-, LAZ- oder COPC-Dateien einer Aufnahme, ein Ordner, in dem sie liegen, oder Namen mit Platzhaltern (/data/B12/tile_*.laz). Dateien dürfen sich überlappen und in beliebiger Reihenfolge kommen.</translation>
         </message>
         <message>
             <location filename="../../algorithms/algorithm.py" />
@@ -672,6 +672,16 @@
             <location filename="../../algorithms/call.py" />
             <source>while writing</source>
             <translation>beim Schreiben</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/cloud_files.py" />
+            <source>{label}: the folder {name} holds no LAS or LAZ file.</source>
+            <translation>{label}: Im Ordner {name} liegt keine LAS- oder LAZ-Datei.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/cloud_files.py" />
+            <source>{label}: no LAS or LAZ file is called {name}.</source>
+            <translation>{label}: Keine LAS- oder LAZ-Datei heißt {name}.</translation>
         </message>
         <message>
             <location filename="../../algorithms/destinations.py" />
@@ -2694,6 +2704,46 @@
             <translation>{label} hat Geometrien ohne Höhen (Z). Den Layer verwenden, den Lanewright geschrieben hat.</translation>
         </message>
         <message>
+            <location filename="../../desktop/cloud_widget.py" />
+            <source>Files, a folder, or wildcards such as /data/B12/*.laz; or drop them here</source>
+            <translation>Dateien, ein Ordner oder Platzhalter wie /data/B12/*.laz; oder hierher ziehen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/cloud_widget.py" />
+            <source>Add point clouds</source>
+            <translation>Punktwolken hinzufügen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/cloud_widget.py" />
+            <source>Add files…</source>
+            <translation>Dateien hinzufügen…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/cloud_widget.py" />
+            <source>Add a folder…</source>
+            <translation>Ordner hinzufügen…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/cloud_widget.py" />
+            <source>Folder of point clouds</source>
+            <translation>Ordner mit Punktwolken</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/cloud_widget.py" />
+            <source>{count} file(s), {size} MB</source>
+            <translation>{count} Datei(en), {size} MB</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/cloud_widget.py" />
+            <source>Point clouds of the project</source>
+            <translation>Punktwolken des Projekts</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/cloud_widget.py" />
+            <source>There is no file {name}.</source>
+            <translation>Die Datei {name} gibt es nicht.</translation>
+        </message>
+        <message>
             <location filename="../../desktop/layout_dialog.py" />
             <source>Lanewright</source>
             <translation>Lanewright</translation>
@@ -3101,57 +3151,57 @@
         <message>
             <location filename="../../core/common/schemas.py" />
             <source>Lane and piece (road.lane.piece)</source>
-            <translation type="unfinished" />
+            <translation>Fahrstreifen und Stück (Straße.Streifen.Stück)</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
             <source>Type (driving/shoulder/parking/bicycle/hatched/median/connector)</source>
-            <translation type="unfinished" />
+            <translation>Art (driving/shoulder/parking/bicycle/hatched/median/connector)</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
             <source>Direction (1 along, -1 against the road, 0 not driven)</source>
-            <translation type="unfinished" />
+            <translation>Richtung (1 mit, -1 gegen die Straße, 0 nicht befahren)</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
             <source>What its left border is (line or edge and its number)</source>
-            <translation type="unfinished" />
+            <translation>Was links begrenzt (Linie oder Rand mit Nummer)</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
             <source>What its right border is (line or edge and its number)</source>
-            <translation type="unfinished" />
+            <translation>Was rechts begrenzt (Linie oder Rand mit Nummer)</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
             <source>Kind of its left border</source>
-            <translation type="unfinished" />
+            <translation>Art der linken Begrenzung</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
             <source>Kind of its right border</source>
-            <translation type="unfinished" />
+            <translation>Art der rechten Begrenzung</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
             <source>Pattern of its left border</source>
-            <translation type="unfinished" />
+            <translation>Muster der linken Begrenzung</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
             <source>Pattern of its right border</source>
-            <translation type="unfinished" />
+            <translation>Muster der rechten Begrenzung</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
             <source>Lanes that follow, by lane_id</source>
-            <translation type="unfinished" />
+            <translation>Folgende Fahrstreifen, nach lane_id</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
             <source>Confidence (0 to 1)</source>
-            <translation type="unfinished" />
+            <translation>Vertrauen (0 bis 1)</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />

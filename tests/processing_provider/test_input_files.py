@@ -82,3 +82,16 @@ def test_a_point_cloud_that_is_read_is_not_written_over(survey):
         processing.run("lanewright:extractroadsurface", {"POINT_CLOUDS": [str(survey / "s.laz")], "TRAJECTORY": str(survey / "drive.gpkg"),
                                                          "ROAD_POINTS": str(survey / "s.laz")})
     assert (survey / "s.laz").read_bytes() == before
+
+
+def test_a_run_on_a_folder_or_wildcard_reads_its_clouds_and_writes_over_none(survey):
+    import processing
+
+    report = survey / "report.html"
+    processing.run("lanewright:inspectsurvey", {"POINT_CLOUDS": str(survey), "REPORT": str(report)})
+    assert "s.laz" in report.read_text()
+    before = (survey / "s.laz").read_bytes()
+    with pytest.raises(QgsProcessingException, match="s.laz, which is read as Point clouds"):
+        processing.run("lanewright:extractroadsurface", {"POINT_CLOUDS": [str(survey / "*.laz")], "TRAJECTORY": str(survey / "drive.gpkg"),
+                                                         "ROAD_POINTS": str(survey / "s.laz")})
+    assert (survey / "s.laz").read_bytes() == before

@@ -1,0 +1,171 @@
+"""The point clouds of a survey in dialogs: files, folders, wildcards and layers of the project, typed, chosen or dropped."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from qgis.core import Qgis, QgsMimeDataUtils, QgsProject, QgsSettings
+from qgis.gui import QgsProcessingGui
+from qgis.PyQt.QtCore import pyqtSignal
+from qgis.PyQt.QtGui import QDragEnterEvent, QDropEvent
+from qgis.PyQt.QtWidgets import QFileDialog, QHBoxLayout, QLabel, QLineEdit, QMenu, QToolButton, QVBoxLayout, QWidget
+
+from ..algorithms.cloud_files import SUFFIXES, cloud_files
+from ..core.common.errors import RoadExtractionError
+from ..processing_provider.texts import tr
+from .dialog_wrapper import DialogWrapper
+
+LAST_FOLDER = "/Processing/LastInputPath"  # QGIS's own setting
+FILTER = "LAS, LAZ, COPC (*.las *.laz *.LAS *.LAZ);;All files (*.*)"
+SEPARATOR = ";"
+MEGABYTE = 1e6
+
+
+class PointCloudsWidget(QWidget):
+    """A line of names with a button to add more; with `told`, a second line says how many files they are."""
+
+    changed = pyqtSignal()
+
+    def __init__(self, parent: QWidget | None = None, told: bool = True):
+        super().__init__(parent)
+        self.names = DropLine(self)
+        self.names.setPlaceholderText(tr("Files, a folder, or wildcards such as /data/B12/*.laz; or drop them here"))
+        self.names.setClearButtonEnabled(True)
+        self.names.dropped.connect(self.add)
+        self.names.textChanged.connect(self._tell)
+        self.names.textChanged.connect(self.changed)
+        self.button = QToolButton()
+        self.button.setText("…")
+        self.button.setToolTip(tr("Add point clouds"))
+        self.button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.menu = QMenu(self)
+        self.menu.aboutToShow.connect(self._fill_menu)
+        self.button.setMenu(self.menu)
+        self.told = QLabel() if told else None
+        row = QHBoxLayout()
+        row.setContentsMargins(0, 0, 0, 0)
+        row.addWidget(self.names, 1)
+        row.addWidget(self.button)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(2)
+        column.addLayout(row)
+        if self.told is not None:
+            column.addWidget(self.told)
+        self._tell()
+
+    # -- the value ------------------------------------------------------------------------------
+
+    def value(self) -> list[str]:
+        """The names, as they were given."""
+        return [name.strip() for name in self.names.text().split(SEPARATOR) if name.strip()]
+
+    def set_value(self, value) -> None:
+        """Replace the names by one text or several; layers give the files they show."""
+        given = value if isinstance(value, (list, tuple)) else [value] if value else []
+        self.names.setText(f"{SEPARATOR} ".join(_source(one) for one in given))
+
+    def add(self, names: list[str]) -> None:
+        """Further names after those that are there."""
+        self.set_value(list(dict.fromkeys([*self.value(), *names])))
+
+    # -- what the button offers -------------------------------------------------------------------
+
+    def _fill_menu(self) -> None:
+        self.menu.clear()
+        self.menu.addAction(tr("Add files…"), self.choose_files)
+        self.menu.addAction(tr("Add a folder…"), self.choose_folder)
+        layers = project_clouds()
+        if layers:
+            self.menu.addSection(tr("Point clouds of the project"))
+            for name, source in layers:
+                self.menu.addAction(name, lambda source=source: self.add([source]))
+
+    def choose_files(self) -> None:
+        files, _ = QFileDialog.getOpenFileNames(self, tr("Point clouds"), QgsSettings().value(LAST_FOLDER, ""), FILTER)
+        if files:
+            QgsSettings().setValue(LAST_FOLDER, str(Path(files[0]).parent))
+            self.add(files)
+
+    def choose_folder(self) -> None:
+        folder = QFileDialog.getExistingDirectory(self, tr("Folder of point clouds"), QgsSettings().value(LAST_FOLDER, ""))
+        if folder:
+            QgsSettings().setValue(LAST_FOLDER, folder)
+            self.add([folder])
+
+    def _tell(self) -> None:
+        if self.told is not None:
+            self.told.setText(described(self.value()))
+            self.told.setVisible(bool(self.value()))
+        self.names.setToolTip("\n".join(self.value()))
+
+
+class DropLine(QLineEdit):
+    """A line on which files, folders and layers can be dropped."""
+
+    dropped = pyqtSignal(list)
+
+    def dragEnterEvent(self, event: QDragEnterEvent) -> None:
+        if dropped_clouds(event.mimeData()):
+            event.acceptProposedAction()
+        else:
+            super().dragEnterEvent(event)
+
+    def dropEvent(self, event: QDropEvent) -> None:
+        names = dropped_clouds(event.mimeData())
+        if names:
+            self.dropped.emit(names)
+            event.acceptProposedAction()
+        else:
+            super().dropEvent(event)
+
+
+def dropped_clouds(mime) -> list[str]:
+    """Folders and point clouds among what is dropped: from a file manager, the browser or the layer tree."""
+    if QgsMimeDataUtils.isUriList(mime):
+        paths = [uri.uri for uri in QgsMimeDataUtils.decodeUriList(mime)]
+    else:
+        paths = [url.toLocalFile() for url in mime.urls() if url.isLocalFile()]
+    return [path for path in paths if path and (Path(path).is_dir() or path.lower().endswith(SUFFIXES))]
+
+
+def project_clouds() -> list[tuple[str, str]]:
+    """(name, file) of the point cloud layers of the project, by name."""
+    layers = QgsProject.instance().mapLayers().values()
+    return sorted((layer.name(), layer.source()) for layer in layers if layer.type() == Qgis.LayerType.PointCloud)
+
+
+def described(given: list[str]) -> str:
+    """How many files these names are and how large, or what is wrong with them."""
+    try:
+        files = [Path(name) for name in cloud_files([_source(name) for name in given], tr("Point clouds"))]
+    except RoadExtractionError as problem:
+        return str(problem)
+    missing = [str(path) for path in files if not path.is_file()]
+    if missing:
+        return tr("There is no file {name}.").format(name=missing[0])
+    size = sum(path.stat().st_size for path in files) / MEGABYTE
+    return tr("{count} file(s), {size} MB").format(count=len(files), size=f"{size:,.1f}" if size < 10 else f"{size:,.0f}")
+
+
+def _source(value) -> str:
+    """A path as it is; the file of a layer that is given as such or by its id."""
+    if hasattr(value, "source"):
+        return value.source()
+    layer = QgsProject.instance().mapLayer(str(value))
+    return str(value) if layer is None else layer.source()
+
+
+class PointCloudsWrapper(DialogWrapper):
+    """The widget in QGIS's dialogs and batches."""
+
+    def createWidget(self, **more):
+        widget = PointCloudsWidget(told=self.dialogType == QgsProcessingGui.WidgetType.Standard)
+        widget.changed.connect(lambda: self.widgetValueHasChanged.emit(self))
+        return widget
+
+    def setValue(self, value):
+        self.widget.set_value(value)
+
+    def value(self):
+        return self.widget.value() or None

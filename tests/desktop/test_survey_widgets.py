@@ -1,0 +1,165 @@
+"""The widgets by which a survey is chosen: point clouds and trajectory."""
+
+import pytest
+from lanewright.algorithms.cloud_files import cloud_files
+from lanewright.core.common.errors import RoadExtractionError
+from lanewright.desktop.cloud_widget import PointCloudsWidget, PointCloudsWrapper, described, dropped_clouds
+from lanewright.desktop.trajectory_widget import TrajectoryWrapper
+from qgis.core import QgsApplication, QgsProcessingContext, QgsProcessingModelAlgorithm, QgsProject, QgsVectorLayer
+from qgis.gui import QgsProcessingModelerParameterWidget
+from qgis.PyQt.QtCore import QMimeData, QUrl
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """Two tiles of a survey, a copy that QGIS made of one, and a table."""
+    for name in ("tile_2.LAZ", "tile_1.laz", "tile_1.copc.laz", "drive.csv"):
+        (tmp_path / name).write_bytes(b"0" * 1_000_000)
+    return tmp_path
+
+
+@pytest.fixture
+def project(qgis_app):
+    yield QgsProject.instance()
+    QgsProject.instance().clear()
+
+
+@pytest.fixture(autouse=True)
+def no_window(provider, monkeypatch):
+    """Dialogs take what they can from a window, and pytest-qgis puts one of its own in its place."""
+    from processing.gui import BatchPanel, ParametersPanel
+
+    for module in (BatchPanel, ParametersPanel):
+        monkeypatch.setattr(module, "iface", None)
+
+
+def layer(project, kind, name, *fields):
+    made = QgsVectorLayer(f"{kind}?crs=EPSG:32650&" + "&".join(f"field={field}:double" for field in fields), name, "memory")
+    project.addMapLayer(made)
+    return made
+
+
+def dialog_of(algorithm="lanewright:roadmap"):
+    from processing.gui.AlgorithmDialog import AlgorithmDialog
+
+    return AlgorithmDialog(QgsApplication.processingRegistry().createAlgorithmById(algorithm))
+
+
+# -- which files are meant ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("given", ["", "tile_*", "*.[lL][aA][zZ]"])
+def test_a_folder_or_wildcard_gives_its_clouds_and_no_point_twice(folder, given):
+    assert cloud_files([str(folder / given)], "Point clouds") == [str(folder / name) for name in ("tile_1.laz", "tile_2.LAZ")]
+
+
+def test_a_copc_that_is_named_or_stands_alone_is_taken(folder):
+    named = str(folder / "tile_1.copc.laz")
+    assert cloud_files([named], "Point clouds") == [named]
+    (folder / "tile_1.laz").unlink()
+    assert named in cloud_files([str(folder)], "Point clouds")
+
+
+@pytest.mark.parametrize("given, said", [("empty", "holds no LAS or LAZ file"), ("x*.laz", "no LAS or LAZ file is called")])
+def test_a_folder_or_wildcard_without_a_cloud_is_said(tmp_path, given, said):
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(RoadExtractionError, match=f"Point clouds: .*{said}"):
+        cloud_files([str(tmp_path / given)], "Point clouds")
+
+
+# -- the widget ------------------------------------------------------------------------------------
+
+
+def test_what_was_typed_is_counted_and_what_is_missing_named(qgis_app, folder):
+    assert described([str(folder)]) == "2 file(s), 2.0 MB"
+    assert "nowhere.laz" in described([str(folder / "nowhere.laz")])
+
+
+def test_files_folders_and_only_those_can_be_dropped(qgis_app, folder):
+    mime = QMimeData()
+    mime.setUrls([QUrl.fromLocalFile(str(path)) for path in (folder, folder / "tile_2.LAZ", folder / "drive.csv")])
+    assert dropped_clouds(mime) == [str(folder), str(folder / "tile_2.LAZ")]
+
+
+def test_a_name_is_taken_once(qgis_app):
+    widget = PointCloudsWidget()
+    widget.set_value(["/a/1.laz", "/a/2.laz"])
+    widget.add(["/a/2.laz", "/a/3.laz"])
+    assert widget.value() == ["/a/1.laz", "/a/2.laz", "/a/3.laz"]
+
+
+@pytest.mark.parametrize("given", [["/a/1.laz", "/a/2.laz"], "/a/1.laz;/a/2.laz", ("/a/1.laz", "/a/2.laz")])
+def test_a_dialog_opened_from_the_history_holds_the_files_of_that_run(provider, given):
+    dialog = dialog_of()
+    dialog.setParameters({"POINT_CLOUDS": given})
+    wrapper = dialog.mainWidget().wrappers["POINT_CLOUDS"]
+    assert isinstance(wrapper, PointCloudsWrapper)
+    assert wrapper.parameterValue() == ["/a/1.laz", "/a/2.laz"]
+
+
+def test_a_model_of_the_stages_asks_with_the_same_widgets(provider):
+    model = next(one for one in provider.algorithms() if one.displayName() == "Road map stages")
+    wrappers = dialog_of(model.id()).mainWidget().wrappers
+    kinds = {type(wrapper) for wrapper in wrappers.values()}
+    assert {PointCloudsWrapper, TrajectoryWrapper} <= kinds
+
+
+def test_the_model_designer_offers_the_inputs_of_the_model(provider):
+    from processing.modeler.ModelerParametersDialog import ModelerParametersDialog
+
+    algorithm = QgsApplication.processingRegistry().createAlgorithmById("lanewright:roadmap")
+    model = QgsProcessingModelAlgorithm()
+    model.initAlgorithm()
+    dialog = ModelerParametersDialog(algorithm, model)
+    for name in ("POINT_CLOUDS", "TRAJECTORY"):
+        assert isinstance(dialog.widget.widget.wrappers[name], QgsProcessingModelerParameterWidget)
+
+
+def test_each_file_of_a_batch_filled_from_a_list_becomes_a_row(provider, folder):
+    from processing.gui.BatchAlgorithmDialog import BatchAlgorithmDialog
+    from processing.gui.BatchPanel import BatchPanelFillWidget
+
+    dialog = BatchAlgorithmDialog(QgsApplication.processingRegistry().createAlgorithmById("lanewright:roadmap"))
+    panel = dialog.mainWidget()
+    column = panel.parameter_to_column["POINT_CLOUDS"]
+    fill = panel.tblParameters.cellWidget(0, column)
+    assert isinstance(fill, BatchPanelFillWidget) and "*.laz" in fill.parameterDefinition.createFileFilter()
+    for row in range(3):
+        fill.setRowValue(row, f"/a/{row}.laz", QgsProcessingContext())
+    assert [panel.valueForParameter(row, "POINT_CLOUDS") for row in range(3)] == [["/a/0.laz"], ["/a/1.laz"], ["/a/2.laz"]]
+
+
+# -- the trajectory ----------------------------------------------------------------------------------
+
+
+def shown(dialog):
+    return dialog.mainWidget().wrappers["TRAJECTORY"].parameterValue()
+
+
+def test_lines_of_a_road_map_are_not_offered_as_trajectory(provider, project):
+    layer(project, "LineString", "Driving lines", "road", "lane", "station_m")
+    layer(project, "Point", "Curb points", "road", "pass", "station_m")
+    assert shown(dialog_of()) is None
+
+
+def test_the_trajectory_of_the_project_is_offered(provider, project):
+    layer(project, "LineString", "Driving lines", "road", "lane", "station_m")
+    driven = layer(project, "Point", "drive", "gps_time", "roll", "heading")
+    assert shown(dialog_of()) == driven.id()
+
+
+def test_of_two_trajectories_none_is_chosen_for_the_user(provider, project):
+    for name in ("monday", "tuesday"):
+        layer(project, "Point", name, "time")
+    assert shown(dialog_of()) is None
+
+
+def test_an_optional_trajectory_stays_empty(provider, project):
+    layer(project, "Point", "drive", "time")
+    assert shown(dialog_of("lanewright:assessboundaries")) is None
+
+
+def test_a_file_can_be_given_as_trajectory(provider, tmp_path):
+    dialog = dialog_of()
+    dialog.setParameters({"TRAJECTORY": str(tmp_path / "drive.csv")})
+    assert shown(dialog) == str(tmp_path / "drive.csv")
