@@ -39,6 +39,7 @@ class Algorithm:
     TAGS = ()
     HELP = ""
     LOOKS = {}  # output -> the result whose map style it has, where that is not its own name
+    WHOLE_MAP = False  # a run makes a map of its own, not one layer of one
     NEEDS_GDAL = False  # it cannot run without GDAL's Python module, whatever is asked of it
 
     def __init__(self):

@@ -5,10 +5,10 @@ from __future__ import annotations
 from qgis.core import Qgis, QgsLayerTreeGroup, QgsMapLayer, QgsProject
 from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QWidget
 
+from ..processing_provider.results.runs import GROUP
 from ..processing_provider.texts import tr
 from .map_layout import PAPERS, SCALES
 
-GROUP = "Lanewright"
 # tables of a GeoPackage, or file names, by which a group is known to hold a road map
 ROAD_MAP = ("road_edges", "driving_lines", "marking_lines", "markings", "road_surface")
 

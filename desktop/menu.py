@@ -8,6 +8,7 @@ from qgis.PyQt.QtGui import QAction, QDesktopServices, QIcon
 from qgis.PyQt.QtWidgets import QMenu
 
 from ..processing_provider.reports import last_report
+from ..processing_provider.results.layer_tree import replaces_last_run, set_replaces_last_run
 from ..processing_provider.texts import tr
 from .layout_dialog import LayoutDialog, road_map_groups, shown_layers
 from .manual import ManualWindow
@@ -36,6 +37,8 @@ class Menu(QObject):
                   theme("/mActionNewLayout.svg"))
         self._add(tr("Open the last report"), self.open_report, tr("The report of the run that ended last"), theme("/mIconHtml.svg"))
         self._add_models()
+        self._add_choice(tr("Replace the last run of a survey"), replaces_last_run, set_replaces_last_run,
+                         tr("New results take the place of the last ones of the same survey and algorithm in the layer tree; files stay"))
         self._add(tr("Manual"), self.manual.open, tr("What every algorithm does, and a walk through a first survey"),
                   theme("/mActionHelpContents.svg"))
         # A toolbar of its own would take a row of the window for one button
@@ -46,6 +49,17 @@ class Menu(QObject):
         action.setToolTip(f"Lanewright: {tip}")
         action.setStatusTip(tip)
         action.triggered.connect(lambda checked=False: what())
+        self.iface.addPluginToMenu("Lanewright", action)
+        self.actions.append(action)
+
+    def _add_choice(self, title, chosen, choose, tip):
+        """An entry with a tick."""
+        action = QAction(title, self.iface.mainWindow())
+        action.setCheckable(True)
+        action.setChecked(chosen())
+        action.setToolTip(f"Lanewright: {tip}")
+        action.setStatusTip(tip)
+        action.toggled.connect(choose)
         self.iface.addPluginToMenu("Lanewright", action)
         self.actions.append(action)
 

@@ -34,7 +34,8 @@ class SampleRun:
             return
         self.running = True
         folder = tempfile.TemporaryDirectory(prefix="lanewright-sample-")
-        self.folder = Path(folder.name)
+        self.folder = Path(folder.name) / "sample"  # by which its group is called
+        self.folder.mkdir()
         # its layers stay in the project until then
         QgsApplication.instance().aboutToQuit.connect(partial(_remove, folder))
         self._run("samplesurvey", dict(

@@ -19,7 +19,8 @@ from .embedded_style import embed_style
 from .input_files import close_database, input_files, layer_file, written_over
 from .layers import WKB_TYPES, QgisSource, crs_text, keeps_aliases, qgis_fields, write_features
 from .reports import note_report
-from .styling import group_of, style_on_load
+from .results.runs import run_of
+from .styling import style_on_load
 from .texts import tr
 
 
@@ -156,12 +157,12 @@ class QgisCall(Call):
         replaced.forget()
         self._files.commit()
         schemas = {name: features.schema for name, features in self._layers}
-        group = group_of(self.surveyed())
+        run = run_of(self.algorithm.ID, self.surveyed(), self.algorithm.WHOLE_MAP, self.context)
         for name, dest in self._results.items():
             note_report(dest)
             look = self.algorithm.LOOKS.get(name, name)
             embed_style(look, dest, self.label(name), schemas.get(name, ()))
-            style_on_load(look, dest, self.label(name), self.context, schemas.get(name, ()), group)
+            style_on_load(look, dest, self.label(name), self.context, schemas.get(name, ()), run)
         return {**self._results, **numbers}
 
     def _write(self, name, features):

@@ -1,6 +1,5 @@
 """Names, order, group and style of the layers a run puts into the project."""
 
-import os
 from pathlib import Path
 
 from qgis.core import (
@@ -14,6 +13,8 @@ from qgis.core import (
 )
 from qgis.PyQt.QtXml import QDomDocument
 
+from .results.layer_tree import place_layer
+from .results.runs import GROUP
 from .texts import tr
 
 STYLES = Path(__file__).resolve().parents[1] / "resources" / "styles"
@@ -52,18 +53,20 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
 
     _kept = []  # QGIS keeps no reference, and Python would collect it before the layer is loaded
 
-    def __init__(self, qml, schema):
+    def __init__(self, qml, schema, output="", run=None):
         super().__init__()
-        self.qml, self.schema = qml, schema
+        self.qml, self.schema, self.output, self.run = qml, schema, output, run
 
     @classmethod
-    def make(cls, qml, schema=()):
-        styler = cls(str(qml), schema)
+    def make(cls, qml, schema=(), output="", run=None):
+        styler = cls(str(qml), schema, output, run)
         cls._kept = cls._kept[-50:] + [styler]
         return styler
 
     def postProcessLayer(self, layer, context, feedback):
         apply_style(layer, self.qml, self.schema)
+        if self.run is not None and context.project() is not None:
+            place_layer(layer, context.project(), self.output, self.run)
         layer.triggerRepaint()
 
 
@@ -104,23 +107,13 @@ def translate_legend(layer):
             rule.setLabel(tr(rule.label()))
 
 
-def group_of(paths):
-    """The layer group of a survey, by what the names of its point clouds have in common."""
-    stems = [Path(path).stem.removesuffix(".copc") for path in paths]
-    name = os.path.commonprefix(stems).rstrip("_-. 0123456789") if len(set(stems)) > 1 else "".join(stems[:1])
-    if not name and paths:
-        name = Path(paths[0]).absolute().parent.name
-    return f"Lanewright – {name}" if name else "Lanewright"
-
-
-def style_on_load(name, dest, title, context, schema=(), group="Lanewright"):
-    """Name, group and style the layer `dest` where QGIS is going to load it."""
+def style_on_load(name, dest, title, context, schema=(), run=None):
+    """Name, group and style the layer `dest` of a Run where QGIS is going to load it."""
     if not dest or not context.willLoadLayerOnCompletion(dest):
         return
     details = context.layerToLoadOnCompletionDetails(dest)
-    details.name, details.forceName, details.groupName = title, True, group
+    details.name, details.forceName, details.groupName = title, True, run.group if run else GROUP
     look, order = LOOKS.get(name, (None, TABLES))
     details.layerSortKey = order
     qml = STYLES / f"{look}.qml"
-    if schema or qml.exists():
-        details.setPostProcessor(Styler.make(qml, schema))
+    details.setPostProcessor(Styler.make(qml, schema, name, run))

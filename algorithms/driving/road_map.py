@@ -56,6 +56,7 @@ class RoadMap(Algorithm):
     SUMMARY = "From a survey to driving lines in one call: edges, surface, intensity image, markings, lines and curve elements."
     HELP = "The same stages as the single algorithms, handed on in memory. Every output is optional."
     TAGS = ("hd map", "lane", "driving line", "road marking", "curb", "kerb")
+    WHOLE_MAP = True
     NEEDS_GDAL = True  # the stages hand the intensity image on as a GeoTIFF
 
     def declare(self):

@@ -2745,11 +2745,6 @@
         </message>
         <message>
             <location filename="../../desktop/layout_dialog.py" />
-            <source>Lanewright</source>
-            <translation>Lanewright</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/layout_dialog.py" />
             <source>Print layout of the road map</source>
             <translation>Drucklayout der Straßenkarte</translation>
         </message>
@@ -2842,6 +2837,16 @@
             <location filename="../../desktop/menu.py" />
             <source>The report of the run that ended last</source>
             <translation>Der Bericht des zuletzt beendeten Laufs</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/menu.py" />
+            <source>Replace the last run of a survey</source>
+            <translation>Letzten Lauf einer Aufnahme ersetzen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/menu.py" />
+            <source>New results take the place of the last ones of the same survey and algorithm in the layer tree; files stay</source>
+            <translation>Neue Ergebnisse treten im Layerbaum an die Stelle der letzten derselben Aufnahme und desselben Algorithmus; Dateien bleiben</translation>
         </message>
         <message>
             <location filename="../../desktop/menu.py" />
@@ -2952,6 +2957,11 @@
             <location filename="../../processing_provider/models.py" />
             <source>Models</source>
             <translation>Modelle</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/runs.py" />
+            <source>Lanewright</source>
+            <translation>Lanewright</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />

@@ -5,7 +5,8 @@ import pytest
 from lanewright.core.common.schemas import CONTROL_POINTS, DRIVING_LINES, MARKING_LINES, MARKINGS, RESIDUALS, ROAD_EDGES
 from lanewright.processing_provider.embedded_style import embed_style
 from lanewright.processing_provider.layers import qgis_fields
-from lanewright.processing_provider.styling import LOOKS, STYLES, Styler, apply_style, group_of, style_on_load
+from lanewright.processing_provider.results.runs import Run
+from lanewright.processing_provider.styling import LOOKS, STYLES, Styler, apply_style, style_on_load
 from lanewright.processing_provider.texts import install_translator, remove_translator
 from osgeo import gdal
 from qgis.core import QgsExpression, QgsProcessingContext, QgsProject, QgsRasterLayer, QgsRasterMinMaxOrigin, QgsRenderContext, QgsVectorLayer
@@ -90,7 +91,7 @@ def test_what_is_loaded_comes_named_and_grouped(qgis_app):
     context.setProject(QgsProject.instance())
     details = QgsProcessingContext.LayerDetails("x", context.project(), "x")
     context.addLayerToLoadOnCompletion("/data/edges.gpkg", details)
-    style_on_load("ROAD_EDGES", "/data/edges.gpkg", "Road edges", context, group="Lanewright – B12")
+    style_on_load("ROAD_EDGES", "/data/edges.gpkg", "Road edges", context, run=Run("roadmap", "B12", "Lanewright – B12"))
     loaded = context.layerToLoadOnCompletionDetails("/data/edges.gpkg")
     assert (loaded.name, loaded.groupName, loaded.forceName) == ("Road edges", "Lanewright – B12", True)
     assert loaded.postProcessor() is not None
@@ -100,17 +101,6 @@ def test_what_is_not_loaded_is_left_alone(qgis_app):
     context = QgsProcessingContext()
     style_on_load("ROAD_EDGES", "/data/edges.gpkg", "Road edges", context)
     assert not context.layersToLoadOnCompletion()
-
-
-@pytest.mark.parametrize("clouds, group", [
-    (["/data/main_street.laz"], "Lanewright – main_street"),
-    (["/data/B12/tile_001.laz", "/data/B12/tile_002.laz"], "Lanewright – tile"),
-    (["/data/B12/1.laz", "/data/B12/2.laz"], "Lanewright – B12"),
-    (["/data/drive.copc.laz"], "Lanewright – drive"),
-    ([], "Lanewright"),
-])
-def test_layers_of_one_survey_share_a_group_that_bears_its_name(clouds, group):
-    assert group_of(clouds) == group
 
 
 def written(tmp_path, dest):

@@ -1,0 +1,54 @@
+"""The run that results come from: its survey, its algorithm, and the name of the group they are shown in."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from qgis.core import QgsProcessingContext
+
+GROUP = "Lanewright"
+SURVEY_OF_RUN = "lanewright_survey"  # what the stages of a model tell each other through their common context
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run of an algorithm.
+
+    algorithm : its id
+    survey : name of the survey, "" where none is known
+    group : name of the layer group
+    """
+
+    algorithm: str
+    survey: str
+    group: str
+
+
+def run_of(algorithm: str, clouds: list[str], whole: bool, context: QgsProcessingContext) -> Run:
+    """The run that has just ended.
+
+    Parameters
+    ----------
+    algorithm : id
+    clouds : paths of its point clouds; none for a stage that starts from another's result
+    whole : whether it makes a map in one call. Each such run has a group of its own, named by survey and time;
+        the stages of a survey share one, since together they make one map
+    context : of the run; the stages of a model have one in common
+    """
+    store = context.temporaryLayerStore()  # an object of Qt, which keeps a value for whoever comes next
+    survey = survey_name(clouds) or str(store.property(SURVEY_OF_RUN) or "")
+    store.setProperty(SURVEY_OF_RUN, survey)
+    name = f"{GROUP} – {survey}" if survey else GROUP
+    return Run(algorithm, survey, f"{name}, {datetime.now():%Y-%m-%d %H:%M:%S}" if whole else name)
+
+
+def survey_name(clouds: list[str]) -> str:
+    """What a survey is called: the folder of its point clouds and what their names have in common, such as B12/tile."""
+    stems = [Path(path).stem.removesuffix(".copc") for path in clouds]
+    folders = {Path(path).absolute().parent for path in clouds}
+    folder = folders.pop().name if len(folders) == 1 else ""
+    name = os.path.commonprefix(stems).rstrip("_-. 0123456789") if len(set(stems)) > 1 else "".join(stems[:1])
+    return "/".join(part for part in dict.fromkeys((folder, name)) if part)
