@@ -10,6 +10,7 @@ from .parameters import (
     CloudOutput,
     CloudSpec,
     CrsSpec,
+    FileOutput,
     LayerOutput,
     LayerSpec,
     NumberOutput,
@@ -22,7 +23,7 @@ from .parameters import (
 from .texts import tr
 
 # In the order of the work
-GROUPS = ("Survey", "Road", "Markings", "Driving", "Road map", "Assessment", "Orthoimages")
+GROUPS = ("Survey", "Road", "Markings", "Driving", "Road map", "Export", "Assessment", "Orthoimages")
 TAGS_OF_ALL = ("mls", "mobile mapping", "lidar", "point cloud", "las", "laz", "road")
 
 
@@ -136,6 +137,10 @@ class Algorithm:
 
     def add_raster(self, name, label, text="", optional=False, by_default=True):
         self.add(RasterOutput(name, label, text, optional, by_default=by_default))
+
+    def add_file(self, name, label, text, suffixes, file_filter):
+        """A file of another kind as result."""
+        self.add(FileOutput(name, label, text, suffixes=suffixes, file_filter=file_filter))
 
     def add_number(self, name, label):
         """A number among the results."""

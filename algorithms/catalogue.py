@@ -5,6 +5,8 @@ from .assess.assess_driving_lines import AssessDrivingLines
 from .assess.assess_markings import AssessMarkings
 from .driving.driving_lines import DrivingLines
 from .driving.road_map import RoadMap
+from .export.import_lanelet2 import ImportLanelet2
+from .export.import_opendrive import ImportOpenDrive
 from .markings.cluster_markings import ClusterMarkings
 from .markings.correct_intensity import CorrectIntensity
 from .markings.extract_markings import ExtractMarkings
@@ -40,6 +42,8 @@ ALGORITHMS = (
     FitMarkingLines,
     DrivingLines,
     RoadMap,
+    ImportOpenDrive,
+    ImportLanelet2,
     AssessBoundaries,
     AssessMarkings,
     AssessDrivingLines,

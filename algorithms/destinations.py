@@ -10,7 +10,7 @@ import tempfile
 from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
-from .parameters import LayerOutput, RasterOutput, ReportOutput
+from .parameters import FileOutput, LayerOutput, RasterOutput, ReportOutput
 from .texts import tr
 
 SHAPEFILE = (".shp", ".shx", ".dbf", ".prj", ".cpg", ".qix", ".sbn", ".sbx")
@@ -41,7 +41,8 @@ def check_suffix(path, spec, vector_suffixes):
     if isinstance(spec, LayerOutput):
         _check_vector_suffix(path, spec.label, vector_suffixes)
         return
-    kinds = (".tif", ".tiff") if isinstance(spec, RasterOutput) else (".html", ".htm") if isinstance(spec, ReportOutput) else (".laz", ".las")
+    kinds = (".tif", ".tiff") if isinstance(spec, RasterOutput) else (".html", ".htm") if isinstance(spec, ReportOutput) else \
+        spec.suffixes if isinstance(spec, FileOutput) else (".laz", ".las")
     name = path.name.lower()
     if not name.endswith(kinds) or name.endswith((".copc.laz", ".copc.las")):
         raise RoadExtractionError(

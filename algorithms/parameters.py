@@ -202,6 +202,14 @@ class ReportOutput(OutputSpec):
 
 
 @dataclass(frozen=True)
+class FileOutput(OutputSpec):
+    """A file of another kind. `suffixes`: the endings it may have; `file_filter`: as file dialogs take it, the first is the default."""
+
+    suffixes: tuple = ()
+    file_filter: str = ""
+
+
+@dataclass(frozen=True)
 class NumberOutput:
     """A number among the results."""
 

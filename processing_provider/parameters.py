@@ -163,5 +163,10 @@ def _(spec: specs.ReportOutput):
 
 
 @_parameter.register
+def _(spec: specs.FileOutput):
+    return QgsProcessingParameterFileDestination(spec.name, spec.label, spec.file_filter, None, spec.optional, spec.by_default)
+
+
+@_parameter.register
 def _(spec: specs.RasterOutput):
     return QgsProcessingParameterRasterDestination(spec.name, spec.label, None, spec.optional, spec.by_default)

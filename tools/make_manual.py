@@ -29,6 +29,9 @@ FILES = {
     "removeoutliers.OUTPUT": "marking_points_clean.laz", "clustermarkings.MARKING_POINTS": "marking_points_clean.laz",
     "georeferenceimage.IMAGE": "uav_image.tif", "georeferenceimage.GCPS": "uav_gcps.gpkg",
     "georeferenceimage.OUTPUT": "orthoimage.tif",
+    "importopendrive.INPUT": "map.xodr", "importlanelet2.INPUT": "map.osm",
+    **{f"{name}.{layer}": f"{name.removeprefix('import')}_{layer.lower()}.gpkg" for name in ("importopendrive", "importlanelet2")
+       for layer in ("LANES", "DRIVING_LINES", "MARKING_LINES", "ROAD_EDGES")},
     "assessboundaries.INPUT": "road_edges.gpkg", "assessboundaries.REFERENCE": "truth_boundaries.gpkg",
     "assessboundaries.OUTPUT": "boundaries_by_outcome.gpkg",
     "assessmarkings.INPUT": "markings.gpkg", "assessmarkings.REFERENCE": "truth_markings.gpkg",

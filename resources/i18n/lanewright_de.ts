@@ -30,6 +30,11 @@
         </message>
         <message>
             <location filename="../../algorithms/algorithm.py" />
+            <source>Export</source>
+            <translation>Export</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/algorithm.py" />
             <source>Assessment</source>
             <translation>Bewertung</translation>
         </message>
@@ -917,6 +922,171 @@
             <location filename="../../algorithms/driving/road_map.py" />
             <source>No result was asked for, and all of the work would be lost. Name at least one output, such as DRIVING_LINES, MARKINGS or REPORT.</source>
             <translation>Es wurde kein Ergebnis verlangt, und die ganze Arbeit wäre verloren. Nennen Sie mindestens eine Ausgabe, etwa DRIVING_LINES, MARKINGS oder REPORT.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_lanelet2.py" />
+            <source>Import Lanelet2</source>
+            <translation>Lanelet2 importieren</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_lanelet2.py" />
+            <source>Reads a Lanelet2 map into layers like those of the road map, to lay it over a survey and assess it.</source>
+            <translation>Liest eine Lanelet2-Karte in Layer wie die der Straßenkarte, um sie über eine Vermessung zu legen und zu bewerten.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_lanelet2.py" />
+            <source>Every lanelet becomes a lane between its two borders, with the lanelets that begin where it ends as successors. Footways, areas and regulatory elements are not read. Heights are the tag ele of the nodes, as they stand in the file.</source>
+            <translation>Jedes Lanelet wird ein Fahrstreifen zwischen seinen zwei Rändern; ihm folgen die Lanelets, die an seinem Ende beginnen. Fußwege, Flächen und Regelelemente werden nicht gelesen. Höhen sind das Tag ele der Knoten, wie es in der Datei steht.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_lanelet2.py" />
+            <source>Latitude and longitude are taken as WGS 84. A map with local_x and local_y alone gets layers in these coordinates, without CRS.</source>
+            <translation>Breite und Länge gelten als WGS 84. Eine Karte, die nur local_x und local_y hat, ergibt Layer in diesen Koordinaten, ohne KBS.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_lanelet2.py" />
+            <source>Lanelet2</source>
+            <translation>Lanelet2</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_lanelet2.py" />
+            <source>osm</source>
+            <translation>osm</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_lanelet2.py" />
+            <source>HD map</source>
+            <translation>HD-Karte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_lanelet2.py" />
+            <source>Autoware</source>
+            <translation>Autoware</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_lanelet2.py" />
+            <source>planner</source>
+            <translation>Planer</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_lanelet2.py" />
+            <source>Lanelet2 file</source>
+            <translation>Lanelet2-Datei</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_lanelet2.py" />
+            <source>A map with the ending .osm.</source>
+            <translation>Eine Karte mit der Endung .osm.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_lanelet2.py" />
+            <source>In metres, such as that of the survey. Empty takes the UTM zone of the map.</source>
+            <translation>In Metern, etwa das der Vermessung. Leer nimmt die UTM-Zone der Karte.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_opendrive.py" />
+            <source>Import OpenDRIVE</source>
+            <translation>OpenDRIVE importieren</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_opendrive.py" />
+            <source>Reads an OpenDRIVE map (1.1 to 1.8) into layers like those of the road map, to lay it over a survey and assess it.</source>
+            <translation>Liest eine OpenDRIVE-Karte (1.1 bis 1.8) in Layer wie die der Straßenkarte, um sie über eine Vermessung zu legen und zu bewerten.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_opendrive.py" />
+            <source>Lines, arcs, spirals and polynomials of the reference line, elevation, superelevation and shape, lane offsets, widths and borders, road marks, heights of curbs and the links of lanes are read. Signals, objects, bridges, railways and the lines of their paint are not.</source>
+            <translation>Gelesen werden Geraden, Bögen, Klothoiden und Polynome der Referenzlinie, Höhenverlauf, Querneigung und Querschnittsform, Versätze, Breiten und Ränder der Fahrstreifen, Markierungen, Bordhöhen und die Verknüpfungen der Fahrstreifen. Signale, Objekte, Brücken, Schienen und die Linien ihrer Markierung nicht.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_opendrive.py" />
+            <source>Lanes of a section are a piece; lanes of roads in a junction are connectors. Sidewalks are no lanes: a road edge is drawn where one begins. Files that declare entities, or are not what a map can be, are refused.</source>
+            <translation>Der Fahrstreifen eines Abschnitts ist ein Stück; Fahrstreifen von Straßen in einem Knoten sind Verbindungen. Gehwege sind keine Fahrstreifen: Wo einer beginnt, wird ein Fahrbahnrand gezeichnet. Dateien, die Entitäten vereinbaren oder keine Karte sein können, werden abgelehnt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_opendrive.py" />
+            <source>OpenDRIVE</source>
+            <translation>OpenDRIVE</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_opendrive.py" />
+            <source>xodr</source>
+            <translation>xodr</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_opendrive.py" />
+            <source>simulator</source>
+            <translation>Simulator</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_opendrive.py" />
+            <source>CARLA</source>
+            <translation>CARLA</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_opendrive.py" />
+            <source>esmini</source>
+            <translation>esmini</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_opendrive.py" />
+            <source>OpenDRIVE file</source>
+            <translation>OpenDRIVE-Datei</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_opendrive.py" />
+            <source>A map with the ending .xodr.</source>
+            <translation>Eine Karte mit der Endung .xodr.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/import_opendrive.py" />
+            <source>Only where the file does not say it in geoReference, or says it wrongly: the coordinates are taken to be in this CRS.</source>
+            <translation>Nur wo die Datei es in geoReference nicht oder falsch sagt: Die Koordinaten gelten dann in diesem KBS.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/inputs.py" />
+            <source>Lanes</source>
+            <translation>Fahrstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/inputs.py" />
+            <source>An area for each lane and piece, with the lanes that follow it.</source>
+            <translation>Eine Fläche je Fahrstreifen und Stück, mit den Fahrstreifen, die ihm folgen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/inputs.py" />
+            <source>The middle of every lane that is driven, in the direction of travel.</source>
+            <translation>Die Mitte jedes befahrenen Fahrstreifens, in Fahrtrichtung.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/inputs.py" />
+            <source>Borders that are painted.</source>
+            <translation>Ränder, die markiert sind.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/inputs.py" />
+            <source>Curbs and borders of the road.</source>
+            <translation>Borde und Ränder der Straße.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/inputs.py" />
+            <source>Lanes and pieces</source>
+            <translation>Fahrstreifen und Stücke</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/inputs.py" />
+            <source>Length of the driven lanes (m)</source>
+            <translation>Länge der befahrenen Fahrstreifen (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/inputs.py" />
+            <source>CRS of the layers</source>
+            <translation>KBS der Layer</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/inputs.py" />
+            <source>{count} lanes and pieces, {length:.0f} m of driven lanes.</source>
+            <translation>{count} Fahrstreifen und Stücke, {length:.0f} m befahrene Fahrstreifen.</translation>
         </message>
         <message>
             <location filename="../../algorithms/markings/cluster_markings.py" />

@@ -1,0 +1,1 @@
+"""To and from the formats of simulators, planners and design offices."""

@@ -1,0 +1,13 @@
+"""Lanelet2: lanes between two shared lines of nodes with latitude and longitude.
+
+In: a file `.osm` or `Lanes`. Out: a `LaneletMap`, and from it layers or a file.
+"""
+
+from ...lazy import public
+
+__getattr__, __all__ = public(__name__, {
+    "layers": ("layers_of_lanelets",),
+    "model": ("Lanelet", "LaneletMap", "Way"),
+    "reader": ("read_lanelet2",),
+    "routing": ("LaneletNetwork",),
+})

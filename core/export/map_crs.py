@@ -1,0 +1,51 @@
+"""The CRS of a map from elsewhere."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..common.errors import RoadExtractionError
+from ..io.crs import check_metric, horizontal_part, parse_crs
+
+
+def crs_of_reference(text: str, given: str) -> tuple[str, str]:
+    """The CRS of an OpenDRIVE file.
+
+    Parameters
+    ----------
+    text : of its geoReference: PROJ, WKT or EPSG:n; "" where it has none
+    given : WKT or EPSG:n that the user gave, "" for none
+
+    Returns
+    -------
+    crs : WKT, "" where unknown
+    note : a sentence for the user, "" where there is nothing to note
+
+    Raises
+    ------
+    RoadExtractionError
+        If what the user gave is not a CRS in metres.
+    """
+    if given:
+        return metric_wkt(given, "The chosen CRS"), ""
+    if not text:
+        return "", ("The file has no geoReference: its coordinates were taken as they are and the layers have no CRS. "
+                    "Where you know it, give it by the parameter CRS.")
+    try:
+        return metric_wkt(text, "The map"), ""
+    except RoadExtractionError as problem:
+        return "", (f"The geoReference of the file cannot be used ({problem}) The layers have no CRS; where you know it, give it by the "
+                    "parameter CRS.")
+
+
+def metric_wkt(text: str, what: str) -> str:
+    """WKT of the horizontal part of a CRS given as a text; refuses one that is not in metres. `what`: subject of the message."""
+    crs = parse_crs(text)
+    check_metric(crs, what)
+    return str(horizontal_part(crs).to_wkt())
+
+
+def utm_of(longitude: float, latitude: float) -> str:
+    """WKT of the UTM zone (WGS 84) of a place in degrees."""
+    zone = int(np.clip((longitude + 180) // 6 + 1, 1, 60))
+    return metric_wkt(f"EPSG:{(32600 if latitude >= 0 else 32700) + zone}", "The map")

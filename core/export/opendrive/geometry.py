@@ -1,0 +1,152 @@
+"""The mathematics of OpenDRIVE: piecewise cubics, and the reference line of a road from lines, arcs, spirals and polynomials.
+
+References
+----------
+ASAM OpenDRIVE 1.7 and 1.8, chapters Geometry and Roads.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...curves.base import Arc
+from ...curves.clothoid import Clothoid
+
+TABLE_STEP = 0.25   # m between the places by which arc lengths on poly3 are found
+
+
+@dataclass(frozen=True)
+class Cubics:
+    """A function of s in pieces ``a + b ds + c ds^2 + d ds^3``.
+
+    rows : (N, 5) start, a, b, c, d, in order of start; before the first start the first piece is not used: the value is 0
+    """
+
+    rows: np.ndarray
+
+    @classmethod
+    def constant(cls, value: float = 0.0) -> Cubics:
+        """The same value everywhere."""
+        return cls(np.array([[0.0, value, 0.0, 0.0, 0.0]]))
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def at(self, s: np.ndarray | float, order: int = 0) -> np.ndarray:
+        """Value, or slope (order 1), at s."""
+        s = np.asarray(s, float)
+        if not len(self.rows):
+            return np.zeros(s.shape)
+        k = np.searchsorted(self.rows[:, 0], s + 1e-9, side="right") - 1
+        start, a, b, c, d = self.rows[np.maximum(k, 0)].T
+        ds = s - start
+        value = a + ds * (b + ds * (c + ds * d)) if order == 0 else b + ds * (2 * c + ds * 3 * d)
+        return np.where(k < 0, 0.0, value)
+
+    def moved(self, ds: float) -> Cubics:
+        """The same function of s + ds."""
+        rows = self.rows.copy()
+        rows[:, 0] += ds
+        return Cubics(rows)
+
+    def least(self, length: float) -> tuple[float, float]:
+        """(least value, where) over [0, length], from the ends and the turning points of every piece."""
+        best = (np.inf, 0.0)
+        ends = np.append(self.rows[1:, 0], length)
+        for (start, a, b, c, d), end in zip(self.rows, ends):
+            if end < start:
+                continue
+            turning = np.roots([3 * d, 2 * c, b]) if d or c else np.empty(0)
+            at = [0.0, end - start, *(float(t.real) for t in turning if abs(t.imag) < 1e-12 and 0 < t.real < end - start)]
+            for ds in at:
+                value = a + ds * (b + ds * (c + ds * d))
+                if value < best[0]:
+                    best = (value, start + ds)
+        return best
+
+
+@dataclass(frozen=True)
+class PlanElement:
+    """One piece of a reference line.
+
+    s, x, y, heading, length : start and length, metres and radians
+    kind : line, arc, spiral, poly3 or paramPoly3
+    values : line (); arc (curvature,); spiral (curvature at start, at end); poly3 (a, b, c, d); paramPoly3 (a, b, c, d of u, then of v)
+    normalized : whether the parameter of paramPoly3 runs from 0 to 1 instead of to `length`
+    """
+
+    s: float
+    x: float
+    y: float
+    heading: float
+    length: float
+    kind: str = "line"
+    values: tuple[float, ...] = ()
+    normalized: bool = False
+
+    def at(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """(N, 2) places, (N,) headings and (N,) curvatures at arc lengths u from its start."""
+        u = np.asarray(u, float)
+        if self.kind in ("line", "arc"):
+            arc = Arc(self.x, self.y, self.heading, self.values[0] if self.values else 0.0, self.length)
+            return arc.at(u), arc.heading(u), arc.curvature(u)
+        if self.kind == "spiral":
+            bend, end = self.values
+            spiral = Clothoid(self.x, self.y, self.heading, bend, (end - bend) / self.length if self.length else 0.0, self.length)
+            return spiral.at(u), spiral.heading(u), spiral.curvature(u)
+        p, a, b = self._parameter(u), np.array(self._polynomials()[0]), np.array(self._polynomials()[1])
+        powers = np.stack([np.ones_like(p), p, p**2, p**3])
+        slopes = np.stack([np.zeros_like(p), np.ones_like(p), 2 * p, 3 * p**2])
+        bends = np.stack([np.zeros_like(p), np.zeros_like(p), 2 * np.ones_like(p), 6 * p])
+        (along, across), (du, dv), (ddu, ddv) = ((a @ some, b @ some) for some in (powers, slopes, bends))
+        c, s = np.cos(self.heading), np.sin(self.heading)
+        places = np.c_[self.x + along * c - across * s, self.y + along * s + across * c]
+        return places, self.heading + np.arctan2(dv, du), (du * ddv - dv * ddu) / np.maximum(du**2 + dv**2, 1e-12) ** 1.5
+
+    def _polynomials(self):
+        """Coefficients of u(p) and v(p)."""
+        if self.kind == "poly3":
+            return (0.0, 1.0, 0.0, 0.0), self.values
+        return self.values[:4], self.values[4:]
+
+    def _parameter(self, u):
+        """The parameter at arc lengths: proportional in paramPoly3, as the standard has it, by a table in poly3."""
+        if self.kind == "paramPoly3":
+            return u / self.length if self.normalized and self.length else u
+        _, b, c, d = self.values
+        p = np.linspace(0.0, self.length, max(int(self.length / TABLE_STEP), 8) + 1)
+        slope = np.hypot(1.0, b + p * (2 * c + p * 3 * d))
+        return np.interp(u, np.append(0.0, np.cumsum((slope[1:] + slope[:-1]) / 2 * np.diff(p))), p)
+
+    def end(self) -> tuple[float, float, float]:
+        """x, y and heading of its end."""
+        place, heading, _ = self.at(np.array([self.length]))
+        return float(place[0, 0]), float(place[0, 1]), float(heading[0])
+
+
+@dataclass(frozen=True)
+class PlanView:
+    """The reference line of a road in plan.
+
+    elements : in order of s
+    """
+
+    elements: tuple[PlanElement, ...]
+
+    @property
+    def length(self) -> float:
+        """Metres, the sum of its elements."""
+        return float(sum(element.length for element in self.elements))
+
+    def at(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """(N, 2) places, (N,) headings and (N,) curvatures at s; beyond an end the last element goes on."""
+        s = np.asarray(s, float)
+        places, heading, bend = np.empty((len(s), 2)), np.empty(len(s)), np.empty(len(s))
+        starts = np.array([element.s for element in self.elements])
+        owner = np.maximum(np.searchsorted(starts, s + 1e-9, side="right") - 1, 0)
+        for k in np.unique(owner):
+            rows = owner == k
+            places[rows], heading[rows], bend[rows] = self.elements[k].at(s[rows] - starts[k])
+        return places, heading, bend

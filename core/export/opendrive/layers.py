@@ -1,0 +1,138 @@
+"""The lanes and lines of an OpenDRIVE map as layers like ours."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from ...common.progress import Progress
+from ..map_layers import LaneRows, MapLayers, MapLine, plan_length, without_repeats
+from .model import DRIVEN_TYPES, MapLane, OpenDriveMap
+from .network import LaneNetwork, travel
+from .surface import RoadSurface
+
+LANE_TYPE_OF = {"shoulder": "shoulder", "stop": "shoulder", "border": "shoulder", "parking": "parking", "biking": "bicycle", "restricted": "hatched",
+         "median": "median"}
+PATTERN_OF_MARK = {"solid": "solid", "broken": "dashed", "solid solid": "double-solid",
+                   "broken broken": "double-dashed", "solid broken": "solid-dashed", "broken solid": "dashed-solid", "botts dots": "dashed"}
+RAISED = ("curb", "sidewalk", "walking")
+NO_LANES = (*RAISED, "none", "rail", "tram")
+SHORTEST_SECTION = 1e-6   # m
+LEAST_WIDTH = 0.05     # m: lanes that are narrower everywhere are none
+
+
+def layers_of_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress = Progress()) -> MapLayers:
+    """Lanes, painted borders and edges of a map.
+
+    Parameters
+    ----------
+    whole : OpenDriveMap
+    crs : WKT of its coordinates, "" where unknown
+    progress : told of the share of the roads
+
+    Returns
+    -------
+    MapLayers. Every section of a lane is a piece, whose lane_id is "road.lane.section"; lanes of roads in junctions are connectors.
+    Sidewalks are no lanes of ours: where one begins there is an edge
+    """
+    rows, found, network = LaneRows(), MapLayers(LaneRows().lanes(crs)), LaneNetwork(whole)
+    numbers = road_numbers(whole)
+    for count, road in enumerate(whole.roads):
+        surface = RoadSurface(road)
+        for number, section in enumerate(road.sections):
+            if road.section_end(number) - section.s > SHORTEST_SECTION:
+                _add_section(rows, found.lines, whole, network, surface, number, numbers[road.id])
+        progress.report((count + 1) / len(whole.roads))
+    found.lanes = _existing(rows).lanes(crs)
+    if whole.problems:
+        line, text = whole.problems[0]
+        found.notes.append(f"{len(whole.problems)} parts of the file were passed over; the first: line {line}, {text}")
+    return found
+
+
+def _add_section(rows, lines, whole, network, surface, number, road_number):
+    """The lanes and lines of one section."""
+    road, section = surface.road, surface.road.sections[number]
+    s = surface.stations(number)
+    offsets = surface.offsets(number, s)
+    for id, lane in section.lanes.items():
+        if id == 0:
+            lines += _painted(road_number, lane, section.s, s, whole.placed(surface.places(s, offsets[0])), "centre")
+            continue
+        inside = id - int(np.sign(id))
+        inner, outer = (whole.placed(points) for points in surface.borders(number, id, s, offsets))
+        lines += _painted(road_number, lane, section.s, s, outer, _kind(section.lanes, id))
+        if _edge(section.lanes, id) and plan_length(inner) > LEAST_WIDTH:
+            lines.append(MapLine(road_number, "edge", "main", "", without_repeats(inner), side="left" if id > 0 else "right"))
+        if lane.type in NO_LANES or np.abs(offsets[id] - offsets[inside]).max() < LEAST_WIDTH:
+            continue
+        way, driven = travel(road, id), lane.type in DRIVEN_TYPES
+        borders, about = [inner, outer], [(_kind(section.lanes, one), _pattern(section.lanes, one)) for one in (inside, id)]
+        if id > 0:
+            borders, about = borders[::-1], about[::-1]
+        if driven and way < 0:
+            borders, about = [border[::-1] for border in borders[::-1]], about[::-1]
+        rows.add(*borders, road=road_number, lane=id, lane_id=lane_name(road.id, id, number), direction=way if driven else 0,
+                 type=("connector" if road.junction != "-1" else "driving") if driven else LANE_TYPE_OF.get(lane.type, "shoulder"),
+                 left_kind=about[0][0], right_kind=about[1][0], left_pattern=about[0][1], right_pattern=about[1][1],
+                 successors=[lane_name(key[0], key[2], key[1]) for key in network.following((road.id, number, id))] if driven else [],
+                 station=float(s[0]), end=float(s[-1]))
+
+
+def _existing(rows):
+    """Successors that were no lanes of ours are dropped."""
+    known = {row["lane_id"] for row in rows.rows}
+    for row in rows.rows:
+        row["successors"] = [name for name in row["successors"] if name in known]
+    return rows
+
+
+def lane_name(road: str, lane: int, section: int) -> str:
+    """The lane_id of a lane's section; commas part lists of them."""
+    return f"{re.sub('[,.]', '_', road)}.{lane}.{section}"
+
+
+def road_numbers(whole: OpenDriveMap) -> dict[str, int]:
+    """A whole number for every road: its id where all are such, else its place."""
+    ids = [road.id for road in whole.roads]
+    if all(re.fullmatch(r"\d{1,9}", id) for id in ids):
+        return {id: int(id) for id in ids}
+    return {id: k for k, id in enumerate(ids, start=1)}
+
+
+def _kind(lanes: dict[int, MapLane], id: int) -> str:
+    """What the outer border of a lane is: centre (of lane 0), lane between two driven lanes, curb, edge."""
+    if id == 0:
+        return "centre"
+    beyond = lanes.get(id + int(np.sign(id)))
+    if beyond is not None and beyond.type in RAISED:
+        return "curb"
+    if beyond is not None and beyond.type in DRIVEN_TYPES and lanes[id].type in DRIVEN_TYPES:
+        return "lane"
+    return "edge"
+
+
+def _edge(lanes, id):
+    """Whether the inner border of a lane is the edge of the road: what is raised begins here."""
+    inside = lanes.get(id - int(np.sign(id)))
+    return lanes[id].type in RAISED and (inside is None or inside.type not in RAISED)
+
+
+def _pattern(lanes, id):
+    marks = lanes[id].marks if id in lanes else []
+    return PATTERN_OF_MARK.get(marks[0].type, "") if marks else ""
+
+
+def _painted(number: int, lane: MapLane, start: float, s: np.ndarray, points: np.ndarray, kind: str) -> list[MapLine]:
+    """The outer border of a lane, (N, 3) points at s, cut where its paint changes."""
+    found = []
+    cuts = [max(mark.s + start, s[0]) for mark in lane.marks] + [s[-1]]
+    for mark, first, last in zip(lane.marks, cuts[:-1], cuts[1:]):
+        if mark.type not in PATTERN_OF_MARK or last - first < LEAST_WIDTH:
+            continue
+        at = np.concatenate([[first], s[(s > first + 1e-6) & (s < last - 1e-6)], [last]])
+        piece = without_repeats(np.stack([np.interp(at, s, values) for values in points.T], axis=1))
+        if len(piece) > 1:
+            found.append(MapLine(number, "marking", kind, PATTERN_OF_MARK[mark.type], piece, mark.width))
+    return found

@@ -1,0 +1,86 @@
+"""Where the lanes of an OpenDRIVE road lie: borders in x, y, z."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .geometry import Cubics
+from .model import MapRoad
+
+BORDER_STEP = 0.5   # m between the places at which borders are computed
+
+
+class RoadSurface:
+    """The borders of one road's lanes.
+
+    Parameters
+    ----------
+    road : MapRoad
+    """
+
+    def __init__(self, road: MapRoad) -> None:
+        self.road = road
+
+    def stations(self, number: int, step: float = BORDER_STEP) -> np.ndarray:
+        """(N,) metres of s at which a section is cut: evenly, and wherever a function of it changes."""
+        road, first, last = self.road, self.road.sections[number].s, self.road.section_end(number)
+        even = np.linspace(first, last, max(int(np.ceil((last - first) / step - 1e-9)), 1) + 1)
+        own = [lane.width.rows[:, 0] + first for lane in road.sections[number].lanes.values()]
+        knots = np.concatenate([even, [element.s for element in road.plan.elements], road.lane_offset.rows[:, 0], *own])
+        knots = np.unique(knots[(knots >= first) & (knots <= last)])
+        keep = np.append(True, np.diff(knots) > 1e-3)
+        keep[-1] = True
+        return knots[keep]
+
+    def offsets(self, number: int, s: np.ndarray) -> dict[int, np.ndarray]:
+        """(N,) metres left of the reference line of every lane's outer border, and of lane 0, by lane number."""
+        section = self.road.sections[number]
+        centre = self.road.lane_offset.at(s)
+        found = {0: centre}
+        for side in (1, -1):
+            outer = centre
+            for id in sorted((id for id in section.lanes if id * side > 0), key=abs):
+                lane = section.lanes[id]
+                value = lane.width.at(s - section.s)
+                outer = side * np.abs(value) if lane.border else outer + side * value
+                found[id] = outer
+        return found
+
+    def places(self, s: np.ndarray, t: np.ndarray, height: np.ndarray | float = 0.0) -> np.ndarray:
+        """(N, 3) coordinates of the file at s and t: the t axis rolled by the superelevation, the shape laid on it."""
+        road = self.road
+        plan, heading, _ = road.plan.at(s)
+        roll = road.superelevation.at(s)
+        flat, lift = t * np.cos(roll), t * np.sin(roll)
+        z = road.elevation.at(s) + lift + shape_height(road.shape, s, t) + height
+        return np.c_[plan[:, 0] - np.sin(heading) * flat, plan[:, 1] + np.cos(heading) * flat, z]
+
+    def borders(self, number: int, id: int, s: np.ndarray, offsets: dict[int, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        """((N, 3) inner, (N, 3) outer) border of a lane along the road."""
+        lane = self.road.sections[number].lanes[id]
+        inner = offsets[id - int(np.sign(id))]
+        lift = np.zeros((2, len(s)))
+        if len(lane.heights):
+            k = np.searchsorted(lane.heights[:, 0], s - self.road.sections[number].s + 1e-9, side="right") - 1
+            lift = np.where(k < 0, 0.0, lane.heights[np.maximum(k, 0), 1:].T)
+        return self.places(s, inner, lift[0]), self.places(s, offsets[id], lift[1])
+
+
+def shape_height(shape: np.ndarray, s: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """(N,) metres of the lateral shape at s and t: a cubic in t at each given s, linear between them."""
+    if not len(shape):
+        return np.zeros(len(s))
+    given = np.unique(shape[:, 0])
+    profiles = [Cubics(rows[np.argsort(rows[:, 1])][:, 1:]) for rows in (shape[shape[:, 0] == at] for at in given)]
+    values = np.stack([_within(profile, t) for profile in profiles])
+    k = np.clip(np.searchsorted(given, s, side="right") - 1, 0, max(len(given) - 2, 0))
+    if len(given) == 1:
+        return values[0]
+    share = np.clip((s - given[k]) / (given[k + 1] - given[k]), 0.0, 1.0)
+    column = np.arange(len(s))
+    return values[k, column] * (1 - share) + values[k + 1, column] * share
+
+
+def _within(profile, t):
+    """A profile's value; right of its first t the first piece goes on."""
+    return profile.at(np.maximum(t, profile.rows[0, 0])) + profile.rows[0, 2] * np.minimum(t - profile.rows[0, 0], 0.0)

@@ -1,0 +1,38 @@
+"""Maps of other software through the library: read into layers, whole or not at all."""
+
+import os
+
+import fiona
+import pytest
+from lanewright.core.common.errors import RoadExtractionError
+from lanewright.library import run
+from map_files import geometry, lanelet_street, opendrive, road, written
+
+
+def test_an_opendrive_file_becomes_layers_that_the_assessment_takes(tmp_path):
+    file = written(tmp_path, opendrive([road(geometry(0, 0, 0, 0, 40), 40)], offset=(602000, 5792000)))
+    names = {name: tmp_path / f"{name.lower()}.gpkg" for name in ("LANES", "DRIVING_LINES", "MARKING_LINES", "ROAD_EDGES")}
+    results = run("importopendrive", INPUT=file, **names)
+    assert results["LANE_COUNT"] == 2 and results["LENGTH"] == pytest.approx(80)
+    with fiona.open(results["LANES"]) as layer:
+        assert layer.crs.to_epsg() == 25832 and layer.bounds == pytest.approx((602000, 5791996.5, 602040, 5792003.5))
+    assessed = run("assessdrivinglines", INPUT=results["DRIVING_LINES"], REFERENCE=results["DRIVING_LINES"], OUTPUT=tmp_path / "outcome.gpkg")
+    assert assessed["RECALL"] == 100
+
+
+def test_a_lanelet2_file_is_read_in_the_crs_that_was_asked_for(tmp_path):
+    results = run("importlanelet2", INPUT=written(tmp_path, lanelet_street(), "map.osm"), CRS="EPSG:25832", LANES=tmp_path / "lanes.gpkg")
+    with fiona.open(results["LANES"]) as layer:
+        assert len(layer) == 4 and layer.bounds == pytest.approx((602000, 5791996.5, 602040, 5792003.5), abs=1e-3)
+
+
+@pytest.mark.parametrize("algorithm, given, said", [
+    ("importopendrive", {"INPUT": "nowhere.xodr"}, "there is no file nowhere.xodr"),
+    ("importlanelet2", {"INPUT": "map.xodr"}, "begins with <OpenDRIVE>"),
+    ("importopendrive", {"INPUT": "map.xodr", "CRS": "EPSG:4326"}, "geographic")])
+def test_a_refused_map_leaves_nothing(tmp_path, monkeypatch, algorithm, given, said):
+    monkeypatch.chdir(tmp_path)
+    written(tmp_path, opendrive([road(geometry(0, 0, 0, 0, 40), 40)]))
+    with pytest.raises(RoadExtractionError, match=said):
+        run(algorithm, **given, LANES="lanes.gpkg")
+    assert os.listdir(tmp_path) == ["map.xodr"]
