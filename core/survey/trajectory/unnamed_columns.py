@@ -11,6 +11,8 @@ from .drive_checks import METRES_PER_DEGREE, geographic_unit, heading_disagreeme
 from .trajectory import MAX_VEHICLE_SPEED
 
 MAX_SAMPLE_ROWS = 20_000      # rows from which the columns are recognised
+MAX_LEAN = 20.0               # degrees: no vehicle on a road rolls or pitches by more
+LEAST_SWING = 0.05            # of the rows on either side of zero
 MIN_MAP_COORDINATE = 9000.0   # m: x and y of map coordinates are larger, heights are smaller
 
 
@@ -54,8 +56,8 @@ def columns_from_numbers(values: np.ndarray, path: str | os.PathLike[str]) -> di
     if heading is not None:
         roles["heading"] = heading
         # roll, pitch, heading is the usual order; in another, roll and pitch cannot be distinguished
-        if heading - z == 3:
-            roles["roll"], roles["pitch"] = z + 1, z + 2
+        if heading - z == 3 or (_after_roll_and_pitch(sample, heading) and not {heading - 1, heading - 2} & set(roles.values())):
+            roles["roll"], roles["pitch"] = heading - 2, heading - 1
     elif max(plane[:2]) < z <= count - 4:
         following = [z + 1, z + 2, z + 3]
         # a heading that disagrees with the course (driven backwards, another zero direction) still exceeds 45 degrees
@@ -124,11 +126,13 @@ def _plane(sample, time, others):
             if h in (a, b):
                 continue
             wrong = heading_disagreement(x, y, sample[:, h])
-            if wrong is not None:
-                # roll and pitch agree with the course of a drive due north, so a wide range of values counts more than a close fit
-                agreeing.append((np.nanmax(np.abs(sample[:, h])) < 15.0, a > b, wrong, (a, b, unit), h))
+            # every trajectory has heights and not every one headings: of a single column that may be either it is the height
+            if wrong is not None and _height_column(sample, time, others, (a, b), h) is not None:
+                # roll and pitch agree with the course of a drive due north, so a wide range of values counts more than a close fit,
+                # and so does a height of 24 m with a course of 24 degrees: roll and pitch stand before the heading
+                agreeing.append((np.nanmax(np.abs(sample[:, h])) < 15.0, a > b, not _after_roll_and_pitch(sample, h), wrong, (a, b, unit), h))
     if agreeing:
-        return min(agreeing)[3:]
+        return min(agreeing)[4:]
     if len(map_like) == 2:
         return _usual_order(pairs[0], size), None
     if pairs and pairs[0][2] != "metres":
@@ -178,8 +182,19 @@ def _height_column(sample, time, others, plane, heading):
     left = [k for k in others if k not in plane and k != heading and np.nanmax(np.abs(sample[:, k])) < MIN_MAP_COORDINATE]
     slow = [k for k in left if _rate(sample, time, k, 90) < 20.0]
     following = [k for k in slow if k == max(plane) + 1]
-    if following:
+    if heading == max(plane) + 3 and _after_roll_and_pitch(sample, heading):
+        slow = [k for k in slow if k not in (heading - 1, heading - 2)] or slow  # x, y, roll, pitch, heading, height
+    if following and following[0] in slow:
         return following[0]
     # roll and pitch stay near zero, heights seldom do
     high = [k for k in slow if abs(np.nanmedian(sample[:, k])) > 8.0]
     return slow[0] if len(slow) == 1 else high[0] if len(high) == 1 else None
+
+
+def _after_roll_and_pitch(sample, k):
+    """Whether two columns before column k swing about zero within what a vehicle leans, in degrees."""
+    if k is None or k < 2:
+        return False
+    before = sample[:, [k - 2, k - 1]]
+    swings = (np.nanmean(before > 0, axis=0) > LEAST_SWING) & (np.nanmean(before < 0, axis=0) > LEAST_SWING)
+    return bool(swings.all() and np.nanmax(np.abs(before)) < MAX_LEAN)

@@ -1,6 +1,7 @@
 """Reading trajectories in the dress they come in."""
 
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -98,6 +99,31 @@ def test_without_names_the_numbers_tell_the_columns(tmp_path, columns):
     found = read_trajectory(write(tmp_path / "t.txt", street(), columns, header=""))
     assert_same(found, street(), columns)
     assert "recognised by the numbers" in " ".join(found.notes)
+
+
+def lane_at(course, height, turn):
+    """A drive that starts on a course (degrees) and turns by so many, at a height of about as many metres."""
+    here = street()
+    angle = np.radians(course - 90.0)
+    turned = drive(chain(ahead(120), bend(300, turn) if turn else ahead(50), ahead(60)), start=318_204_000.0, rate=20.0)
+    x, y = turned.x - EAST, turned.y - NORTH
+    x, y = EAST + x * np.cos(angle) + y * np.sin(angle), NORTH - x * np.sin(angle) + y * np.cos(angle)
+    wave = np.arange(len(x)) / 40
+    heading = np.degrees(np.arctan2(np.gradient(x), np.gradient(y))) % 360
+    return replace(here, time=turned.time, x=x, y=y, z=height + 0.3 * np.sin(wave / 7), roll=1.2 * np.sin(wave),
+                   pitch=0.7 * np.cos(wave), heading=heading)
+
+
+@pytest.mark.parametrize("columns", [
+    ("time", "x", "y", "roll", "pitch", "heading", "z"), ("time", "x", "y", "z"), ("x", "y", "z"), COLUMNS,
+    ("time", "roll", "pitch", "heading", "x", "y", "z"),
+])
+@pytest.mark.parametrize("height", [24.0, 412.0])
+@pytest.mark.parametrize("turn", [0, 20])
+def test_a_height_of_as_many_metres_as_the_course_has_degrees_is_no_heading(tmp_path, columns, height, turn):
+    driven = lane_at(24.0, height, turn)
+    found = read_trajectory(write(tmp_path / "t.txt", driven, columns, header=""))
+    assert_same(found, driven, columns)
 
 
 def test_without_names_and_time_the_order_is_the_drive(tmp_path):
