@@ -24,6 +24,7 @@ from .texts import tr
 
 # In the order of the work
 GROUPS = ("Survey", "Road", "Markings", "Driving", "Road map", "Export", "Assessment", "Orthoimages")
+WARNINGS = "WARNINGS"  # a number that every run gives
 TAGS_OF_ALL = ("mls", "mobile mapping", "lidar", "point cloud", "las", "laz", "road")
 
 
@@ -46,6 +47,7 @@ class Algorithm:
     def __init__(self):
         self.parameters, self.numbers = [], []
         self.declare()
+        self.add_number(WARNINGS, tr("Warnings"))
 
     def declare(self):
         """Add the parameters and outputs."""

@@ -10,9 +10,11 @@ from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
 from ..core.common.parallel import cancellation_scope
+from .algorithm import WARNINGS
 from .cloud_files import cloud_files
 from .destinations import UnfinishedFiles, check_suffix, check_writable, destination_path
 from .parameters import settings_class
+from .progress import CountedWarnings
 from .texts import tr
 from .trajectory_source import read_trajectory_source, trajectory_path
 from .vector_source import read_features
@@ -257,11 +259,13 @@ def run(call, progress):
     Cancelled
         If the user stopped it.
     """
+    counted = CountedWarnings(progress)
     try:
         call.check_destinations()
         with cancellation_scope(progress):
-            results = call.algorithm.work(call, progress)
-        return call.finish(results or {})
+            results = call.algorithm.work(call, counted) or {}
+        results[WARNINGS] = counted.count
+        return call.finish(results)
     except RoadExtractionError as error:
         raise RoadExtractionError(call.in_users_names(str(error))) from error
     except OSError as error:

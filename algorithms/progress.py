@@ -1,6 +1,27 @@
-"""How long a run will still take, in words."""
+"""How long a run will still take, in words, and how often it warned."""
 
+from ..core.common.progress import Progress
 from .texts import tr
+
+
+class CountedWarnings(Progress):
+    """Hands everything on to another listener and counts the warnings."""
+
+    def __init__(self, listener):
+        self.listener, self.count = listener, 0
+
+    def report(self, fraction):
+        self.listener.report(fraction)
+
+    def check_cancelled(self):
+        self.listener.check_cancelled()
+
+    def info(self, text):
+        self.listener.info(text)
+
+    def warn(self, text):
+        self.count += 1
+        self.listener.warn(text)
 
 
 def time_left(seconds):

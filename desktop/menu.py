@@ -2,13 +2,14 @@
 
 from pathlib import Path
 
-from qgis.core import Qgis, QgsApplication, QgsProcessingModelAlgorithm, QgsProject
+from qgis.core import Qgis, QgsApplication, QgsProcessingModelAlgorithm, QgsProcessingUtils, QgsProject
 from qgis.PyQt.QtCore import QObject, QUrl
 from qgis.PyQt.QtGui import QAction, QDesktopServices, QIcon
 from qgis.PyQt.QtWidgets import QMenu
 
 from ..processing_provider.reports import last_report
 from ..processing_provider.results.layer_tree import replaces_last_run, set_replaces_last_run
+from ..processing_provider.results.run_table import run_table
 from ..processing_provider.texts import tr
 from .layout_dialog import LayoutDialog, road_map_groups, shown_layers
 from .manual import ManualWindow
@@ -36,6 +37,8 @@ class Menu(QObject):
         self._add(tr("Print layout of the road map"), self.open_layout, tr("A map of the layers that Lanewright made"),
                   theme("/mActionNewLayout.svg"))
         self._add(tr("Open the last report"), self.open_report, tr("The report of the run that ended last"), theme("/mIconHtml.svg"))
+        self._add(tr("Table of the runs"), self.open_table, tr("Lengths, shares measured, warnings, seconds and failures of all runs since QGIS "
+                  "was started"), theme("/mActionOpenTable.svg"))
         self._add_models()
         self._add_choice(tr("Replace the last run of a survey"), replaces_last_run, set_replaces_last_run,
                          tr("New results take the place of the last ones of the same survey and algorithm in the layer tree; files stay"))
@@ -90,6 +93,16 @@ class Menu(QObject):
         else:
             self.iface.messageBar().pushMessage(
                 "Lanewright", tr("No report has been written since QGIS was started."), level=Qgis.MessageLevel.Info)
+
+    def open_table(self):
+        """What the runs of this session gave, as a page in the user's web browser."""
+        table = run_table()
+        if not table:
+            self.iface.messageBar().pushMessage("Lanewright", tr("Nothing has been run since QGIS was started."), level=Qgis.MessageLevel.Info)
+            return
+        path = QgsProcessingUtils.generateTempFilename("runs.html")
+        Path(path).write_text(table, encoding="utf-8")
+        QDesktopServices.openUrl(QUrl.fromLocalFile(path))
 
     def remove(self):
         self.iface.removeToolBarIcon(self.actions[0])

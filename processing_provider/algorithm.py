@@ -1,5 +1,7 @@
 """An algorithm's declaration as QGIS's Processing takes it: dialog, checks, run and failure."""
 
+from datetime import datetime
+
 from qgis.core import QgsProcessingAlgorithm, QgsProcessingException, QgsProcessingOutputNumber, QgsVectorLayer
 
 from ..algorithms.call import run
@@ -10,6 +12,7 @@ from .call import QgisCall
 from .dependencies import missing_packages
 from .parameters import qgis_parameter
 from .progress import FeedbackProgress
+from .results.run_table import note_run
 from .texts import tr
 
 
@@ -72,12 +75,16 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         missing = missing_packages()
         if missing:
             raise QgsProcessingException(missing)
+        began, call = datetime.now(), QgisCall(self, parameters, context, feedback)
         try:
-            return run(QgisCall(self, parameters, context, feedback), FeedbackProgress(feedback))
+            results = run(call, FeedbackProgress(feedback))
+            note_run(self.declaration, call.survey, began, results)
+            return results
         except RoadExtractionError as error:
             failure = str(error)
         except Cancelled:
             failure = tr("Cancelled")
+        note_run(self.declaration, call.survey, began, failure=failure)
         # QGIS never lets go of an exception: raised where the work was, it would keep all of the survey in memory
         raise QgsProcessingException(failure)
 

@@ -19,6 +19,7 @@ from ..road.fit_road_edges import EDGE_SETTINGS
 from ..survey_input import SURVEY_SETTINGS, survey_inputs
 from ..texts import tr
 from .driving_lines import DRIVING_SETTINGS
+from .road_map_numbers import NUMBERS, road_map_numbers
 
 # Field of RoadMapSettings -> its settings
 STAGES = {
@@ -82,6 +83,8 @@ class RoadMap(Algorithm):
         )
         self.add_raster("INTENSITY_IMAGE", tr("Intensity image"), optional=True)
         self.add_report()
+        for name, label in NUMBERS:
+            self.add_number(name, label)
 
     def work(self, call, progress):
         from ...core.pipeline.road_map import RoadMapSettings, make_road_map
@@ -112,4 +115,5 @@ class RoadMap(Algorithm):
             from ...core.report.road_map import road_map_report
 
             call.text("REPORT", road_map_report(road_map, image_path))
-        return {}
+        return road_map_numbers([road.length for road in road_map.frame.roads], road_map.edges, road_map.marking_lines, road_map.driving_lines,
+                                road_map.markings)

@@ -45,6 +45,11 @@
         </message>
         <message>
             <location filename="../../algorithms/algorithm.py" />
+            <source>Warnings</source>
+            <translation>Warnungen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/algorithm.py" />
             <source>Point clouds</source>
             <translation>Punktwolken</translation>
         </message>
@@ -924,6 +929,51 @@
             <translation>Es wurde kein Ergebnis verlangt, und die ganze Arbeit wäre verloren. Nennen Sie mindestens eine Ausgabe, etwa DRIVING_LINES, MARKINGS oder REPORT.</translation>
         </message>
         <message>
+            <location filename="../../algorithms/driving/road_map_numbers.py" />
+            <source>Roads</source>
+            <translation>Straßen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map_numbers.py" />
+            <source>Length of the roads (m)</source>
+            <translation>Länge der Straßen (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map_numbers.py" />
+            <source>Length of the road edges (m)</source>
+            <translation>Länge der Fahrbahnränder (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map_numbers.py" />
+            <source>Of the road edges measured (%)</source>
+            <translation>Davon gemessen: Fahrbahnränder (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map_numbers.py" />
+            <source>Length of the marking lines (m)</source>
+            <translation>Länge der Markierungslinien (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map_numbers.py" />
+            <source>Of the marking lines measured (%)</source>
+            <translation>Davon gemessen: Markierungslinien (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map_numbers.py" />
+            <source>Lanes</source>
+            <translation>Fahrstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map_numbers.py" />
+            <source>Length of the driving lines (m)</source>
+            <translation>Länge der Fahrlinien (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map_numbers.py" />
+            <source>Of the driving lines measured (%)</source>
+            <translation>Davon gemessen: Fahrlinien (%)</translation>
+        </message>
+        <message>
             <location filename="../../algorithms/export/import_lanelet2.py" />
             <source>Import Lanelet2</source>
             <translation>Lanelet2 importieren</translation>
@@ -1042,11 +1092,6 @@
             <location filename="../../algorithms/export/import_opendrive.py" />
             <source>Only where the file does not say it in geoReference, or says it wrongly: the coordinates are taken to be in this CRS.</source>
             <translation>Nur wo die Datei es in geoReference nicht oder falsch sagt: Die Koordinaten gelten dann in diesem KBS.</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/export/inputs.py" />
-            <source>Lanes</source>
-            <translation>Fahrstreifen</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/inputs.py" />
@@ -3010,6 +3055,16 @@
         </message>
         <message>
             <location filename="../../desktop/menu.py" />
+            <source>Table of the runs</source>
+            <translation>Tabelle der Läufe</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/menu.py" />
+            <source>Lengths, shares measured, warnings, seconds and failures of all runs since QGIS was started</source>
+            <translation>Längen, gemessene Anteile, Warnungen, Sekunden und Fehler aller Läufe seit dem Start von QGIS</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/menu.py" />
             <source>Replace the last run of a survey</source>
             <translation>Letzten Lauf einer Aufnahme ersetzen</translation>
         </message>
@@ -3037,6 +3092,11 @@
             <location filename="../../desktop/menu.py" />
             <source>No report has been written since QGIS was started.</source>
             <translation>Seit dem Start von QGIS wurde noch kein Bericht geschrieben.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/menu.py" />
+            <source>Nothing has been run since QGIS was started.</source>
+            <translation>Seit dem Start von QGIS ist nichts gelaufen.</translation>
         </message>
         <message>
             <location filename="../../desktop/menu.py" />
@@ -3127,6 +3187,31 @@
             <location filename="../../processing_provider/models.py" />
             <source>Models</source>
             <translation>Modelle</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/run_table.py" />
+            <source>Runs of Lanewright</source>
+            <translation>Läufe von Lanewright</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/run_table.py" />
+            <source>since QGIS was started</source>
+            <translation>seit dem Start von QGIS</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/run_table.py" />
+            <source>Begun</source>
+            <translation>Begonnen</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/run_table.py" />
+            <source>Duration (s)</source>
+            <translation>Dauer (s)</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/run_table.py" />
+            <source>Failed</source>
+            <translation>Gescheitert</translation>
         </message>
         <message>
             <location filename="../../processing_provider/results/runs.py" />

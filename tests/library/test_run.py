@@ -133,7 +133,7 @@ def test_rows_of_a_reference_are_excluded_by_a_condition(survey, tmp_path):
 def test_the_command_prints_results_on_lines_and_says_the_rest_on_stderr(survey, tmp_path, capsys):
     code = command_line.main(["importtrajectory", f"--INPUT={survey}/drive.gpkg", f"--OUTPUT={tmp_path}/o.gpkg"])
     printed = capsys.readouterr()
-    assert code == 0 and re.fullmatch(rf"OUTPUT: {re.escape(str(tmp_path))}/o.gpkg\nROWS: \d+\n", printed.out)
+    assert code == 0 and re.fullmatch(rf"OUTPUT: {re.escape(str(tmp_path))}/o.gpkg\nROWS: \d+\nWARNINGS: 0\n", printed.out)
     assert "Trajectory: " in printed.err
 
 

@@ -1,0 +1,52 @@
+"""The road map in numbers, for batches and models: how much there is, and how much of it was measured."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from ...core.common.features import Features
+from ..texts import tr
+
+MEASURED = "measured"
+
+NUMBERS = (
+    ("ROADS", tr("Roads")),
+    ("ROAD_LENGTH", tr("Length of the roads (m)")),
+    ("EDGE_LENGTH", tr("Length of the road edges (m)")),
+    ("EDGES_MEASURED", tr("Of the road edges measured (%)")),
+    ("LINE_LENGTH", tr("Length of the marking lines (m)")),
+    ("LINES_MEASURED", tr("Of the marking lines measured (%)")),
+    ("LANES", tr("Lanes")),
+    ("LANE_LENGTH", tr("Length of the driving lines (m)")),
+    ("LANES_MEASURED", tr("Of the driving lines measured (%)")),
+    ("MARKING_COUNT", tr("Markings")),
+)
+
+
+def road_map_numbers(road_lengths: Iterable[float], edges: Features, marking_lines: Features | None, driving_lines: Features | None,
+                     markings: Features | None) -> dict[str, float]:
+    """The values of NUMBERS; a share of nothing is left out.
+
+    Parameters
+    ----------
+    road_lengths : m of each road
+    edges, marking_lines, driving_lines, markings : layers of the road map, None where there are none
+    """
+    lengths = list(road_lengths)
+    found: dict[str, float | None] = {"ROADS": float(len(lengths)), "ROAD_LENGTH": float(sum(lengths))}
+    for layer, length, share in ((edges, "EDGE_LENGTH", "EDGES_MEASURED"), (marking_lines, "LINE_LENGTH", "LINES_MEASURED"),
+                                 (driving_lines, "LANE_LENGTH", "LANES_MEASURED")):
+        found[length], found[share] = _measured(layer)
+    lanes = [] if driving_lines is None else driving_lines.rows
+    found["LANES"] = float(len({(row.get("road"), row.get("lane")) for row in lanes}))
+    found["MARKING_COUNT"] = float(0 if markings is None else len(markings))
+    return {name: value for name, value in found.items() if value is not None}
+
+
+def _measured(layer):
+    """(m of all lines, percent of them measured or None)."""
+    if layer is None:
+        return 0.0, None
+    lengths = [(geometry.length, row.get("status")) for geometry, row in layer]
+    total = sum(length for length, _ in lengths)
+    return total, 100.0 * sum(length for length, status in lengths if status == MEASURED) / total if total else None

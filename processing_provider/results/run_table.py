@@ -1,0 +1,61 @@
+"""The runs since QGIS was started, side by side: what a batch of surveys gave, and why some of them failed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+
+from ..texts import tr
+
+MOST_RUNS = 1000  # kept; a batch of more is read from its reports
+
+
+@dataclass(frozen=True)
+class RunRecord:
+    """One run: its algorithm's title, its survey, when it began, its seconds, its numbers by label, and why it failed ("" if it did not)."""
+
+    title: str
+    survey: str
+    began: datetime
+    seconds: float
+    numbers: Mapping[str, float]
+    failure: str = ""
+
+
+_runs: list[RunRecord] = []
+
+
+def note_run(declaration: Any, survey: str, began: datetime, results: Mapping[str, Any] | None = None, failure: str = "") -> None:
+    """Remember a run that has just ended.
+
+    Parameters
+    ----------
+    declaration : of the algorithm
+    survey : what the survey is called, "" where there is none
+    began : local time
+    results : of the run, None where it failed
+    failure : the sentence that it failed with
+    """
+    numbers = {number.label: results[number.name] for number in declaration.numbers if results is not None and number.name in results}
+    seconds = (datetime.now() - began).total_seconds()
+    _runs.append(RunRecord(declaration.title(), survey, began, seconds, numbers, failure))
+    del _runs[:-MOST_RUNS]
+
+
+def run_table() -> str:
+    """An HTML page with a table for every algorithm, a row for each of its runs; "" where there was none."""
+    if not _runs:
+        return ""
+    from ...core.report.page import Page
+
+    page = Page(tr("Runs of Lanewright"), tr("since QGIS was started"))
+    for title in dict.fromkeys(run.title for run in _runs):
+        runs = [run for run in _runs if run.title == title]
+        labels = list(dict.fromkeys(label for run in runs for label in run.numbers))
+        page.heading(title)
+        page.table((tr("Begun"), tr("Survey"), *labels, tr("Duration (s)"), tr("Failed")),
+                   [(f"{run.began:%Y-%m-%d %H:%M:%S}", run.survey or "–", *(run.numbers.get(label, "–") for label in labels),
+                     round(run.seconds, 1), run.failure or "–") for run in runs])
+    return page.html()
