@@ -85,7 +85,7 @@ class DrivingLines(Algorithm):
         lines, elements = make_driving_lines(
             lines_from_features(marking_lines, frame), frame, call.settings(DRIVING_SETTINGS), progress.part(0.3, 1.0),
             markings=None if markings is None else markings_from_features(markings, frame),
-            edges=None if edges is None else edges_from_features(edges, frame), road_points=road_points,
+            edges=None if edges is None else edges_from_features(edges, frame).densified(frame), road_points=road_points,
         )
         call.layer("DRIVING_LINES", driving_lines_to_features(lines, frame))
         call.layer("CURVE_ELEMENTS", curve_elements_to_features(elements, frame))

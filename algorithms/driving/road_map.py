@@ -108,9 +108,9 @@ class RoadMap(Algorithm):
         if road_map.image is None:
             call.drop_file("INTENSITY_IMAGE")
         for name, attribute, geometry, fields, _ in LAYERS:
-            layer = getattr(road_map, attribute)
+            layer = road_map.layer(attribute)
             call.layer(name, layer if layer is not None else Features(geometry, fields, crs=road_map.crs))
-        call.layer("CURB_POINTS", road_map.curb_points)
+        call.layer("CURB_POINTS", road_map.layer("curb_points"))
         if call.wants("REPORT"):
             from ...core.report.road_map import road_map_report
 

@@ -63,6 +63,7 @@ class DetectCurbs(Algorithm):
         )
 
     def work(self, call, progress):
+        from ...core.road.common.curb_points import curb_points_to_features
         from ...core.road.profiles.detect import detect_curbs
 
         survey = open_survey_of(call, progress.part(0.0, 0.5))
@@ -71,4 +72,5 @@ class DetectCurbs(Algorithm):
             from ...core.road.profiles.principal_points import find_principal_points
 
             call.layer("PRINCIPAL_POINTS", find_principal_points(survey, settings, progress.part(0.5, 0.6)))
-        call.layer("CURB_POINTS", detect_curbs(survey, settings, progress.part(0.6, 1.0)))
+        points = detect_curbs(survey, settings, progress.part(0.6, 1.0))
+        call.layer("CURB_POINTS", curb_points_to_features(points, survey.frame))

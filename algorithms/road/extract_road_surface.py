@@ -43,15 +43,19 @@ class ExtractRoadSurface(Algorithm):
         self.add_sink("ROAD_SURFACE", tr("Road surface"), fields=ROAD_SURFACE, geometry="PolygonZ", optional=True)
 
     def work(self, call, progress):
+        from ...core.road.edges.road_edges import edges_from_features
         from ...core.road.surface.extract import extract_road_surface
+        from ...core.road.surface.road_surface import surface_to_features
         from ...core.survey.consistency import check_features_on_roads
         from ...core.survey.road_points_las import write_road_points
 
-        edges = call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ")
+        layer = call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ")
         survey = open_survey_of(call, progress.part(0.0, 0.5))
-        if edges is not None:
-            check_features_on_roads(edges, survey.frame, call.label("ROAD_EDGES"))
+        edges = None
+        if layer is not None:
+            check_features_on_roads(layer, survey.frame, call.label("ROAD_EDGES"))
+            edges = edges_from_features(layer, survey.frame)
         road_points, surface = extract_road_surface(survey, edges, call.settings(SURFACE_SETTINGS), progress.part(0.5, 0.9))
         write_road_points(road_points, call.new_file("ROAD_POINTS"), progress.part(0.9, 1.0))
         road_points.close()
-        call.layer("ROAD_SURFACE", surface)
+        call.layer("ROAD_SURFACE", surface_to_features(surface, survey.frame))

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from .features import Field
 
 ROAD = Field("road", int, "Road")
@@ -88,8 +86,3 @@ ASSESSED_DRIVING_LINES = [OUTCOME, WHY, Field("line", int, "Row of the line in i
                           Field("max_m", float, "Largest distance (m)")]
 ASSESSED_MARKINGS = [OUTCOME, WHY, Field("source", str, "Of (reference/result)"), Field("class", str, "Class"),
                      Field("share_pct", float, "Share of it in the other layer (%)"), Field("area_m2", float, "Judged area (m²)")]
-
-
-def of_main_curb(row: dict[str, Any]) -> bool:
-    """Whether a row of curb points or road edges belongs to the curb along the road; so does every row without `kind`."""
-    return (row.get("kind") or "main") == "main"

@@ -6,7 +6,7 @@ memory; nothing but the intensity image, which is one of the results, goes to di
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -28,13 +28,15 @@ from ..markings.objects.cluster import ClusterSettings, cluster_markings
 from ..markings.objects.marking_objects import markings_to_features
 from ..markings.objects.outliers import OutlierSettings, remove_outliers
 from ..markings.paint.extract import MarkingSettings, extract_markings
+from ..road.common.curb_points import CurbPoints, curb_points_to_features
 from ..road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from ..road.edges.fit import EdgeSettings
-from ..road.edges.road_edges import edges_from_features
+from ..road.edges.road_edges import RoadEdges, edges_to_features
 from ..road.profiles.detect import CurbSettings
 from ..road.scanlines.detect import ScanlineBoundarySettings
 from ..road.scanlines.section_planes import ScanlineSettings
 from ..road.surface.extract import SurfaceSettings, extract_road_surface
+from ..road.surface.road_surface import SurfaceOutlines, surface_to_features
 from ..survey.open_survey import SurveySettings, open_survey
 from ..survey.point_density import CubeDensity, cube_density
 from ..survey.store.records import Points, join_columns
@@ -77,9 +79,12 @@ class RoadMap:
 
     frame : RoadFrame
     crs : WKT, "" where unknown
-    curb_points, edges, surface, markings, marking_lines, driving_lines, curve_elements : layers; None where not made
+    curb_points : CurbPoints
+    edges : RoadEdges
+    surface : SurfaceOutlines
+    markings, marking_lines, driving_lines, curve_elements : layers; None where not made
     road_points : RoadPoints; `road_points.close()` frees the disk space of the store
-    boundary_differences : where the two boundary methods disagree, None if one method was used
+    boundary_differences : RoadEdges, where the two boundary methods disagree; None if one method was used
     length_by_method : {method: metres of measured edges}
     intensity_report : of the correction, None without it
     image : IntensityImage, None without intensity
@@ -94,11 +99,11 @@ class RoadMap:
 
     frame: RoadFrame
     crs: str
-    curb_points: Features
-    edges: Features
-    surface: Features
+    curb_points: CurbPoints
+    edges: RoadEdges
+    surface: SurfaceOutlines
     road_points: Any
-    boundary_differences: Features | None = None
+    boundary_differences: RoadEdges | None = None
     length_by_method: dict = field(default_factory=dict)
     intensity_report: Any = None
     image: Any = None
@@ -113,6 +118,16 @@ class RoadMap:
     density: tuple[CubeDensity, ...] = ()
     marking_curvature: Any = None
     country: str = DrivingSettings.country
+
+    def layer(self, name: str) -> Features | None:
+        """The result of a name, such as "edges", as a layer in map coordinates; None where it was not made."""
+        result, convert = getattr(self, name), CONVERTERS.get(name)
+        return result if result is None or convert is None else convert(result, self.frame)
+
+
+# RoadMap's attributes that are arrays in the road frame -> what makes layers of them
+CONVERTERS: dict[str, Callable[[Any, RoadFrame], Features]] = dict(
+    curb_points=curb_points_to_features, edges=edges_to_features, boundary_differences=edges_to_features, surface=surface_to_features)
 
 
 def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_path: str | Path,
@@ -216,7 +231,7 @@ def _paint(result, image_path, settings, stages):
     result.marking_curvature = marking_curvature(_places(clustered), result.marking_lines.geometries, frame.origin)
     driving, elements = stages.run(
         "driving", "Making driving lines …", make_driving_lines, lines, frame, settings.driving,
-        markings=markings, edges=edges_from_features(result.edges, frame), road_points=result.road_points)
+        markings=markings, edges=result.edges.densified(frame), road_points=result.road_points)
     result.driving_lines, result.curve_elements = driving_lines_to_features(driving, frame), curve_elements_to_features(elements, frame)
     if not len(result.markings):
         result.without_paint = "No paint was found on this road, so there are no marking lines and no driving lines."

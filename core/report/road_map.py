@@ -55,8 +55,8 @@ def road_map_report(road_map: Any, image_path: str | None = None, progress: Prog
 
 def _picture(page, road_map, image_path):
     background = grey_background(image_path) if image_path and road_map.image is not None else None
-    layers = dict(markings=road_map.markings, edges=road_map.edges, differences=road_map.boundary_differences, marking_lines=road_map.marking_lines,
-                  driving_lines=road_map.driving_lines)
+    layers = dict(differences=road_map.layer("boundary_differences"),
+                  **{name: road_map.layer(name) for name in ("markings", "edges", "marking_lines", "driving_lines")})
     picture = draw_map(layers, background)
     if picture is not None:
         page.picture(png(picture), "The road map over the intensity image; north is up.")
@@ -76,43 +76,46 @@ def _survey(page, road_map):
 
 def _lengths(features, *names):
     """Total length by the values of some fields, in the order of those values."""
-    return _totals(features, "length", *names)
+    return _totals(shapely.length(features.geometries), *(features.column(name) for name in names))
 
 
-def _totals(features, measure, *names):
+def _totals(measure, *columns):
+    """Sums of (N,) lengths or areas by the values of (N,) columns, in the order of those values."""
     total = defaultdict(float)
-    for geometry, row in features:
-        total[tuple(str(row.get(name) or "–") for name in names)] += getattr(geometry, measure)
+    for value, *key in zip(measure, *columns):
+        total[tuple(str(part or "–") for part in key)] += value
     return [(*key, total[key]) for key in sorted(total)]
 
 
 def _road(page, road_map):
     page.heading("Road edges and surface")
-    if len(road_map.edges):
-        page.table(("Curb", "Side", "Status", "Length (m)"), _lengths(road_map.edges, "kind", "side", "status"))
+    edges, surface = road_map.edges, road_map.surface
+    if len(edges):
+        page.table(("Curb", "Side", "Status", "Length (m)"), _totals(edges.length, edges.kind, edges.side, edges.status))
     else:
         page.text("No curb was found along this road, so no edge line was drawn.")
     if road_map.boundary_differences is not None:
         _agreement(page, road_map)
-    page.table(("Status of the surface", "Area (m²)"), _totals(road_map.surface, "area", "status"))
+    page.table(("Status of the surface", "Area (m²)"), _totals(surface.area, surface.status))
 
 
 def _agreement(page, road_map):
     """Where profiles and scanlines find different edges: a measure of reliability without a reference."""
     page.heading("Agreement of the two methods")
     page.table(("Method", "Edges measured (m)"), sorted(road_map.length_by_method.items()))
-    apart = [(row["length_m"], row["agree_cm"]) for row in road_map.edges.rows if row.get("agree_cm") is not None]
-    length = sum(m for m, _ in apart)
+    edges, differences = road_map.edges, road_map.boundary_differences
+    seen = np.isfinite(edges.agree)
+    length = edges.length[seen].sum()
     if length:
-        usual = sum(m * cm for m, cm in apart) / length
+        usual = (edges.length * edges.agree)[seen].sum() / length
         page.text(f"Both methods see {length:.0f} m of the edges drawn; 95 % of each piece keeps within {usual:.1f} cm on average.")
-    stretches = road_map.boundary_differences.rows
-    if not stretches:
+    if not len(differences):
         page.text("Nowhere do they lie more than 5 cm apart for a metre or more.")
         return
     page.text("Here they lie more than 5 cm apart; look at these places first.")
     page.table(("Road", "Side", "From (m)", "To (m)", "Apart at most (cm)"),
-               [[row[name] for name in ("road", "side", "station_m", "end_m", "agree_cm")] for row in stretches])
+               list(zip(*(values.tolist() for values in (differences.road, differences.side, differences.station, differences.end,
+                                                         differences.agree)))))
 
 
 def _markings(page, road_map):

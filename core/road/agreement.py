@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-import shapely
 
-from ..common.features import Features
-from ..common.schemas import AGREE, END, LENGTH, ROAD, SIDE, STATION, of_main_curb
 from ..survey.frame.road_frame import RoadFrame
+from .common.curb_points import CurbPoints
 from .common.sides import SIDE_SIGNS
+from .edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 
 COMPARISON_STEP = 0.5             # m along the road between places that are compared
 MAX_SAME_CURB_DISTANCE = 0.25     # m across within which two lines follow one curb
@@ -19,8 +18,6 @@ AGREEMENT_QUANTILE = 0.95         # quantile of the distances that stands for a 
 MIN_REPORTED_LENGTH = 1.0         # m of a stretch that is reported
 MIN_SINGLE_METHOD_LENGTH = 2.0    # m that one line must continue beyond the other to be drawn in its place
 SECOND_METHOD_CHAIN_OFFSET = 100_000  # added to the chain numbers of the second method, to keep both apart
-
-BOUNDARY_DIFFERENCES = [ROAD, SIDE, STATION, END, AGREE, LENGTH]
 
 
 @dataclass
@@ -42,12 +39,12 @@ class EdgeSamples:
     scatter: np.ndarray
 
 
-def sample_edges(edges: Features, frame: RoadFrame, road: int, side: str) -> EdgeSamples:
+def sample_edges(edges: RoadEdges, frame: RoadFrame, road: int, side: str) -> EdgeSamples:
     """The edges of one side of a road at regular stations.
 
     Parameters
     ----------
-    edges : Features ROAD_EDGES
+    edges : RoadEdges
     frame : RoadFrame
     road : number of the road
     side : "left" or "right"
@@ -56,27 +53,24 @@ def sample_edges(edges: Features, frame: RoadFrame, road: int, side: str) -> Edg
     first, last = int(np.floor(line.start / COMPARISON_STEP)), int(np.ceil(line.end / COMPARISON_STEP))
     s = np.arange(first, last + 1) * COMPARISON_STEP
     samples = EdgeSamples(s, np.full(len(s), np.nan), np.full(len(s), np.nan), np.zeros(len(s), bool), np.full(len(s), np.inf))
-    for geometry, row in edges:
-        if row["road"] != road or row["side"] != side or row["status"] == "inferred" or row.get("part", "bottom") != "bottom" \
-                or not of_main_curb(row):
-            continue
-        x, y, z = shapely.get_coordinates(geometry, include_z=True).T
-        x, y, z = frame.to_local(x, y, z)
-        at, d = line.locate(x, y)
-        good = np.isfinite(at)
-        at, d, z = at[good], d[good], z[good]
+    course = edges.course
+    for k in np.flatnonzero((edges.road == road) & (edges.side == side) & (edges.status != "inferred") & (edges.part == "bottom")
+                            & edges.of_main_curb):
+        vertices = course.line(k)
+        good = np.isfinite(course.s[vertices])
+        at, d, z = (values[vertices][good] for values in (course.s, course.d, course.z))
         if len(at) < 2:
             continue
         order = np.argsort(at, kind="stable")
         at, d, z = at[order], d[order], z[order]
         inside = np.flatnonzero((s >= at[0] - COMPARISON_STEP / 2) & (s <= at[-1] + COMPARISON_STEP / 2))
         samples.d[inside], samples.z[inside] = np.interp(s[inside], at, d), np.interp(s[inside], at, z)
-        samples.measured[inside] = row["status"] == "measured"
-        samples.scatter[inside] = row["rmse_m"]
+        samples.measured[inside] = edges.status[k] == "measured"
+        samples.scatter[inside] = edges.rmse[k]
     return samples
 
 
-def select_curb_points(points: Features, others: Features, edges: Features, other_edges: Features, frame: RoadFrame) -> Features:
+def select_curb_points(points: CurbPoints, others: CurbPoints, edges: RoadEdges, other_edges: RoadEdges, frame: RoadFrame) -> CurbPoints:
     """At every place the curb points of that method whose edge measures better there.
 
     Where one method alone measured, its points are taken. Where both measured one curb
@@ -85,30 +79,30 @@ def select_curb_points(points: Features, others: Features, edges: Features, othe
 
     Parameters
     ----------
-    points, others : Features CURB_POINTS of two methods, the one with the stricter model of a curb first
-    edges, other_edges : Features ROAD_EDGES fitted through each
+    points, others : CurbPoints of two methods, the one with the stricter model of a curb first
+    edges, other_edges : RoadEdges fitted through each
     frame : RoadFrame
 
     Returns
     -------
-    Features CURB_POINTS
+    CurbPoints
     """
-    found = Features(points.geometry_type, list(points.schema), crs=points.crs)
+    # the chains of both methods keep apart
+    others = replace(others, chain=np.where(others.chain < 0, others.chain, others.chain + SECOND_METHOD_CHAIN_OFFSET))
+    found = []
     for road in frame.roads:
         for side in SIDE_SIGNS:
             first, second = (sample_edges(e, frame, road.number, side) for e in (edges, other_edges))
             take_second = _second_is_better(first, second)
-            for number, features in enumerate((points, others)):
-                better = take_second if number else ~take_second
-                for geometry, row in features:
-                    if row["road"] == road.number and row["side"] == side and better[_node(first.s, row["station_m"])]:
-                        chain = row.get("chain")
-                        found.add(geometry, **dict(row, chain=None if chain is None else chain + number * SECOND_METHOD_CHAIN_OFFSET))
-    return found
+            for curbs, better in ((points, ~take_second), (others, take_second)):
+                own = curbs[(curbs.road == road.number) & (curbs.side == side)]
+                found.append(own[better[_node(first.s, own.station)]])
+    return CurbPoints.join(found, points.crs)
 
 
 def _node(s, station):
-    return int(np.clip(np.rint((station - s[0]) / COMPARISON_STEP), 0, len(s) - 1))
+    """(N,) int, the place among the samples at (N,) stations."""
+    return np.clip(np.rint((station - s[0]) / COMPARISON_STEP), 0, len(s) - 1).astype(int)
 
 
 def _second_is_better(first, second):
@@ -137,41 +131,42 @@ def mask_runs(mask: np.ndarray) -> list[tuple[int, int]]:
     return list(zip(change[::2].tolist(), change[1::2].tolist()))
 
 
-def measure_agreement(edges: Features, first_edges: Features, second_edges: Features, frame: RoadFrame) -> Features:
-    """Write into `agree_cm` of every edge how far apart two sets of edges lie beside it, and report where that is much.
+def measure_agreement(edges: RoadEdges, first_edges: RoadEdges, second_edges: RoadEdges, frame: RoadFrame) -> tuple[RoadEdges, RoadEdges]:
+    """How far apart two sets of edges lie beside every edge, and where that is much.
 
-    The number is the distance that 95 % of the piece does not exceed, NULL where one of the
+    The number is the distance that 95 % of the piece does not exceed, NaN where one of the
     two sets has no line. It is measured across the road, every COMPARISON_STEP metres.
 
     Parameters
     ----------
-    edges : Features ROAD_EDGES that are drawn; `agree_cm` is filled in
-    first_edges, second_edges : Features ROAD_EDGES of two methods
+    edges : RoadEdges that are drawn
+    first_edges, second_edges : RoadEdges of two methods
     frame : RoadFrame
 
     Returns
     -------
-    Features BOUNDARY_DIFFERENCES: LineStringZ along the drawn edges, one for every stretch where
-    the two lie more than MIN_REPORTED_DIFFERENCE apart, `agree_cm` their largest distance there
+    edges : RoadEdges with `agree`
+    differences : RoadEdges, lines along the drawn edges, one for every stretch where the two lie more
+        than MIN_REPORTED_DIFFERENCE apart, `agree` their largest distance there
     """
-    differences = Features("LineStringZ", list(BOUNDARY_DIFFERENCES), crs=edges.crs)
+    agree = edges.agree.copy()
+    differences: list[EdgePiece] = []
     for road in frame.roads:
         for side in SIDE_SIGNS:
             first, second, drawn = (sample_edges(e, frame, road.number, side) for e in (first_edges, second_edges, edges))
             apart = np.abs(first.d - second.d)
-            for row in edges.rows:
-                if row["road"] == road.number and row["side"] == side:
-                    beside = apart[(first.s >= row["station_m"]) & (first.s <= row["end_m"])]
-                    beside = beside[np.isfinite(beside)]
-                    if len(beside):
-                        row["agree_cm"] = round(100 * float(np.quantile(beside, AGREEMENT_QUANTILE)), 1)
+            for k in np.flatnonzero((edges.road == road.number) & (edges.side == side)):
+                beside = apart[(first.s >= edges.station[k]) & (first.s <= edges.end[k])]
+                beside = beside[np.isfinite(beside)]
+                if len(beside):
+                    agree[k] = round(100 * float(np.quantile(beside, AGREEMENT_QUANTILE)), 1)
             with np.errstate(invalid="ignore"):
                 differing = (apart > MIN_REPORTED_DIFFERENCE) & np.isfinite(drawn.d)
             for a, b in mask_runs(differing):
                 if (b - a) * COMPARISON_STEP < MIN_REPORTED_LENGTH:
                     continue
                 x, y, z = frame.to_map(road.number, first.s[a:b], drawn.d[a:b], drawn.z[a:b])
-                line = shapely.linestrings(np.round(np.c_[x, y, z], 4))
-                differences.add(line, road=road.number, side=side, station_m=float(first.s[a]), end_m=float(first.s[b - 1]),
-                                agree_cm=round(100 * float(apart[a:b].max()), 1), length_m=round(line.length, 3))
-    return differences
+                differences.append(EdgePiece(
+                    np.c_[x, y, z], road.number, side, "measured", len(differences), float(first.s[a]), float(first.s[b - 1]),
+                    float(np.hypot(np.diff(x), np.diff(y)).sum()), agree=100 * float(apart[a:b].max())))
+    return replace(edges, agree=agree), joined_pieces(differences, frame, edges.crs)

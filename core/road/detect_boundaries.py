@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..common.errors import RoadExtractionError
-from ..common.features import Features
 from ..common.progress import Progress
 from .agreement import measure_agreement, select_curb_points
+from .common.curb_points import CurbPoints
 from .common.decimation import PointDecimation
-from .common.nearest_pass import assign_nearest_pass
-from .curb_returns.detect import add_curb_returns
+from .curb_returns.detect import with_curb_returns
 from .edges.fit import EdgeSettings, fit_road_edges
+from .edges.road_edges import RoadEdges
 from .profiles.detect import CurbSettings, detect_curbs
 from .scanlines.candidates import GAP_FILL_REACH
 from .scanlines.detect import ScanlineBoundarySettings, curbs_from_scanlines
@@ -64,19 +64,19 @@ class RoadBoundaries:
 
     Attributes
     ----------
-    curb_points : Features CURB_POINTS
-    edges : Features ROAD_EDGES
-    differences : Features BOUNDARY_DIFFERENCES, where the edges of the two methods lie apart; None with one method
+    curb_points : CurbPoints
+    edges : RoadEdges
+    differences : RoadEdges, where the edges of the two methods lie apart; None with one method
     length_by_method : method -> m of measured edges; empty with one method
     """
 
-    curb_points: Features
-    edges: Features
-    differences: Features | None = None
+    curb_points: CurbPoints
+    edges: RoadEdges
+    differences: RoadEdges | None = None
     length_by_method: dict = field(default_factory=dict)
 
 
-def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettings(), progress: Progress = Progress()) -> dict[str, Features]:
+def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettings(), progress: Progress = Progress()) -> dict[str, CurbPoints]:
     """Curb points of the methods that the settings name.
 
     Parameters
@@ -87,7 +87,7 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
 
     Returns
     -------
-    {method: Features CURB_POINTS}; with both methods, "profiles" and "scanlines" hold the road's own
+    {method: CurbPoints}; with both methods, "profiles" and "scanlines" hold the road's own
     curbs and "both" those of the two that measure better (`select_curb_points`). Corners, side streets
     and islands are found in plan, once, and belong to the curbs that are drawn.
     """
@@ -107,11 +107,10 @@ def _find_curb_points(decimation, settings, progress):
                                  level=_level_for(decimation, settings.scanlines))
         found["scanlines"] = curbs_from_scanlines(source, settings.scanlines, settings.curbs.block_length,
                                                   part.part(LATTICE_PROGRESS, RETURNS_PROGRESS))
-        drawn = found["scanlines"]
+        drawn = "both" if both else "scanlines"
         if both:
-            drawn = found["both"] = _better_points(found, survey.frame)
-        add_curb_returns(drawn, decimation, settings.curbs, part.part(RETURNS_PROGRESS, 1.0))
-        assign_nearest_pass(drawn, survey.frame)
+            found["both"] = _better_points(found, survey.frame)
+        found[drawn] = with_curb_returns(found[drawn], decimation, settings.curbs, part.part(RETURNS_PROGRESS, 1.0))
     return found
 
 
@@ -133,12 +132,12 @@ def _better_points(found, frame):
     return select_curb_points(*(found[method] for method in methods), *(fit_road_edges(found[method], frame) for method in methods), frame)
 
 
-def draw_boundaries(found: dict[str, Features], frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),
+def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),
                     progress: Progress = Progress()) -> RoadBoundaries:
     """Edges through the curb points of one method, or of two that check each other.
 
     With both methods, the one that measures better is drawn at every place
-    (`select_curb_points`), and `agree_cm` of every piece says how far apart they lie.
+    (`select_curb_points`), and `agree` of every piece says how far apart they lie.
 
     Parameters
     ----------
@@ -156,9 +155,9 @@ def draw_boundaries(found: dict[str, Features], frame: RoadFrame, settings: Edge
         return RoadBoundaries(points, fit_road_edges(points, frame, settings, progress))
     single = {method: fit_road_edges(found[method], frame, settings) for method in ("scanlines", "profiles")}
     edges = fit_road_edges(found["both"], frame, settings, progress)
-    differences = measure_agreement(edges, single["scanlines"], single["profiles"], frame)
-    lengths = {method: sum(row["length_m"] for row in lines.rows if row["status"] == "measured") for method, lines in single.items()}
-    differing = sum(row["length_m"] for row in differences.rows)
+    edges, differences = measure_agreement(edges, single["scanlines"], single["profiles"], frame)
+    lengths = {method: float(lines.length[lines.status == "measured"].sum()) for method, lines in single.items()}
+    differing = differences.length.sum()
     if any(lengths.values()):
         progress.info(f"Profiles measured {lengths['profiles']:.0f} m of edges and scanlines {lengths['scanlines']:.0f} m; "
                      f"they lie more than 5 cm apart along {differing:.0f} m.")

@@ -17,7 +17,6 @@ from lanewright.core.markings.objects.outliers import remove_outliers
 from lanewright.core.markings.paint.extract import extract_markings
 from lanewright.core.pipeline.road_map import RoadMapSettings
 from lanewright.core.road.detect_boundaries import draw_boundaries, find_curb_points
-from lanewright.core.road.edges.road_edges import edges_from_features
 from lanewright.core.road.surface.extract import extract_road_surface
 
 
@@ -77,7 +76,7 @@ def _lines(w, settings):
 
 def _driving(w, settings):
     lines, _ = make_driving_lines(w.lines, w.frame, settings.driving, markings=w.marking_objects,
-                                  edges=edges_from_features(w.edges, w.frame), road_points=w.bright)
+                                  edges=w.edges.densified(w.frame), road_points=w.bright)
     w.driving = driving_lines_to_features(lines, w.frame)
 
 

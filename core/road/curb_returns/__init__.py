@@ -7,5 +7,5 @@ from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "classify": ("CurbReturn",),
-    "detect": ("add_curb_returns", "find_curb_returns"),
+    "detect": ("find_curb_returns", "with_curb_returns"),
 })

@@ -12,12 +12,12 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-import shapely
 from scipy.spatial import cKDTree
 
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...survey.frame.road_frame import CORRIDOR
+from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.decimation import POINTS_PER_LEVEL_CELL_IN_PLAN, PointDecimation
 from ..common.sides import MAX_LOOK_ALONG, SIDE_SIGNS, ahead_of_vehicle, expected_height, work_sections
 from ..common.tracking import MAX_JOINED_GAP
@@ -27,7 +27,6 @@ from .steps import PlanSteps, measure_plan_steps
 from .tracking import join_chains, link_plan_steps
 
 if TYPE_CHECKING:
-    from ...common.features import Features
     from ..profiles.detect import CurbSettings
 
 KIND_TITLES = {"main": "of the road's own", "corner": "of corners", "side_street": "of side streets", "island": "of islands"}
@@ -45,57 +44,53 @@ MAX_RUN_JUMP = 0.5            # m across between points of one run of main curb
 MAX_ISLAND_WIDTH = 8.0        # m within which the ground behind an island's curb comes down again
 
 
-def add_curb_returns(curb_points: Features, decimation: PointDecimation, settings: CurbSettings,
-                     progress: Progress = Progress()) -> None:
-    """Add the points of corners, side streets and islands to those of the main curbs.
+def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, settings: CurbSettings,
+                      progress: Progress = Progress()) -> CurbPoints:
+    """The points of the main curbs, and behind them those of corners, side streets and islands.
 
     Parameters
     ----------
-    curb_points : CURB_POINTS of every road, of kind main; more are added at the end
+    curb_points : CurbPoints of every road, of kind main
     decimation : PointDecimation of the survey
     settings : CurbSettings
     progress : Progress
     """
-    survey = decimation.survey
+    survey, parts = decimation.survey, [curb_points]
     length = dict.fromkeys(KIND_TITLES, 0.0)
     roads = survey.store.roads()
     for i, road in enumerate(roads):
         part = progress.part(i / len(roads), (i + 1) / len(roads))
         main, chain = _main_curbs(curb_points, survey, road)
         for number, curb in enumerate(find_curb_returns(decimation, road, main, settings, part), chain):
-            length[curb.kind] += _add_points(curb_points, survey, road, curb, number)
+            points = _points_of(survey, road, curb, number)
+            length[curb.kind] += points.along[-1]
+            parts.append(points)
     found = ", ".join(f"{length[kind]:.0f} m {title}" for kind, title in KIND_TITLES.items() if length[kind])
     progress.info(f"Curbs away from the road's direction: {found or 'none'}.")
+    return CurbPoints.join(parts, curb_points.crs)
 
 
 def _main_curbs(curb_points, survey, road):
     """Main curbs of a road, side -> (N, 4) station, offset, height and whether it was seen, and the first free chain number."""
-    main, chain = {}, 0
+    main, curbs = {}, curb_points[curb_points.road == road]
     for side in SIDE_SIGNS:
-        rows = [(r["station_m"], r["offset_m"], g.z - survey.frame.origin[2], r["status"] == "measured") for g, r in curb_points
-                if r["road"] == road and r["side"] == side and r.get("part", "bottom") == "bottom"]
-        rows = np.array(rows, float).reshape(-1, 4)
+        own = curbs[(curbs.side == side) & (curbs.part == "bottom")]
+        rows = np.c_[own.station, own.offset, own.z, own.status == "measured"]
         rows = rows[np.argsort(rows[:, 0], kind="stable")]
         if len(rows):
             rows[:, 2] -= expected_height(survey, road, rows[:, 0])
         main[side] = rows
-    for row in curb_points.rows:
-        if row["road"] == road and row.get("chain") is not None:
-            chain = max(chain, row["chain"] + 1)
-    return main, chain
+    return main, int(curbs.chain.max(initial=-1)) + 1
 
 
-def _add_points(curb_points, survey, road, curb, chain):
-    """Add the points of one line; returns its length."""
+def _points_of(survey, road, curb, chain):
+    """The points of one line."""
     steps, frame = curb.steps, survey.frame
     z = steps.h + expected_height(survey, road, curb.s) + frame.origin[2]
     along = np.r_[0.0, np.cumsum(np.hypot(np.diff(steps.x), np.diff(steps.y)))]
-    places = shapely.points(np.round(steps.x + frame.origin[0], 4), np.round(steps.y + frame.origin[1], 4), np.round(z, 4))
-    for k, place in enumerate(places):
-        curb_points.add(place, road=road, side=curb.side, status="measured", station_m=round(float(curb.s[k]), 4),
-                        offset_m=round(float(curb.d[k]), 4), height_m=round(float(steps.height[k]), 4), part="bottom",
-                        kind=curb.kind, chain=chain, along_m=round(float(along[k]), 3), support=int(steps.support[k]))
-    return float(along[-1])
+    return curb_points_at(frame, road, (steps.x + frame.origin[0], steps.y + frame.origin[1], z), side=curb.side, status="measured",
+                          station=curb.s, offset=curb.d, height=np.round(steps.height, 4), kind=curb.kind, chain=chain,
+                          along=np.round(along, 3), support=steps.support)
 
 
 def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str, np.ndarray], settings: CurbSettings,

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-import shapely
 from scipy.interpolate import Akima1DInterpolator
 
-from ...common.features import Features
-from ...common.schemas import of_main_curb
+from ...survey.frame.placement import COORDINATE_DECIMALS
+from ...survey.frame.road_frame import RoadFrame
+from ..common.curb_points import CurbPoints
 from ..common.pseudo_scanlines import expand_ranges
 from ..common.tracking import MAX_JOINED_GAP
+from .road_edges import EdgePiece
 
 RETURN_VERTEX_SPACING = 0.25  # m between vertices: the nose of an island has a radius below a metre
 MIN_CORNER_TURN = np.radians(50.0)  # from the chord before to the chord after a sharp corner
@@ -18,38 +19,36 @@ SMOOTHING_HALF_LENGTH = 0.5   # m along a curb within which its points give its 
 SAME_PLACE_DISTANCE = 0.02    # m within which two places are one
 
 
-def curb_return_lines(curb_points: Features) -> dict[int, list[tuple[list[dict], np.ndarray]]]:
+def curb_return_lines(curb_points: CurbPoints, frame: RoadFrame) -> dict[int, list[tuple[CurbPoints, np.ndarray]]]:
     """The measured curb points that are not of a main curb, by road and chain, in order along each chain.
 
     Parameters
     ----------
-    curb_points : Features CURB_POINTS
+    curb_points : CurbPoints
+    frame : RoadFrame
 
     Returns
     -------
-    dict road -> list of (rows, (N, 3) map coordinates), chains ascending
+    dict road -> list of (points, (N, 3) map coordinates), chains ascending
     """
-    chains: dict = {}
-    for geometry, row in curb_points:
-        if not of_main_curb(row) and row["status"] == "measured" and row.get("part", "bottom") == "bottom":
-            chains.setdefault((row["road"], row["chain"]), []).append((row["along_m"], geometry, row))
-    found: dict = {}
-    for (road, _), members in sorted(chains.items()):
-        members.sort(key=lambda m: m[0])
-        places = np.array([(g.x, g.y, g.z) for _, g, _ in members])
-        if len(places) > 1:
-            found.setdefault(road, []).append(([row for _, _, row in members], places))
+    points = curb_points[~curb_points.of_main_curb & (curb_points.status == "measured") & (curb_points.part == "bottom")]
+    points = points[np.lexsort((points.along, points.chain, points.road))]
+    cuts = np.flatnonzero((np.diff(points.road) != 0) | (np.diff(points.chain) != 0)) + 1
+    found: dict[int, list[tuple[CurbPoints, np.ndarray]]] = {}
+    for rows in np.split(np.arange(len(points)), cuts):
+        if len(rows) > 1:
+            found.setdefault(int(points.road[rows[0]]), []).append((points[rows], points[rows].map_places(frame)))
     return found
 
 
-def draw_curb_returns(edges: Features, road: int, lines: list[tuple[list[dict], np.ndarray]], number: int) -> int:
+def draw_curb_returns(edges: list[EdgePiece], road: int, lines: list[tuple[CurbPoints, np.ndarray]], number: int) -> int:
     """Add the edges of corners, side streets and islands of one road.
 
     A corner begins with the vertex at which the main edge ends, so that the two touch.
 
     Parameters
     ----------
-    edges : Features ROAD_EDGES with the main edges, to which these are added
+    edges : pieces of the main edges, to which these are added
     road : number of the road
     lines : of this road, from `curb_return_lines`
     number : of the first line
@@ -59,8 +58,8 @@ def draw_curb_returns(edges: Features, road: int, lines: list[tuple[list[dict], 
     The next free line number
     """
     ends = _main_ends(edges, road)
-    for rows, places in lines:
-        kind = rows[0]["kind"]
+    for points, places in lines:
+        kind = points.kind[0]
         closed = kind == "island" and np.hypot(*(places[0, :2] - places[-1, :2])) <= SAME_PLACE_DISTANCE
         first, last = (None, None) if kind == "island" else (_nearest(ends, places[k]) for k in (0, -1))
         if first is not None and last is not None and np.array_equal(first, last):
@@ -69,17 +68,14 @@ def draw_curb_returns(edges: Features, road: int, lines: list[tuple[list[dict], 
         # the main edge's own end is a place of the curve, so that an arc stays one where the curb was not seen for a metre
         places = np.concatenate([*(v[None] for v in (first,) if v is not None), places, *(v[None] for v in (last,) if v is not None)])
         vertices, residual = _drawn(places)
-        vertices = np.round(vertices, 4)
+        vertices = np.round(vertices, COORDINATE_DECIMALS)
         if closed:
             vertices[-1] = vertices[0]
         vertices[0], vertices[-1] = vertices[0] if first is None else first, vertices[-1] if last is None else last
         vertices = vertices[np.r_[True, np.hypot(*np.diff(vertices[:, :2], axis=0).T) > 0]]
-        stations = [row["station_m"] for row in rows]
-        edges.add(shapely.linestrings(vertices), road=road, side=rows[0]["side"], status="measured",
-                  station_m=round(min(stations), 3), end_m=round(max(stations), 3),
-                  height_m=round(float(np.median([row["height_m"] for row in rows])), 3), part="bottom", kind=kind,
-                  length_m=round(float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), 3),
-                  rmse_m=round(float(np.sqrt(np.mean(residual**2))), 4), chain=number)
+        edges.append(EdgePiece(vertices, road, points.side[0], "measured", number, float(points.station.min()), float(points.station.max()),
+                               float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), float(np.median(points.height)),
+                               float(np.sqrt(np.mean(residual**2))), kind=kind))
         number += 1
     return number
 
@@ -158,7 +154,7 @@ def _chord_length(x, y):
 
 def _main_ends(edges, road):
     """(K, 3) end vertices of the main edges of a road, except those where two pieces touch."""
-    ends = [np.array(geometry.coords[k]) for geometry, row in edges if row["road"] == road and of_main_curb(row) for k in (0, -1)]
+    ends = [np.round(piece.vertices[k], COORDINATE_DECIMALS) for piece in edges if piece.road == road and piece.kind == "main" for k in (0, -1)]
     if not ends:
         return np.empty((0, 3))
     ends = np.array(ends)

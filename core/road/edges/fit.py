@@ -5,21 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import shapely
 from scipy.interpolate import splev, splprep, splrep
 from scipy.ndimage import median_filter
 
-from ...common.features import Features
 from ...common.parallel import check_cancelled
 from ...common.progress import Progress
-from ...common.schemas import ROAD_EDGES, of_main_curb
 from ...common.setting import check_limits, setting
 from ...curves.robust import MAD_TO_SIGMA
 from ...survey.frame.road_frame import RoadFrame
-from ..common.nearest_pass import assign_nearest_pass
+from ..common.curb_points import CurbPoints
 from ..common.occlusion import HIDDEN_POINT_SPACING
 from ..common.tracking import MAX_JOINED_GAP
 from .curb_returns import curb_return_lines, draw_curb_returns
+from .road_edges import EdgePiece, RoadEdges, joined_pieces
 
 MEDIAN_WINDOW = 5.0           # m of running median
 OUTLIER_MADS = 3.0            # median absolute deviations, as sigmas, and
@@ -50,38 +48,37 @@ class EdgeSettings:
         check_limits(self)
 
 
-def fit_road_edges(curb_points: Features, frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),
-                   progress: Progress = Progress()) -> Features:
+def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),
+                   progress: Progress = Progress()) -> RoadEdges:
     """Fit a smoothing cubic B-spline through the curb points of each side.
 
     Parameters
     ----------
-    curb_points : Features CURB_POINTS (rows of part `top` are not used)
+    curb_points : CurbPoints (those of part `top` are not used)
     frame : RoadFrame
     settings : EdgeSettings
     progress : Progress
 
     Returns
     -------
-    Features ROAD_EDGES: LineStringZ in map coordinates, digitised along the road,
-    one piece for each stretch of one status. Pieces of one edge share their end
-    vertices and `chain`.
+    RoadEdges, along the road, one piece for each stretch of one status. Pieces of one
+    edge share their end vertices and `chain`.
     """
-    edges = Features("LineStringZ", list(ROAD_EDGES), crs=curb_points.crs)
-    table, returns = _table(curb_points), curb_return_lines(curb_points)
+    found: list[EdgePiece] = []
+    table, returns = _table(curb_points, frame), curb_return_lines(curb_points, frame)
     lines = 0
     for road in frame.roads:
         for side in ("left", "right"):
             rows = table[(table["road"] == road.number) & (table["side"] == side)]
             drawn = []
             for piece in _pieces(rows, settings.max_gap):
-                drawn.append(_draw(edges, frame, road, side, piece, lines))
+                drawn.append(_draw(found, road, side, piece, lines))
                 lines += 1
             if settings.fallback_width:
-                lines = _draw_fallback(edges, frame, road, side, drawn, settings.fallback_width, lines)
-        lines = draw_curb_returns(edges, road.number, returns.get(road.number, []), lines)
-    assign_nearest_pass(edges, frame)
-    length = {status: sum(r["length_m"] for r in edges.rows if r["status"] == status) for status in ("measured", "bridged")}
+                lines = _draw_fallback(found, frame, road, side, drawn, settings.fallback_width, lines)
+        lines = draw_curb_returns(found, road.number, returns.get(road.number, []), lines)
+    edges = joined_pieces(found, frame, curb_points.crs)
+    length = {status: edges.length[edges.status == status].sum() for status in ("measured", "bridged")}
     if len(edges):
         progress.info(f"Road edges: {length['measured']:.0f} m measured, {length['bridged']:.0f} m bridged.")
     else:
@@ -91,13 +88,15 @@ def fit_road_edges(curb_points: Features, frame: RoadFrame, settings: EdgeSettin
     return edges
 
 
-def _table(curb_points):
-    """The curb points of bottoms as a structured array, sorted by road, side and station."""
-    rows = [(r["road"], r["side"], r["status"] == "measured", r["station_m"], r["offset_m"], g.x, g.y, g.z,
-             r.get("height_m") or 0.0, -1 if r.get("chain") is None else r["chain"], r.get("residual_m") or 0.0)
-            for g, r in curb_points if of_main_curb(r) and r.get("part", "bottom") == "bottom" and r["status"] in ("measured", "occluded")]
-    table = np.array(rows, dtype=[("road", int), ("side", "U5"), ("measured", bool), ("s", float), ("d", float), ("x", float),
-                                  ("y", float), ("z", float), ("height", float), ("chain", int), ("residual", float)])
+def _table(curb_points, frame):
+    """The curb points of bottoms as a structured array, in map coordinates, sorted by road, side and station."""
+    points = curb_points[curb_points.of_main_curb & (curb_points.part == "bottom") & np.isin(curb_points.status, ("measured", "occluded"))]
+    table = np.empty(len(points), dtype=[("road", int), ("side", "U5"), ("measured", bool), ("s", float), ("d", float), ("x", float),
+                                         ("y", float), ("z", float), ("height", float), ("chain", int)])
+    places = points.map_places(frame)
+    for name, values in dict(road=points.road, side=points.side, measured=points.status == "measured", s=points.station, d=points.offset,
+                             x=places[:, 0], y=places[:, 1], z=places[:, 2], height=np.nan_to_num(points.height), chain=points.chain).items():
+        table[name] = values
     return table[np.lexsort((table["d"], table["s"], table["side"], table["road"]))]
 
 
@@ -195,7 +194,7 @@ def _noise(t, values):
     return max(float(np.median(np.abs(off) / np.sqrt(1 + f**2 + (1 - f) ** 2))) * MAD_TO_SIGMA, MIN_POINT_SIGMA)
 
 
-def _draw(edges, frame, road, side, piece, number):
+def _draw(found, road, side, piece, number):
     """Add the pieces of one edge; returns its (start, end) station."""
     points, bridged = piece
     curve = EdgeCurve(points)
@@ -206,16 +205,13 @@ def _draw(edges, frame, road, side, piece, number):
         a, b = curve.t[i], curve.t[j]
         vertices = curve.at(np.linspace(a, b, max(int(np.ceil((b - a) / EDGE_VERTEX_SPACING)), 1) + 1))
         rows = points[i:j + 1]
-        edges.add(shapely.linestrings(np.round(vertices, 4)), road=road.number, side=side,
-                  status="bridged" if bridged[i] else "measured",
-                  station_m=round(float(rows["s"][0]), 3), end_m=round(float(rows["s"][-1]), 3),
-                  height_m=round(float(np.median(rows["height"])), 3), part="bottom", kind="main",
-                  length_m=round(float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), 3),
-                  rmse_m=round(float(np.sqrt(np.mean(curve.residual[i:j + 1] ** 2))), 4), chain=number)
+        found.append(EdgePiece(vertices, road.number, side, "bridged" if bridged[i] else "measured", number, float(rows["s"][0]),
+                               float(rows["s"][-1]), float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()),
+                               float(np.median(rows["height"])), float(np.sqrt(np.mean(curve.residual[i:j + 1] ** 2)))))
     return float(points["s"][0]), float(points["s"][-1])
 
 
-def _draw_fallback(edges, frame, road, side, drawn, width, number):
+def _draw_fallback(found, frame, road, side, drawn, width, number):
     """Add lines at half the width beside the middle of the driven tracks where no edge was found."""
     passes = frame.passes_of(road.number)
     start, end = min(p.span[0] for p in passes), max(p.span[1] for p in passes)
@@ -231,8 +227,7 @@ def _draw_fallback(edges, frame, road, side, drawn, width, number):
         tracks = np.array([p.at_station(s)[0] for p in passes])
         offset = 0.5 * (tracks.min(0) + tracks.max(0)) + (0.5 if side == "left" else -0.5) * width
         x, y, z = frame.to_map(road.number, s, offset, frame.track_height(road.number, s))
-        edges.add(shapely.linestrings(np.round(np.c_[x, y, z], 4)), road=road.number, side=side, status="inferred",
-                  station_m=round(float(a), 3), end_m=round(float(b), 3), part="bottom", kind="main",
-                  length_m=round(float(np.hypot(np.diff(x), np.diff(y)).sum()), 3), chain=number)
+        found.append(EdgePiece(np.c_[x, y, z], road.number, side, "inferred", number, float(a), float(b),
+                               float(np.hypot(np.diff(x), np.diff(y)).sum())))
         number += 1
     return number

@@ -1,36 +1,172 @@
-"""Road edges as arrays, read from the layer ROAD_EDGES."""
+"""Road edges as arrays, and their conversion from and to the layer ROAD_EDGES.
+
+Stages hand each other `RoadEdges`. Map coordinates are made in one place, `edges_to_features`, and read in one
+place, `edges_from_features`.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import shapely
 
 from ...common.features import Features
+from ...common.schemas import ROAD_EDGES
 from ...survey.frame.frame_lines import FrameLines, line_parts, lines_in_frame
+from ...survey.frame.placement import COORDINATE_DECIMALS, as_written, known
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
+
+EDGE_FIELDS = dict(nearest_pass="pass", side="side", status="status", part="part", kind="kind", chain="chain", station="station_m", end="end_m",
+             height="height_m", length="length_m", rmse="rmse_m", agree="agree_cm")
+
+EDGE_DECIMALS = dict(station=3, end=3, height=3, length=3, rmse=4, agree=1)   # of numbers in the layer
+
+
+@dataclass(frozen=True)
+class EdgePiece:
+    """A line of one status that is to be drawn.
+
+    vertices : (V, 3) x, y and z in map coordinates
+    road : number
+    side, status, part, kind : as in RoadEdges
+    chain : number of the line; its pieces share it
+    station, end, height, length, rmse : metres, as in RoadEdges
+    """
+
+    vertices: np.ndarray
+    road: int
+    side: str
+    status: str
+    chain: int
+    station: float
+    end: float
+    length: float
+    height: float = np.nan
+    rmse: float = np.nan
+    part: str = "bottom"
+    kind: str = "main"
+    agree: float = np.nan
 
 
 @dataclass(frozen=True)
 class RoadEdges:
     """E pieces of road edges, each of one status.
 
-    edge : (E,) int, row of the layer that the piece comes from
-    kind : (E,) str objects: main for the road's own edges; corner, side_street and island for what leads away from it or stands in it
+    edge : (E,) int, row of the layer that the piece comes from or goes to
+    nearest_pass : (E,) int, number of the pass that drove nearest
+    side : (E,) str objects, left or right
     status : (E,) str objects, measured, bridged, inferred
+    part : (E,) str objects, bottom or top
+    kind : (E,) str objects: main for the road's own edges; corner, side_street and island for what leads away from it or stands in it
+    chain : (E,) int, the pieces of one line share it
+    station, end : (E,) metres along the road
+    height, length, rmse : (E,) metres: of the curb, along the line in plan, of the curb points from the line
+    agree : (E,) centimetres that two methods lie apart, at 95 % of the piece
     course : FrameLines, one per piece
+    crs : WKT, "" where unknown
+
+    Numbers that are unknown are -1 or NaN.
     """
 
     edge: np.ndarray
-    kind: np.ndarray
+    nearest_pass: np.ndarray
+    side: np.ndarray
     status: np.ndarray
+    part: np.ndarray
+    kind: np.ndarray
+    chain: np.ndarray
+    station: np.ndarray
+    end: np.ndarray
+    height: np.ndarray
+    length: np.ndarray
+    rmse: np.ndarray
+    agree: np.ndarray
     course: FrameLines
+    crs: str = ""
 
     def __len__(self) -> int:
         return len(self.edge)
+
+    @property
+    def road(self) -> np.ndarray:
+        """(E,) int, number of the road."""
+        return self.course.road
+
+    @property
+    def of_main_curb(self) -> np.ndarray:
+        """(E,) bool: does the edge belong to a curb along the road?"""
+        return self.kind == "main"
+
+    def take(self, rows: np.ndarray) -> RoadEdges:
+        """Some of the pieces, by their numbers."""
+        return replace(self, **{name: getattr(self, name)[rows] for name in EDGE_COLUMNS}, course=self.course.take(rows))
+
+    def map_lines(self, frame: RoadFrame) -> np.ndarray:
+        """(E,) shapely lines with Z in map coordinates, as the layer holds them."""
+        course = self.course
+        places = np.round(np.c_[course.x, course.y, course.z] + frame.origin, COORDINATE_DECIMALS)
+        found = np.full(len(self), None, object)
+        return shapely.linestrings(places, indices=course.owner, out=found) if len(places) else found
+
+    def densified(self, frame: RoadFrame) -> RoadEdges:
+        """The same edges with vertices at most LINE_VERTEX_SPACING apart: what is straight on the map is not straight in the road frame."""
+        return replace(self, course=lines_in_frame(self.map_lines(frame), self.road, frame))
+
+
+EDGE_COLUMNS = tuple(one.name for one in fields(RoadEdges) if one.name not in ("course", "crs"))
+EDGE_TYPES: dict[str, type] = {**dict.fromkeys(EDGE_COLUMNS, float), **dict.fromkeys(("edge", "nearest_pass", "chain"), int),
+                          **dict.fromkeys(("side", "status", "part", "kind"), object)}
+
+
+def joined_pieces(pieces: Sequence[EdgePiece], frame: RoadFrame, crs: str = "") -> RoadEdges:
+    """Pieces as RoadEdges in the same order.
+
+    The pass that drove nearest is that of the middle vertex. Numbers are rounded to EDGE_DECIMALS and vertices to 0.1 mm,
+    as the layer holds them.
+    """
+    x, y, z = as_written(frame, *np.concatenate([piece.vertices for piece in pieces] or [np.empty((0, 3))]).T)
+    start = np.append(0, np.cumsum([len(piece.vertices) for piece in pieces], dtype=int))
+    course = FrameLines.at(frame, np.array([piece.road for piece in pieces], int), start, x, y, z)
+    columns: dict[str, Any] = {}
+    for name in (one.name for one in fields(EdgePiece) if one.name not in ("vertices", "road")):
+        values, decimals = [getattr(piece, name) for piece in pieces], EDGE_DECIMALS.get(name)
+        columns[name] = np.array(values if decimals is None else [round(value, decimals) for value in values], EDGE_TYPES[name])
+    return RoadEdges(edge=np.arange(len(pieces)), nearest_pass=_nearest_passes(course, columns["station"], frame), **columns, course=course, crs=crs)
+
+
+def _nearest_passes(course, station, frame):
+    """(E,) number of the pass that drove nearest to the middle vertex of each line."""
+    middle = course.start[:-1] + np.diff(course.start) // 2
+    s, d = course.s[middle], course.d[middle]
+    # the line of a side street may leave the road's frame
+    s, d = np.where(np.isfinite(s), s, station), np.where(np.isfinite(d), d, 0.0)
+    found = np.full(len(course), -1)
+    for road in np.unique(course.road).tolist():
+        rows = course.road == road
+        found[rows] = frame.nearest_pass(road, s[rows], d[rows])
+    return found
+
+
+def edges_to_features(edges: RoadEdges, frame: RoadFrame) -> Features:
+    """The layer ROAD_EDGES in map coordinates.
+
+    Parameters
+    ----------
+    edges : RoadEdges
+    frame : RoadFrame, whose origin is added to local coordinates
+
+    Returns
+    -------
+    Features ROAD_EDGES: LineStringZ, in the same order
+    """
+    columns = {name: getattr(edges, attribute).tolist() for attribute, name in [("road", "road"), *EDGE_FIELDS.items()]}
+    rows = [{name: known(value) for name, value in zip(columns, row)} for row in zip(*columns.values())]
+    return Features("LineStringZ", list(ROAD_EDGES), list(edges.map_lines(frame)), rows, edges.crs)
 
 
 def edges_from_features(features: Features, frame: RoadFrame) -> RoadEdges:
@@ -38,16 +174,24 @@ def edges_from_features(features: Features, frame: RoadFrame) -> RoadEdges:
 
     Parameters
     ----------
-    features : Features with lines in map coordinates; `road`, `kind` and `status` are used where they are. Rows without `kind` are main edges
+    features : Features with lines in map coordinates; fields may be missing. Rows without `kind` are main edges, rows without
+        `status` are measured; a row without `road` belongs to the road that most of its vertices are nearest to
     frame : RoadFrame
 
     Returns
     -------
-    RoadEdges, one piece a LineString; rows without geometry are left out
+    RoadEdges, one piece a LineString, with the vertices of the layer; rows without geometry are left out
     """
     parts, row_of = line_parts(features.geometries)
     rows = [features.rows[k] for k in row_of]
     road = [-1 if row.get("road") is None else int(row["road"]) for row in rows]
-    kind, status = (np.array([str(row.get(name) or missing) for row in rows], object)
-                    for name, missing in (("kind", "main"), ("status", "measured")))
-    return RoadEdges(np.array(row_of, int), kind, status, lines_in_frame(parts, road, frame))
+    columns: dict[str, Any] = {
+        attribute: np.array([_missing(attribute) if row.get(name) is None else row[name] for row in rows], EDGE_TYPES[attribute])
+        for attribute, name in EDGE_FIELDS.items()}
+    return RoadEdges(edge=np.array(row_of, int), **columns, course=lines_in_frame(parts, road, frame, spacing=None), crs=features.crs)
+
+
+def _missing(attribute):
+    """What stands for a field that a layer does not have."""
+    texts = dict(side="", status="measured", part="bottom", kind="main")
+    return texts[attribute] if attribute in texts else -1 if EDGE_TYPES[attribute] is int else np.nan

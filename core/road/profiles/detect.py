@@ -7,17 +7,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import shapely
 
 from ...common.errors import RoadExtractionError
-from ...common.features import Features
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from ...common.schemas import CURB_POINTS
 from ...common.setting import check_limits, setting
 from ..common.corners import CurbSteps
+from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.decimation import POINTS_PER_LEVEL_CELL, PointDecimation
-from ..common.nearest_pass import assign_nearest_pass
 from ..common.occlusion import HIDDEN_POINT_SPACING, OcclusionGrid
 from ..common.pseudo_scanlines import SPREAD_PROFILES
 from ..common.sides import (
@@ -30,7 +27,7 @@ from ..common.sides import (
     work_sections,
 )
 from ..common.tracking import NOISY_SHARE, curb_chains, drop_short_curbs, link_steps, select_along_road
-from ..curb_returns.detect import add_curb_returns
+from ..curb_returns.detect import with_curb_returns
 from .averaged_steps import AVERAGING_LENGTH, find_averaged_steps
 from .steps import find_steps
 
@@ -81,7 +78,7 @@ class CurbSettings:
 
 
 def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progress: Progress = Progress(),
-                 include_returns: bool = True, decimation: PointDecimation | None = None) -> Features:
+                 include_returns: bool = True, decimation: PointDecimation | None = None) -> CurbPoints:
     """Bottom corners of the curb on each side of every road, one per block.
 
     Parameters
@@ -94,25 +91,24 @@ def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progre
 
     Returns
     -------
-    Features CURB_POINTS: PointZ in map coordinates. Rows of status `measured` are
-    vertices of the road edge; rows of status `occluded` lie where the curb is
-    expected and something hides it.
+    CurbPoints. Those of status `measured` are vertices of the road edge; those of
+    status `occluded` lie where the curb is expected and something hides it.
     """
     if decimation is None:
         with closing(PointDecimation(survey, settings.profile_width, settings.point_spacing)) as own:
             return detect_curbs(survey, settings, progress, include_returns, own)
-    found = Features("PointZ", list(CURB_POINTS), crs=survey.crs)
+    parts = []
     roads = survey.store.roads()
     for i, road in enumerate(roads):
         part = progress.part(MAIN_CURB_PROGRESS * i / len(roads), MAIN_CURB_PROGRESS * (i + 1) / len(roads))
         steps, occlusion = _steps_of_road(decimation, road, settings, part)
         for side in SIDE_SIGNS:
-            _report_side(found, survey, road, side, steps[side], occlusion[side], settings)
-    measured = sum(row["status"] == "measured" for row in found.rows)
+            parts.append(_points_of_side(survey, road, side, steps[side], occlusion[side], settings))
+    found = CurbPoints.join(parts, survey.crs)
+    measured, main = np.count_nonzero(found.status == "measured"), len(found)
     if include_returns:
-        add_curb_returns(found, decimation, settings, progress.part(MAIN_CURB_PROGRESS, 1.0))
-    assign_nearest_pass(found, survey.frame)
-    progress.info(f"Curb points: {measured:,} measured, {len(found) - measured:,} hidden by something in front.")
+        found = with_curb_returns(found, decimation, settings, progress.part(MAIN_CURB_PROGRESS, 1.0))
+    progress.info(f"Curb points: {measured:,} measured, {main - measured:,} hidden by something in front.")
     return found
 
 
@@ -176,10 +172,10 @@ def _merge_passes(found):
                  behind=np.bincount(group, steps.behind).astype(np.int64))
 
 
-def _report_side(found, survey, road, side, steps, occlusion, settings):
+def _points_of_side(survey, road, side, steps, occlusion, settings):
     """Curb points of one side of one road, measured and hidden, in order of station."""
     if steps is None or not len(steps):
-        return
+        return CurbPoints.none()
     frame, sign = survey.frame, SIDE_SIGNS[side]
     track = OutermostTrack(frame, road, sign)
     label = link_steps(steps, settings.profile_width)
@@ -194,13 +190,9 @@ def _report_side(found, survey, road, side, steps, occlusion, settings):
     measured = np.array([(r["s"], r["u"], r["h"]) for r in rows]).reshape(-1, 3)
     rows += hidden_points(measured, occlusion, track)
     rows.sort(key=lambda r: r["s"])
-    if not rows:
-        return
-    s, u, h = (np.array([r[name] for r in rows]) for name in ("s", "u", "h"))
+    s, u, h = (np.array([r[name] for r in rows], float) for name in ("s", "u", "h"))
     x, y, z = frame.to_map(road, s, sign * u, h + expected_height(survey, road, s))
-    for point, row in zip(shapely.points(np.round(x, 4), np.round(y, 4), np.round(z, 4)), rows):
-        found.add(point, road=road, side=side, station_m=round(row["s"], 4), offset_m=round(sign * row["u"], 4),
-                  part="bottom", kind="main", **row["fields"])
+    return curb_points_at(frame, road, (x, y, z), [row["fields"] for row in rows], side=side, station=s, offset=sign * u)
 
 
 def block_bounds(road: Road, start: float, end: float, block_length: float) -> np.ndarray:
@@ -244,8 +236,8 @@ def _block_points(steps, bounds, chain):
     residual = np.sqrt(mean((steps.u - np.interp(steps.s, s, u)) ** 2))
     support = np.bincount(member, steps.support)
     return [dict(s=float(s[k]), u=float(u[k]), h=float(h[k]),
-                 fields=dict(status="measured", height_m=round(float(height[k]), 4), chain=chain,
-                             residual_m=round(float(residual[k]), 4), support=int(support[k]))) for k in range(len(names))]
+                 fields=dict(status="measured", height=round(float(height[k]), 4), chain=chain,
+                             residual=round(float(residual[k]), 4), support=int(support[k]))) for k in range(len(names))]
 
 
 def block_numbers(steps: CurbSteps, bounds: np.ndarray) -> np.ndarray:
@@ -290,7 +282,7 @@ def hidden_points(measured: np.ndarray, occlusion: OcclusionGrid, track: Outermo
 
     Returns
     -------
-    list of dict: s, u, h as above, and `fields`, the attributes of the row
+    list of dict: s, u, h as above, and `fields`, what else is known of the point
     """
     if len(measured) < 2:
         return []

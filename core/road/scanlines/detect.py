@@ -15,20 +15,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import shapely
 
 from ...common.errors import RoadExtractionError
-from ...common.features import Features
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from ...common.schemas import CURB_POINTS, ROAD_EDGES
 from ...common.setting import check_limits, setting
-from ..common.nearest_pass import assign_nearest_pass
+from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.occlusion import HIDDEN_POINT_SPACING, MIN_OCCLUDER_HEIGHT, OcclusionGrid
 from ..common.pseudo_scanlines import MIN_SCANNER_NOISE
 from ..common.sides import BLOCK_SECTION_LENGTH, MAX_CURB_OFFSET, SIDE_SIGNS, OutermostTrack, expected_height
 from ..common.tracking import curb_chains, drop_short_curbs, link_steps, select_along_road
 from ..edges.fit import EDGE_VERTEX_SPACING, MAX_EDGE_JUMP, MAX_EDGE_SKEW, MIN_EDGE_LENGTH, MIN_HIDDEN_SHARE, EdgeCurve, without_outliers
+from ..edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 from ..profiles.detect import MIN_TRACK_DISTANCE, PASS_MERGE_ACROSS, PASS_MERGE_HEIGHT, block_bounds, block_numbers, hidden_points
 from .candidates import NEIGHBOUR_LINES, find_candidates, gap_fill_rows, samples_near
 from .corners import CurbCorners, corners_of, plane_fit_rows
@@ -85,7 +83,7 @@ class ScanlineBoundarySettings:
 
 
 def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: ScanlineBoundarySettings = ScanlineBoundarySettings(),
-                         block_length: float = 0.0, progress: Progress = Progress()) -> Features:
+                         block_length: float = 0.0, progress: Progress = Progress()) -> CurbPoints:
     """Bottom and top corners of the curb on each side of every road, one of each per block.
 
     Parameters
@@ -97,21 +95,19 @@ def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: Sca
 
     Returns
     -------
-    Features CURB_POINTS: PointZ in map coordinates, `part` bottom or top. Rows of status `occluded` mark
-    places where an object hides the curb.
+    CurbPoints, `part` bottom or top. Those of status `occluded` mark places where an object hides the curb.
     """
-    found = Features("PointZ", list(CURB_POINTS), crs=source.crs)
+    parts = []
     roads = source.roads()
     for i, road in enumerate(roads):
         part = progress.part(i / len(roads), (i + 1) / len(roads))
         corners, occlusion = _corners_of_road(source, road, settings, part)
         for side in SIDE_SIGNS:
             if corners[side] is not None and len(corners[side]):
-                _report_side(found, source, road, side, corners[side], occlusion[side], settings, block_length)
-    assign_nearest_pass(found, source.frame)
-    bottoms = [row["status"] for row in found.rows if row["part"] == "bottom"]
-    progress.info(f"Corners of curbs: {bottoms.count('measured'):,} measured on scanlines, "
-                 f"{bottoms.count('occluded'):,} hidden by objects.")
+                parts.append(_points_of_side(source, road, side, corners[side], occlusion[side], settings, block_length))
+    found = CurbPoints.join(parts, source.crs)
+    measured, hidden = (np.count_nonzero((found.part == "bottom") & (found.status == status)) for status in ("measured", "occluded"))
+    progress.info(f"Corners of curbs: {measured:,} measured on scanlines, {hidden:,} hidden by objects.")
     return found
 
 
@@ -224,8 +220,8 @@ def _with_scanner_noise(corners):
     return corners
 
 
-def _report_side(found, source, road, side, corners, occlusion, settings, block_length):
-    """Add the bottom and top corners of one side of one road, measured and hidden, sorted by station."""
+def _points_of_side(source, road, side, corners, occlusion, settings, block_length):
+    """The bottom and top corners of one side of one road, measured and hidden, sorted by station."""
     frame, sign = source.frame, SIDE_SIGNS[side]
     track = OutermostTrack(frame, road, sign)
     label = link_steps(corners, source.interval)
@@ -240,13 +236,9 @@ def _report_side(found, source, road, side, corners, occlusion, settings, block_
     bottoms = np.array([(r["s"], r["u"], r["h"]) for r in rows if r["fields"]["part"] == "bottom"]).reshape(-1, 3)
     rows += [{**r, "fields": dict(r["fields"], part="bottom")} for r in hidden_points(bottoms, occlusion, track)]
     rows.sort(key=lambda r: (r["s"], r["fields"]["part"]))
-    if not rows:
-        return
-    s, u, h = (np.array([r[name] for r in rows]) for name in ("s", "u", "h"))
+    s, u, h = (np.array([r[name] for r in rows], float) for name in ("s", "u", "h"))
     x, y, z = frame.to_map(road, s, sign * u, h + expected_height(source, road, s))
-    for point, row in zip(shapely.points(np.round(x, 4), np.round(y, 4), np.round(z, 4)), rows):
-        found.add(point, road=road, side=side, station_m=round(row["s"], 4), offset_m=round(sign * row["u"], 4), kind="main",
-                  **row["fields"])
+    return curb_points_at(frame, road, (x, y, z), [row["fields"] for row in rows], side=side, station=s, offset=sign * u)
 
 
 def _block_points(corners, edges, chain):
@@ -260,51 +252,53 @@ def _block_points(corners, edges, chain):
     residual, support = np.sqrt(np.bincount(member, deviation**2) / n), np.bincount(member, corners.support)
     rows = []
     for k in range(len(names)):
-        fields = dict(status="measured", height_m=round(float(mean["height"][k]), 4), chain=chain,
-                      residual_m=round(float(residual[k]), 4), support=int(support[k]))
+        fields = dict(status="measured", height=round(float(mean["height"][k]), 4), chain=chain,
+                      residual=round(float(residual[k]), 4), support=int(support[k]))
         for part, u, h in (("bottom", "u", "h"), ("top", "top_u", "top_h")):
             rows.append(dict(s=float(mean["s"][k]), u=float(mean[u][k]), h=float(mean[h][k]), fields=dict(fields, part=part)))
     return rows
 
 
-def boundary_lines(corners: Features, frame: RoadFrame, max_gap: float, progress: Progress = Progress()) -> Features:
+def boundary_lines(corners: CurbPoints, frame: RoadFrame, max_gap: float, progress: Progress = Progress()) -> RoadEdges:
     """Smooth lines through corners, separately for bottoms and tops.
 
     Parameters
     ----------
-    corners : Features CURB_POINTS with `part` bottom or top
+    corners : CurbPoints with `part` bottom or top
     frame : RoadFrame
     max_gap : m between corners that are connected
     progress : Progress
 
     Returns
     -------
-    Features with the fields of ROAD_EDGES: LineStringZ along the road, one piece for each stretch of one status:
+    RoadEdges along the road, one piece for each stretch of one status:
     measured, bridged (a gap between corners), or occluded (a gap where an object hides the curb). The pieces of one
     line share their end vertices and `chain`.
     """
-    lines = Features("LineStringZ", list(ROAD_EDGES), crs=corners.crs)
+    pieces: list[EdgePiece] = []
     number = 0
     for road in frame.roads:
         for side in SIDE_SIGNS:
-            hidden = np.sort([row["station_m"] for row in corners.rows
-                              if row["road"] == road.number and row["side"] == side and row["status"] == "occluded"])
+            own = corners[(corners.road == road.number) & (corners.side == side)]
+            hidden = np.sort(own.station[own.status == "occluded"])
             for part in ("bottom", "top"):
-                for points, status in _pieces(_points(corners, road.number, side, part), hidden, max_gap):
-                    _draw(lines, points, status, road=road.number, side=side, part=part, chain=number)
+                for points, status in _pieces(_points(own[own.part == part], frame), hidden, max_gap):
+                    _draw(pieces, points, status, road=road.number, side=side, part=part, chain=number)
                     number += 1
-    assign_nearest_pass(lines, frame)
-    length = {part: sum(row["length_m"] for row in lines.rows if row["part"] == part) for part in ("bottom", "top")}
+    lines = joined_pieces(pieces, frame, corners.crs)
+    length = {part: lines.length[lines.part == part].sum() for part in ("bottom", "top")}
     progress.info(f"Boundaries: {length['bottom']:.0f} m of bottom lines and {length['top']:.0f} m of top lines.")
     progress.report(1.0)
     return lines
 
 
-def _points(corners, road, side, part):
-    """The measured corners of one kind, sorted by station."""
-    rows = [(row["station_m"], row["offset_m"], g.x, g.y, g.z, row.get("height_m") or 0.0, row["chain"]) for g, row in corners
-            if row["road"] == road and row["side"] == side and row["part"] == part and row["status"] == "measured"]
-    points = np.array(rows, dtype=_POINT)
+def _points(corners, frame):
+    """The measured corners of one kind in map coordinates, sorted by station."""
+    measured = corners[corners.status == "measured"]
+    points, (x, y, z) = np.empty(len(measured), dtype=_POINT), measured.map_places(frame).T
+    for name, values in dict(s=measured.station, d=measured.offset, x=x, y=y, z=z, height=np.nan_to_num(measured.height),
+                             chain=measured.chain).items():
+        points[name] = values
     return without_outliers(points[np.argsort(points["s"], kind="stable")])
 
 
@@ -322,16 +316,14 @@ def _pieces(points, hidden, max_gap):
     return [(part, flags[:-1]) for part, flags in parts if len(part) >= 2 and part["s"][-1] - part["s"][0] >= MIN_EDGE_LENGTH]
 
 
-def _draw(lines, points, status, **fields):
-    """Add the pieces of one line to the layer."""
+def _draw(pieces, points, status, **fields):
+    """Add the pieces of one line."""
     curve = EdgeCurve(points)
     bounds = np.r_[0, np.flatnonzero(status[1:] != status[:-1]) + 1, len(points) - 1]
     for i, j in zip(bounds[:-1], bounds[1:]):
         a, b = curve.t[i], curve.t[j]
         vertices = curve.at(np.linspace(a, b, max(int(np.ceil((b - a) / EDGE_VERTEX_SPACING)), 1) + 1))
         rows = points[i:j + 1]
-        lines.add(shapely.linestrings(np.round(vertices, 4)), status=str(status[i]), kind="main",
-                  station_m=round(float(rows["s"][0]), 3), end_m=round(float(rows["s"][-1]), 3),
-                  height_m=round(float(np.median(rows["height"])), 3),
-                  length_m=round(float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), 3),
-                  rmse_m=round(float(np.sqrt(np.mean(curve.residual[i:j + 1] ** 2))), 4), **fields)
+        pieces.append(EdgePiece(vertices, status=str(status[i]), station=float(rows["s"][0]), end=float(rows["s"][-1]),
+                                length=float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), height=float(np.median(rows["height"])),
+                                rmse=float(np.sqrt(np.mean(curve.residual[i:j + 1] ** 2))), **fields))

@@ -8,4 +8,5 @@ from ...lazy import public
 __getattr__, __all__ = public(__name__, {
     "extract": ("SurfaceSettings", "extract_road_surface"),
     "limits": ("edge_offsets",),
+    "road_surface": ("SurfaceOutlines", "surface_to_features"),
 })

@@ -12,23 +12,23 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...common.errors import RoadExtractionError
-from ...common.features import Features
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from ...common.schemas import ROAD_SURFACE
 from ...common.setting import check_limits, setting
 from ...survey.frame.road_frame import CORRIDOR
 from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.road_points import RoadPoints
 from .ground_grid import ROW_LENGTH, GroundCells, ground_cells
 from .limits import edge_offsets
-from .outline import add_outlines
+from .outline import outlines
 from .pavement_edge import SurfaceProfiles, grown_offsets
 from .region_growing import follow_road, smooth_road
 from .road_points import OBSTACLE_SQUARE, covered_by_obstacles, points_on_road
+from .road_surface import SurfaceOutlines
 
 if TYPE_CHECKING:
     from ...survey.open_survey import Survey
+    from ..edges.road_edges import RoadEdges
 
 WINDOW_ROWS = 10              # rows of cells in memory at a time: 5 m
 TOLERANCE_FLOOR = 0.03        # m, height tolerance of a scanner without noise
@@ -80,8 +80,8 @@ class Carriageway:
     tolerance: float
 
 
-def extract_road_surface(survey: Survey, edges: Features | None = None, settings: SurfaceSettings = SurfaceSettings(),
-                         progress: Progress = Progress()) -> tuple[RoadPoints, Features]:
+def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, settings: SurfaceSettings = SurfaceSettings(),
+                         progress: Progress = Progress()) -> tuple[RoadPoints, SurfaceOutlines]:
     """Select the points of the road surface and draw its outline.
 
     Between road edges, all points at the height of the road belong to the surface. The height is followed from the
@@ -93,15 +93,14 @@ def extract_road_surface(survey: Survey, edges: Features | None = None, settings
     Parameters
     ----------
     survey : Survey
-    edges : Features ROAD_EDGES in map coordinates, or None
+    edges : RoadEdges or None
     settings : SurfaceSettings
     progress : Progress
 
     Returns
     -------
     road_points : RoadPoints with `half_width` and `covered`; they stay in the survey's store
-    surface : Features ROAD_SURFACE, PolygonZ in map coordinates. `status` is measured where both sides have a
-        measured or bridged edge, else grown
+    surface : SurfaceOutlines
 
     Raises
     ------
@@ -109,7 +108,7 @@ def extract_road_surface(survey: Survey, edges: Features | None = None, settings
         If no road surface is found.
     """
     road_points = RoadPoints.subset_of(survey)
-    surface = Features("PolygonZ", list(ROAD_SURFACE), crs=survey.crs)
+    stretches = []
     roads = survey.store.roads()
     for k, road in enumerate(roads):
         part = progress.part(k / len(roads), (k + 1) / len(roads))
@@ -118,17 +117,17 @@ def extract_road_surface(survey: Survey, edges: Features | None = None, settings
             progress.warn(f"Road {road}: no ground was measured near the track, so this road has no surface.")
             continue
         per_row = _take_points(survey, road, carriageway, road_points, part.part(0.5, 1.0))
-        add_outlines(surface, survey.frame, road, carriageway, per_row)
+        stretches += outlines(survey.frame, road, carriageway, per_row)
     if not len(road_points):
         raise RoadExtractionError("No road surface was found: no points lie under or beside the trajectory at the height "
                                   "of the road. Check that the trajectory belongs to the point cloud.")
-    grown = sum(g.area for g, r in surface if r["status"] == "grown")
-    progress.info(f"Road surface: {len(road_points):,} points, {sum(g.area for g in surface.geometries):.0f} m², "
-                 f"{grown:.0f} m² of it without a measured edge on both sides.")
+    surface = SurfaceOutlines.of_rows(stretches, survey.crs)
+    progress.info(f"Road surface: {len(road_points):,} points, {surface.area.sum():.0f} m², "
+                 f"{surface.area[surface.status == 'grown'].sum():.0f} m² of it without a measured edge on both sides.")
     return road_points, surface
 
 
-def find_carriageway(survey: Survey, road: int, edges: Features | None, settings: SurfaceSettings,
+def find_carriageway(survey: Survey, road: int, edges: RoadEdges | None, settings: SurfaceSettings,
                      progress: Progress = Progress()) -> Carriageway | None:
     """Height and limits of one road, row by row.
 
@@ -136,7 +135,7 @@ def find_carriageway(survey: Survey, road: int, edges: Features | None, settings
     ----------
     survey : Survey
     road : number of the road
-    edges : Features ROAD_EDGES in map coordinates, or None
+    edges : RoadEdges or None
     settings : SurfaceSettings
     progress : Progress
 
@@ -148,7 +147,7 @@ def find_carriageway(survey: Survey, road: int, edges: Features | None, settings
     windows = [WINDOW_ROWS * k for k in range(int(np.floor(start / ROW_LENGTH / WINDOW_ROWS)), int(np.ceil(end / ROW_LENGTH / WINDOW_ROWS)))]
 
     stations = (windows[0] + np.arange(WINDOW_ROWS * len(windows)) + 0.5) * ROW_LENGTH
-    measured = edge_offsets(edges, survey.frame, road, stations)
+    measured = edge_offsets(edges, road, stations)
     missing = np.isnan(measured["left"][0]) | np.isnan(measured["right"][0])
 
     def measure(row):

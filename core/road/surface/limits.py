@@ -5,25 +5,20 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import shapely
-
-from ...common.features import Features
-from ...common.schemas import of_main_curb
 
 if TYPE_CHECKING:
-    from ...survey.frame.road_frame import RoadFrame
+    from ..edges.road_edges import RoadEdges
 
 MAX_OPENING = 30.0       # m of missing edge that is closed by a straight line
 EDGE_CONTINUATION = 5.0  # m by which the offset of an edge holds before its first and after its last vertex
 
 
-def edge_offsets(edges: Features | None, frame: RoadFrame, road: int, stations: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+def edge_offsets(edges: RoadEdges | None, road: int, stations: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Offsets of the road edges at stations.
 
     Parameters
     ----------
-    edges : Features ROAD_EDGES in map coordinates, or None
-    frame : RoadFrame
+    edges : RoadEdges or None
     road : number of the road
     stations : (N,) m, ascending
 
@@ -37,32 +32,27 @@ def edge_offsets(edges: Features | None, frame: RoadFrame, road: int, stations: 
     for side, sign in (("left", 1.0), ("right", -1.0)):
         offset = np.full(len(stations), np.nan)
         measured = np.zeros(len(stations), bool)
-        for geometry, row in edges or ():
-            if row.get("side") != side or row.get("part", "bottom") == "top" or not of_main_curb(row) \
-                    or (row.get("road") or 0) != road:
-                continue
-            s, d = _along(geometry, frame, road)
-            if len(s) < 2:
-                continue
+        for s, d, status in () if edges is None else _lines_of(edges, road, side):
             inside = (stations >= s[0]) & (stations <= s[-1])
             here = np.interp(stations, s, d)
             # of two parallel lines the outer one is the limit of the road
             take = inside & ~(sign * offset > sign * here)
             offset[take] = here[take]
-            measured[take] = row.get("status") != "inferred"
+            measured[take] = status != "inferred"
         found[side] = _continued(stations, offset), measured
     return found
 
 
-def _along(geometry, frame, road):
-    """Stations and offsets of the vertices of a line, sorted by station."""
-    parts = getattr(geometry, "geoms", [geometry])
-    places = np.concatenate([shapely.get_coordinates(part) for part in parts]) if geometry is not None else np.empty((0, 2))
-    s, d = frame.road(road).locate(*frame.to_local(*places.T)) if len(places) else (np.empty(0), np.empty(0))
-    good = np.isfinite(s)
-    s, d = s[good], d[good]
-    order = np.argsort(s, kind="stable")
-    return s[order], d[order]
+def _lines_of(edges, road, side):
+    """(stations, offsets, status) of the main edges of one side, by station."""
+    course = edges.course
+    for k in np.flatnonzero((edges.road == road) & (edges.side == side) & (edges.part == "bottom") & edges.of_main_curb):
+        s, d = course.s[course.line(k)], course.d[course.line(k)]
+        good = np.isfinite(s)
+        s, d = s[good], d[good]
+        order = np.argsort(s, kind="stable")
+        if len(s) > 1:
+            yield s[order], d[order], edges.status[k]
 
 
 def _continued(stations, offset):

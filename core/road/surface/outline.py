@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from ...common.features import Features
+from ...survey.frame.placement import COORDINATE_DECIMALS
 from .ground_grid import COLUMN_WIDTH, ROW_LENGTH
 
 if TYPE_CHECKING:
@@ -17,17 +17,21 @@ if TYPE_CHECKING:
 MIN_SURFACE_STATUS_LENGTH = 5.0  # m: shorter changes of status are not drawn
 
 
-def add_outlines(surface: Features, frame: RoadFrame, road: int, carriageway: Carriageway, points_per_row: np.ndarray) -> None:
-    """Add the polygons of one road to a layer; consecutive polygons share two vertices.
+def outlines(frame: RoadFrame, road: int, carriageway: Carriageway, points_per_row: np.ndarray) -> list[tuple]:
+    """The stretches of one road; consecutive ones share two vertices.
 
     Parameters
     ----------
-    surface : Features ROAD_SURFACE, to which PolygonZ in map coordinates are added
     frame : RoadFrame
     road : number of the road
     carriageway : Carriageway with R rows
     points_per_row : (R,) int, points of the surface in each row
+
+    Returns
+    -------
+    list of rows of a SurfaceOutlines: road, status, station, end, area, points and outline
     """
+    found = []
     cells = carriageway.cells
     there = np.isfinite(carriageway.left) & np.isfinite(carriageway.right)
     measured = _without_short_runs(carriageway.left_bounded & carriageway.right_bounded, int(MIN_SURFACE_STATUS_LENGTH / ROW_LENGTH))
@@ -47,15 +51,16 @@ def add_outlines(surface: Features, frame: RoadFrame, road: int, carriageway: Ca
             column = np.clip(np.floor(offset / COLUMN_WIDTH).astype(int) - cells.first_column, 0, cells.height.shape[1] - 1)
             x, y, z = frame.to_map(road, stations, offset, carriageway.height[rows, column].astype(float))
             sides.append(np.c_[x, y, z])
-        ring = np.round(np.concatenate([sides[0], sides[1][::-1]]), 4)
+        ring = np.round(np.concatenate([sides[0], sides[1][::-1]]), COORDINATE_DECIMALS)
         polygon = shapely.Polygon(ring)
         if not polygon.is_valid:
             polygon = _largest(shapely.make_valid(polygon))
         if polygon is None or polygon.is_empty:
             continue
-        surface.add(polygon, road=int(road), status="measured" if kind[a] == 2 else "grown",
-                    station_m=round(float(stations[0]), 3), end_m=round(float(stations[-1]), 3),
-                    area_m2=round(float(polygon.area), 3), points=int(points_per_row[a:b].sum()))
+        local = shapely.transform(polygon, lambda places: places - frame.origin, include_z=True)
+        found.append((road, "measured" if kind[a] == 2 else "grown", round(float(stations[0]), 3), round(float(stations[-1]), 3),
+                      round(float(polygon.area), 3), int(points_per_row[a:b].sum()), local))
+    return found
 
 
 def _without_short_runs(mask, shortest):

@@ -19,7 +19,7 @@ LINE_VERTEX_SPACING = 0.5  # m between vertices at most: straight on the map is 
 
 @dataclass(frozen=True)
 class FrameLines:
-    """L lines, stored vertex by vertex, at most half a metre apart.
+    """L lines, stored vertex by vertex.
 
     road : (L,) int, number of the road; -1 where a line lies on none
     start : (L + 1,) int, first vertex of each line, and V
@@ -49,14 +49,24 @@ class FrameLines:
         at = np.repeat(self.start[rows] - start[:-1], count) + np.arange(start[-1])
         return FrameLines(self.road[rows], start, *(values[at] for values in (self.x, self.y, self.z, self.s, self.d)))
 
+    @property
+    def owner(self) -> np.ndarray:
+        """(V,) int, the line of each vertex."""
+        return np.repeat(np.arange(len(self)), np.diff(self.start))
+
     def linestrings(self) -> np.ndarray:
         """(L,) shapely lines in local x, y."""
-        owner = np.repeat(np.arange(len(self)), np.diff(self.start))
         found = np.full(len(self), None, object)
-        return shapely.linestrings(np.c_[self.x, self.y], indices=owner, out=found) if len(owner) else found
+        return shapely.linestrings(np.c_[self.x, self.y], indices=self.owner, out=found) if len(self.x) else found
+
+    @staticmethod
+    def at(frame: RoadFrame, road: np.ndarray, start: np.ndarray, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> FrameLines:
+        """Lines through given vertices; station and offset are found for them."""
+        return FrameLines(road, start, x, y, z, *located(frame, np.repeat(road, np.diff(start)), x, y))
 
 
-def lines_in_frame(lines: Sequence[Any] | np.ndarray, road: Sequence[int] | np.ndarray, frame: RoadFrame) -> FrameLines:
+def lines_in_frame(lines: Sequence[Any] | np.ndarray, road: Sequence[int] | np.ndarray, frame: RoadFrame,
+                   spacing: float | None = LINE_VERTEX_SPACING) -> FrameLines:
     """Lines in map coordinates as FrameLines.
 
     Parameters
@@ -64,18 +74,21 @@ def lines_in_frame(lines: Sequence[Any] | np.ndarray, road: Sequence[int] | np.n
     lines : L shapely LineStrings in map coordinates
     road : (L,) int, number of the road of each; where the frame has no such road, the one that most vertices are nearest to
     frame : RoadFrame
+    spacing : m between vertices at most; None for the vertices of the lines as they are
 
     Returns
     -------
     FrameLines
     """
-    shapes = shapely.segmentize(np.asarray(lines, object), LINE_VERTEX_SPACING) if len(lines) else np.empty(0, object)
+    shapes = np.asarray(lines, object) if len(lines) else np.empty(0, object)
+    if spacing is not None and len(shapes):
+        shapes = shapely.segmentize(shapes, spacing)
     places, owner = shapely.get_coordinates(shapes, include_z=True, return_index=True)
     start = np.append(0, np.cumsum(np.bincount(owner, minlength=len(lines))))
     x, y = frame.to_local(places[:, 0], places[:, 1])
     roads = np.array([int(number) if 0 <= number < len(frame.roads) else _nearest_road(frame, x[a:b], y[a:b])
                       for number, a, b in zip(road, start[:-1], start[1:])], int)
-    return FrameLines(roads, start, x, y, places[:, 2] - frame.origin[2], *located(frame, roads[owner], x, y))
+    return FrameLines.at(frame, roads, start, x, y, places[:, 2] - frame.origin[2])
 
 
 def _nearest_road(frame: RoadFrame, x: np.ndarray, y: np.ndarray) -> int:

@@ -1,13 +1,15 @@
-"""Station and offset of places that are known by their map coordinates."""
+"""Places as a layer holds them: station and offset of map coordinates, coordinates to 0.1 mm, and what is unknown."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 if TYPE_CHECKING:
     from .road_frame import RoadFrame
+
+COORDINATE_DECIMALS = 4  # of coordinates in layers: 0.1 mm
 
 
 def located(frame: RoadFrame, road: np.ndarray, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -33,3 +35,16 @@ def located(frame: RoadFrame, road: np.ndarray, x: np.ndarray, y: np.ndarray) ->
         there = np.flatnonzero(road == number)
         s[there], d[there] = frame.roads[number].locate(x[there], y[there])
     return s, d
+
+
+def as_written(frame: RoadFrame, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Local x, y and z, (V,) metres each, of map coordinates that are rounded as in a layer.
+
+    What is computed from them is therefore the same whether a stage got its input in memory or from a file.
+    """
+    return frame.to_local(*(np.round(values, COORDINATE_DECIMALS) for values in (x, y, z)))
+
+
+def known(value: Any) -> Any:
+    """A value for the field of a layer: None (NULL) for what arrays hold as unknown, which is NaN, "" and whole numbers below 0."""
+    return None if value == "" or value != value or isinstance(value, int) and value < 0 else value

@@ -53,8 +53,8 @@ def mapped(sample, tmp_path):
 
 def assert_right(sample, road_map, least=0.9):
     curbs = [g for g, row in sample.truth_boundaries if row["part"] != "top" and row["kind"] != "dropped"]
-    area = shapely.union_all([shapely.force_2d(g).buffer(0.5) for g in road_map.surface.geometries])
-    found = compare_lines(road_map.edges.geometries, curbs, area=area)
+    area = shapely.union_all([shapely.force_2d(g).buffer(0.5) for g in road_map.layer("surface").geometries])
+    found = compare_lines(road_map.layer("edges").geometries, curbs, area=area)
     assert found.completeness[0.10] > least and found.correctness[0.10] > 0.95
     assert found.height_rmse < 0.03
 
@@ -124,7 +124,7 @@ def test_withheld_and_noise_points_are_passed_over(sample, cloud, mapped):
 def painted(sample, road_map):
     truth = shapely.union_all([shapely.force_2d(g) for g in sample.truth_markings.geometries])
     found = shapely.union_all([shapely.force_2d(g) for g in road_map.markings.geometries])
-    area = shapely.union_all([shapely.force_2d(g) for g in road_map.surface.geometries])
+    area = shapely.union_all([shapely.force_2d(g) for g in road_map.layer("surface").geometries])
     found, truth = found.intersection(area), truth.intersection(area)
     return found.intersection(truth.buffer(0.04)).area / found.area, truth.intersection(found.buffer(0.04)).area / truth.area
 
@@ -258,8 +258,8 @@ def test_two_passes_three_centimetres_apart_are_one_curb(sample, whole, cloud, m
                    **{name: np.r_[getattr(first, name), getattr(first, name)] for name in ("roll", "pitch", "heading")})
     found = mapped([whole, cloud], both)
     curbs = [g for g, row in sample.truth_boundaries if row["part"] != "top" and row["kind"] != "dropped"]
-    area = shapely.union_all([shapely.force_2d(g).buffer(0.5) for g in found.surface.geometries])
-    accuracy = compare_lines(found.edges.geometries, curbs, area=area)
+    area = shapely.union_all([shapely.force_2d(g).buffer(0.5) for g in found.layer("surface").geometries])
+    accuracy = compare_lines(found.layer("edges").geometries, curbs, area=area)
     assert accuracy.completeness[0.10] > 0.9
     # one line a curb, not one a pass
     assert accuracy.result_length < 1.1 * accuracy.reference_length

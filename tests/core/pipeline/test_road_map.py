@@ -40,7 +40,7 @@ def road_map(sample, cloud, tmp_path_factory):
 
 
 def layers_of(road_map):
-    return {name: shapely.get_coordinates(np.array(getattr(road_map, name).geometries, object), include_z=True)
+    return {name: shapely.get_coordinates(np.array(road_map.layer(name).geometries, object), include_z=True)
             for name in LAYERS}
 
 
@@ -53,12 +53,12 @@ def assert_same(one, other, shift=(0.0, 0.0, 0.0)):
 
 
 def area_of(road_map):
-    return shapely.union_all([shapely.force_2d(g).buffer(0.5) for g in road_map.surface.geometries])
+    return shapely.union_all([shapely.force_2d(g).buffer(0.5) for g in road_map.layer("surface").geometries])
 
 
 def test_road_edges_lie_on_the_curbs(sample, road_map):
     curbs = [g for g, row in sample.truth_boundaries if row["part"] != "top" and row["kind"] != "dropped"]
-    found = compare_lines(road_map.edges.geometries, curbs, area=area_of(road_map))
+    found = compare_lines(road_map.layer("edges").geometries, curbs, area=area_of(road_map))
     assert found.completeness[0.10] > 0.95
     assert found.correctness[0.10] > 0.95
     assert found.height_rmse < 0.02
@@ -95,8 +95,8 @@ def test_the_same_street_again_a_thousand_kilometres_on_gives_the_same_map(sampl
     assert found.survey_facts["outside"] == 2 * road_map.survey_facts["outside"]
     assert len(found.road_points) == 2 * len(road_map.road_points)
     for name in LAYERS:
-        expected = [shapely.get_coordinates(g, include_z=True) for g in getattr(road_map, name).geometries]
-        geometries = getattr(found, name).geometries
+        expected = [shapely.get_coordinates(g, include_z=True) for g in road_map.layer(name).geometries]
+        geometries = found.layer(name).geometries
         for first, shift in ((0, 0.0), (1, east)):
             town = [shapely.get_coordinates(g, include_z=True) for g in geometries if (g.centroid.x > sample.settings.origin[0] + east / 2) == first]
             assert len(town) == len(expected) > 0, name

@@ -8,9 +8,10 @@ import pytest
 import shapely
 from lanewright.core.assess.boundaries import assess_boundaries
 from lanewright.core.common.progress import Progress
-from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
+from lanewright.core.road.detect_boundaries import BoundarySettings
 from lanewright.core.road.scanlines.source import SurveyScanlines
 from lanewright.core.survey.open_survey import open_survey
+from road_layers import drawn_boundaries
 
 pytestmark = pytest.mark.slow
 
@@ -52,7 +53,7 @@ def one_line_in(kept):
 def drawn(survey, street, method):
     """The edges, and what was said meanwhile."""
     log = Log()
-    edges = draw_boundaries(find_curb_points(survey, BoundarySettings(method=method), log), survey.frame, progress=log).edges
+    edges = drawn_boundaries(survey, BoundarySettings(method=method), progress=log)
     return edges.geometries, "\n".join(log.lines)
 
 

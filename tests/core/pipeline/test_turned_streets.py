@@ -95,7 +95,7 @@ def metres_by_side(layer):
 def test_the_map_does_not_depend_on_how_the_street_lies_or_is_driven(street, folder, as_surveyed, there, back, backwards):
     found = road_map_of(street, folder, there, backwards)
     for name in ("edges", "marking_lines", "driving_lines"):
-        lines, before = on_the_map_before(getattr(found, name), back), getattr(as_surveyed, name).geometries
+        lines, before = on_the_map_before(found.layer(name), back), as_surveyed.layer(name).geometries
         same = compare_lines(lines, before)
         assert same.completeness[0.10] > 0.96 and same.correctness[0.10] > 0.96, name
     same = assess_markings(on_the_map_before(found.markings, back), as_surveyed.markings.geometries).tolerant
@@ -103,6 +103,6 @@ def test_the_map_does_not_depend_on_how_the_street_lies_or_is_driven(street, fol
     assert sorted(found.markings.column("class")) == sorted(as_surveyed.markings.column("class"))
 
     swapped = there is mirrored or backwards
-    before = metres_by_side(as_surveyed.edges)
-    for side, metres in metres_by_side(found.edges).items():
+    before = metres_by_side(as_surveyed.layer("edges"))
+    for side, metres in metres_by_side(found.layer("edges")).items():
         assert metres == pytest.approx(before[OTHER[side] if swapped else side], abs=2.0)

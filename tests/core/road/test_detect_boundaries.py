@@ -2,12 +2,10 @@
 
 import numpy as np
 import pytest
-import shapely
-from curbed_streets import NORTH, parked_car, street, survey_of
+from curbed_streets import parked_car, street, survey_of
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import CURB_POINTS
 from lanewright.core.road.agreement import measure_agreement, select_curb_points
+from lanewright.core.road.common.curb_points import curb_points_at
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from lanewright.core.road.edges.fit import fit_road_edges
 
@@ -19,14 +17,10 @@ def boundaries(points, method):
 
 def curb_points(frame, offset, stations=np.arange(1.0, 59.0), side="left", scatter=0.0, chain=0):
     """Curb points of one side at an offset, a number or a function of station, scattered about it."""
-    found = Features("PointZ", list(CURB_POINTS))
     offsets = np.broadcast_to(offset(stations) if callable(offset) else offset, stations.shape)
     offsets = offsets + scatter * np.where(np.arange(len(stations)) % 2, 1, -1)
-    x, y, z = frame.to_map(0, stations, offsets, np.zeros(len(stations)))
-    for point, s, d in zip(shapely.points(np.c_[x, y, z]), stations, offsets):
-        found.add(point, road=0, side=side, status="measured", station_m=float(s), offset_m=float(d), height_m=0.12, part="bottom",
-                  chain=chain, residual_m=0.0, support=100)
-    return found
+    return curb_points_at(frame, 0, frame.to_map(0, stations, offsets, np.zeros(len(stations))), side=side, status="measured",
+                          station=stations, offset=offsets, height=0.12, chain=chain, residual=0.0, support=100)
 
 
 @pytest.fixture(scope="module")
@@ -38,43 +32,42 @@ def frame():
 def test_every_method_draws_both_edges_of_a_street(method):
     found = boundaries(street(), method)
     for side, offset in (("left", 3.5), ("right", -3.5)):
-        lines = [np.array(line.coords) for line, row in found.edges if row["side"] == side]
-        assert sum(np.ptp(line[:, 0]) for line in lines) > 58
-        for line in lines:
-            np.testing.assert_allclose(line[:, 1] - NORTH, offset, atol=0.01)
+        lines = found.edges.take(np.flatnonzero(found.edges.side == side))
+        assert sum(np.ptp(lines.course.s[lines.course.line(k)]) for k in range(len(lines))) > 58
+        np.testing.assert_allclose(lines.course.d, offset, atol=0.01)
     assert (found.differences is not None) == (method == "both")
 
 
 def test_where_both_see_the_curb_they_agree_to_a_centimetre_and_say_so():
     found = boundaries(parked_car(street(), start=25.0), "both")
-    assert all(row["agree_cm"] is not None and row["agree_cm"] < 1.0 for row in found.edges.rows if row["status"] == "measured")
+    assert (found.edges.agree[found.edges.status == "measured"] < 1.0).all()
     assert len(found.differences) == 0
     assert min(found.length_by_method.values()) > 100
 
 
 def test_one_method_alone_says_nothing_of_agreement():
-    assert all(row.get("agree_cm") is None for row in boundaries(street(), "scanlines").edges.rows)
+    assert np.isnan(boundaries(street(), "scanlines").edges.agree).all()
 
 
 def test_a_curb_that_only_one_method_finds_is_drawn_without_agreement():
     # four centimetres: below the least height of profiles
     found = boundaries(street(curb=0.04, noise=0.002), "both")
     assert found.length_by_method["profiles"] == 0
-    assert sum(row["length_m"] for row in found.edges.rows) > 110
-    assert all(row.get("agree_cm") is None for row in found.edges.rows)
+    assert found.edges.length.sum() > 110
+    assert np.isnan(found.edges.agree).all()
 
 
 def test_of_two_lines_along_one_curb_the_one_with_less_scatter_is_drawn(frame):
     calm, rough = curb_points(frame, 3.50), curb_points(frame, 3.53, scatter=0.03)
     for first, second in ((calm, rough), (rough, calm)):
         drawn = select_curb_points(first, second, fit_road_edges(first, frame), fit_road_edges(second, frame), frame)
-        np.testing.assert_allclose(drawn.column("offset_m"), 3.50, atol=1e-6)
+        np.testing.assert_allclose(drawn.offset, 3.50, atol=1e-6)
 
 
 def test_of_two_curbs_that_of_the_first_method_is_drawn_and_its_gaps_are_filled_by_the_other(frame):
     sure, other = curb_points(frame, 3.5, np.arange(1.0, 40.0)), curb_points(frame, 5.0, np.arange(20.0, 55.0))
     drawn = select_curb_points(sure, other, fit_road_edges(sure, frame), fit_road_edges(other, frame), frame)
-    s, d = np.array(drawn.column("station_m")), np.array(drawn.column("offset_m"))
+    s, d = drawn.station, drawn.offset
     np.testing.assert_allclose(d[s < 39], 3.5)
     np.testing.assert_allclose(d[s > 41], 5.0)
 
@@ -83,12 +76,11 @@ def test_a_stretch_where_the_two_lie_eight_centimetres_apart_is_reported(frame):
     one = fit_road_edges(curb_points(frame, 3.5), frame)
     other = fit_road_edges(curb_points(frame, lambda s: 3.5 + 0.08 * np.exp(-((s - 30) / 6) ** 4)), frame)
     drawn = fit_road_edges(curb_points(frame, 3.5), frame)
-    reported = measure_agreement(drawn, one, other, frame)
-    row, = reported.rows
-    assert 23 < row["station_m"] < 27 and 33 < row["end_m"] < 37
-    assert row["agree_cm"] == pytest.approx(8.0, abs=0.5)
-    assert drawn.rows[0]["agree_cm"] == pytest.approx(8.0, abs=1.0)
-    np.testing.assert_allclose(np.array(reported.geometries[0].coords)[:, 1] - NORTH, 3.5, atol=0.001)
+    drawn, reported = measure_agreement(drawn, one, other, frame)
+    assert len(reported) == 1 and 23 < reported.station[0] < 27 and 33 < reported.end[0] < 37
+    assert reported.agree[0] == pytest.approx(8.0, abs=0.5)
+    assert drawn.agree[0] == pytest.approx(8.0, abs=1.0)
+    np.testing.assert_allclose(reported.course.d, 3.5, atol=0.001)
 
 
 def test_a_method_that_is_not_known_is_refused():

@@ -9,10 +9,10 @@ from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import Features
 from lanewright.core.common.progress import Progress
 from lanewright.core.common.schemas import CURB_POINTS
-from lanewright.core.road.edges.fit import EdgeSettings, fit_road_edges
-from lanewright.core.road.profiles.detect import detect_curbs
+from lanewright.core.road.edges.fit import EdgeSettings
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.trajectory.trajectory import Trajectory
+from road_layers import detect_curbs, fit_road_edges
 
 
 def straight_frame(length=60.0):

@@ -7,10 +7,11 @@ from curbed_streets import NORTH, SENSOR, parked_car, street, survey_of
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import CURB_POINTS
-from lanewright.core.road.scanlines.detect import ScanlineBoundarySettings, boundary_lines, curbs_from_scanlines
+from lanewright.core.road.scanlines.detect import ScanlineBoundarySettings
 from lanewright.core.road.scanlines.scanlines import Scanlines
 from lanewright.core.road.scanlines.section_planes import ScanlineSettings, scanlines_of
 from lanewright.core.road.scanlines.source import LayerScanlines, SurveyScanlines
+from road_layers import boundary_lines, curbs_from_scanlines
 
 
 def layer_of(surveyed, **options):

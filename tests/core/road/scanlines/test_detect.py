@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 from curbed_streets import GROUND, NORTH, driven, parked_car, street, survey_of
 from lanewright.core.common.errors import RoadExtractionError
-from lanewright.core.road.edges.fit import fit_road_edges
-from lanewright.core.road.scanlines.detect import ScanlineBoundarySettings, curbs_from_scanlines
+from lanewright.core.road.scanlines.detect import ScanlineBoundarySettings
 from lanewright.core.road.scanlines.section_planes import ScanlineSettings
 from lanewright.core.road.scanlines.source import SurveyScanlines
+from road_layers import curbs_from_scanlines, fit_road_edges
 
 
 def found(points, settings=ScanlineBoundarySettings(), interval=0.10, **survey):

@@ -4,11 +4,10 @@ import os
 
 import numpy as np
 import pytest
-from lanewright.core.road.edges.fit import fit_road_edges
-from lanewright.core.road.scanlines.detect import curbs_from_scanlines
 from lanewright.core.road.scanlines.section_planes import ScanlineSettings
 from lanewright.core.road.scanlines.source import SurveyScanlines
 from lanewright.core.survey.lattice.scan_lattice import find_lattice
+from road_layers import curbs_from_scanlines, fit_road_edges
 from scanned_streets import CURB, driven, scanned, survey_of
 
 NOISE = 0.004

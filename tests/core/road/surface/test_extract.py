@@ -6,12 +6,13 @@ import shapely
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import ROAD_EDGES
-from lanewright.core.road.surface.extract import SurfaceSettings, extract_road_surface
+from lanewright.core.road.surface.extract import SurfaceSettings
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.open_survey import Survey
 from lanewright.core.survey.store.records import SURVEY_POINT, to_units
 from lanewright.core.survey.store.section_store import SectionStore
 from lanewright.core.survey.trajectory.trajectory import Trajectory
+from road_layers import extract_road_surface
 
 LENGTH, SENSOR, REACH = 60.0, 2.0, 12.0
 EAST, NORTH = 500_000.0, 5_400_000.0
