@@ -5,6 +5,7 @@ from .assess.assess_driving_lines import AssessDrivingLines
 from .assess.assess_markings import AssessMarkings
 from .driving.driving_lines import DrivingLines
 from .driving.road_map import RoadMap
+from .export.check_map import CheckMap
 from .export.import_lanelet2 import ImportLanelet2
 from .export.import_opendrive import ImportOpenDrive
 from .markings.cluster_markings import ClusterMarkings
@@ -44,6 +45,7 @@ ALGORITHMS = (
     RoadMap,
     ImportOpenDrive,
     ImportLanelet2,
+    CheckMap,
     AssessBoundaries,
     AssessMarkings,
     AssessDrivingLines,

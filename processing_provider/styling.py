@@ -43,6 +43,7 @@ LOOKS = {
     "ORTHOIMAGE": (None, 8),
     "UAV_IMAGE": (None, 7),
     "RESIDUALS": ("residuals", 90),
+    "FINDINGS": ("findings", 92),
     "UAV_GCPS": ("control_points", 89),
 }
 TABLES = 5  # tables lie below what is drawn

@@ -29,6 +29,7 @@ FILES = {
     "removeoutliers.OUTPUT": "marking_points_clean.laz", "clustermarkings.MARKING_POINTS": "marking_points_clean.laz",
     "georeferenceimage.IMAGE": "uav_image.tif", "georeferenceimage.GCPS": "uav_gcps.gpkg",
     "georeferenceimage.OUTPUT": "orthoimage.tif",
+    "checkhdmap.INPUT": "map.xodr", "checkhdmap.OUTPUT": "map_findings.gpkg",
     "importopendrive.INPUT": "map.xodr", "importlanelet2.INPUT": "map.osm",
     **{f"{name}.{layer}": f"{name.removeprefix('import')}_{layer.lower()}.gpkg" for name in ("importopendrive", "importlanelet2")
        for layer in ("LANES", "DRIVING_LINES", "MARKING_LINES", "ROAD_EDGES")},

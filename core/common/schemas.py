@@ -66,6 +66,7 @@ CURVE_ELEMENTS = [ROAD, Field("lane", int, "Lane"), STATION, END, Field("turn", 
                   Field("pt_y", float, "PT y"), Field("pi_x", float, "PI x"), Field("pi_y", float, "PI y"),
                   Field("rmse_m", float, "RMSE of the arc (m)"),
                   Field("speed_kmh", int, "Highest design speed allowed (km/h)"), Field("code", str, "Design code check")]
+MAP_FINDINGS = [Field("fault", str, "Fault"), Field("element", str, "Road, lane, way or relation"), Field("text", str, "What was seen")]
 RESIDUALS = [Field("point", str, "Point"), Field("role", str, "Role (control/check/disabled)"),
              Field("pixel", float, "Pixel"), Field("line", float, "Line, downwards"),
              Field("dx_m", float, "Residual east (m)"), Field("dy_m", float, "Residual north (m)"),

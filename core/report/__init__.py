@@ -12,6 +12,7 @@ __getattr__, __all__ = public(__name__, {
     "georeferencing": ("georeferencing_report",),
     "inspection": ("inspection_report",),
     "intensity": ("intensity_correction_report",),
+    "map_check": ("map_check_report",),
     "page": ("Page",),
     "road_map": ("road_map_report",),
 })

@@ -974,6 +974,121 @@
             <translation>Davon gemessen: Fahrlinien (%)</translation>
         </message>
         <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>Check HD map</source>
+            <translation>HD-Karte prüfen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>Looks for faults of an OpenDRIVE or Lanelet2 map that other validators pass over, and puts them on the map.</source>
+            <translation>Sucht Fehler einer OpenDRIVE- oder Lanelet2-Karte, die andere Prüfprogramme übergehen, und legt sie auf die Karte.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>OpenDRIVE: gaps, kinks and steps between geometries, profiles and linked lanes, wrong lengths, lanes narrower than nothing, borders that fold back in curves, numbering, types, links that lead nowhere or one way only, lanes that end though the road goes on, roads on one another.</source>
+            <translation>OpenDRIVE: Lücken, Knicke und Stufen zwischen Geometrien, Höhenverläufen und verknüpften Fahrstreifen, falsche Längen, Fahrstreifen schmaler als nichts, Ränder, die in Kurven umschlagen, Nummern, Typen, Verknüpfungen, die nirgendwohin oder nur in eine Richtung führen, Fahrstreifen, die enden, obwohl die Straße weitergeht, Straßen aufeinander.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>Lanelet2: missing nodes and members, types and tags that no reader knows, borders that cross, swap sides or lie there twice, lanelets that meet without sharing their nodes or meet head on.</source>
+            <translation>Lanelet2: fehlende Knoten und Mitglieder, Typen und Tags, die kein Leser kennt, Ränder, die sich kreuzen, vertauscht oder doppelt sind, Lanelets, die sich treffen, ohne ihre Knoten zu teilen, oder gegeneinander führen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>A schema validator looks at other things; use both.</source>
+            <translation>Eine Schemaprüfung sieht auf anderes; nehmen Sie beides.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>OpenDRIVE</source>
+            <translation>OpenDRIVE</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>Lanelet2</source>
+            <translation>Lanelet2</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>HD map</source>
+            <translation>HD-Karte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>topology</source>
+            <translation>Topologie</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>routing</source>
+            <translation>Routing</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>Findings</source>
+            <translation>Befunde</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>Kinds of faults</source>
+            <translation>Arten von Fehlern</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>Driven lanes and pieces</source>
+            <translation>Befahrene Fahrstreifen und Stücke</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>Links from one lane to the next</source>
+            <translation>Verknüpfungen von einem Fahrstreifen zum nächsten</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>Pairs of lanes side by side</source>
+            <translation>Paare von Fahrstreifen nebeneinander</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>Map file</source>
+            <translation>Kartendatei</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>An OpenDRIVE (.xodr) or Lanelet2 (.osm) map; what is in it decides.</source>
+            <translation>Eine Karte in OpenDRIVE (.xodr) oder Lanelet2 (.osm); der Inhalt entscheidet.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>A point for each finding. Heights are the map's.</source>
+            <translation>Ein Punkt je Befund. Höhen sind die der Karte.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>CRS of the findings</source>
+            <translation>KBS der Befunde</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>OpenDRIVE: only where the file does not say it. Lanelet2: in metres, such as that of the survey; empty takes the UTM zone of the map.</source>
+            <translation>OpenDRIVE: nur wo die Datei es nicht sagt. Lanelet2: in Metern, etwa das der Vermessung; leer nimmt die UTM-Zone der Karte.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>{findings} findings; {lanes} driven lanes and pieces, {successors} links to the next, {neighbours} pairs side by side.</source>
+            <translation>{findings} Befunde; {lanes} befahrene Fahrstreifen und Stücke, {successors} Verknüpfungen zum nächsten, {neighbours} Paare nebeneinander.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>{path} begins neither as OpenDRIVE nor as Lanelet2 does. Choose a file with the ending .xodr or .osm.</source>
+            <translation>{path} beginnt weder wie OpenDRIVE noch wie Lanelet2. Wählen Sie eine Datei mit der Endung .xodr oder .osm.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/check_map.py" />
+            <source>{fault}: {count}</source>
+            <translation>{fault}: {count}</translation>
+        </message>
+        <message>
             <location filename="../../algorithms/export/import_lanelet2.py" />
             <source>Import Lanelet2</source>
             <translation>Lanelet2 importieren</translation>
@@ -995,18 +1110,8 @@
         </message>
         <message>
             <location filename="../../algorithms/export/import_lanelet2.py" />
-            <source>Lanelet2</source>
-            <translation>Lanelet2</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/export/import_lanelet2.py" />
             <source>osm</source>
             <translation>osm</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/export/import_lanelet2.py" />
-            <source>HD map</source>
-            <translation>HD-Karte</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/import_lanelet2.py" />
@@ -1052,11 +1157,6 @@
             <location filename="../../algorithms/export/import_opendrive.py" />
             <source>Lanes of a section are a piece; lanes of roads in a junction are connectors. Sidewalks are no lanes: a road edge is drawn where one begins. Files that declare entities, or are not what a map can be, are refused.</source>
             <translation>Der Fahrstreifen eines Abschnitts ist ein Stück; Fahrstreifen von Straßen in einem Knoten sind Verbindungen. Gehwege sind keine Fahrstreifen: Wo einer beginnt, wird ein Fahrbahnrand gezeichnet. Dateien, die Entitäten vereinbaren oder keine Karte sein können, werden abgelehnt.</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/export/import_opendrive.py" />
-            <source>OpenDRIVE</source>
-            <translation>OpenDRIVE</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/import_opendrive.py" />
@@ -3592,6 +3692,21 @@
             <location filename="../../core/common/schemas.py" />
             <source>Design code check</source>
             <translation>Prüfung nach Entwurfsregel</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Fault</source>
+            <translation>Fehler</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Road, lane, way or relation</source>
+            <translation>Straße, Fahrstreifen, Weg oder Relation</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>What was seen</source>
+            <translation>Was gesehen wurde</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />

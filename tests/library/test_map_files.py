@@ -36,3 +36,19 @@ def test_a_refused_map_leaves_nothing(tmp_path, monkeypatch, algorithm, given, s
     with pytest.raises(RoadExtractionError, match=said):
         run(algorithm, **given, LANES="lanes.gpkg")
     assert os.listdir(tmp_path) == ["map.xodr"]
+
+
+def test_a_good_and_a_faulty_map_are_told_apart(tmp_path):
+    good = written(tmp_path, lanelet_street(), "map.osm")
+    results = run("checkhdmap", INPUT=good, OUTPUT=tmp_path / "findings.gpkg", REPORT=tmp_path / "report.html")
+    assert results["FINDINGS"] == 0 and results["LANES"] == 4 and results["SUCCESSORS"] == 2
+    faulty = written(tmp_path, opendrive([road(geometry(0, 0, 0, 0, 40), 45)], offset=(602000, 5792000)))
+    results = run("checkhdmap", INPUT=faulty, OUTPUT=tmp_path / "findings.gpkg", REPORT=tmp_path / "report.html")
+    with fiona.open(results["OUTPUT"]) as layer:
+        assert [row.properties["fault"] for row in layer] == ["road length"] and layer.bounds[:2] == pytest.approx((602040, 5792000))
+    assert "road length" in (tmp_path / "report.html").read_text()
+
+
+def test_what_is_no_map_is_refused_by_the_check(tmp_path):
+    with pytest.raises(RoadExtractionError, match="neither as OpenDRIVE nor as Lanelet2"):
+        run("checkhdmap", INPUT=written(tmp_path, "<gpx/>"), OUTPUT=tmp_path / "findings.gpkg")

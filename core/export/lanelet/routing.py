@@ -64,10 +64,17 @@ class LaneletNetwork:
         """Lanelets that begin with the two nodes at which this one ends."""
         return [other for other in self._starts.get(self.ends(id)[1], ()) if other != id]
 
-    def head_on(self, id: int) -> list[int]:
-        """Lanelets that end where this one ends, driven against it."""
-        left, right = self.ends(id)[1]
-        return [other for other in self.left if other != id and self.ends(other)[1] == (right, left)]
+    def head_on(self) -> list[tuple[int, int]]:
+        """Pairs of lanelets that end, or begin, on the same two nodes from either side: no traffic flows so."""
+        found = []
+        for end in (0, 1):
+            at = defaultdict(list)
+            for id in self.left:
+                at[self.ends(id)[end]].append(id)
+            for (left, right), ids in at.items():
+                if left < right:
+                    found += [(id, other) for id in ids for other in at.get((right, left), ())]
+        return found
 
     def beside(self, id: int) -> list[int]:
         """Lanelets that share a border with this one."""

@@ -58,7 +58,7 @@ class RoadSurface:
     def borders(self, number: int, id: int, s: np.ndarray, offsets: dict[int, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         """((N, 3) inner, (N, 3) outer) border of a lane along the road."""
         lane = self.road.sections[number].lanes[id]
-        inner = offsets[id - int(np.sign(id))]
+        inner = offsets[max((other for other in offsets if other * id >= 0 and abs(other) < abs(id)), key=abs)]
         lift = np.zeros((2, len(s)))
         if len(lane.heights):
             k = np.searchsorted(lane.heights[:, 0], s - self.road.sections[number].s + 1e-9, side="right") - 1

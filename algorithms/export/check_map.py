@@ -1,0 +1,83 @@
+"""The check of an HD map."""
+
+from ...core.common.errors import RoadExtractionError
+from ...core.common.schemas import MAP_FINDINGS
+from ..algorithm import Algorithm
+from ..parameters import CrsSpec
+from ..texts import tr
+from .inputs import add_map_file, map_file
+
+MAP_FILTER = "HD maps (*.xodr *.osm *.XODR *.OSM *.xml);;All files (*.*)"
+NUMBERS = (("FINDINGS", tr("Findings")), ("FAULTS", tr("Kinds of faults")), ("LANES", tr("Driven lanes and pieces")),
+           ("SUCCESSORS", tr("Links from one lane to the next")), ("NEIGHBOURS", tr("Pairs of lanes side by side")))
+
+
+class CheckMap(Algorithm):
+    ID, TITLE, GROUP = "checkhdmap", "Check HD map", "Export"
+    SUMMARY = "Looks for faults of an OpenDRIVE or Lanelet2 map that other validators pass over, and puts them on the map."
+    HELP = ("OpenDRIVE: gaps, kinks and steps between geometries, profiles and linked lanes, wrong lengths, lanes narrower than nothing, borders "
+            "that fold back in curves, numbering, types, links that lead nowhere or one way only, lanes that end though the road goes on, roads on "
+            "one another.\n\n"
+            "Lanelet2: missing nodes and members, types and tags that no reader knows, borders that cross, swap sides or lie there twice, lanelets "
+            "that meet without sharing their nodes or meet head on.\n\n"
+            "A schema validator looks at other things; use both.")
+    TAGS = ("OpenDRIVE", "Lanelet2", "HD map", "validation", "topology", "routing")
+    LOOKS = {"OUTPUT": "FINDINGS"}
+
+    def declare(self):
+        add_map_file(self, tr("Map file"), tr("An OpenDRIVE (.xodr) or Lanelet2 (.osm) map; what is in it decides."), MAP_FILTER)
+        self.add(CrsSpec("CRS", tr("CRS of the findings"), tr(
+            "OpenDRIVE: only where the file does not say it. Lanelet2: in metres, such as that of the survey; empty takes the UTM zone of the map."),
+            optional=True))
+        self.add_sink("OUTPUT", tr("Findings"), tr("A point for each finding. Heights are the map's."), fields=MAP_FINDINGS, geometry="PointZ")
+        self.add_report()
+        for name, label in NUMBERS:
+            self.add_number(name, label)
+
+    def work(self, call, progress):
+        from ...core.report.map_check import map_check_report
+
+        path = map_file(call)
+        found, note = (_lanelets if _is_lanelet2(path) else _roads)(path, call.crs(), progress)
+        if note:
+            progress.warn(note)
+        call.layer("OUTPUT", found.to_features())
+        if call.wants("REPORT"):
+            call.text("REPORT", map_check_report(found, path, [note] if note else []))
+        counts = found.counts()
+        for fault, count in sorted(counts.items(), key=lambda item: -item[1]):
+            progress.warn(tr("{fault}: {count}").format(fault=fault, count=count))
+        progress.info(tr("{findings} findings; {lanes} driven lanes and pieces, {successors} links to the next, {neighbours} pairs side by "
+                         "side.").format(
+            findings=len(found.found), lanes=found.lanes, successors=found.successors, neighbours=found.neighbours))
+        return {"FINDINGS": float(len(found.found)), "FAULTS": float(len(counts)), "LANES": float(found.lanes),
+                "SUCCESSORS": float(found.successors), "NEIGHBOURS": float(found.neighbours)}
+
+
+def _is_lanelet2(path):
+    """Whether a file begins as maps of OpenStreetMap do."""
+    with open(path, "rb") as file:
+        head = file.read(4096)
+    if b"<osm" not in head and b"<OpenDRIVE" not in head:
+        raise RoadExtractionError(
+            tr("{path} begins neither as OpenDRIVE nor as Lanelet2 does. Choose a file with the ending .xodr or .osm.").format(path=path))
+    return b"<osm" in head
+
+
+def _roads(path, crs, progress):
+    from ...core.export.check.roads import check_opendrive
+    from ...core.export.map_crs import crs_of_reference
+    from ...core.export.opendrive.reader import read_opendrive
+
+    whole = read_opendrive(path, progress.part(0.0, 0.4))
+    crs, note = crs_of_reference(whole.reference, crs)
+    return check_opendrive(whole, crs, progress.part(0.4, 0.95)), note
+
+
+def _lanelets(path, crs, progress):
+    from ...core.export.check.lanelets import check_lanelets
+    from ...core.export.lanelet.layers import node_places
+    from ...core.export.lanelet.reader import read_lanelet2
+
+    whole = read_lanelet2(path, progress.part(0.0, 0.4))
+    return check_lanelets(whole, *node_places(whole, crs), progress.part(0.4, 0.95)), ""

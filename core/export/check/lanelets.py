@@ -1,0 +1,221 @@
+"""The check of a Lanelet2 map: what is there, what is shared, what is driven where."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+import numpy as np
+import shapely
+
+from ...common.progress import Progress
+from ..lanelet.model import Lanelet, LaneletMap, Way
+from ..lanelet.routing import LaneletNetwork
+from .findings import Findings, metres
+
+LEAST_LANE_WIDTH, MOST_LANE_WIDTH = 0.5, 30.0   # m: beyond them a border belongs to another lane; areas of junctions are wide
+NEAR_NODES = 0.001        # m between two nodes of a way that are one place
+JOIN_DISTANCE = 0.3       # m within which an end was meant to be the next lanelet's beginning
+TWIN_DISTANCE = 0.02      # m between two ways that are one border
+JOIN_ANGLE = 0.7          # rad between lanelets that may follow each other
+USUAL_SHARE = 0.9         # of at least ten lanelets, which show the habit of a map of drawing borders
+YES_OR_NO = ("yes", "no", "true", "false", "1", "0")
+WAY_TYPES = ("line_thin", "line_thick", "curbstone", "virtual", "road_border", "guard_rail", "wall", "fence", "stop_line", "pedestrian_marking",
+             "zebra_marking", "zebra", "bike_marking", "keepout", "arrow", "symbol", "traffic_sign", "traffic_light", "light_bulbs", "gate", "door",
+             "trajectory", "rail", "pole", "post", "building", "centerline", "pedestrian_path", "jersey_barrier", "marking", "zig-zag", "structure")
+LINE_SUBTYPES = ("solid", "solid_solid", "dashed", "dashed_solid", "solid_dashed", "dashed_dashed", "hatched")
+CURB_SUBTYPES = ("high", "low", "lowered", "rolled")
+LANELET_SUBTYPES = ("road", "highway", "play_street", "emergency_lane", "bus_lane", "bicycle_lane", "exit", "walkway", "shared_walkway", "crosswalk",
+                    "stairs", "road_shoulder", "parking", "pedestrian_lane")
+LOCATIONS = ("urban", "nonurban", "private")
+
+
+def check_lanelets(whole: LaneletMap, places: np.ndarray, crs: str = "", progress: Progress = Progress()) -> Findings:
+    """Everything that is wrong with a map.
+
+    Parameters
+    ----------
+    whole : LaneletMap
+    places : (N, 3) metres of its nodes, as `node_places` gives them
+    crs : WKT of the places
+    progress : told of the share that was looked at
+
+    Returns
+    -------
+    Findings
+    """
+    check = _LaneletCheck(whole, places, Findings(crs=crs))
+    for kind, id, line in whole.twice:
+        check.findings.add("id twice", f"{kind} {id}", f"Line {line}: there is another {kind} of this id.", np.zeros(3))
+    check.heights()
+    for way in whole.ways.values():
+        check.way(way)
+    progress.report(0.3)
+    for lanelet in whole.lanelets.values():
+        check.lanelet(lanelet)
+    for relation in whole.others.values():
+        check.members(relation)
+    progress.report(0.6)
+    check.sides()
+    check.joints()
+    check.twins()
+    check.count()
+    progress.report(1.0)
+    return check.findings
+
+
+class _LaneletCheck:
+    def __init__(self, whole: LaneletMap, places: np.ndarray, findings: Findings) -> None:
+        self.whole, self.places, self.findings = whole, places, findings
+        self.network = LaneletNetwork(whole, places)
+        self.known = {"node": set(whole.row_of), "way": set(whole.ways), "relation": {*whole.lanelets, *whole.others}}
+        self.borders = {id for lanelet in whole.lanelets.values() for role in ("left", "right") for _, id in lanelet.members.get(role, ())}
+
+    def at(self, way: Way) -> np.ndarray:
+        rows = self.whole.rows(way)
+        return self.places[rows[0]] if len(rows) else np.zeros(3)
+
+    def heights(self) -> None:
+        missing = ~np.isfinite(self.whole.heights)
+        if missing.any() and not missing.all():
+            for k in np.flatnonzero(missing)[:1000]:
+                self.findings.add("missing height", f"node {self.whole.node_ids[k]}", "It has no tag ele.", self.places[k])
+
+    def way(self, way: Way) -> None:
+        name, place = f"way {way.id}", self.at(way)
+        for id in way.nodes:
+            if id not in self.whole.row_of:
+                self.findings.add("missing node", name, f"There is no node {id}.", place)
+        rows = self.whole.rows(way)
+        if len(way.nodes) < 2:
+            self.findings.add("short way", name, f"It has {len(way.nodes)} node.", place)
+        elif len(rows) > 1:
+            near = np.flatnonzero(np.linalg.norm(np.diff(self.places[rows], axis=0), axis=1) < NEAR_NODES)
+            if len(near):
+                self.findings.add("repeated node", name, f"Nodes {self.whole.node_ids[rows[near[0]]]} and {self.whole.node_ids[rows[near[0] + 1]]} "
+                                                         "lie at one place.", self.places[rows[near[0]]])
+        kind, subtype = way.tags.get("type", ""), way.tags.get("subtype", "")
+        if way.id in self.borders or kind:
+            allowed = LINE_SUBTYPES if kind in ("line_thin", "line_thick") else CURB_SUBTYPES if kind == "curbstone" else ()
+            if kind not in WAY_TYPES:
+                self.findings.add("way type", name, f"The type is {kind!r}.", place)
+            elif allowed and subtype not in allowed:
+                self.findings.add("way subtype", name, f"The subtype of the {kind} is {subtype!r}.", place)
+
+    def members(self, relation: Lanelet) -> bool:
+        """Whether all members are there."""
+        missing = [(kind, id) for found in relation.members.values() for kind, id in found if id not in self.known.get(kind, ())]
+        for kind, id in missing:
+            self.findings.add("missing member", f"relation {relation.id}", f"There is no {kind} {id}.", self._place(relation))
+        return not missing
+
+    def _place(self, relation):
+        ways = [self.whole.ways[id] for found in relation.members.values() for kind, id in found if kind == "way" and id in self.whole.ways]
+        return next((self.at(way) for way in ways if len(self.whole.rows(way))), np.zeros(3))
+
+    def lanelet(self, lanelet: Lanelet) -> None:
+        name, place, tags = f"lanelet {lanelet.id}", self._place(lanelet), lanelet.tags
+        whole = self.members(lanelet)
+        for role in ("left", "right"):
+            if len(lanelet.members.get(role, ())) != 1:
+                self.findings.add("border missing", name, f"It has {len(lanelet.members.get(role, ()))} members {role}.", place)
+        for key, allowed, needed in (("subtype", LANELET_SUBTYPES, True), ("location", LOCATIONS, False), ("one_way", YES_OR_NO, False)):
+            if (needed or key in tags) and tags.get(key) not in allowed:
+                self.findings.add("lanelet tag", name, f"{key} is {tags.get(key, '')!r}.", place)
+        for key, value in tags.items():
+            if key.startswith("participant:") and value not in YES_OR_NO:
+                self.findings.add("lanelet tag", name, f"{key} is {value!r}.", place)
+        if "speed_limit" in tags and not _is_speed(tags["speed_limit"]):
+            self.findings.add("lanelet tag", name, f"speed_limit is {tags['speed_limit']!r}.", place)
+        if whole and lanelet.id in self.network.left:
+            self._shape(lanelet, name, place)
+
+    def _shape(self, lanelet, name, place):
+        left, right = (shapely.linestrings(self.places[rows[lanelet.id]][:, :2]) for rows in (self.network.left, self.network.right))
+        for line, role in ((left, "left"), (right, "right")):
+            if not line.is_simple and not line.is_ring:
+                self.findings.add("border crosses", name, f"The {role} border crosses itself.", place)
+        if left.crosses(right):
+            self.findings.add("border crosses", name, "The borders cross each other.", place)
+            return
+        along = np.linspace(0.1, 0.9, 9)
+        width = shapely.distance(shapely.line_interpolate_point(left, along, normalized=True), right)
+        if self.network.driven(lanelet.id) and (np.median(width) < LEAST_LANE_WIDTH or np.median(width) > MOST_LANE_WIDTH):
+            self.findings.add("lane width", name, f"It is {np.median(width):.2f} m wide.", place)
+        centre = lanelet.way("centerline")
+        rows = self.whole.rows(self.whole.ways[centre]) if centre in self.whole.ways else np.empty(0, int)
+        if len(rows) > 1:
+            area = shapely.make_valid(shapely.polygons(np.concatenate([shapely.get_coordinates(left), shapely.get_coordinates(right)[::-1]])))
+            if not shapely.buffer(area, 0.01).covers(shapely.linestrings(self.places[rows][:, :2])):
+                self.findings.add("centre line outside", name, "The centre line leaves the lanelet.", place)
+
+    def sides(self) -> None:
+        """Left and right by the habit of the map: a border runs with the traffic, unless it is the left one of both directions."""
+        odd = []
+        for id in self.network.left:
+            lanelet = self.whole.lanelets[id]
+            shared = [other for other in self.network.beside(id)
+                      if lanelet.way("left") in (self.whole.lanelets[other].way("left"), self.whole.lanelets[other].way("right"))]
+            if self.network.reversed_right[id] or self.network.reversed_left[id] and not shared:
+                odd.append(id)
+        known = len(self.network.left)
+        if len(odd) <= (1 - USUAL_SHARE) * known:
+            for id in odd:
+                self.findings.add("sides swapped", f"lanelet {id}", "Its borders run against it, unlike those of the other lanelets.",
+                                  self._place(self.whole.lanelets[id]))
+
+    def joints(self) -> None:
+        """Ends of lanelets that meet: they share their nodes and are driven on."""
+        for id, other in self.network.head_on():
+            if self.network.driven(id) and self.network.driven(other):
+                self.findings.add("head on", f"lanelets {id} and {other}", "Both begin or end where they meet: one of them has left and right "
+                                                                           "swapped.", self.places[self.network.ends(id)[1][0]])
+        ids = [id for id in self.network.left if self.network.driven(id)]
+        if not ids:
+            return
+        starts = np.array([[self.places[row, :2] for row in self.network.ends(id)[0]] for id in ids])
+        stops = np.array([[self.places[row, :2] for row in self.network.ends(id)[1]] for id in ids])
+        first, last = (np.array([self._heading(id, at) for id in ids]) for at in (0, -1))
+        tree = shapely.STRtree(shapely.points(starts.mean(1)))
+        pairs = tree.query(shapely.buffer(shapely.points(stops.mean(1)), JOIN_DISTANCE), predicate="intersects").T
+        for k, j in pairs:
+            apart = np.hypot(*(stops[k] - starts[j]).T)
+            turn = abs((last[k] - first[j] + np.pi) % (2 * np.pi) - np.pi)
+            if k != j and (apart < JOIN_DISTANCE).all() and turn < JOIN_ANGLE and ids[j] not in self.network.following(ids[k]):
+                self.findings.add("not joined", f"lanelets {ids[k]} and {ids[j]}", f"{metres(float(apart.max()))} apart, with nodes of their own.",
+                                  self.places[self.network.ends(ids[k])[1][0]])
+
+    def _heading(self, id, at):
+        middle = [self.places[rows[id]][:, :2] for rows in (self.network.left, self.network.right)]
+        d = sum((line[1] - line[0] if at == 0 else line[-1] - line[-2]) for line in middle)
+        return float(np.arctan2(d[1], d[0]))
+
+    def twins(self) -> None:
+        """Borders that lie on each other and are two ways."""
+        ways = [self.whole.ways[id] for id in sorted(self.borders) if id in self.whole.ways and len(self.whole.rows(self.whole.ways[id])) > 1]
+        lines = [shapely.linestrings(self.places[self.whole.rows(way)][:, :2]) for way in ways]
+        if not lines:
+            return
+        tree = shapely.STRtree(shapely.buffer(np.array(lines, object), TWIN_DISTANCE))
+        for k, j in tree.query(lines, predicate="within").T:
+            if k != j and (k < j or not shapely.within(lines[j], shapely.buffer(lines[k], TWIN_DISTANCE))):
+                self.findings.add("border twice", f"ways {ways[k].id} and {ways[j].id}", "They lie at one place; neighbours should share one.",
+                                  self.at(ways[k]))
+
+    def count(self) -> None:
+        driven = [id for id in self.network.left if self.network.driven(id)]
+        self.findings.lanes = len(driven)
+        self.findings.successors = sum(len(self.network.following(id)) for id in driven)
+        pairs: dict[tuple[int, int], int] = defaultdict(int)
+        for id in driven:
+            for other in self.network.beside(id):
+                pairs[min(id, other), max(id, other)] += 1
+        self.findings.neighbours = len(pairs)
+
+
+def _is_speed(text: str) -> bool:
+    """Whether a speed limit is a number with or without its unit."""
+    number = text.lower().removesuffix("km/h").removesuffix("mph").removesuffix("kmh").removesuffix("m/s").strip()
+    try:
+        return 0 < float(number) < 500
+    except ValueError:
+        return False
