@@ -23,7 +23,7 @@ from .parameters import (
 from .texts import tr
 
 # In the order of the work
-GROUPS = ("Survey", "Road", "Markings", "Driving", "Road map", "Export", "Assessment", "Orthoimages")
+GROUPS = ("Survey", "Road", "Markings", "Driving", "Road map", "Export", "Inventory", "Assessment", "Orthoimages")
 WARNINGS = "WARNINGS"  # a number that every run gives
 TAGS_OF_ALL = ("mls", "mobile mapping", "lidar", "point cloud", "las", "laz", "road")
 

@@ -8,6 +8,7 @@ from .driving.road_map import RoadMap
 from .export.check_map import CheckMap
 from .export.import_lanelet2 import ImportLanelet2
 from .export.import_opendrive import ImportOpenDrive
+from .inventory.cross_sections import CrossSections
 from .markings.cluster_markings import ClusterMarkings
 from .markings.correct_intensity import CorrectIntensity
 from .markings.extract_markings import ExtractMarkings
@@ -46,6 +47,7 @@ ALGORITHMS = (
     ImportOpenDrive,
     ImportLanelet2,
     CheckMap,
+    CrossSections,
     AssessBoundaries,
     AssessMarkings,
     AssessDrivingLines,

@@ -28,6 +28,7 @@ LOOKS = {
     "MARKINGS": ("markings", 30),
     "TRUTH_MARKINGS": ("truth_markings", 31),
     "MARKING_LINES": ("marking_lines", 40),
+    "CROSS_SECTIONS": ("cross_sections", 45),
     "ROAD_EDGES": ("road_edges", 50),
     "BOUNDARIES": ("boundaries", 52),
     "TRUTH_BOUNDARIES": ("truth_boundaries", 51),

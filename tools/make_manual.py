@@ -33,6 +33,7 @@ FILES = {
     "importopendrive.INPUT": "map.xodr", "importlanelet2.INPUT": "map.osm",
     **{f"{name}.{layer}": f"{name.removeprefix('import')}_{layer.lower()}.gpkg" for name in ("importopendrive", "importlanelet2")
        for layer in ("LANES", "DRIVING_LINES", "MARKING_LINES", "ROAD_EDGES")},
+    "crosssections.OUTPUT": "cross_sections.gpkg", "crosssections.TABLE": "cross_sections_table.gpkg",
     "assessboundaries.INPUT": "road_edges.gpkg", "assessboundaries.REFERENCE": "truth_boundaries.gpkg",
     "assessboundaries.OUTPUT": "boundaries_by_outcome.gpkg",
     "assessmarkings.INPUT": "markings.gpkg", "assessmarkings.REFERENCE": "truth_markings.gpkg",
@@ -44,6 +45,7 @@ FILES = {
 NAMED = {
     "importtrajectory": ("POINT_CLOUDS",), "inspectsurvey": ("TRAJECTORY",), "extractroadsurface": ("ROAD_EDGES",),
     "drivinglines": ("MARKINGS", "ROAD_EDGES", "ROAD_POINTS"), "georeferenceimage": ("GCPS",),
+    "crosssections": ("ROAD_EDGES", "MARKING_LINES", "DRIVING_LINES"),
 }
 
 

@@ -61,6 +61,8 @@ def stages(folder):
                                          ROAD_POINTS=even, **drive, DRIVING_LINES=at("driving.gpkg"), CURVE_ELEMENTS=at("elements.gpkg"))
     made["roadmap"] = dict(MARKING_LINES=lines["MARKING_LINES"], ROAD_EDGES=edges, DRIVING_LINES=driving["DRIVING_LINES"],
                            MARKINGS=clusters["MARKINGS"])
+    made["crosssections"] = run("crosssections", **survey, ROAD_EDGES=edges, MARKING_LINES=lines["MARKING_LINES"], INTERVAL=5, MAX_CROSSFALL=2.6,
+                                DRIVING_LINES=driving["DRIVING_LINES"], OUTPUT=at("sections.gpkg"))
     made["assessboundaries"] = run("assessboundaries", INPUT=edges, REFERENCE=sample["TRUTH_BOUNDARIES"], **drive, OUTPUT=at("a_b.gpkg"))
     made["assessmarkings"] = run("assessmarkings", INPUT=clusters["MARKINGS"], REFERENCE=sample["TRUTH_MARKINGS"], **drive,
                                  OUTPUT=at("a_m.gpkg"))
@@ -96,6 +98,7 @@ DRAWN = {
     "fitmarkinglines": (["MARKING_LINES"], True, False),
     "drivinglines": (["DRIVING_LINES"], True, False),
     "roadmap": (["DRIVING_LINES", "ROAD_EDGES", "MARKING_LINES", "MARKINGS"], True, False),
+    "crosssections": ([("OUTPUT", "CROSS_SECTIONS")], True, False),
     "assessboundaries": ([("OUTPUT", "ASSESSED_LINES")], True, False),
     "assessmarkings": ([("OUTPUT", "ASSESSED_POLYGONS")], True, True),
     "assessdrivinglines": ([("OUTPUT", "ASSESSED_LINES")], True, False),

@@ -67,6 +67,17 @@ CURVE_ELEMENTS = [ROAD, Field("lane", int, "Lane"), STATION, END, Field("turn", 
                   Field("rmse_m", float, "RMSE of the arc (m)"),
                   Field("speed_kmh", int, "Highest design speed allowed (km/h)"), Field("code", str, "Design code check")]
 MAP_FINDINGS = [Field("fault", str, "Fault"), Field("element", str, "Road, lane, way or relation"), Field("text", str, "What was seen")]
+CROSS_SECTIONS = [ROAD, Field("section", int, "Section"), STATION, Field("part", str, "Part (carriageway/lane)"), Field("lane", int, "Lane"),
+                  Field("type", str, "Type of the lane"), Field("direction", int, "Direction (1 along, -1 against the road, 0 not known)"),
+                  Field("offset_m", float, "Offset of its middle, left positive (m)"), WIDTH,
+                  Field("borders", str, "Borders taken from (lanes/lines/edges/track)"),
+                  Field("crossf_pct", float, "Crossfall, positive falls to the right along the road (%)"),
+                  Field("crossf_sig", float, "Sigma of the crossfall, roll included (%)"),
+                  Field("grade_pct", float, "Grade, positive climbs along the road (%)"),
+                  Field("rut_l_mm", float, "Rut depth, left wheel path (mm)"), Field("rut_r_mm", float, "Rut depth, right wheel path (mm)"),
+                  Field("curb_l_m", float, "Height of the left curb (m)"), Field("curb_r_m", float, "Height of the right curb (m)"),
+                  Field("clear_m", float, "Clearance above (m)"), Field("seen_pct", float, "Surface seen (%)"),
+                  Field("exceeds", str, "Limits not kept")]
 RESIDUALS = [Field("point", str, "Point"), Field("role", str, "Role (control/check/disabled)"),
              Field("pixel", float, "Pixel"), Field("line", float, "Line, downwards"),
              Field("dx_m", float, "Residual east (m)"), Field("dy_m", float, "Residual north (m)"),

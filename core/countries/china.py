@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .model import Country, Dashes
+from .model import Country, Dashes, SectionLimits
 from .neutral import NEUTRAL
 
 CHINA = Country(
@@ -18,5 +18,10 @@ CHINA = Country(
     sources=(
         "Dashes and widths of lane lines: GB 51038-2015, 12.3.2 (6 m and 9 m, 15 cm wide, at 60 km/h and more; 2 m and 4 m, 10 cm, below).",
         "Design code: CJJ 37-2012 as printed in the driving-line thesis (University of Waterloo, 2018), table 4.11.",
+    ),
+    section_limits=SectionLimits(
+        max_rut=15.0, min_crossfall=1.0, max_crossfall=6.0, min_width=3.25, min_clearance=4.5,
+        sources=("Rut depth: heavy rutting of JTG 5210-2018 begins at 15 mm.",
+                 "Crossfall of 1.0 to 2.0 %, superelevation of 6 % at most, lanes of 3.25 m and more, clear height of 4.5 m: CJJ 37-2012."),
     ),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .model import Country, Dashes, DesignSpeed
+from .model import Country, Dashes, DesignSpeed, SectionLimits
 
 GERMANY = Country(
     name="germany",
@@ -19,5 +19,11 @@ GERMANY = Country(
         "0.15 and 0.30 m.",
         "Lanes: 3.50 and 3.75 m on motorways, 3.25 m on city motorways (RAA 2008).",
         "Design code: least radii of RAA 2008 for its classes EKA 3, 2, 1B and 1A, at the speeds they are designed for.",
+    ),
+    section_limits=SectionLimits(
+        max_rut=10.0, min_crossfall=2.5, max_crossfall=7.0, max_grade=8.0, min_width=2.75, min_clearance=4.5,
+        sources=("Rut depth: warning value of ZTV ZEB-StB for the survey of road condition (10 mm; threshold 20 mm).",
+                 "Crossfall and grade: least 2.5 %, greatest 7 % on country roads (RAL 2012), grade of EKL 4 at most 8 %.",
+                 "Lane of 2.75 m in town with lorries (RASt 06); clear height of 4.50 m (RAL 2012)."),
     ),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .model import Country, Dashes, DesignSpeed
+from .model import Country, Dashes, DesignSpeed, SectionLimits
 
 JAPAN = Country(
     name="japan",
@@ -18,5 +18,11 @@ JAPAN = Country(
     sources=(
         "Lanes of 2.75, 3.00, 3.25 and 3.50 m and least radii: Road Structure Ordinance (Cabinet Order 320 of 1970) with its commentary (2004).",
         "Dashes and widths: Order on Road Signs, Lane Lines and Road Surface Markings (5 m and 5 m; 8 m and 12 m at 80 km/h and more).",
+    ),
+    section_limits=SectionLimits(
+        max_rut=40.0, min_crossfall=1.5, max_crossfall=10.0, max_grade=12.0, min_width=2.75, min_clearance=4.5,
+        sources=("Rut depth: the most damaged of three classes of the inspection guideline for road stock (MLIT, 2013) begins at 40 mm.",
+                 "Crossfall of 1.5 % and more, superelevation of 10 % at most, lanes of 2.75 m and more, clear height of 4.5 m: "
+                 "Road Structure Ordinance (Cabinet Order 320 of 1970)."),
     ),
 )

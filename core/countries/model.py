@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,29 @@ class Dashes:
 
 
 @dataclass(frozen=True)
+class SectionLimits:
+    """What a cross-section must keep to; None where the country's rules at hand set nothing.
+
+    max_rut : mm, of the rut depth
+    min_crossfall, max_crossfall : %, of a lane
+    max_grade : %
+    min_width : m, of a driving lane
+    min_clearance : m above the road
+    sources : one sentence for each rule
+    """
+
+    max_rut: float | None = None
+    min_crossfall: float | None = None
+    max_crossfall: float | None = None
+    max_grade: float | None = None
+    min_width: float | None = None
+    min_clearance: float | None = None
+    sources: tuple[str, ...] = ()
+
+    NAMES: ClassVar[tuple[str, ...]] = ("max_rut", "min_crossfall", "max_crossfall", "max_grade", "min_width", "min_clearance")
+
+
+@dataclass(frozen=True)
 class Country:
     """Dimensions of lanes and markings in one country; lengths in metres.
 
@@ -41,6 +65,7 @@ class Country:
     design_code : name of the code that curves are checked against
     design_speeds : its rows, slowest first
     sources : one sentence for each group of values above
+    section_limits : what cross-sections must keep to
     """
 
     name: str
@@ -53,3 +78,4 @@ class Country:
     design_code: str
     design_speeds: tuple[DesignSpeed, ...]
     sources: tuple[str, ...]
+    section_limits: SectionLimits = SectionLimits()

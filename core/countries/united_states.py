@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from .model import Country, Dashes, DesignSpeed
+from .model import Country, Dashes, DesignSpeed, SectionLimits
 
 FOOT = 0.3048            # m
+INCH = 25.4              # mm
 MILE = 1.609344          # km
 SUPERELEVATION = 0.08    # greatest crossfall in curves
 # Design speed, miles per hour, and the greatest side friction at it
@@ -25,5 +26,11 @@ UNITED_STATES = Country(
         "Lines and dashes: MUTCD 3A.06: dashes of 10 ft, gaps of 30 ft; a normal line is 4 to 6 in wide, a wide line at least twice as much.",
         "Design code: AASHTO, A Policy on Geometric Design of Highways and Streets: R = V^2 / (15 (e + f)), V in mph, R in ft, "
         "with the side friction factors of its 2004 edition.",
+    ),
+    section_limits=SectionLimits(
+        max_rut=0.40 * INCH, min_crossfall=1.5, max_crossfall=100 * SUPERELEVATION, min_width=9 * FOOT, min_clearance=14 * FOOT,
+        sources=("Rut depth: poor above 0.40 in (23 CFR 490.313).",
+                 "Cross slope of 1.5 % and more, superelevation of 8 % at most, lanes of 9 ft and more, vertical clearance of 14 ft: AASHTO, A "
+                 "Policy on Geometric Design of Highways and Streets."),
     ),
 )

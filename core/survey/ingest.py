@@ -85,10 +85,12 @@ class HeightFilter:
     ----------
     frame : RoadFrame
     drop : metres from the trajectory down to the road
+    above : metres above the road up to which points are kept
     """
 
-    def __init__(self, frame: RoadFrame, drop: float):
+    def __init__(self, frame: RoadFrame, drop: float, above: float = KEPT_ABOVE_ROAD):
         self._roads = {}
+        self._depth = np.uint32((above + KEPT_BELOW_ROAD + 2 * INGEST_HEIGHT_MARGIN) / COORDINATE_SCALE)
         for road in frame.roads:
             first, last = (int(station / COORDINATE_SCALE) >> HEIGHT_CELL_BITS for station in (road.start, road.end))
             stations = ((np.arange(first, last + 1) << HEIGHT_CELL_BITS) + (1 << HEIGHT_CELL_BITS) // 2) * COORDINATE_SCALE
@@ -113,7 +115,7 @@ class HeightFilter:
         np.copyto(k, np.subtract(cell, first, out=cell))
         above = np.subtract(z, lowest.take(k, out=cell, mode="clip"), out=cell)
         # a negative difference becomes a large unsigned number
-        return above.view(np.uint32) < np.uint32((KEPT_ABOVE_ROAD + KEPT_BELOW_ROAD + 2 * INGEST_HEIGHT_MARGIN) / COORDINATE_SCALE)
+        return above.view(np.uint32) < self._depth
 
 
 class BlockProjector:
@@ -277,6 +279,7 @@ class SurveyReader:
     corridor : metres either side
     has_time : whether points are assigned to passes by their time
     week_ends : whether the GPS week ends during the scan
+    above_road : metres above the road up to which points are kept
 
     Attributes, complete after `read`
     ---------------------------------
@@ -287,8 +290,9 @@ class SurveyReader:
     uneven : see `HeightHistogram.uneven`
     """
 
-    def __init__(self, frame: RoadFrame, store: SectionStore, corridor: float, has_time: bool, week_ends: bool = False):
-        self.frame, self.store = frame, store
+    def __init__(self, frame: RoadFrame, store: SectionStore, corridor: float, has_time: bool, week_ends: bool = False,
+                 above_road: float = KEPT_ABOVE_ROAD):
+        self.frame, self.store, self.above_road = frame, store, above_road
         self.census, self.darkest, self.brightest, self.unplaced_time = ScannerCensus(), 65535, 0, 0
         self.tracks = VehicleTracks(frame)
         self._blocks = BlockProjector(frame, corridor, has_time, week_ends)
@@ -364,7 +368,7 @@ class SurveyReader:
         drop = estimate_sensor_height(np.concatenate(self._samples)) if self._samples else None
         drop = DEFAULT_SENSOR_HEIGHT if drop is None else drop
         self._histogram = HeightHistogram([p.number for p in self.frame.passes], drop)
-        self._ground = HeightFilter(self.frame, drop)
+        self._ground = HeightFilter(self.frame, drop, self.above_road)
         waiting, self._waiting, self._samples = self._waiting, [], []
         self._choose(waiting)
 

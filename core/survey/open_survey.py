@@ -45,6 +45,7 @@ class SurveySettings:
     time : time system of the trajectory: automatic, gps, adjusted, week or day
     crs : WKT for clouds that carry none
     fit_passes : whether passes over one road are adjusted to each other
+    above_road : m above the road up to which points are kept; the map needs what hides a curb, an inventory what hangs over the road
     section_length : m of station in a section of the store
     memory_limit : bytes of points in memory; more go to a temporary file
     block : points decoded at a time
@@ -55,6 +56,7 @@ class SurveySettings:
     time: str = "automatic"
     crs: str = ""
     fit_passes: bool = True
+    above_road: float = setting(KEPT_ABOVE_ROAD, 1.0, 100.0, "The height above the road", "m")
     section_length: float = SECTION_LENGTH
     memory_limit: int = MEMORY_LIMIT
     block: int = POINTS_PER_BLOCK
@@ -78,6 +80,7 @@ class Survey:
     has_time : whether points are assigned to passes by their time
     counts : numbers of points read, kept and outside
     moves : PassCorrections by which points and tracks were moved, None where they are as measured
+    above_road : metres above the road up to which points are returned
     """
 
     files: list[CloudHeader]
@@ -91,6 +94,7 @@ class Survey:
     has_time: bool
     counts: dict[str, int] = field(default_factory=dict)
     moves: PassCorrections | None = None
+    above_road: float = KEPT_ABOVE_ROAD
 
     def __post_init__(self) -> None:
         self.store.finish = self._finished
@@ -114,12 +118,12 @@ class Survey:
         z = records["z"]
         first, nodes = self._heights(road, records["s"].min() * COORDINATE_SCALE, records["s"].max() * COORDINATE_SCALE)
         doubtful = np.flatnonzero((z < (nodes.max() - KEPT_BELOW_ROAD) / COORDINATE_SCALE + 1)
-                                  | (z > (nodes.min() + KEPT_ABOVE_ROAD) / COORDINATE_SCALE - 1))
+                                  | (z > (nodes.min() + self.above_road) / COORDINATE_SCALE - 1))
         at = records["s"][doubtful] * COORDINATE_SCALE / ROAD_HEIGHT_STEP - first
         k = at.astype(np.int64)
         h = z[doubtful] * COORDINATE_SCALE - (nodes[k] + (at - k) * (nodes[k + 1] - nodes[k]))
         near = np.ones(len(records), bool)
-        near[doubtful] = (h > -KEPT_BELOW_ROAD) & (h < KEPT_ABOVE_ROAD)
+        near[doubtful] = (h > -KEPT_BELOW_ROAD) & (h < self.above_road)
         return None if near[doubtful].all() else near
 
     def _heights(self, road, start, end):
@@ -172,7 +176,7 @@ def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: S
                       "the files of each drive with its own part of the trajectory.")
     _check_extent(files, frame, crs, trajectory.crs)
     store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length, settings.memory_limit)
-    reader = SurveyReader(frame, store, settings.corridor, has_time, week_ends)
+    reader = SurveyReader(frame, store, settings.corridor, has_time, week_ends, settings.above_road)
     again = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
     reader.read(files, settings.block, progress.part(0.0, INGEST_PROGRESS) if again else progress)
     total = sum(file.count for file in files)
@@ -198,7 +202,7 @@ def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: S
     scanner_field, scanners = reader.census.choose(settings.scanner_field)
     survey = Survey(files, frame, store, crs, reader.heights, scanner_field, scanners,
                     reader.brightest > reader.darkest, has_time,
-                    dict(read=total, kept=store.count, outside=total - store.count))
+                    dict(read=total, kept=store.count, outside=total - store.count), above_road=settings.above_road)
     progress.info(f"Points read: {total:,} from {len(files)} file(s), {store.count:,} near the road kept; "
                  f"{len(frame.roads)} road(s), {len(frame.passes)} pass(es), {len(scanners)} scanner(s); "
                  f"sensor {height:.2f} m above the road.")

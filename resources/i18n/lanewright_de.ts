@@ -35,6 +35,11 @@
         </message>
         <message>
             <location filename="../../algorithms/algorithm.py" />
+            <source>Inventory</source>
+            <translation>Inventar</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/algorithm.py" />
             <source>Assessment</source>
             <translation>Bewertung</translation>
         </message>
@@ -1232,6 +1237,191 @@
             <location filename="../../algorithms/export/inputs.py" />
             <source>{count} lanes and pieces, {length:.0f} m of driven lanes.</source>
             <translation>{count} Fahrstreifen und Stücke, {length:.0f} m befahrene Fahrstreifen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Cross-sections</source>
+            <translation>Querschnitte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Measures width, crossfall, grade, rut depth, curb heights and clearance of every lane at fixed stations against limits.</source>
+            <translation>Misst an festen Stationen Breite, Querneigung, Längsneigung, Spurrinnentiefe, Bordhöhen und lichte Höhe jedes Fahrstreifens und vergleicht sie mit Grenzwerten.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Steps between scanners and passes are estimated where they overlap and taken off first. An error in roll looks like crossfall: passes in opposite directions tell the two apart, and where there are none the report says so and the sigma of the crossfall holds it.</source>
+            <translation>Höhenstufen zwischen Scannern und Fahrten werden in ihren Überlappungen geschätzt und zuerst abgezogen. Ein Fehler im Rollwinkel sieht wie Querneigung aus: Fahrten in Gegenrichtung trennen beides; wo es keine gibt, sagt es der Bericht, und das Sigma der Querneigung enthält ihn.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Lanes are those of the layer Lanes, else of the driving lines between the marking lines, else of the marking lines alone; the carriageway ends at the road edges, else at the outermost line. Rut depths are measured under a straight edge of 2 m laid over profiles averaged over 1 m of road (over more where points are few), less what noise adds. Something that stands on the road does not count as hanging above it.</source>
+            <translation>Fahrstreifen sind die des Layers Fahrstreifen, sonst die der Fahrlinien zwischen den Markierungslinien, sonst die der Markierungslinien allein; die Fahrbahn endet an den Fahrbahnrändern, sonst an der äußersten Linie. Spurrinnentiefen werden unter einer Latte von 2 m auf Profilen gemessen, die über 1 m Straße gemittelt sind (über mehr, wo Punkte rar sind), abzüglich dessen, was das Rauschen hinzufügt. Was auf der Straße steht, gilt nicht als darüber hängend.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>profile</source>
+            <translation>Profil</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>rutting</source>
+            <translation>Spurrinnen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>crossfall</source>
+            <translation>Querneigung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>superelevation</source>
+            <translation>Überhöhung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>clearance</source>
+            <translation>lichte Höhe</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>road condition</source>
+            <translation>Straßenzustand</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>width</source>
+            <translation>Breite</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Interval of the sections (m)</source>
+            <translation>Abstand der Querschnitte (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Smaller shows where a rut or a change of crossfall begins, but takes longer; below 10 m grade and ruts are measured over that length only.</source>
+            <translation>Kleiner zeigt, wo eine Spurrinne oder ein Wechsel der Querneigung beginnt, dauert aber länger; unter 10 m werden Längsneigung und Spurrinnen nur über diese Länge gemessen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Whose rules give the limits that are left at 0, and whose usual lane is measured about the track where no layer of the road map is given. It is never guessed.</source>
+            <translation>Dessen Regeln die Grenzwerte geben, die auf 0 stehen, und dessen üblicher Fahrstreifen um die Fahrspur gemessen wird, wo kein Layer der Straßenkarte angegeben ist. Es wird nie geraten.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Rut depth at most, 0 = of the country (mm)</source>
+            <translation>Spurrinnentiefe höchstens, 0 = des Landes (mm)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Deeper ruts under a straight edge of 2 m are marked. Lower finds shallow ones, down to what noise leaves, about 2 mm.</source>
+            <translation>Tiefere Spurrinnen unter einer Latte von 2 m werden gekennzeichnet. Niedriger findet flache, bis zu dem, was das Rauschen lässt, etwa 2 mm.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Crossfall at least, 0 = of the country (%)</source>
+            <translation>Querneigung mindestens, 0 = des Landes (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Lanes that fall less to either side are marked: water stands there. Lower leaves the places where the crossfall changes sides unmarked.</source>
+            <translation>Fahrstreifen, die zu keiner Seite so stark fallen, werden gekennzeichnet: Dort steht Wasser. Niedriger lässt die Stellen ungekennzeichnet, an denen die Querneigung die Seite wechselt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Crossfall at most, 0 = of the country (%)</source>
+            <translation>Querneigung höchstens, 0 = des Landes (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Steeper lanes are marked. Lower marks the superelevation of bends too.</source>
+            <translation>Steilere Fahrstreifen werden gekennzeichnet. Niedriger kennzeichnet auch die Überhöhung von Kurven.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Grade at most, 0 = of the country (%)</source>
+            <translation>Längsneigung höchstens, 0 = des Landes (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Steeper sections are marked, climbing or falling. Lower marks ramps too.</source>
+            <translation>Steilere Querschnitte werden gekennzeichnet, steigend oder fallend. Niedriger kennzeichnet auch Rampen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Lane width at least, 0 = of the country (m)</source>
+            <translation>Breite eines Fahrstreifens mindestens, 0 = des Landes (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Narrower driving lanes are marked. Higher marks turning lanes too.</source>
+            <translation>Schmalere Fahrstreifen werden gekennzeichnet. Höher kennzeichnet auch Abbiegestreifen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Clearance at least, 0 = of the country (m)</source>
+            <translation>Lichte Höhe mindestens, 0 = des Landes (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Sections with something hanging lower are marked. Higher finds branches above the traffic too.</source>
+            <translation>Querschnitte, über denen etwas tiefer hängt, werden gekennzeichnet. Höher findet auch Äste über dem Verkehr.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>With it the carriageway ends at the edges, and heights of curbs are measured there.</source>
+            <translation>Damit endet die Fahrbahn an den Rändern, und dort werden Bordhöhen gemessen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>With it lanes end at the painted lines.</source>
+            <translation>Damit enden Fahrstreifen an den markierten Linien.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>With it lanes have their numbers and directions; not needed beside Lanes.</source>
+            <translation>Damit haben Fahrstreifen ihre Nummern und Richtungen; neben Fahrstreifen nicht nötig.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>With it every lane, shoulder and parking strip of the road map is measured.</source>
+            <translation>Damit wird jeder Fahr-, Seiten- und Parkstreifen der Straßenkarte gemessen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>A line across every lane and carriageway at every section.</source>
+            <translation>An jedem Querschnitt eine Linie quer über jeden Fahrstreifen und die Fahrbahn.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Table of the cross-sections</source>
+            <translation>Tabelle der Querschnitte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>The same rows without lines, for spreadsheets.</source>
+            <translation>Dieselben Zeilen ohne Linien, für Tabellenprogramme.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Sections</source>
+            <translation>Querschnitte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Lanes and carriageways that exceed a limit</source>
+            <translation>Fahrstreifen und Fahrbahnen, die einen Grenzwert überschreiten</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Greatest rut depth (mm)</source>
+            <translation>Größte Spurrinnentiefe (mm)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/cross_sections.py" />
+            <source>Least clearance (m)</source>
+            <translation>Kleinste lichte Höhe (m)</translation>
         </message>
         <message>
             <location filename="../../algorithms/markings/cluster_markings.py" />
@@ -2457,11 +2647,6 @@
             <location filename="../../algorithms/road/normalized_scanlines.py" />
             <source>The lines of a rotating scanner are told apart by the times and places of the points alone; neighbouring lines make the surface that is cut. Where it is interrupted, behind a car say, a new scanline begins. Points without times, or of a head with many beams, have no such lines: there the points near each plane make the scanline, and the log says so.</source>
             <translation>Die Linien eines rotierenden Scanners werden allein aus Zeiten und Orten der Punkte erkannt; benachbarte Linien ergeben die Oberfläche, die geschnitten wird. Wo sie unterbrochen ist, etwa hinter einem Auto, beginnt eine neue Scanlinie. Punkte ohne Zeiten oder von einem Kopf mit vielen Strahlen haben keine solchen Linien: dort bilden die Punkte nahe jeder Ebene die Scanlinie, und das Protokoll sagt es.</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/road/normalized_scanlines.py" />
-            <source>profile</source>
-            <translation>Profil</translation>
         </message>
         <message>
             <location filename="../../algorithms/road/normalized_scanlines.py" />
@@ -3710,6 +3895,86 @@
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
+            <source>Section</source>
+            <translation>Querschnitt</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Part (carriageway/lane)</source>
+            <translation>Teil (carriageway/lane)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Type of the lane</source>
+            <translation>Art des Fahrstreifens</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Direction (1 along, -1 against the road, 0 not known)</source>
+            <translation>Richtung (1 mit, -1 gegen die Straße, 0 unbekannt)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Offset of its middle, left positive (m)</source>
+            <translation>Abstand seiner Mitte, links positiv (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Borders taken from (lanes/lines/edges/track)</source>
+            <translation>Grenzen aus (lanes/lines/edges/track)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Crossfall, positive falls to the right along the road (%)</source>
+            <translation>Querneigung, positiv fällt längs der Straße nach rechts (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Sigma of the crossfall, roll included (%)</source>
+            <translation>Sigma der Querneigung mit Rollwinkel (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Grade, positive climbs along the road (%)</source>
+            <translation>Längsneigung, positiv steigt längs der Straße (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Rut depth, left wheel path (mm)</source>
+            <translation>Spurrinnentiefe, linke Radspur (mm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Rut depth, right wheel path (mm)</source>
+            <translation>Spurrinnentiefe, rechte Radspur (mm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Height of the left curb (m)</source>
+            <translation>Höhe des linken Bords (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Height of the right curb (m)</source>
+            <translation>Höhe des rechten Bords (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Clearance above (m)</source>
+            <translation>Lichte Höhe (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Surface seen (%)</source>
+            <translation>Gesehene Oberfläche (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Limits not kept</source>
+            <translation>Nicht eingehaltene Grenzwerte</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
             <source>Point</source>
             <translation>Punkt</translation>
         </message>
@@ -3912,6 +4177,16 @@
             <location filename="../../resources/styles/control_points.qml" />
             <source>Check point</source>
             <translation>Prüfpunkt</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/cross_sections.qml" />
+            <source>A limit is exceeded</source>
+            <translation>Ein Grenzwert ist überschritten</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/cross_sections.qml" />
+            <source>Carriageway</source>
+            <translation>Fahrbahn</translation>
         </message>
         <message>
             <location filename="../../resources/styles/driving_lines.qml" />

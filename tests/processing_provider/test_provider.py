@@ -36,11 +36,12 @@ INTERFACE = {
     "importopendrive": "INPUT CRS LANES DRIVING_LINES MARKING_LINES ROAD_EDGES",
     "importlanelet2": "INPUT CRS LANES DRIVING_LINES MARKING_LINES ROAD_EDGES",
     "checkhdmap": "INPUT CRS OUTPUT REPORT",
+    "crosssections": "POINT_CLOUDS TRAJECTORY CRS ROAD_EDGES MARKING_LINES DRIVING_LINES LANES INTERVAL COUNTRY OUTPUT TABLE REPORT",
     "assessboundaries": "INPUT REFERENCE TRAJECTORY TOLERANCES TOLERANCE INTERVAL EXCLUDED AREA OUTPUT REPORT",
     "assessmarkings": "INPUT REFERENCE TRAJECTORY TOLERANCES TOLERANCE CELL_SIZE AREA IMAGE OUTPUT CELLS REPORT",
     "assessdrivinglines": "INPUT REFERENCE TRAJECTORY TOLERANCES TOLERANCE WIDTH AREA OUTPUT REPORT",
 }
-UNIT = re.compile(r"\((m|m²|s|°|%|points|σ|MAD|km/h|per second|per line|cells|whole number|\d+-\d+)\)$")
+UNIT = re.compile(r"\((m|mm|m²|s|°|%|points|σ|MAD|km/h|per second|per line|cells|whole number|\d+-\d+)\)$")
 
 
 @pytest.fixture(params=ALGORITHMS, ids=lambda algorithm: algorithm.ID)

@@ -1,0 +1,110 @@
+"""Cross-sections of the road."""
+
+from dataclasses import replace
+
+from ...core.common.schemas import CROSS_SECTIONS, DRIVING_LINES, LANES, MARKING_LINES, ROAD_EDGES
+from ...core.countries.catalogue import COUNTRIES
+from ..algorithm import Algorithm
+from ..parameters import SettingSpec
+from ..survey_input import SURVEY_SETTINGS, survey_inputs
+from ..texts import tr
+
+SECTIONS = "inventory.settings:CrossSectionSettings"
+ABOVE_ROAD = 12.0  # m of height above the road that are read: more than any clearance that a rule asks for
+
+SECTION_SETTINGS = (
+    SettingSpec(
+        "INTERVAL", SECTIONS, "interval", tr("Interval of the sections (m)"),
+        tr("Smaller shows where a rut or a change of crossfall begins, but takes longer; below 10 m grade and ruts are measured over "
+           "that length only."),
+    ),
+    SettingSpec(
+        "COUNTRY", SECTIONS, "country", tr("Country"),
+        tr("Whose rules give the limits that are left at 0, and whose usual lane is measured about the track where no layer of the road map is "
+           "given. It is never guessed."),
+        choices=tuple(COUNTRIES),
+    ),
+    SettingSpec("MAX_RUT", SECTIONS, "max_rut", tr("Rut depth at most, 0 = of the country (mm)"),
+                tr("Deeper ruts under a straight edge of 2 m are marked. Lower finds shallow ones, down to what noise leaves, about 2 mm.")),
+    SettingSpec("MIN_CROSSFALL", SECTIONS, "min_crossfall", tr("Crossfall at least, 0 = of the country (%)"),
+                tr("Lanes that fall less to either side are marked: water stands there. Lower leaves the places where the crossfall changes sides "
+                   "unmarked."),
+                advanced=True),
+    SettingSpec("MAX_CROSSFALL", SECTIONS, "max_crossfall", tr("Crossfall at most, 0 = of the country (%)"),
+                tr("Steeper lanes are marked. Lower marks the superelevation of bends too."), advanced=True),
+    SettingSpec("MAX_GRADE", SECTIONS, "max_grade", tr("Grade at most, 0 = of the country (%)"),
+                tr("Steeper sections are marked, climbing or falling. Lower marks ramps too."), advanced=True),
+    SettingSpec("MIN_WIDTH", SECTIONS, "min_width", tr("Lane width at least, 0 = of the country (m)"),
+                tr("Narrower driving lanes are marked. Higher marks turning lanes too."), advanced=True),
+    SettingSpec("MIN_CLEARANCE", SECTIONS, "min_clearance", tr("Clearance at least, 0 = of the country (m)"),
+                tr("Sections with something hanging lower are marked. Higher finds branches above the traffic too."), advanced=True),
+)
+
+
+class CrossSections(Algorithm):
+    ID, TITLE, GROUP = "crosssections", "Cross-sections", "Inventory"
+    SUMMARY = "Measures width, crossfall, grade, rut depth, curb heights and clearance of every lane at fixed stations against limits."
+    HELP = ("Steps between scanners and passes are estimated where they overlap and taken off first. An error in roll looks like crossfall: passes "
+            "in opposite directions tell the two apart, and where there are none the report says so and the sigma of the crossfall holds it.\n\n"
+            "Lanes are those of the layer Lanes, else of the driving lines between the marking lines, else of the marking lines alone; the "
+            "carriageway ends at the road edges, else at the outermost line. Rut depths are measured under a straight edge of 2 m laid over profiles "
+            "averaged over 1 m of road (over more where points are few), less what noise adds. Something that stands on the road does not "
+            "count as hanging above it.")
+    TAGS = ("profile", "rutting", "crossfall", "superelevation", "clearance", "road condition", "width")
+    LOOKS = {"OUTPUT": "CROSS_SECTIONS"}
+
+    def declare(self):
+        self.add_survey()
+        self.add_layer("ROAD_EDGES", tr("Road edges"), tr("With it the carriageway ends at the edges, and heights of curbs are measured there."),
+                       "LineStringZ", optional=True)
+        self.add_layer("MARKING_LINES", tr("Marking lines"), tr("With it lanes end at the painted lines."), "LineStringZ", optional=True)
+        self.add_layer("DRIVING_LINES", tr("Driving lines"), tr("With it lanes have their numbers and directions; not needed beside Lanes."),
+                       "LineStringZ", optional=True)
+        self.add_layer("LANES", tr("Lanes"), tr("With it every lane, shoulder and parking strip of the road map is measured."), "PolygonZ",
+                       optional=True)
+        self.add_settings(SECTION_SETTINGS)
+        self.add_settings(SURVEY_SETTINGS)
+        self.add_sink("OUTPUT", tr("Cross-sections"), tr("A line across every lane and carriageway at every section."), fields=CROSS_SECTIONS,
+                      geometry="LineStringZ")
+        self.add_sink("TABLE", tr("Table of the cross-sections"), tr("The same rows without lines, for spreadsheets."), fields=CROSS_SECTIONS,
+                      geometry="None", optional=True, by_default=False)
+        self.add_report()
+        self.add_number("SECTIONS", tr("Sections"))
+        self.add_number("EXCEEDED", tr("Lanes and carriageways that exceed a limit"))
+        self.add_number("LARGEST_RUT", tr("Greatest rut depth (mm)"))
+        self.add_number("LEAST_CLEARANCE", tr("Least clearance (m)"))
+
+    def work(self, call, progress):
+        from ...core.inventory.borders import BorderLayers
+        from ...core.inventory.cross_sections import measure_cross_sections
+        from ...core.inventory.section_layer import sections_to_features
+        from ...core.report.cross_sections import cross_section_report
+        from ...core.survey.consistency import check_features_on_roads
+        from ...core.survey.open_survey import open_survey
+
+        settings = call.settings(SECTION_SETTINGS)
+        layers = BorderLayers(call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ"), call.features("MARKING_LINES", MARKING_LINES, "LineStringZ"),
+                           call.features("DRIVING_LINES", DRIVING_LINES, "LineStringZ"), call.features("LANES", LANES, "PolygonZ"))
+        paths, trajectory = survey_inputs(call, progress)
+        reading = replace(call.settings(SURVEY_SETTINGS, crs=call.crs()), above_road=ABOVE_ROAD)
+        survey = open_survey(paths, trajectory, reading, progress.part(0.0, 0.5))
+        try:
+            for name, features in (("ROAD_EDGES", layers.edges), ("MARKING_LINES", layers.marking_lines), ("DRIVING_LINES", layers.driving_lines),
+                                   ("LANES", layers.lanes)):
+                if features is not None:
+                    check_features_on_roads(features, survey.frame, call.label(name))
+            sections = measure_cross_sections(survey, layers, settings, progress.part(0.5, 1.0))
+        finally:
+            survey.store.close()
+        lines, table = sections_to_features(sections)
+        call.layer("OUTPUT", lines)
+        call.layer("TABLE", table)
+        call.text("REPORT", cross_section_report(sections, table))
+        return _numbers(table, len(sections.sections))
+
+
+def _numbers(table, count):
+    ruts = [value for name in ("rut_l_mm", "rut_r_mm") for value in table.column(name) if value is not None]
+    clear = [value for value in table.column("clear_m") if value is not None]
+    found = {"SECTIONS": float(count), "EXCEEDED": float(sum(bool(row["exceeds"]) for row in table.rows))}
+    return {**found, **({"LARGEST_RUT": max(ruts)} if ruts else {}), **({"LEAST_CLEARANCE": min(clear)} if clear else {})}

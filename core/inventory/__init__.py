@@ -1,0 +1,13 @@
+"""What else the road shows: cross-sections and what stands beside it.
+
+In: an open `Survey` and the layers of its road map. Out: `RoadSections`, and their layer and table.
+"""
+
+from ..lazy import public
+
+__getattr__, __all__ = public(__name__, {
+    "borders": ("BorderLayers",),
+    "cross_sections": ("measure_cross_sections", "RoadSections"),
+    "section_layer": ("sections_to_features",),
+    "settings": ("CrossSectionSettings",),
+})

@@ -1,0 +1,42 @@
+"""Settings of cross-sections and their limits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..common.setting import check_limits, setting
+from ..countries.catalogue import country
+from ..countries.model import SectionLimits
+from ..countries.neutral import NEUTRAL
+
+
+@dataclass(frozen=True)
+class CrossSectionSettings:
+    """What is measured, and what is too much. A limit of 0 is that of the country, if it has one.
+
+    interval : m of station between sections
+    country : of the catalogue
+    max_rut : mm, of the rut depth under a straight edge of 2 m
+    min_crossfall, max_crossfall : % of a lane, whatever its direction
+    max_grade : % along the road
+    min_width : m of a driving lane
+    min_clearance : m above the road
+    """
+
+    interval: float = setting(10.0, 1.0, 1000.0, "The interval", "m")
+    country: str = NEUTRAL.name
+    max_rut: float = setting(0.0, 1.0, 200.0, "The rut depth", "mm", "for the country's")
+    min_crossfall: float = setting(0.0, 0.1, 20.0, "The least crossfall", "%", "for the country's")
+    max_crossfall: float = setting(0.0, 0.1, 20.0, "The greatest crossfall", "%", "for the country's")
+    max_grade: float = setting(0.0, 0.1, 50.0, "The greatest grade", "%", "for the country's")
+    min_width: float = setting(0.0, 1.0, 10.0, "The least lane width", "m", "for the country's")
+    min_clearance: float = setting(0.0, 1.0, 10.0, "The least clearance", "m", "for the country's")
+
+    def __post_init__(self) -> None:
+        check_limits(self)
+        country(self.country)
+
+    def limits(self) -> SectionLimits:
+        """The limits that hold: the user's own, else the country's; None where neither has one."""
+        theirs = country(self.country).section_limits
+        return SectionLimits(**{name: getattr(self, name) or getattr(theirs, name) for name in SectionLimits.NAMES}, sources=theirs.sources)

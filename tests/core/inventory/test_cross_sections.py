@@ -1,0 +1,169 @@
+"""Cross-sections of roads whose width, crossfall, ruts, curbs and clearance are known."""
+
+import re
+
+import numpy as np
+import pytest
+from lanewright.core.common.errors import RoadExtractionError
+from lanewright.core.inventory.borders import BorderLayers
+from lanewright.core.inventory.cross_sections import measure_cross_sections
+from lanewright.core.inventory.section_layer import sections_to_features
+from lanewright.core.inventory.settings import CrossSectionSettings
+from lanewright.core.report.cross_sections import cross_section_report
+from measured_streets import GROUND, HALF, Drive, edges_of, markings_of, measured_road
+
+BOTH_WAYS = (Drive(1, -1.75), Drive(-1, 1.75))
+
+
+def rows_of(survey, part="lane", layers=None, **settings):
+    layers = BorderLayers(edges_of(), markings_of()) if layers is None else layers
+    table = sections_to_features(measure_cross_sections(survey, layers, CrossSectionSettings(**settings)))[1]
+    return [row for row in table.rows if row["part"] == part]
+
+
+def column(rows, *names):
+    return np.array([[np.nan if row[name] is None else row[name] for name in names] for row in rows], float)
+
+
+@pytest.mark.parametrize("crossfall", [0.0, 0.025, 0.06])
+def test_the_crossfall_of_both_sides_of_a_crown_is_measured(crossfall):
+    rows = rows_of(measured_road(crossfall=crossfall))
+    true = [100 * crossfall if row["lane"] == 1 else -100 * crossfall for row in rows]
+    assert len(rows) == 2 * 6
+    np.testing.assert_allclose(column(rows, "crossf_pct")[:, 0], true, atol=0.05)
+
+
+@pytest.mark.parametrize("roll", [0.002, 0.005, -0.005])
+def test_passes_in_opposite_directions_tell_roll_from_crossfall(roll):
+    """The same vehicle with two scanners, all of them tilted, and a centimetre between them: 0.005 are 0.3 degrees."""
+    survey = measured_road(drives=(Drive(1, -1.75, roll), Drive(-1, 1.75, roll, 0.008)), scanners=((0.005, 0.003), (-0.005, -0.001)), rut=0.01)
+    rows = rows_of(survey)
+    true = np.array([2.5 if row["lane"] == 1 else -2.5 for row in rows])
+    assert np.abs(column(rows, "crossf_pct")[:, 0] - true).max() < 0.2
+    assert (column(rows, "crossf_sig") < 0.15).all()
+
+
+def test_one_pass_says_that_it_cannot_tell_roll_from_crossfall():
+    one = measure_cross_sections(measured_road(drives=(Drive(1, -1.75, 0.004),)), BorderLayers(edges_of(), markings_of()))
+    both = measure_cross_sections(measured_road(drives=BOTH_WAYS), BorderLayers(edges_of(), markings_of()))
+    assert any("cannot be told from crossfall" in note for note in one.notes) and not both.notes
+    assert min(section.parts[1].crossfall_sigma for section in one.sections) > max(section.parts[1].crossfall_sigma for section in both.sections)
+    # what it is wrong by is the roll
+    assert np.median([section.parts[0].crossfall for section in one.sections]) == pytest.approx(0.004, abs=0.0005)
+
+
+@pytest.mark.parametrize("rut", [0.0, 0.005, 0.012, 0.025])
+@pytest.mark.parametrize("density", [150.0, 600.0, 2500.0])
+def test_rut_depths_are_right_within_three_millimetres(rut, density):
+    """A scanner of 5 mm noise, another 8 mm above it and tilted, and a vehicle that rolls."""
+    survey = measured_road(drives=(Drive(1, -1.75, 0.003),), scanners=((0.004, 0.002), (-0.004, -0.002)), rut=rut, density=density, noise=0.005)
+    found = column(rows_of(survey), "rut_l_mm", "rut_r_mm")
+    assert np.isfinite(found).mean() > 0.9
+    assert np.sqrt(np.nanmean((found - 1000 * rut) ** 2)) < 3.0
+
+
+def test_a_step_between_two_scanners_is_no_rut():
+    rows = rows_of(measured_road(scanners=((0.010, 0.0), (-0.010, 0.0)), noise=0.003))
+    assert np.nanmax(column(rows, "rut_l_mm", "rut_r_mm")) < 3.0
+
+
+def test_too_much_noise_gives_no_rut_depths_and_says_so():
+    sections = measure_cross_sections(measured_road(noise=0.03, density=60.0), BorderLayers(edges_of(), markings_of()))
+    assert any("too few or too noisy" in note for note in sections.notes)
+    assert not np.isfinite([part.ruts for section in sections.sections for part in section.parts]).any()
+
+
+@pytest.mark.parametrize("north", [False, True])
+def test_widths_grades_and_curbs_whatever_way_the_road_runs(north):
+    layers = BorderLayers(edges_of(north=north), markings_of(north=north))
+    survey = measured_road(grade=0.045, curb=0.14, north=north)
+    whole = rows_of(survey, "carriageway", layers)
+    off = np.abs(column(whole, "width_m", "grade_pct", "curb_l_m", "curb_r_m") - [2 * HALF, 4.5, 0.14, 0.14])
+    assert (off < [0.02, 0.05, 0.01, 0.01]).all()
+    np.testing.assert_allclose(column(rows_of(survey, "lane", layers), "width_m"), 3.25, atol=0.02)
+
+
+def test_a_bridge_is_the_clearance_and_a_lorry_is_not():
+    def above(rng):
+        deck = rng.uniform(28, 33, 4000), rng.uniform(-5, 5, 4000), np.full(4000, 4.35)
+        # flank and upper edge of a lorry 4 m high, in the left lane
+        lorry = rng.uniform(8, 18, 3000), np.full(3000, 0.6), rng.uniform(0.4, 4.0, 3000)
+        return tuple(np.r_[a, b] for a, b in zip(deck, lorry))
+
+    rows = rows_of(measured_road(above=above), "carriageway", min_clearance=4.5)
+    clear = {row["station_m"]: row["clear_m"] for row in rows}
+    assert clear[30.0] == pytest.approx(4.35, abs=0.05) and clear[10.0] is None and clear[50.0] is None
+    assert {row["station_m"] for row in rows if row["exceeds"] == "clearance"} == {30.0}
+
+
+def test_what_exceeds_the_users_limits_is_named():
+    rows = rows_of(measured_road(rut=0.015, crossfall=0.04), max_rut=10.0, max_crossfall=3.0, min_width=3.5)
+    assert {row["exceeds"] for row in rows} == {"rut, crossfall, width"}
+    assert {row["exceeds"] for row in rows_of(measured_road(rut=0.015), max_rut=20.0)} == {None}
+
+
+def test_a_limit_left_at_0_is_the_countrys():
+    assert CrossSectionSettings(country="germany").limits().max_rut == 10.0
+    assert CrossSectionSettings(country="germany", max_rut=25.0).limits().max_rut == 25.0
+
+
+def test_without_layers_a_lane_about_the_track_is_measured_and_its_width_is_not_judged():
+    sections = measure_cross_sections(measured_road(), BorderLayers(), CrossSectionSettings(min_width=4.0))
+    rows = sections_to_features(sections)[1].rows
+    assert {row["borders"] for row in rows} == {"track"} and any("width is no measurement" in note for note in sections.notes)
+    assert not any("width" in (row["exceeds"] or "") for row in rows)
+    assert np.median([row["crossf_pct"] for row in rows if row["lane"]]) == pytest.approx(2.5, abs=0.1)
+
+
+def test_a_car_on_the_lane_does_not_change_the_section():
+    def above(rng):
+        return rng.uniform(25, 35, 30000), rng.uniform(-2.6, -0.9, 30000), np.full(30000, 0.9)
+
+    rows = rows_of(measured_road(above=above, rut=0.01))
+    right = column([row for row in rows if row["lane"] == 1 and row["station_m"] == 30.0], "crossf_pct", "grade_pct")
+    np.testing.assert_allclose(right, [[2.5, 3.0]], atol=0.2)
+
+
+def test_an_island_in_a_lane_is_no_rut():
+    def above(rng):
+        return rng.uniform(0, 60, 40000), rng.uniform(0.6, 1.6, 40000), np.full(40000, 0.12)
+
+    found = column(rows_of(measured_road(above=above)), "rut_l_mm", "rut_r_mm")
+    assert np.nanmax(found) < 3.0
+
+
+def test_lines_of_the_layer_lie_on_the_road():
+    lines, _ = sections_to_features(measure_cross_sections(measured_road(grade=0.0, crossfall=0.02), BorderLayers(edges_of(), markings_of())))
+    whole = next(g for g, row in lines if row["part"] == "carriageway" and row["station_m"] == 20.0)
+    z = np.array(whole.coords)[:, 2] - GROUND
+    assert z.max() == pytest.approx(0.0, abs=0.01) and z.min() == pytest.approx(-0.02 * HALF, abs=0.01)
+
+
+def test_results_depend_neither_on_the_interval_nor_on_the_order_of_the_passes():
+    survey = measured_road(drives=BOTH_WAYS, rut=0.01)
+    often = {(row["station_m"], row["lane"]): row["crossf_pct"] for row in rows_of(survey, interval=10.0)}
+    seldom = {(row["station_m"], row["lane"]): row["crossf_pct"] for row in rows_of(survey, interval=20.0)}
+    assert set(seldom) < set(often)
+    assert max(abs(often[key] - value) for key, value in seldom.items()) < 0.05
+
+
+def test_an_interval_longer_than_the_road_is_refused():
+    with pytest.raises(RoadExtractionError, match="smaller interval"):
+        measure_cross_sections(measured_road(length=30.0, density=300.0, above=None), BorderLayers(markings_of(offsets=(20.0, 24.0))),
+                               CrossSectionSettings(interval=1000.0))
+
+
+def test_layers_of_another_place_are_refused():
+    with pytest.raises(RoadExtractionError, match="Choose those of this survey"):
+        measure_cross_sections(measured_road(density=300.0), BorderLayers(edges_of(half=90.0)))
+
+
+def test_the_report_is_as_high_for_a_road_to_the_north_and_names_what_exceeds():
+    pages = []
+    for north in (False, True):
+        sections = measure_cross_sections(measured_road(rut=0.02, north=north), BorderLayers(edges_of(north=north), markings_of(north=north)),
+                                          CrossSectionSettings(max_rut=10.0))
+        pages.append(cross_section_report(sections, sections_to_features(sections)[1]))
+    assert pages[0].count("<svg") == pages[1].count("<svg") >= 6
+    assert all(int(height) < 300 for page in pages for height in re.findall(r'<svg [^>]*height="(\d+)"', page))
+    assert "rut" in pages[0] and "cannot be told from crossfall" in pages[0]

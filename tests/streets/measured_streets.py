@@ -1,0 +1,105 @@
+"""Roads of known crossfall, ruts and curbs, as scanners see them that are mounted and levelled a little wrong."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from lanewright.core.common.features import Features
+from lanewright.core.common.schemas import MARKING_LINES, ROAD_EDGES
+from lanewright.core.survey.frame.road_frame import build_frame
+from lanewright.core.survey.open_survey import Survey
+from lanewright.core.survey.store.records import SURVEY_POINT, to_units
+from lanewright.core.survey.store.section_store import SectionStore
+from lanewright.core.survey.trajectory.trajectory import Trajectory
+
+EAST, NORTH, GROUND, SENSOR = 500_000.0, 5_400_000.0, 100.0, 2.6
+HALF = 3.5         # m from the middle to either edge
+RUT_HALF = 0.35    # m, half the width of a rut
+WHEEL_PATHS = 0.9  # m from the middle of a lane
+
+
+@dataclass(frozen=True)
+class Drive:
+    """One pass: 1 along the road or -1 against it, m of its track left of the middle, roll error in m/m, error in height in m."""
+
+    direction: int = 1
+    offset: float = -1.75
+    roll: float = 0.0
+    up: float = 0.0
+
+
+def surface(d, crossfall=0.025, crown=True, rut=0.0, lanes=(-1.75, 1.75), curb=0.12):
+    """Height of the road at offsets: falling to both sides of a crown or to the right, two ruts a lane, raised beyond the edges."""
+    z = -crossfall * (np.minimum(np.abs(d), HALF) if crown else -np.clip(d, -HALF, HALF))
+    for middle in lanes:
+        for side in (-1, 1):
+            u = (d - middle - side * WHEEL_PATHS) / RUT_HALF
+            z = z - rut * np.clip(1.0 - u**2, 0.0, None)
+    return z + np.where(np.abs(d) > HALF, curb, 0.0)
+
+
+def measured_road(drives=(Drive(),), scanners=((0.0, 0.0),), length=60.0, density=1500.0, noise=0.004, grade=0.03, reach=6.0, seed=11,
+                  above=None, north=False, **road):
+    """A Survey of a straight road.
+
+    scanners : (step in m, tilt in m/m) of each on its vehicle, the tilt positive where it measures its left side too high
+    density : points per m² of one drive beneath the vehicle; it falls off to either side as a rotating mirror's does
+    above : function of x, y that gives further points (x, y, z) above z = 0
+    """
+    rng = np.random.default_rng(seed)
+    step = np.arange(0.0, length + 1e-9, 0.25)
+    rows, parts = [], []
+    for number, drive in enumerate(drives):
+        x = step if drive.direction > 0 else step[::-1]
+        time = 1000.0 * (number + 1) + np.arange(len(x)) * 0.025
+        rows.append(np.stack([time, x, np.full(len(x), drive.offset), grade * x + SENSOR + GROUND]))
+        for scanner, (up, tilt) in enumerate(scanners):
+            count = int(density * np.pi * SENSOR * length / len(scanners))
+            across = SENSOR * np.tan(rng.uniform(-np.pi / 2, np.pi / 2, count))
+            px, py = rng.uniform(0, length, count), drive.offset + across
+            kept = np.abs(py) < reach
+            px, py, across = px[kept], py[kept], across[kept]
+            pz = surface(py, **road) + grade * px
+            if above is not None and number == 0 and scanner == 0:
+                ax, ay, az = above(rng)
+                px, py, pz, across = np.r_[px, ax], np.r_[py, ay], np.r_[pz, az + grade * ax], np.r_[across, ay - drive.offset]
+            pz = pz + drive.up + up + (drive.roll + tilt) * drive.direction * across + rng.normal(0, noise, len(px))
+            parts.append((number, scanner, np.interp(px, x[:: drive.direction], time[:: drive.direction]), px, py, pz + GROUND))
+
+    def placed(x, y):
+        return (EAST - y, NORTH + x) if north else (EAST + x, NORTH + y)
+
+    time, x, y, z = np.concatenate(rows, axis=1)
+    frame = build_frame(Trajectory(time, *placed(x, y), z))
+    store = SectionStore(SURVEY_POINT, 20.0)
+    passes = {drive: next(p.number for p in frame.passes if abs(p.time[0] - 1000.0 * (drive + 1)) < 1.0) for drive in range(len(drives))}
+    for drive, scanner, time, x, y, z in parts:
+        lx, ly, lz = frame.to_local(*placed(x, y), z)
+        s, d = frame.road(0).locate(lx, ly)
+        good = np.isfinite(s)
+        records = np.zeros(good.sum(), SURVEY_POINT)
+        for name, values in zip("xyzsd", (lx, ly, lz, s, d)):
+            records[name] = to_units(values[good])
+        records["time"], records["pass_number"], records["scanner"] = time[good], passes[drive], scanner
+        store.append(0, records)
+    field = "scanner_channel" if len(scanners) > 1 else None
+    return Survey([], frame, store, "", {p.number: SENSOR for p in frame.passes}, field, list(range(len(scanners))), True, True, above_road=12.0)
+
+
+def edges_of(length=60.0, half=HALF, north=False):
+    """ROAD_EDGES of the road."""
+    return _lines(ROAD_EDGES, [(d, dict(side="left" if d > 0 else "right", status="measured", kind="main", part="bottom")) for d in (half, -half)],
+                  length, north)
+
+
+def markings_of(length=60.0, offsets=(-3.25, 0.0, 3.25), north=False):
+    """MARKING_LINES of the road."""
+    return _lines(MARKING_LINES, [(d, dict(line=k, kind="lane", status="measured")) for k, d in enumerate(offsets)], length, north)
+
+
+def _lines(schema, lines, length, north):
+    found = Features("LineStringZ", schema)
+    for d, row in lines:
+        ends = [(0.0, d), (length, d)]
+        found.add(shapely.linestrings([((EAST - y, NORTH + x) if north else (EAST + x, NORTH + y)) + (GROUND,) for x, y in ends]), road=0, **row)
+    return found
