@@ -1,5 +1,6 @@
 """Every algorithm, in the order of the work."""
 
+from .algorithm import GROUPS
 from .assess.assess_boundaries import AssessBoundaries
 from .assess.assess_driving_lines import AssessDrivingLines
 from .assess.assess_markings import AssessMarkings
@@ -53,3 +54,10 @@ ALGORITHMS = (
     AssessDrivingLines,
     GeoreferenceImage,
 )
+
+
+def toolbox_number(ID):
+    """"2.3" for the third algorithm of the second group: the toolbox sorts by name, and the number keeps the order of the work."""
+    declared = next(one for one in ALGORITHMS if one.ID == ID)
+    group = [one.ID for one in ALGORITHMS if one.GROUP == declared.GROUP]
+    return f"{GROUPS.index(declared.GROUP) + 1}.{group.index(ID) + 1}"

@@ -66,7 +66,7 @@ class SampleRun:
 
         self.running = False
         handleAlgorithmResults(algorithm, self.context, self.feedback, parameters)
-        resultsList.addResult(algorithm.icon(), algorithm.displayName(), time.localtime(), parameters["REPORT"])
+        resultsList.addResult(algorithm.icon(), algorithm.declaration.title(), time.localtime(), parameters["REPORT"])
         self._say(tr("The road map of the sample survey is in the project, its report in the Results Viewer. Its files in {folder} "
                      "are deleted when QGIS is closed: save the layers you want to keep.").format(folder=self.folder),
                   Qgis.MessageLevel.Success)

@@ -1,10 +1,13 @@
 """An algorithm's declaration as QGIS's Processing takes it: dialog, checks, run and failure."""
 
 from datetime import datetime
+from pathlib import Path
 
 from qgis.core import QgsProcessingAlgorithm, QgsProcessingException, QgsProcessingOutputNumber, QgsVectorLayer
+from qgis.PyQt.QtGui import QIcon
 
 from ..algorithms.call import run
+from ..algorithms.catalogue import toolbox_number
 from ..algorithms.parameters import TrajectorySpec, choice_refused, number_refused
 from ..algorithms.trajectory_source import trajectory_path
 from ..core.common.errors import Cancelled, RoadExtractionError
@@ -14,6 +17,8 @@ from .parameters import qgis_parameter
 from .progress import FeedbackProgress
 from .results.run_table import note_run
 from .texts import tr
+
+ICONS = Path(__file__).resolve().parents[1] / "resources" / "icons"
 
 
 class LanewrightAlgorithm(QgsProcessingAlgorithm):
@@ -38,7 +43,17 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         return self.declaration.ID
 
     def displayName(self):
-        return self.declaration.title()
+        """The title with a number by which the toolbox sorts it; the dialog shows it without."""
+        return f"{toolbox_number(self.declaration.ID)} {self.declaration.title()}"
+
+    def icon(self):
+        path = ICONS / f"{self.declaration.ID}.svg"
+        return QIcon(str(path)) if path.exists() else super().icon()
+
+    def createCustomParametersWidget(self, parent=None):
+        from ..desktop.algorithm_dialog import LanewrightDialog
+
+        return LanewrightDialog(self, self.declaration.title(), parent)
 
     def group(self):
         return self.declaration.group()

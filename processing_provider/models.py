@@ -7,9 +7,34 @@ from .texts import tr
 MANUAL_PAGE = "lanewright:models"
 
 
+class LanewrightModel(QgsProcessingModelAlgorithm):
+    """A model of the plugin: its id has no spaces, its title is in the user's language."""
+
+    def createInstance(self):
+        model = LanewrightModel()
+        model.loadVariant(self.toVariant())
+        return model
+
+    def name(self):
+        return model_id(super().name())
+
+    def displayName(self):
+        return tr(super().name())
+
+    def createCustomParametersWidget(self, parent=None):
+        from ..desktop.algorithm_dialog import LanewrightDialog
+
+        return LanewrightDialog(self, self.displayName(), parent)
+
+
+def model_id(title):
+    """The id of a model: "Road map stages" -> "roadmapstages"."""
+    return "".join(letter for letter in title.lower() if letter.isalnum())
+
+
 def read_model(path):
-    """The model of a .model3 in the user's language; None where QGIS cannot read it."""
-    model = QgsProcessingModelAlgorithm()
+    """The model of a .model3; None where QGIS cannot read it."""
+    model = LanewrightModel()
     if not model.fromFile(str(path)):
         return None
     explain(model)

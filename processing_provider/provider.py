@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from qgis.core import QgsProcessingProvider
+from qgis.core import QgsApplication, QgsProcessingProvider
 from qgis.PyQt.QtGui import QIcon
 
 from ..algorithms.catalogue import ALGORITHMS
@@ -10,6 +10,10 @@ from .algorithm import LanewrightAlgorithm
 from .models import read_model
 
 RESOURCES = Path(__file__).resolve().parents[1] / "resources"
+
+# id of a model -> what it was called in version 0.1.0
+OLD_NAMES = {"roadmapstages": "Road map stages", "scanlineboundarystages": "Boundaries from scanlines",
+             "markingsanddrivinglineswithassessment": "Markings and driving lines with assessment"}
 
 
 class LanewrightProvider(QgsProcessingProvider):
@@ -32,3 +36,5 @@ class LanewrightProvider(QgsProcessingProvider):
             model = read_model(path)
             if model is not None:
                 self.addAlgorithm(model)
+                # by which scripts and models called it before ids had no spaces
+                QgsApplication.processingRegistry().addAlgorithmAlias(f"{self.id()}:{OLD_NAMES.get(model.name(), '')}", f"{self.id()}:{model.name()}")

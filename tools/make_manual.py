@@ -66,15 +66,15 @@ def contents(algorithms):
         if algorithm.group() != group:
             group = algorithm.group()
             lines += ["", f"### {group}", ""]
-        lines.append(f"- [{algorithm.displayName()}]({algorithm.name()}.md): {lower_first(algorithm.shortDescription())}")
+        lines.append(f"- [{algorithm.declaration.title()}]({algorithm.name()}.md): {lower_first(algorithm.shortDescription())}")
     return "\n".join(lines) + "\n"
 
 
 def page(algorithm):
-    lines = [f"# {algorithm.displayName()}", "", algorithm.shortDescription(), ""]
+    lines = [f"# {algorithm.declaration.title()}", "", algorithm.shortDescription(), ""]
     lines += [part + "\n" for part in algorithm.declaration.HELP.split("\n\n") if part]
     if (PAGES / "img" / f"{algorithm.name()}.png").exists():
-        lines += [f"![{algorithm.displayName()}](img/{algorithm.name()}.png)", ""]
+        lines += [f"![{algorithm.declaration.title()}](img/{algorithm.name()}.png)", ""]
     definitions = algorithm.parameterDefinitions()
     inputs = [d for d in definitions if not d.isDestination()]
     plain = [d for d in inputs if not advanced(d)]

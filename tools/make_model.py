@@ -71,7 +71,7 @@ def add_stages(model, stages):
     for number, (stage, (inputs, results)) in enumerate(stages.items()):
         child = QgsProcessingModelChildAlgorithm(f"lanewright:{stage}")
         child.setChildId(child_id(stages, stage))
-        child.setDescription(registry.algorithmById(f"lanewright:{stage}").displayName())
+        child.setDescription(registry.algorithmById(f"lanewright:{stage}").declaration.title())
         child.setPosition(QPointF(150 + STEP_X * (1 + number % 5), 80 + 2 * STEP_Y * (number // 5)))
         for name, text in inputs.items():
             child.addParameterSources(name, [source(text, stages)])

@@ -54,7 +54,7 @@ ROAD_MAP = Recipe(
 )
 
 SCANLINE_BOUNDARIES = Recipe(
-    "scanline_boundaries", "Boundaries from scanlines",
+    "scanline_boundaries", "Scanline boundary stages",
     "Road boundaries alone, by normalized scanlines: the measured surface is cut by planes across the road, and bottom and "
     "top of the curb are the corners of the planes fitted to it.",
     ("POINT_CLOUDS", "TRAJECTORY", "CRS"),

@@ -30,6 +30,7 @@ def texts():
     for text in aliases():
         found.setdefault(text, SCHEMAS.relative_to(ROOT).as_posix())
     for recipe in RECIPES:
+        found.setdefault(recipe.name, "tools/models.py")
         found.setdefault(recipe.description, "tools/models.py")
     for path in sorted((ROOT / "resources" / "styles").glob("*.qml")):
         for text in legend(path):

@@ -3204,6 +3204,56 @@
             <translation>{label} hat Geometrien ohne Höhen (Z). Den Layer verwenden, den Lanewright geschrieben hat.</translation>
         </message>
         <message>
+            <location filename="../../desktop/algorithm_dialog.py" />
+            <source>Presets</source>
+            <translation>Voreinstellungen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/algorithm_dialog.py" />
+            <source>Settings that you keep under a name; data and destinations are no part of them</source>
+            <translation>Einstellungen, die Sie unter einem Namen behalten; Daten und Ziele gehören nicht dazu</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/algorithm_dialog.py" />
+            <source>Folder for all results</source>
+            <translation>Ordner für alle Ergebnisse</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/algorithm_dialog.py" />
+            <source>Save as…</source>
+            <translation>Speichern als…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/algorithm_dialog.py" />
+            <source>Default values</source>
+            <translation>Vorgabewerte</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/algorithm_dialog.py" />
+            <source>Name of the preset</source>
+            <translation>Name der Voreinstellung</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/algorithm_dialog.py" />
+            <source>Save everything to…</source>
+            <translation>Alles speichern unter…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/algorithm_dialog.py" />
+            <source>One folder for all results: the layers as tables of one GeoPackage, images and reports beside it</source>
+            <translation>Ein Ordner für alle Ergebnisse: die Layer als Tabellen eines GeoPackage, Bilder und Berichte daneben</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/algorithm_dialog.py" />
+            <source>Remove</source>
+            <translation>Entfernen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/algorithm_dialog.py" />
+            <source>Preset {name}: {count} settings.</source>
+            <translation>Voreinstellung {name}: {count} Einstellungen.</translation>
+        </message>
+        <message>
             <location filename="../../desktop/cloud_widget.py" />
             <source>Files, a folder, or wildcards such as /data/B12/*.laz; or drop them here</source>
             <translation>Dateien, ein Ordner oder Platzhalter wie /data/B12/*.laz; oder hierher ziehen</translation>
@@ -4095,13 +4145,28 @@
         </message>
         <message>
             <location filename="../../tools/models.py" />
+            <source>Road map stages</source>
+            <translation>Straßenkarte in Schritten</translation>
+        </message>
+        <message>
+            <location filename="../../tools/models.py" />
             <source>The stages of the road map, one by one, with their results handed on through files: the same result as Road map. Copy it and change a stage to your needs.</source>
             <translation>Die Stufen der Straßenkarte, eine nach der anderen, deren Ergebnisse über Dateien weitergereicht werden: dasselbe Ergebnis wie „Straßenkarte“. Kopieren und eine Stufe nach Bedarf ändern.</translation>
         </message>
         <message>
             <location filename="../../tools/models.py" />
+            <source>Scanline boundary stages</source>
+            <translation>Fahrbahnränder aus Scanlinien in Schritten</translation>
+        </message>
+        <message>
+            <location filename="../../tools/models.py" />
             <source>Road boundaries alone, by normalized scanlines: the measured surface is cut by planes across the road, and bottom and top of the curb are the corners of the planes fitted to it.</source>
             <translation>Nur Straßenränder, über normalisierte Scanlinien: Die gemessene Oberfläche wird quer zur Straße von Ebenen geschnitten; Unter- und Oberkante des Bordsteins sind die Ecken der eingepassten Ebenen.</translation>
+        </message>
+        <message>
+            <location filename="../../tools/models.py" />
+            <source>Markings and driving lines with assessment</source>
+            <translation>Markierungen und Fahrlinien mit Bewertung</translation>
         </message>
         <message>
             <location filename="../../tools/models.py" />

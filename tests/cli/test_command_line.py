@@ -44,7 +44,7 @@ def one_sentence(run):
 
 def test_all_algorithms_and_the_model_are_listed(tmp_path):
     listed = qgis_process("list", folder=tmp_path).stdout
-    assert "lanewright:roadmap\t" in listed and "lanewright:Road map stages" in listed
+    assert "lanewright:roadmap\t" in listed and "lanewright:roadmapstages" in listed
 
 
 def test_another_python_first_on_the_path_is_not_taken_for_that_of_qgis(tmp_path):

@@ -4,6 +4,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from lanewright.processing_provider.models import model_id
 from qgis.core import Qgis, QgsApplication
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
@@ -17,12 +18,22 @@ def recipe(request):
 
 @pytest.fixture
 def model(provider, recipe):
-    return QgsApplication.processingRegistry().createAlgorithmById(f"lanewright:{recipe.name}")
+    return QgsApplication.processingRegistry().createAlgorithmById(f"lanewright:{model_id(recipe.name)}")
 
 
 def test_every_model_is_listed_and_says_what_it_does(model, recipe):
     assert model is not None and model.group() == "Models"
     assert recipe.description[:30] in model.shortHelpString()
+
+
+def test_the_id_of_a_model_has_no_spaces_and_its_title_is_kept_by_copies(model, recipe):
+    assert model.name() == model_id(recipe.name) and " " not in model.id()
+    assert model.displayName() == model.create().displayName() == recipe.name
+
+
+@pytest.mark.parametrize("old", ["Road map stages", "Boundaries from scanlines", "Markings and driving lines with assessment"])
+def test_a_model_is_still_found_by_the_name_that_was_its_id(provider, old):
+    assert QgsApplication.processingRegistry().createAlgorithmById(f"lanewright:{old}") is not None
 
 
 def test_the_file_is_that_of_the_recipe(model, recipe):

@@ -66,7 +66,7 @@ def model(survey, tmp_path_factory):
     import processing
 
     folder = tmp_path_factory.mktemp("model")
-    processing.run("lanewright:Road map stages", {
+    processing.run("lanewright:roadmapstages", {
         "POINT_CLOUDS": [survey["POINT_CLOUD"]], "TRAJECTORY": survey["TRAJECTORY"],
         **{name.lower(): path for name, path in destinations(folder).items()},
     })

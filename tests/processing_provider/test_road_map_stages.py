@@ -8,7 +8,7 @@ RESULTS = {"road_edges", "road_surface", "road_points", "intensity_image", "mark
 
 @pytest.fixture
 def model(provider):
-    return QgsApplication.processingRegistry().createAlgorithmById("lanewright:Road map stages")
+    return QgsApplication.processingRegistry().createAlgorithmById("lanewright:roadmapstages")
 
 
 def test_the_model_is_listed_under_the_provider_and_knows_its_results(model):

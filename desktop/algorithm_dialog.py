@@ -1,0 +1,127 @@
+"""The dialog of our algorithms: QGIS's own, with one place to save everything to, and presets of the settings."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from processing.gui.AlgorithmDialog import AlgorithmDialog
+from qgis.core import Qgis, QgsProcessingAlgorithm, QgsProcessingParameterDefinition, QgsSettings
+from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QInputDialog, QMenu, QPushButton, QWidget
+
+from ..processing_provider.texts import tr
+
+LAST_FOLDER = "/Processing/LastOutputPath"  # QGIS's own setting
+PRESETS = "lanewright/presets"
+SETTINGS = ("number", "enum", "boolean", "string", "crs", "expression", "distance")  # what a preset holds: no data, no destination
+FEWEST_OUTPUTS = 3  # that are worth one place for all
+
+
+class LanewrightDialog(AlgorithmDialog):
+    """QGIS's dialog of an algorithm; `title` stands in its frame."""
+
+    def __init__(self, algorithm: QgsProcessingAlgorithm, title: str, parent: QWidget | None = None):
+        super().__init__(algorithm, False, parent)
+        self.setWindowTitle(title)
+        if len(outputs_by_default(algorithm)) >= FEWEST_OUTPUTS:
+            self.save_button = self._button(tr("Save everything to…"), tr("One folder for all results: the layers as tables of one GeoPackage, "
+                                                                          "images and reports beside it"))
+            self.save_button.clicked.connect(self.choose_folder)
+        self.presets_button = self._button(tr("Presets"), tr("Settings that you keep under a name; data and destinations are no part of them"))
+        self.presets = QMenu(self)
+        self.presets.aboutToShow.connect(self._list_presets)
+        self.presets_button.setMenu(self.presets)
+
+    def _button(self, text, tip):
+        button = QPushButton(text)
+        button.setToolTip(tip)
+        self.buttonBox().addButton(button, QDialogButtonBox.ButtonRole.ResetRole)
+        return button
+
+    # -- everything to one place ----------------------------------------------------------------
+
+    def choose_folder(self) -> None:
+        folder = QFileDialog.getExistingDirectory(self, tr("Folder for all results"), QgsSettings().value(LAST_FOLDER, ""))
+        if folder:
+            QgsSettings().setValue(LAST_FOLDER, folder)
+            self.save_everything_to(folder)
+
+    def save_everything_to(self, folder: str) -> None:
+        """Set the destinations of all results that are made by default."""
+        self.setParameters(destinations(self.algorithm(), folder))
+
+    # -- presets ----------------------------------------------------------------------------------
+
+    def settings(self) -> dict:
+        """The values of the settings, as JSON holds them."""
+        wrappers = self.mainWidget().wrappers
+        return {definition.name(): definition.valueAsJsonObject(wrappers[definition.name()].parameterValue(), self.processingContext())
+                for definition in self.algorithm().parameterDefinitions() if definition.type() in SETTINGS and definition.name() in wrappers}
+
+    def save_preset(self, name: str) -> None:
+        kept = presets_of(self.algorithm().name())
+        _keep(self.algorithm().name(), {**kept, name: self.settings()})
+
+    def load_preset(self, name: str) -> None:
+        """Set what the preset holds; a setting that the algorithm no longer has is passed over."""
+        known = {definition.name() for definition in self.algorithm().parameterDefinitions()}
+        values = presets_of(self.algorithm().name())[name]
+        self.setParameters({setting: value for setting, value in values.items() if setting in known})
+        self.messageBar().pushMessage("", tr("Preset {name}: {count} settings.").format(name=name, count=len(values)), level=Qgis.MessageLevel.Info)
+
+    def remove_preset(self, name: str) -> None:
+        kept = presets_of(self.algorithm().name())
+        kept.pop(name, None)
+        _keep(self.algorithm().name(), kept)
+
+    def _list_presets(self):
+        self.presets.clear()
+        names = sorted(presets_of(self.algorithm().name()))
+        for name in names:
+            self.presets.addAction(name, lambda name=name: self.load_preset(name))
+        if names:
+            self.presets.addSeparator()
+        self.presets.addAction(tr("Save as…"), self._ask_for_name)
+        self.presets.addAction(tr("Default values"), self._defaults)
+        if names:
+            removal = self.presets.addMenu(tr("Remove"))
+            for name in names:
+                removal.addAction(name, lambda name=name: self.remove_preset(name))
+
+    def _ask_for_name(self):
+        name, accepted = QInputDialog.getText(self, tr("Presets"), tr("Name of the preset"))
+        if accepted and name.strip():
+            self.save_preset(name.strip())
+
+    def _defaults(self):
+        self.setParameters({definition.name(): definition.defaultValue() for definition in self.algorithm().parameterDefinitions()
+                            if definition.type() in SETTINGS})
+
+
+def outputs_by_default(algorithm: QgsProcessingAlgorithm) -> list[QgsProcessingParameterDefinition]:
+    """The results that are made unless one is left out."""
+    return [definition for definition in algorithm.destinationParameterDefinitions() if definition.createByDefault()]
+
+
+def destinations(algorithm: QgsProcessingAlgorithm, folder: str) -> dict[str, str]:
+    """Where each result goes: layers into one GeoPackage called like the algorithm, other files under their own names."""
+    found = {}
+    for definition in outputs_by_default(algorithm):
+        table = definition.name().split(":")[-1].lower()
+        if definition.type() == "sink":
+            found[definition.name()] = f"ogr:dbname='{Path(folder) / algorithm.name()}.gpkg' table=\"{table}\" (geom)"
+        else:
+            found[definition.name()] = str(Path(folder) / f"{table}.{definition.defaultFileExtension()}")
+    return found
+
+
+def presets_of(algorithm: str) -> dict[str, dict]:
+    """{name: {setting: value}} of the presets of an algorithm."""
+    try:
+        return json.loads(QgsSettings().value(f"{PRESETS}/{algorithm}", "{}"))
+    except ValueError:
+        return {}
+
+
+def _keep(algorithm, presets):
+    QgsSettings().setValue(f"{PRESETS}/{algorithm}", json.dumps(presets))

@@ -1,0 +1,86 @@
+"""The dialog of our algorithms: its title, one place for all results, presets; and the order of the toolbox."""
+
+import pytest
+from lanewright.algorithms.catalogue import ALGORITHMS
+from lanewright.desktop.algorithm_dialog import LanewrightDialog, destinations, presets_of
+from qgis.core import QgsApplication, QgsVectorLayer
+
+
+@pytest.fixture(autouse=True)
+def no_window(provider, monkeypatch):
+    """Dialogs take what they can from a window, and pytest-qgis puts one of its own in its place."""
+    from processing.gui import ParametersPanel
+
+    monkeypatch.setattr(ParametersPanel, "iface", None)
+
+
+def algorithm_of(ID):
+    return QgsApplication.processingRegistry().createAlgorithmById(f"lanewright:{ID}")
+
+
+@pytest.fixture
+def dialog():
+    dialog = algorithm_of("roadmap").createCustomParametersWidget()
+    yield dialog
+    for name in list(presets_of("roadmap")):
+        dialog.remove_preset(name)
+
+
+def test_the_dialog_opens_under_the_plain_title(dialog):
+    assert isinstance(dialog, LanewrightDialog) and dialog.windowTitle() == "Road map"
+    assert algorithm_of("roadmapstages").createCustomParametersWidget().windowTitle() == "Road map stages"
+
+
+def test_the_toolbox_lists_groups_and_algorithms_in_the_order_of_the_work(provider):
+    listed = sorted((algorithm for algorithm in provider.algorithms() if hasattr(algorithm, "declaration")),
+                    key=lambda algorithm: (algorithm.group(), algorithm.displayName()))
+    by_number = [algorithm.declaration.ID for algorithm in listed]
+    wanted = sorted(ALGORITHMS, key=lambda declared: algorithm_of(declared.ID).group())  # within a group as in the catalogue
+    assert by_number == [declared.ID for declared in wanted]
+
+
+def test_every_algorithm_has_a_picture_of_its_own(provider):
+    icons = {algorithm.name(): algorithm.icon() for algorithm in provider.algorithms() if hasattr(algorithm, "declaration")}
+    pictures = {name: icon.pixmap(24, 24).toImage() for name, icon in icons.items()}
+    assert not [name for name, picture in pictures.items() if picture.isNull()]
+    assert len({bytes(picture.bits().asstring(picture.sizeInBytes())) for picture in pictures.values()}) == len(pictures)
+
+
+def test_everything_goes_to_one_geopackage_and_its_folder(dialog, tmp_path):
+    dialog.setParameters({"POINT_CLOUDS": ["a.laz"], "TRAJECTORY": "drive.csv"})
+    dialog.save_everything_to(str(tmp_path))
+    parameters = dialog.createProcessingParameters()
+    edges, lanes = (parameters[name].sink.staticValue() for name in ("ROAD_EDGES", "DRIVING_LINES"))
+    assert edges == f"ogr:dbname='{tmp_path}/roadmap.gpkg' table=\"road_edges\" (geom)" and "driving_lines" in lanes
+    assert parameters["REPORT"] == f"{tmp_path}/report.html"
+    assert parameters["INTENSITY_IMAGE"].sink.staticValue() == f"{tmp_path}/intensity_image.tif"
+    assert not parameters.get("ROAD_POINTS"), "what is not made by default stays out"
+
+
+def test_a_run_writes_what_save_everything_names(provider, tmp_path):
+    import processing
+
+    algorithm = algorithm_of("samplesurvey")
+    places = destinations(algorithm, str(tmp_path))
+    processing.run("lanewright:samplesurvey", {"LENGTH": 20, "PULSE_RATE": 20000, **places})
+    package = QgsVectorLayer(str(tmp_path / "samplesurvey.gpkg"), "all", "ogr")
+    tables = {layer.split("!!::!!")[1] for layer in package.dataProvider().subLayers()}
+    assert tables == {definition.name().lower() for definition in algorithm.destinationParameterDefinitions()
+                      if definition.type() == "sink" and definition.createByDefault()}
+    assert (tmp_path / "point_cloud.laz").is_file()
+
+
+def test_a_preset_brings_the_settings_back_and_leaves_the_data(dialog):
+    dialog.setParameters({"POINT_CLOUDS": ["a.laz"], "MIN_HEIGHT": 0.08, "BOUNDARY_METHOD": "profiles"})
+    dialog.save_preset("low curbs")
+    other = algorithm_of("roadmap").createCustomParametersWidget()
+    other.setParameters({"POINT_CLOUDS": ["b.laz"]})
+    other.load_preset("low curbs")
+    wrappers = other.mainWidget().wrappers
+    assert [wrappers[name].parameterValue() for name in ("MIN_HEIGHT", "BOUNDARY_METHOD", "POINT_CLOUDS")] == [0.08, "profiles", ["b.laz"]]
+
+
+def test_a_removed_preset_is_gone(dialog):
+    dialog.save_preset("one")
+    dialog.remove_preset("one")
+    assert "one" not in presets_of("roadmap")
