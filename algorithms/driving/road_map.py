@@ -107,13 +107,14 @@ class RoadMap(Algorithm):
         road_map.road_points.close()
         if road_map.image is None:
             call.drop_file("INTENSITY_IMAGE")
+        made = {}
         for name, attribute, geometry, fields, _ in LAYERS:
-            layer = road_map.layer(attribute)
+            layer = made[attribute] = road_map.layer(attribute)
             call.layer(name, layer if layer is not None else Features(geometry, fields, crs=road_map.crs))
         call.layer("CURB_POINTS", road_map.layer("curb_points"))
         if call.wants("REPORT"):
             from ...core.report.road_map import road_map_report
 
             call.text("REPORT", road_map_report(road_map, image_path))
-        return road_map_numbers([road.length for road in road_map.frame.roads], road_map.edges, road_map.marking_lines, road_map.driving_lines,
-                                road_map.markings)
+        return road_map_numbers([road.length for road in road_map.frame.roads],
+                                *(made[name] for name in ("edges", "marking_lines", "driving_lines", "markings")))

@@ -23,7 +23,7 @@ NUMBERS = (
 )
 
 
-def road_map_numbers(road_lengths: Iterable[float], edges: Features, marking_lines: Features | None, driving_lines: Features | None,
+def road_map_numbers(road_lengths: Iterable[float], edges: Features | None, marking_lines: Features | None, driving_lines: Features | None,
                      markings: Features | None) -> dict[str, float]:
     """The values of NUMBERS; a share of nothing is left out.
 
