@@ -6,14 +6,14 @@ from ...core.common.errors import RoadExtractionError
 from ..parameters import ExpressionSpec, TextSpec
 from ..texts import tr
 
-NOT_THERE = ("dropped", "none")  # values of the field `kind` of a reference that mean: no curb to be found here
+NOT_THERE = ("dropped", "none")  # values of the field `edge` or `kind` of a reference that mean: no curb to be found here
 
 
 def add_excluded(algorithm):
     algorithm.add(ExpressionSpec(
         "EXCLUDED", tr("Rows of the reference that are not judged"),
         tr("An expression, such as \"type\" = 'driveway': where it holds, a result is neither right nor wrong. Empty leaves out the rows "
-           "whose field kind says dropped or none."),
+           "whose field edge or kind says dropped or none."),
         optional=True, advanced=True, value="", layer="REFERENCE",
     ))
 
@@ -60,7 +60,9 @@ def layer_and_excluded(call, name):
     source = call.source(name)
     excluded = call.rows_where("EXCLUDED", source)
     layer, places = _read(source)
-    kinds = [str(kind) if kind is not None else "" for kind in layer.column("kind")]
+    # `edge` says what an edge is, and `kind` where it runs; layers without `edge` say in `kind` what it is
+    kinds = ["" if kind is None and edge is None else str(kind if edge is None else edge)
+             for kind, edge in zip(layer.column("kind"), layer.column("edge"))]
     if excluded is None:
         kinds = [kind.lower() for kind in kinds]
         return layer, [kind in NOT_THERE for kind in kinds], kinds

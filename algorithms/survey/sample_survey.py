@@ -13,12 +13,16 @@ SAMPLE_SETTINGS = (
         "SCENE", SAMPLE, "scene", tr("Scene"),
         tr("street: two lanes in bends, with curbs and parked cars. rural: a country road without curbs. urban: four lanes with gutters. "
            "one-lane and wide-lane: a single lane of 5.8 or 7 m with arrows in its middle. no-centre-line: two lanes without a line "
-           "between them. hatched-island: two directions held apart by a hatched area."),
-        choices=("street", "rural", "urban", "one-lane", "wide-lane", "no-centre-line", "hatched-island"),
+           "between them. hatched-island: two directions held apart by a hatched area. motorway: two lanes and a hard shoulder each way, "
+           "and an exit. serpentine: a steep road with hairpins. crossing: four arms with turning lanes, one of them not driven. "
+           "roundabout: a ring with splitter islands, driven straight on and to the left."),
+        choices=("street", "rural", "urban", "one-lane", "wide-lane", "no-centre-line", "hatched-island", "motorway", "serpentine",
+                 "crossing", "roundabout"),
     ),
     SettingSpec(
-        "LENGTH", SAMPLE, "length", tr("Length of the road (m)"),
-        tr("Longer takes longer to make and to work through, in proportion."),
+        "LENGTH", SAMPLE, "length", tr("Length of the road, 0: as usual for the scene (m)"),
+        tr("Longer takes longer to make and to work through, in proportion. Streets are usually 120 m long, a motorway 240 m (600 m at the "
+           "most), a serpentine 200 m (1000 m), a crossing and a roundabout 110 m from end to end (300 m)."),
     ),
     SettingSpec(
         "SEED", SAMPLE, "seed", tr("Seed of the random numbers (whole number)"),
@@ -42,7 +46,8 @@ SAMPLE_SETTINGS = (
         advanced=True,
     ),
     SettingSpec(
-        "RADIUS", SAMPLE, "radius", tr("Radius of the bends (m)"), tr("Smaller makes sharper bends."),
+        "RADIUS", SAMPLE, "radius", tr("Radius of the bends (m)"),
+        tr("Smaller makes sharper bends; motorway, serpentine, crossing and roundabout have bends of their own."),
         advanced=True,
     ),
     SettingSpec(
@@ -66,7 +71,7 @@ TRUTHS = (
 
 class SampleSurvey(Algorithm):
     ID, TITLE, GROUP = "samplesurvey", "Sample survey", "Survey"
-    SUMMARY = "Simulates a mobile laser scanning survey of a street, together with its known truth."
+    SUMMARY = "Simulates a mobile laser scanning survey of a street, motorway, junction or mountain road, together with its known truth."
     HELP = "Every pulse of two scanners is followed to what it meets first. Figures reached on it are figures on simulated data."
     TAGS = ("sample", "simulation", "test data")
 
@@ -84,7 +89,8 @@ class SampleSurvey(Algorithm):
         self.add_raster(
             "UAV_IMAGE", tr("UAV image"),
             tr("What a UAV sees of the first 150 m: a TIFF of 4 cm pixels without a place on the map, with the distortion of its camera. "
-               "Georeference image finds its place."), optional=True, by_default=False)
+               "Georeference image finds its place. "
+               "There is none of motorway, serpentine, crossing and roundabout."), optional=True, by_default=False)
         self.add_sink("UAV_GCPS", tr("Ground control points of the UAV image"), geometry="PointZ", optional=True, by_default=False,
                       fields=CONTROL_POINTS)
         self.add_number("POINTS", tr("Points"))
@@ -94,6 +100,10 @@ class SampleSurvey(Algorithm):
 
         settings = call.settings(SAMPLE_SETTINGS, **({"crs": call.crs()} if call.crs() else {}))
         survey = make_sample_survey(settings, progress.part(0.0, 0.1))
+        if call.wants("UAV_IMAGE") or call.wants("UAV_GCPS"):
+            from ...core.sample.orthophoto import seen_from_above
+
+            seen_from_above(survey)
         count = survey.write_cloud(call.new_file("POINT_CLOUD"), progress.part(0.1, 0.9 if call.wants("UAV_IMAGE") else 1.0))
         progress.info(tr("Sample survey: {count} points along {length:.0f} m of road.").format(count=count, length=settings.length))
         if call.wants("UAV_IMAGE"):

@@ -209,3 +209,52 @@ class Crown:
         t = np.maximum(enter, 0.0) + rng.exponential(self.free_way, len(square))
         hit = (inside > 0) & (t < leave)
         return np.where(hit, t, np.inf), np.where(hit, rng.uniform(0.3, 1.0, len(t)), 0.0), np.full(len(t), self.brightness)
+
+
+@dataclass(frozen=True)
+class Rail:
+    """One length of a guard rail: an upright strip between two places.
+
+    Attributes
+    ----------
+    x, y, z : m, local place of the ground below its middle
+    heading : radians counter-clockwise from east
+    length : m
+    slope : m per m, of its climb ahead
+    low, high : m above the ground
+    label : of its points
+    brightness : 0 to 1, reflectance
+    """
+
+    x: float
+    y: float
+    z: float
+    heading: float
+    length: float
+    slope: float
+    low: float = 0.45
+    high: float = 0.75
+    label: int = LABEL["rail"]
+    brightness: float = 0.40
+
+    @property
+    def reach(self) -> float:
+        """m, radius of the circle around it."""
+        return self.length / 2
+
+    @property
+    def top(self) -> float:
+        """m, local z of its upper edge."""
+        return self.z + self.high + abs(self.slope) * self.reach
+
+    def hits(self, origin: np.ndarray, direction: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Distance, cosine of incidence and brightness of each ray."""
+        cos, sin = np.cos(self.heading), np.sin(self.heading)
+        across = direction[1] * cos - direction[0] * sin
+        dx, dy = origin[0] - self.x, origin[1] - self.y
+        with np.errstate(divide="ignore", invalid="ignore"):
+            t = -(dy * cos - dx * sin) / across
+            along = dx * cos + dy * sin + t * (direction[0] * cos + direction[1] * sin)
+            above = origin[2] + t * direction[2] - self.z - self.slope * along
+        hit = (t > 0) & (np.abs(along) <= self.length / 2) & (above >= self.low) & (above <= self.high)
+        return np.where(hit, t, np.inf), np.where(hit, np.abs(across), 0.0), np.full(len(t), self.brightness)

@@ -77,6 +77,19 @@ def plates(scene: Scene, camera: Camera) -> list[tuple[float, float, float]]:
     return found
 
 
+def seen_from_above(survey: SampleSurvey) -> tuple[Scene, Camera]:
+    """The street and the camera over it.
+
+    Raises
+    ------
+    RoadExtractionError
+        If the scene is no street along one axis: there is no image of those.
+    """
+    if survey.camera is None or not isinstance(survey.scene, Scene):
+        raise RoadExtractionError(f"There is no UAV image of the scene {survey.settings.scene}. Leave it out, or choose a street.")
+    return survey.scene, survey.camera
+
+
 def _is_free(scene, x, y, around):
     """(N,) bool, places that are not under a car, a tree or a pole."""
     free = np.ones(len(x), dtype=bool)
@@ -129,7 +142,8 @@ def uav_control_points(survey: SampleSurvey) -> Features:
     """
     from shapely import Point
 
-    scene, camera, origin = survey.scene, survey.camera, np.array(survey.settings.origin)
+    scene, camera = seen_from_above(survey)
+    origin = np.array(survey.settings.origin)
     kinds, x, y = _paint_corners(scene, camera)
     laid = plates(scene, camera)
     kinds = kinds + ["plate"] * len(laid)
@@ -267,8 +281,8 @@ def write_uav_image(survey: SampleSurvey, path: str | os.PathLike[str], progress
     from osgeo import gdal
 
     progress = progress or Progress()
-    camera = survey.camera
-    street = StreetColours(survey.scene, camera, survey.settings.seed)
+    scene, camera = seen_from_above(survey)
+    street = StreetColours(scene, camera, survey.settings.seed)
     unfinished = Path(path).with_name(Path(path).name + ".unfinished.tif")
     dataset = None
     try:

@@ -178,6 +178,15 @@ def turn_arrow(tail: float, offset: float, direction: int, length: float = 4.5) 
     return np.column_stack([tail + direction * shape[:, 0], offset + direction * shape[:, 1]])
 
 
+def left_arrow(tail: float, offset: float, direction: int, length: float = 4.5) -> np.ndarray:
+    """(9, 2) outline of an arrow for a left turn, m."""
+    shaft, neck = 0.10, length - 1.1
+    shape = np.array([
+        (0, -shaft), (neck, -shaft), (neck + 0.55, 0.55), (neck + 0.95, 0.55), (neck + 0.40, 1.05), (neck - 0.15, 0.55), (neck + 0.25, 0.55),
+        (neck - 0.15, shaft), (0, shaft)])
+    return np.column_stack([tail + direction * shape[:, 0], offset + direction * shape[:, 1]])
+
+
 def hatching(start: float, end: float, right: float, left: float, bar: float = 0.45, gap: float = 1.0) -> tuple[np.ndarray, ...]:
     """Bars at 45 degrees across a strip between two stations and two offsets, m."""
     width = left - right

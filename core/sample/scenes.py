@@ -2,16 +2,63 @@
 
 from __future__ import annotations
 
-from .lane_scenes import hatched_island, no_centre_line, one_lane, wide_lane
-from .street import Scene
-from .street_scenes import rural, street, urban
+from collections.abc import Callable
+from typing import NamedTuple, Union
 
-_SCENES = {"street": street, "rural": rural, "urban": urban, "one-lane": one_lane, "wide-lane": wide_lane,
-           "no-centre-line": no_centre_line, "hatched-island": hatched_island}
+from ..common.errors import RoadExtractionError
+from .plan.crossing import crossing
+from .plan.motorway import motorway
+from .plan.roundabout import roundabout
+from .plan.scene import PlanScene
+from .plan.serpentine import serpentine
+from .street import Scene
+from .streets.lane_scenes import hatched_island, no_centre_line, one_lane, wide_lane
+from .streets.ordinary import rural, street, urban
+
+_SHORTEST = 20.0  # m of road
+
+
+AnyScene = Union[Scene, PlanScene]
+
+
+class _Kind(NamedTuple):
+    """How a scene is built, and its length (m): usual, and at the most."""
+
+    build: Callable[[float, int, float, float, float], AnyScene]
+    usual: float
+    longest: float
+
+
+_STREET = 120.0, 20000.0
+_SCENES = {
+    "street": _Kind(street, *_STREET), "rural": _Kind(rural, *_STREET), "urban": _Kind(urban, *_STREET),
+    "one-lane": _Kind(one_lane, *_STREET), "wide-lane": _Kind(wide_lane, *_STREET),
+    "no-centre-line": _Kind(no_centre_line, *_STREET), "hatched-island": _Kind(hatched_island, *_STREET),
+    # a plan is held as a whole, so its size is limited
+    "motorway": _Kind(motorway, 240.0, 600.0), "serpentine": _Kind(serpentine, 200.0, 1000.0),
+    "crossing": _Kind(crossing, 110.0, 300.0), "roundabout": _Kind(roundabout, 110.0, 300.0)}
 SCENES = tuple(_SCENES)
 
 
-def build_scene(name: str, length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:
+def length_of(name: str, length: float) -> float:
+    """The length of a scene, m: the usual one where `length` is 0.
+
+    Raises
+    ------
+    RoadExtractionError
+        If there is no such scene, or it cannot be that long or short.
+    """
+    if name not in _SCENES:
+        raise RoadExtractionError(f"There is no sample scene {name!r}. Choose one of: {', '.join(SCENES)}.")
+    kind = _SCENES[name]
+    length = length or kind.usual
+    if not _SHORTEST <= length <= kind.longest:
+        raise RoadExtractionError(f"The sample scene {name} cannot be {length:g} m long. Choose from {_SHORTEST:g} to {kind.longest:g} m, "
+                                  f"or 0 for the usual {kind.usual:g} m.")
+    return length
+
+
+def build_scene(name: str, length: float, seed: int, radius: float, curb_height: float, gutter: float) -> AnyScene:
     """Build a scene.
 
     Parameters
@@ -25,6 +72,6 @@ def build_scene(name: str, length: float, seed: int, radius: float, curb_height:
 
     Returns
     -------
-    Scene
+    Scene or PlanScene
     """
-    return _SCENES[name](length, seed, radius, curb_height, gutter)
+    return _SCENES[name].build(length, seed, radius, curb_height, gutter)

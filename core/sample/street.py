@@ -1,4 +1,4 @@
-"""The simulated street: its axis, the strips on both sides, its surface over station and offset, and its materials."""
+"""The simulated street: the strips on both sides, its surface over station and offset, and its materials."""
 
 from __future__ import annotations
 
@@ -10,132 +10,19 @@ import numpy as np
 
 if TYPE_CHECKING:
     from .paint import Paint
+    from .scanner import Hits
+    from .streets.axis import RoadAxis
+    from .truth import Truth
 
 LOWERED_CURB_HEIGHT = 0.02  # m, height of a curb at a driveway or crossing
 _RAMP = 1.0      # m along the road from full to lowered curb
-_SPACING = 0.25  # m between nodes of the axis; a cubic through a node is then accurate to a micrometre
 _SIZE = 512      # nodes per side of a texture, a power of two
 
 # Objects and materials that return a pulse; their numbers are the labels of the points.
 LABELS = ("nothing", "road", "paint", "worn paint", "manhole", "gutter", "curb face", "curb stone", "sidewalk",
-          "shoulder", "verge", "car", "tree", "pole", "stray")
+          "shoulder", "verge", "car", "tree", "pole", "stray", "rail")
 LABEL = {name: number for number, name in enumerate(LABELS)}
 CARRIAGEWAY_LABELS = tuple(LABEL[name] for name in ("road", "paint", "worn paint", "manhole", "gutter"))
-
-
-class RoadAxis:
-    """A horizontal alignment of elements whose curvature changes linearly.
-
-    The axis passes through (0, 0) at station 0. Evaluation and its inverse agree to a few micrometres for
-    offsets below 0.6 of the radius.
-
-    Parameters
-    ----------
-    elements : list of (length, curvature at start, curvature at end), m and 1/m, left positive
-    start : m, station at which the first element begins (may be negative)
-    heading : radians counter-clockwise from east, at `start`
-    """
-
-    def __init__(self, elements: Sequence[tuple[float, float, float]], start: float, heading: float):
-        lengths, curvature_from, curvature_to = (np.array(column, dtype=float) for column in zip(*elements))
-        borders = start + np.concatenate([[0.0], np.cumsum(lengths)])
-        self.start, self.end = borders[0], borders[-1]
-        self._nodes = np.arange(self.start, self.end + _SPACING, _SPACING)
-        element = np.clip(np.searchsorted(borders, self._nodes, side="right") - 1, 0, len(lengths) - 1)
-        self._bend_rate = ((curvature_to - curvature_from) / lengths)[element]
-        self._bend = curvature_from[element] + self._bend_rate * (self._nodes - borders[element])
-        step = np.full(len(self._nodes) - 1, _SPACING)
-        turned = step * (self._bend[:-1] + self._bend[1:]) / 2
-        theta = heading + np.concatenate([[0.0], np.cumsum(turned)])
-        self._theta = theta
-        # three-point Gauss quadrature of the tangent over each step
-        points, weights = np.polynomial.legendre.leggauss(3)
-        along = (points[:, None] + 1) / 2 * step
-        angle = theta[:-1] + self._bend[:-1] * along + self._bend_rate[:-1] * along**2 / 2
-        x = np.concatenate([[0.0], np.cumsum((weights[:, None] * np.cos(angle)).sum(0) * step / 2)])
-        y = np.concatenate([[0.0], np.cumsum((weights[:, None] * np.sin(angle)).sum(0) * step / 2)])
-        self._x, self._y, self._cos, self._sin = x, y, np.cos(theta), np.sin(theta)
-        zero_x, zero_y = self.to_map(np.zeros(1), np.zeros(1))
-        self._x, self._y = x - zero_x, y - zero_y
-
-    def _node(self, s):
-        return np.clip(np.rint((s - self.start) / _SPACING), 0, len(self._nodes) - 1).astype(np.intp)
-
-    def heading(self, s: np.ndarray) -> np.ndarray:
-        """Direction of the axis at (N,) stations, (N,) radians counter-clockwise from east."""
-        k = self._node(s)
-        u = s - self._nodes[k]
-        return self._theta[k] + self._bend[k] * u + self._bend_rate[k] * u**2 / 2
-
-    def curvature(self, s: np.ndarray) -> np.ndarray:
-        """Curvature at (N,) stations, (N,) 1/m, positive in a left bend."""
-        k = self._node(s)
-        return self._bend[k] + self._bend_rate[k] * (s - self._nodes[k])
-
-    def to_map(self, s: np.ndarray, d: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
-        """x and y (m, local) of stations and offsets (m, left positive), arrays of one shape."""
-        k = self._node(s)
-        u = s - self._nodes[k]
-        bend, rate = self._bend[k], self._bend_rate[k]
-        ahead = u - bend**2 * u**3 / 6
-        aside = bend * u**2 / 2 + rate * u**3 / 6
-        turn = bend * u + rate * u**2 / 2
-        ahead = ahead - d * np.sin(turn)
-        aside = aside + d * np.cos(turn)
-        cos, sin = self._cos[k], self._sin[k]
-        return self._x[k] + ahead * cos - aside * sin, self._y[k] + ahead * sin + aside * cos
-
-    def locate(self, x: np.ndarray, y: np.ndarray, s: np.ndarray, steps: int = 2) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Station and offset of points whose approximate station is known.
-
-        Parameters
-        ----------
-        x, y : (N,) m, local
-        s : (N,) m, approximate stations
-        steps : of the iteration; one is enough within half a metre, two within 30 m
-
-        Returns
-        -------
-        s, d : (N,) m
-        cos, sin : (N,) of the direction of the axis there
-        """
-        for _ in range(steps):
-            k = self._node(s)
-            cos, sin, bend = self._cos[k], self._sin[k], self._bend[k]
-            dx, dy = x - self._x[k], y - self._y[k]
-            ahead = dx * cos + dy * sin
-            aside = dy * cos - dx * sin
-            shrink = 1.0 - bend * aside
-            u = ahead / shrink
-            s = self._nodes[k] + u
-        return s, aside - bend * ahead * u / 2, cos, sin
-
-
-def winding_road(length: float, radius: float, straight: float = 30.0, transition: float = 20.0, arc: float = 45.0,
-                 run_in: float = 70.0) -> list[tuple[float, float, float]]:
-    """Elements of a road with left and right bends in turn, of any length.
-
-    It begins with a straight of `run_in` + `straight` metres, followed by clothoid, arc, clothoid, half a straight, and the
-    same to the other side. The heading returns to its first value, so that the road never meets itself.
-
-    Parameters
-    ----------
-    length : m from station 0
-    radius : m of the arcs
-    straight, transition, arc, run_in : m, lengths of the elements
-
-    Returns
-    -------
-    list of (length, curvature at start, curvature at end), m and 1/m, left positive
-    """
-    elements, reached, sign = [(run_in + straight, 0.0, 0.0)], straight, 1.0
-    while reached < length + run_in:
-        bend = sign / radius
-        elements += [
-            (transition, 0.0, bend), (arc, bend, bend), (transition, bend, 0.0), (straight / 2, 0.0, 0.0)]
-        reached += 2 * transition + arc + straight / 2
-        sign = -sign
-    return elements
 
 
 @dataclass(frozen=True)
@@ -390,3 +277,56 @@ class Scene:
             for station, offset, radius in self.manholes[near]:
                 label[(s - station) ** 2 + (d - offset) ** 2 <= radius**2] = LABEL["manhole"]
         return label
+
+    def passes_driven(self) -> list[tuple[Scene, int, float, float]]:
+        """(what is followed, direction, offset in m, factor of the speed) of each pass."""
+        return [(self, *how) for how in self.passes]
+
+    def place(self, s: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """x and y (m, local) at stations and offsets."""
+        return self.axis.to_map(s, d)
+
+    def under(self, s: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Height of the carriageway (m), its slope along the axis and its slope to the left (m per m)."""
+        return self.carriageway(s, d), self.grade(s), self.cross_slope(d)
+
+    def meet(self, origin: np.ndarray, direction: np.ndarray, station: float, reach: float) -> Hits:
+        """Intersect pulses with the ground."""
+        from .streets.trace import cast_ground
+
+        return cast_ground(self, origin, direction, station, reach)
+
+    def labels(self, strip: np.ndarray, s: np.ndarray, d: np.ndarray) -> np.ndarray:
+        """(N,) uint8 labels of places on the ground, whose strips are known: 0 the carriageway, k left and -k right of it."""
+        label = np.zeros(len(strip), dtype=np.uint8)
+        road = strip == 0
+        label[road] = self.carriageway_labels(s[road], d[road])
+        for side in (self.left, self.right):
+            names = np.array([0] + [LABEL[name] for name in side.strips], dtype=np.uint8)
+            beside = strip * side.sign > 0
+            label[beside] = names[np.abs(strip[beside])]
+        return label
+
+    def repaired(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
+        """(N,) factors of the brightness of asphalt."""
+        factors = np.ones(len(s), dtype=np.float32)
+        if len(s):
+            near = (self.repairs[:, 1] > s.min()) & (self.repairs[:, 0] < s.max())
+            for start, end, right, left, factor in self.repairs[near]:
+                factors[(s >= start) & (s <= end) & (d >= right) & (d <= left)] *= factor
+        return factors
+
+    def located(self, x: np.ndarray, y: np.ndarray, station: float) -> tuple[np.ndarray, np.ndarray]:
+        """Station and offset of places near a station, m."""
+        s, d, *_ = self.axis.locate(x, y, np.full(len(x), station), steps=3)
+        return s, d
+
+    def surveyed(self, s: np.ndarray, d: np.ndarray, reach: float) -> np.ndarray:
+        """(N,) bool, places that belong to the survey."""
+        return (s >= 0) & (s <= self.length) & (np.abs(d) <= reach)
+
+    def truth(self, origin: Sequence[float], crs: str) -> Truth:
+        """The true layers, in map coordinates."""
+        from .truth import truth_of_street
+
+        return truth_of_street(self, origin, crs)

@@ -18,12 +18,12 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from ..sample import truth
 from ..survey.trajectory.trajectory import Trajectory
 from .camera import camera_over
 from .scanner import OBSTACLE, Scanner, brightness_of, butterfly, cast, label_hits, received
-from .scenes import SCENES, build_scene
-from .street import LABEL
+from .scene import Way
+from .scenes import AnyScene, build_scene, length_of
+from .street import LABEL, Scene
 from .vehicle import Drive
 
 _SURVEY_DAY = datetime(2025, 5, 14, 2, 30)
@@ -49,7 +49,7 @@ class SampleSettings:
     Attributes
     ----------
     scene : one of SCENES
-    length : m of road
+    length : m of road; 0 becomes the usual length of the scene
     seed : of all random numbers
     speed_kmh : km/h, of the vehicle
     pulse_rate : Hz, pulses per second of each scanner
@@ -64,7 +64,7 @@ class SampleSettings:
     """
 
     scene: str = "street"
-    length: float = setting(120.0, 20.0, 20000.0, "Sample survey: length", "m")
+    length: float = setting(0.0, 0.0, 20000.0, "Sample survey: length", "m")
     seed: int = setting(1, 0, 2**31 - 1, "Sample survey: seed")
     speed_kmh: float = setting(50.0, 5.0, 120.0, "Sample survey: speed", "km/h")
     pulse_rate: float = setting(300_000.0, 5000.0, 2000000.0, "Sample survey: pulse rate", "Hz")
@@ -80,8 +80,7 @@ class SampleSettings:
     def __post_init__(self):
         """Check the limits of all settings, and the name of the scene."""
         check_limits(self)
-        if self.scene not in SCENES:
-            raise RoadExtractionError(f"There is no sample scene {self.scene!r}. Choose one of: {', '.join(SCENES)}.")
+        object.__setattr__(self, "length", length_of(self.scene, self.length))
 
 
 def make_sample_survey(settings: SampleSettings | None = None, progress: Progress | None = None) -> SampleSurvey:
@@ -118,7 +117,7 @@ class SampleSurvey:
     settings : SampleSettings
     crs : WKT
     scene : Scene, in local coordinates (map minus settings.origin)
-    camera : Camera of the UAV image, in local coordinates
+    camera : Camera of the UAV image, in local coordinates; None where there is no single axis
     scanners, drives : lists of Scanner and Drive
     trajectory : Trajectory of all passes at 200 Hz, 2.6 m above the road
     truth_boundaries, truth_markings, truth_driving_lines, truth_surface : Features in map coordinates
@@ -126,23 +125,23 @@ class SampleSurvey:
 
     def __init__(self, settings: SampleSettings, crs: str, progress: Progress):
         self.settings, self.crs = settings, crs
-        self.scene = build_scene(settings.scene, float(settings.length), settings.seed, settings.radius,
-                                 settings.curb_height, settings.gutter)
-        self.camera = camera_over(self.scene)
+        self.scene: AnyScene = build_scene(settings.scene, float(settings.length), settings.seed, settings.radius,
+                                           settings.curb_height, settings.gutter)
+        self.camera = camera_over(self.scene) if isinstance(self.scene, Scene) else None
         self.scanners = butterfly(settings.rotation_rate, settings.pulse_rate, settings.mount_yaw)
-        phases = np.random.default_rng([settings.seed, 2]).uniform(0, 2 * np.pi, len(self.scene.passes))
+        passes: list[tuple[Way, int, float, float]] = [*self.scene.passes_driven()]
+        phases = np.random.default_rng([settings.seed, 2]).uniform(0, 2 * np.pi, len(passes))
         self.drives: list[Drive] = []
         start = _START_TIME
-        for (direction, offset, haste), phase in zip(self.scene.passes, phases):
-            drive = Drive(self.scene, direction, offset, settings.speed_kmh / 3.6 * haste, start, float(phase))
+        for (way, direction, offset, haste), phase in zip(passes, phases):
+            drive = Drive(way, direction, offset, settings.speed_kmh / 3.6 * haste, start, float(phase))
             self.drives.append(drive)
             start = np.ceil(start + drive.duration + _PAUSE)
         self.trajectory = self._trajectory()
         progress.report(0.3)
-        self.truth_boundaries = truth.true_boundaries(self.scene, settings.origin, crs)
-        self.truth_markings = truth.true_markings(self.scene, settings.origin, crs)
-        self.truth_driving_lines = truth.true_driving_lines(self.scene, settings.origin, crs)
-        self.truth_surface = truth.true_surface(self.scene, settings.origin, crs)
+        truth = self.scene.truth(settings.origin, crs)
+        self.truth_boundaries, self.truth_markings = truth.boundaries, truth.markings
+        self.truth_driving_lines, self.truth_surface = truth.driving_lines, truth.surface
         progress.report(1.0)
 
     def _trajectory(self):
@@ -219,9 +218,9 @@ class SampleSurvey:
         s, d = hits.station[found], hits.offset[found]
         standing = np.flatnonzero(hits.strip[found] == OBSTACLE)
         place = start[:, standing] + distance[standing] * way[:, standing]
-        s[standing], d[standing], *_ = scene.axis.locate(place[0], place[1], np.full(len(standing), station), steps=3)
+        s[standing], d[standing] = scene.located(place[0], place[1], station)
         strength = received(brightness_of(scene, label, s, d, hits.brightness[found]), distance, cosine, scanner.gain)
-        inside = (s >= 0) & (s <= settings.length) & (np.abs(d) <= settings.reach)
+        inside = scene.surveyed(s, d, settings.reach)
         true_range = distance
         if noise:
             normal = rng.standard_normal((3, len(found)), dtype=np.float32)

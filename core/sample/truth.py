@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ..common.features import Features, Field
-from ..common.schemas import DRIVING_LINES, END, HEIGHT, LENGTH, PART, ROAD, SIDE, STATION, WIDTH
+from ..common.schemas import CURB_KIND, DRIVING_LINES, END, HEIGHT, LENGTH, PART, ROAD, SIDE, STATION, WIDTH
 
 if TYPE_CHECKING:
     from .street import Scene
@@ -16,12 +16,38 @@ if TYPE_CHECKING:
 _VERTEX_STEP = 0.25      # m between vertices along the road
 _DROPPED = 0.05   # m: lower curbs are of the kind "dropped"
 
-TRUE_BOUNDARIES = [ROAD, SIDE, PART, Field("kind", str, "Kind (curb/dropped)"), STATION, END, HEIGHT, LENGTH]
+TRUE_BOUNDARIES = [ROAD, SIDE, PART, CURB_KIND, Field("edge", str, "Edge (curb/dropped/pavement)"), STATION, END, HEIGHT, LENGTH]
 TRUE_MARKINGS = [ROAD, Field("class", str, "Class"), Field("line", int, "Line"), Field("pattern", str, "Pattern"),
             STATION, END, WIDTH, Field("wear", float, "Share of paint worn away")]
 TRUE_DRIVING_LINES = [field for field in DRIVING_LINES if field.name in
            ("road", "lane", "direction", "radius_m", "station_m", "end_m", "length_m")]
 TRUE_SURFACE = [ROAD, Field("area_m2", float, "Area (m²)")]
+
+
+class Truth(NamedTuple):
+    """The true layers of a scene, Features each, in map coordinates."""
+
+    boundaries: Features
+    markings: Features
+    driving_lines: Features
+    surface: Features
+
+
+def truth_of_street(scene: Scene, origin: Sequence[float], crs: str) -> Truth:
+    """The true layers of a street.
+
+    Parameters
+    ----------
+    scene : Scene
+    origin : (3,) m, map coordinates of the local origin
+    crs : WKT
+
+    Returns
+    -------
+    Truth
+    """
+    layers = (true_boundaries, true_markings, true_driving_lines, true_surface)
+    return Truth(*(layer(scene, origin, crs) for layer in layers))
 
 
 def _stations(start, end):
@@ -34,7 +60,7 @@ def _coordinates(scene, origin, s, d):
 
 
 def true_boundaries(scene: Scene, origin: Sequence[float], crs: str) -> Features:
-    """Bottoms and tops of the curbs, in pieces of one kind; nothing where there is no curb.
+    """Bottoms and tops of the curbs, in pieces of one kind, and the edges of the pavement where there is no curb.
 
     Parameters
     ----------
@@ -50,19 +76,20 @@ def true_boundaries(scene: Scene, origin: Sequence[float], crs: str) -> Features
 
     layer = Features("LineStringZ", TRUE_BOUNDARIES, crs=crs)
     for side, name in ((scene.left, "left"), (scene.right, "right")):
-        if not side.curb_height:
-            continue
-        for start, end, kind in _curb_pieces(side, scene.length):
+        for start, end, edge in _edge_pieces(side, scene.length):
             s = _stations(start, end)
             height = float(np.median(side.curb(s)))
-            for part, away in (("bottom", side.borders[0]), ("top", side.borders[1])):
+            parts = [("bottom", side.borders[0]), ("top", side.borders[1])]
+            for part, away in parts[:1] if edge == "pavement" else parts:
                 line = LineString(_coordinates(scene, origin, s, side.sign * away))
-                layer.add(line, road=1, side=name, part=part, kind=kind, station_m=float(start), end_m=float(end),
+                layer.add(line, road=1, side=name, part=part, kind="main", edge=edge, station_m=float(start), end_m=float(end),
                           height_m=height, length_m=float(line.length))
     return layer
 
 
-def _curb_pieces(side, length):
+def _edge_pieces(side, length):
+    if not side.curb_height:
+        return [(0.0, length, "pavement")]
     s = np.arange(0.0, length + 1e-9, 0.01)
     dropped = side.curb(s) < _DROPPED
     cuts = np.concatenate([[0], np.flatnonzero(np.diff(dropped)) + 1, [len(s) - 1]])
@@ -89,7 +116,7 @@ def true_markings(scene: Scene, origin: Sequence[float], crs: str) -> Features:
         dash = getattr(marking, "dash", None)
         pattern = None if marking.line is None else "solid" if dash is None else "dashed"
         for outline in marking.outlines():
-            ring = _densified(outline)
+            ring = densified(outline)
             polygon = Polygon(_coordinates(scene, origin, ring[:, 0], ring[:, 1]))
             layer.add(polygon, road=1, line=marking.line, pattern=pattern, width_m=getattr(marking, "width", None),
                       wear=float(marking.wear), station_m=float(outline[:, 0].min()), end_m=float(outline[:, 0].max()),
@@ -97,7 +124,8 @@ def true_markings(scene: Scene, origin: Sequence[float], crs: str) -> Features:
     return layer
 
 
-def _densified(outline):
+def densified(outline: np.ndarray) -> np.ndarray:
+    """The closed ring of an outline, (n, 2) m, with vertices at least every quarter of a metre."""
     closed = np.vstack([outline, outline[:1]])
     sides = [a + np.linspace(0, 1, max(1, int(np.ceil(np.hypot(*(b - a)) / _VERTEX_STEP))), endpoint=False)[:, None] * (b - a)
              for a, b in zip(closed[:-1], closed[1:])]

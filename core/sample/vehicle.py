@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from .street import Scene
+    from .scene import Way
 
 SENSOR_HEIGHT = 2.6  # m from the ground to the reference point of the trajectory
 _RUN_OUT = 15.0      # m driven before and after the surveyed stretch
@@ -20,7 +20,7 @@ class Drive:
 
     Attributes
     ----------
-    scene : Scene
+    way : Way
     direction : 1 along the axis, -1 against it
     offset : m, mean offset of the vehicle
     speed : m/s, mean
@@ -28,7 +28,7 @@ class Drive:
     phase : radians, phase of the sway of this pass
     """
 
-    scene: Scene
+    way: Way
     direction: int
     offset: float
     speed: float
@@ -38,18 +38,18 @@ class Drive:
     @property
     def duration(self) -> float:
         """Duration, s, a whole number of trajectory intervals of 5 ms."""
-        return float(np.ceil((self.scene.length + 2 * _RUN_OUT) / self.speed * 200.0) / 200.0)
+        return float(np.ceil((self.way.length + 2 * _RUN_OUT) / self.speed * 200.0) / 200.0)
 
     def station(self, t: np.ndarray) -> np.ndarray:
         """Station of the vehicle, m, at times t; its speed varies by 3 percent."""
         swing = 0.03 * 17.0 / (2 * np.pi)
         way = self.speed * (t + swing * (np.cos(self.phase) - np.cos(2 * np.pi * t / 17.0 + self.phase)))
-        return way - _RUN_OUT if self.direction > 0 else self.scene.length + _RUN_OUT - way
+        return way - _RUN_OUT if self.direction > 0 else self.way.length + _RUN_OUT - way
 
     def _ground_track(self, t):
         s = self.station(t)
         d = self.offset + 0.12 * np.sin(s / 11.0 + self.phase) + 0.04 * np.sin(s / 3.7 + 2 * self.phase)
-        x, y = self.scene.axis.to_map(s, d)
+        x, y = self.way.place(s, d)
         return s, d, x, y
 
     def pose(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -70,11 +70,12 @@ class Drive:
         *_, behind_x, behind_y = self._ground_track(t - 0.01)
         heading = np.arctan2(ahead_x - behind_x, ahead_y - behind_y)
         sway = self.phase
-        z = self.scene.carriageway(s, d) + SENSOR_HEIGHT + 0.010 * np.sin(2 * np.pi * t / 1.3 + sway)
+        z, grade, cross_slope = self.way.under(s, d)
+        z = z + SENSOR_HEIGHT + 0.010 * np.sin(2 * np.pi * t / 1.3 + sway)
         # a road that falls to the left has a negative slope and a negative roll
-        roll = (self.direction * np.arctan(self.scene.cross_slope(d))
+        roll = (self.direction * np.arctan(cross_slope)
                 + np.radians(0.35) * np.sin(2 * np.pi * t / 1.9 + sway) + np.radians(0.08) * np.sin(2 * np.pi * t / 0.7))
-        pitch = (self.direction * np.arctan(self.scene.grade(s))
+        pitch = (self.direction * np.arctan(grade)
                  + np.radians(0.25) * np.sin(2 * np.pi * t / 2.3 + 2 * sway) + np.radians(0.06) * np.sin(2 * np.pi * t / 0.9))
         heading = heading + np.radians(0.20) * np.sin(2 * np.pi * t / 3.1 + sway)
         return x, y, z, roll, pitch, heading % (2 * np.pi)

@@ -645,8 +645,8 @@
         </message>
         <message>
             <location filename="../../algorithms/assess/inputs.py" />
-            <source>An expression, such as "type" = 'driveway': where it holds, a result is neither right nor wrong. Empty leaves out the rows whose field kind says dropped or none.</source>
-            <translation>Ein Ausdruck wie "type" = 'driveway': wo er gilt, ist ein Ergebnis weder richtig noch falsch. Leer lässt die Zeilen weg, deren Feld kind dropped oder none sagt.</translation>
+            <source>An expression, such as "type" = 'driveway': where it holds, a result is neither right nor wrong. Empty leaves out the rows whose field edge or kind says dropped or none.</source>
+            <translation>Ein Ausdruck wie "type" = 'driveway': wo er gilt, ist ein Ergebnis weder richtig noch falsch. Leer lässt die Zeilen weg, deren Feld edge oder kind dropped oder none sagt.</translation>
         </message>
         <message>
             <location filename="../../algorithms/assess/inputs.py" />
@@ -2940,8 +2940,8 @@
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />
-            <source>Simulates a mobile laser scanning survey of a street, together with its known truth.</source>
-            <translation>Erzeugt die Laserscan-Vermessung einer Straße, die es nur auf dem Papier gibt, zusammen mit der Wahrheit über sie.</translation>
+            <source>Simulates a mobile laser scanning survey of a street, motorway, junction or mountain road, together with its known truth.</source>
+            <translation>Erzeugt die Laserscan-Vermessung einer Straße, Autobahn, Kreuzung oder Bergstraße, die es nur auf dem Papier gibt, zusammen mit der Wahrheit über sie.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />
@@ -2970,18 +2970,18 @@
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />
-            <source>street: two lanes in bends, with curbs and parked cars. rural: a country road without curbs. urban: four lanes with gutters. one-lane and wide-lane: a single lane of 5.8 or 7 m with arrows in its middle. no-centre-line: two lanes without a line between them. hatched-island: two directions held apart by a hatched area.</source>
-            <translation>street: zwei Fahrstreifen in Bögen, mit Bordsteinen und parkenden Autos. rural: eine Landstraße ohne Bordsteine. urban: vier Fahrstreifen mit Rinnen. one-lane und wide-lane: ein einziger Fahrstreifen von 5,8 oder 7 m mit Pfeilen in seiner Mitte. no-centre-line: zwei Fahrstreifen ohne Linie dazwischen. hatched-island: zwei Richtungen, von einer Sperrfläche getrennt.</translation>
+            <source>street: two lanes in bends, with curbs and parked cars. rural: a country road without curbs. urban: four lanes with gutters. one-lane and wide-lane: a single lane of 5.8 or 7 m with arrows in its middle. no-centre-line: two lanes without a line between them. hatched-island: two directions held apart by a hatched area. motorway: two lanes and a hard shoulder each way, and an exit. serpentine: a steep road with hairpins. crossing: four arms with turning lanes, one of them not driven. roundabout: a ring with splitter islands, driven straight on and to the left.</source>
+            <translation>street: zwei Fahrstreifen in Bögen, mit Bordsteinen und parkenden Autos. rural: eine Landstraße ohne Bordsteine. urban: vier Fahrstreifen mit Rinnen. one-lane und wide-lane: ein einziger Fahrstreifen von 5,8 oder 7 m mit Pfeilen in seiner Mitte. no-centre-line: zwei Fahrstreifen ohne Linie dazwischen. hatched-island: zwei Richtungen, von einer Sperrfläche getrennt. motorway: zwei Fahrstreifen und ein Standstreifen je Richtung, mit einer Ausfahrt. serpentine: eine steile Straße mit Kehren. crossing: vier Arme mit Abbiegestreifen, einer davon nicht befahren. roundabout: ein Kreisverkehr mit Fahrbahnteilern, geradeaus und nach links befahren.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />
-            <source>Length of the road (m)</source>
-            <translation>Länge der Straße (m)</translation>
+            <source>Length of the road, 0: as usual for the scene (m)</source>
+            <translation>Länge der Straße, 0: wie bei der Szene üblich (m)</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />
-            <source>Longer takes longer to make and to work through, in proportion.</source>
-            <translation>Länger dauert im selben Verhältnis länger, beim Erzeugen wie beim Verarbeiten.</translation>
+            <source>Longer takes longer to make and to work through, in proportion. Streets are usually 120 m long, a motorway 240 m (600 m at the most), a serpentine 200 m (1000 m), a crossing and a roundabout 110 m from end to end (300 m).</source>
+            <translation>Länger dauert im selben Verhältnis länger, beim Erzeugen wie beim Verarbeiten. Straßen sind gewöhnlich 120 m lang, eine Autobahn 240 m (höchstens 600 m), eine Serpentine 200 m (1000 m), Kreuzung und Kreisverkehr 110 m von Ende zu Ende (300 m).</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />
@@ -3040,8 +3040,8 @@
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />
-            <source>Smaller makes sharper bends.</source>
-            <translation>Kleiner ergibt schärfere Bögen.</translation>
+            <source>Smaller makes sharper bends; motorway, serpentine, crossing and roundabout have bends of their own.</source>
+            <translation>Kleiner ergibt schärfere Bögen; motorway, serpentine, crossing und roundabout haben ihre eigenen.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />
@@ -3095,8 +3095,8 @@
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />
-            <source>What a UAV sees of the first 150 m: a TIFF of 4 cm pixels without a place on the map, with the distortion of its camera. Georeference image finds its place.</source>
-            <translation>Was ein UAV von den ersten 150 m sieht: ein TIFF mit 4-cm-Pixeln ohne Lage auf der Karte, mit der Verzeichnung seiner Kamera. „Bild georeferenzieren“ findet seine Lage.</translation>
+            <source>What a UAV sees of the first 150 m: a TIFF of 4 cm pixels without a place on the map, with the distortion of its camera. Georeference image finds its place. There is none of motorway, serpentine, crossing and roundabout.</source>
+            <translation>Was ein UAV von den ersten 150 m sieht: ein TIFF mit 4-cm-Pixeln ohne Lage auf der Karte, mit der Verzeichnung seiner Kamera. „Bild georeferenzieren“ findet seine Lage. Von motorway, serpentine, crossing und roundabout gibt es keines.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />

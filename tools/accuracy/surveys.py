@@ -102,7 +102,8 @@ def _read_truth(path):
     for geometry, row in layers["boundaries"]:
         if row.get("part") == "top":
             continue
-        if row.get("kind") in (None, "curb") and row.get("scope") in (None, "main"):
+        edge, where = row.get("edge", row.get("kind")), row.get("scope") if "edge" not in row else row.get("kind")
+        if edge in (None, "curb") and where in (None, "main"):
             truth.curbs.append(geometry)
             truth.sides.append(row.get("side"))
         else:

@@ -57,7 +57,7 @@ def area_of(road_map):
 
 
 def test_road_edges_lie_on_the_curbs(sample, road_map):
-    curbs = [g for g, row in sample.truth_boundaries if row["part"] != "top" and row["kind"] != "dropped"]
+    curbs = [g for g, row in sample.truth_boundaries if row["part"] != "top" and row["edge"] == "curb"]
     found = compare_lines(road_map.layer("edges").geometries, curbs, area=area_of(road_map))
     assert found.completeness[0.10] > 0.95
     assert found.correctness[0.10] > 0.95

@@ -33,7 +33,7 @@ class Log(Progress):
 def street(made_survey):
     sample, cloud = made_survey(length=60.0, pulse_rate=100_000.0, rotation_rate=ROTATION, speed_kmh=30.0)
     curbs = {dropped: [geometry for geometry, row in sample.truth_boundaries
-                       if row.get("part") != "top" and (row.get("kind") == "dropped") == dropped] for dropped in (False, True)}
+                       if row.get("part") != "top" and (row["edge"] == "dropped") == dropped] for dropped in (False, True)}
     return SimpleNamespace(cloud=cloud, trajectory=sample.trajectory, curbs=curbs[False], dropped=curbs[True])
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from .paint import hatched_area, straight_arrow
-from .street import Scene, sidewalk
-from .street_builder import MODULE, SceneBuilder
+from ..paint import hatched_area, straight_arrow
+from ..street import Scene, sidewalk
+from .builder import MODULE, SceneBuilder
 
 _PARKING = 2.3       # m from an edge line to the curb beyond the parked cars
 _MARGIN = 0.45       # m from an edge line to a curb without parking
@@ -21,7 +21,7 @@ def one_lane(length: float, seed: int, radius: float, curb_height: float, gutter
 
     Parameters
     ----------
-    length, seed, radius, curb_height, gutter : as in `scenes.build_scene`
+    length, seed, radius, curb_height, gutter : as in `..scenes.build_scene`
 
     Returns
     -------
@@ -77,7 +77,7 @@ def hatched_island(length: float, seed: int, radius: float, curb_height: float, 
 
     Parameters
     ----------
-    length, seed, radius, curb_height, gutter : as in `scenes.build_scene`
+    length, seed, radius, curb_height, gutter : as in `..scenes.build_scene`
 
     Returns
     -------

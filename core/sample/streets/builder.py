@@ -6,9 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .obstacles import Car, Crown, Post, car_bodies
-from .paint import Marking, Paint, PaintedFigure, PaintedLine, TaperedLine
-from .street import LABEL, Lane, RoadAxis, Scene, Side, Texture, winding_road
+from ..obstacles import Car, Crown, Post, car_bodies
+from ..paint import Marking, Paint, PaintedFigure, PaintedLine, TaperedLine
+from ..street import LABEL, Lane, Scene, Side, Texture
+from .axis import RoadAxis, winding_road
 
 MODULE = 120.0  # m, length after which the objects of a street repeat
 _RUN_IN = 70.0   # m of road before station 0

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from .paint import hatching, rectangle, straight_arrow, turn_arrow, zebra_bars
-from .street import Scene, ditch, sidewalk
-from .street_builder import MODULE, SceneBuilder
+from ..paint import hatching, rectangle, straight_arrow, turn_arrow, zebra_bars
+from ..street import Scene, ditch, sidewalk
+from .builder import MODULE, SceneBuilder
 
 
 def street(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:

@@ -1,0 +1,172 @@
+"""A road laid out in the plane, with all objects on and beside it, for the scanners and for the truth."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+
+from ..scanner import Hits
+from ..street import LABEL, Texture
+from .ground import Ground
+from .marks import Areas, PlanPaint
+from .path import Path
+from .trace import trace
+
+if TYPE_CHECKING:
+    from ..truth import Truth
+
+_ASKEW = 1.45   # m over the ground to the scanner, per m from the track: planes turned by 45 degrees
+
+
+@dataclass(frozen=True)
+class PlanLane:
+    """A lane along a path, between two borders.
+
+    Attributes
+    ----------
+    number, road : of the lane, and of the road it belongs to
+    path : Path
+    direction : 1 along the path, -1 against it
+    stations : (K,) m along the path
+    left, right : (K,) m, offsets of its borders from the path, left and right of the path
+    """
+
+    number: int
+    road: int
+    path: Path
+    direction: int
+    stations: np.ndarray
+    left: np.ndarray
+    right: np.ndarray
+
+
+@dataclass(frozen=True)
+class Way:
+    """What a vehicle follows: a path over the terrain.
+
+    Attributes
+    ----------
+    path : Path, driven from station 0
+    ground : Ground
+    """
+
+    path: Path
+    ground: Ground
+
+    @property
+    def length(self) -> float:
+        """m, of the surveyed stretch."""
+        return self.path.end
+
+    def place(self, s: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """x and y (m, local) at stations and offsets."""
+        x, y = self.path.at(s, d).T
+        return x, y
+
+    def under(self, s: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Height of the terrain (m), its slope ahead and its slope to the left (m per m)."""
+        z, east, north = self.ground.terrain.at(*self.place(s, d))
+        heading = self.path.heading(s)
+        return z, east * np.cos(heading) + north * np.sin(heading), north * np.cos(heading) - east * np.sin(heading)
+
+
+@dataclass
+class PlanScene:
+    """A plan. Its points have x and y (m, local) in the place of station and offset.
+
+    Attributes
+    ----------
+    name : of the scene
+    ground : Ground
+    carriageway : polygon, m, local
+    area : polygon of the surveyed area
+    where : (K,) for each ring of the ground: main, side_street, corner or island
+    edges : (K,) for each ring: curb, dropped or pavement
+    paint : PlanPaint
+    texture : Texture
+    lanes : list of PlanLane
+    ways : list of (Way, factor of the speed), one for each pass
+    obstacles : list of Car, Post, Crown and Rail
+    patches : (n, 2) outlines of repaired asphalt
+    patch_factors : of its brightness
+    manholes : (M, 3) m, x, y and radius
+    gutter_width : m, concrete strip along the curb
+    """
+
+    name: str
+    ground: Ground
+    carriageway: shapely.Polygon
+    area: shapely.Polygon
+    where: list[np.ndarray]
+    edges: list[np.ndarray]
+    paint: PlanPaint
+    texture: Texture
+    lanes: list[PlanLane]
+    ways: list[tuple[Way, float]]
+    obstacles: list[Any]
+    patches: list[np.ndarray] = field(default_factory=list)
+    patch_factors: list[float] = field(default_factory=list)
+    manholes: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
+    gutter_width: float = 0.0
+
+    def __post_init__(self):
+        self._patches = Areas(self.patches, np.arange(len(self.patches), dtype=np.int16))
+        self._kept = shapely.buffer(self.area, 0.3)
+        shapely.prepare(self._kept)
+
+    def passes_driven(self) -> list[tuple[Way, int, float, float]]:
+        """(what is followed, direction, offset in m, factor of the speed) of each pass."""
+        return [(way, 1, 0.0, haste) for way, haste in self.ways]
+
+    def meet(self, origin: np.ndarray, direction: np.ndarray, station: float, reach: float) -> Hits:
+        """Intersect pulses with the ground: (3, N) local origins, m, and unit directions; `station` is not needed."""
+        distance = trace(self.ground, origin, direction, _ASKEW * reach)
+        count = len(distance)
+        hits = Hits(distance, np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count, dtype=np.int16),
+                    np.zeros(count, dtype=np.uint8), np.zeros(count))
+        met = np.flatnonzero(np.isfinite(distance))
+        x, y, _ = origin[:, met] + distance[met] * direction[:, met]
+        here = self.ground.at(x, y)
+        hits.station[met], hits.offset[met], hits.strip[met] = x, y, here.strip
+        facing = here.slope_x * direction[0, met] + here.slope_y * direction[1, met] - direction[2, met]
+        hits.cosine[met] = facing / np.sqrt(1.0 + here.slope_x**2 + here.slope_y**2)
+        return hits
+
+    def labels(self, strip: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """(N,) uint8 labels of places on the ground, whose strips are known."""
+        label = self.ground.labels[strip]
+        road = np.flatnonzero(strip == 0)
+        number, fresh = self.paint.at(x[road], y[road])
+        if self.gutter_width:
+            label[road[self.ground.beyond_edge(x[road], y[road])[0] > -self.gutter_width]] = LABEL["gutter"]
+        label[road[number >= 0]] = LABEL["worn paint"]
+        label[road[fresh]] = LABEL["paint"]
+        for at_x, at_y, radius in self.manholes:
+            label[road[(x[road] - at_x) ** 2 + (y[road] - at_y) ** 2 <= radius**2]] = LABEL["manhole"]
+        return label
+
+    def repaired(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """(N,) factors of the brightness of asphalt."""
+        return np.append(self.patch_factors, 1.0)[self._patches.number(x, y)]
+
+    def located(self, x: np.ndarray, y: np.ndarray, station: float) -> tuple[np.ndarray, np.ndarray]:
+        """The coordinates of places in the scene: x and y themselves."""
+        return x, y
+
+    def surveyed(self, x: np.ndarray, y: np.ndarray, reach: float) -> np.ndarray:
+        """(N,) bool, places that belong to the survey."""
+        return shapely.contains_xy(self._kept, x, y)
+
+    def height(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """True height of the ground at (N,) places, m."""
+        return self.ground.height(x, y)
+
+    def truth(self, origin: Sequence[float], crs: str) -> Truth:
+        """The true layers, in map coordinates."""
+        from .truth import truth_of_plan
+
+        return truth_of_plan(self, origin, crs)

@@ -1,0 +1,116 @@
+"""The truth of a plan, as layers in map coordinates."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+
+from ...common.features import Features
+from ..truth import TRUE_BOUNDARIES, TRUE_DRIVING_LINES, TRUE_MARKINGS, TRUE_SURFACE, Truth, densified
+
+if TYPE_CHECKING:
+    from .scene import PlanScene
+
+_FACE = 0.025    # m across the face of a curb
+_LEAST = 4       # vertices of an edge that is worth a line
+
+
+def truth_of_plan(scene: PlanScene, origin: Sequence[float], crs: str) -> Truth:
+    """The true layers of a plan, as far as it is surveyed.
+
+    Parameters
+    ----------
+    scene : PlanScene
+    origin : (3,) m, map coordinates of the local origin
+    crs : WKT
+
+    Returns
+    -------
+    Truth
+    """
+    def on_map(places, rise=0.0):
+        return np.column_stack([places, scene.ground.height(*places.T) + rise]) + origin
+
+    return Truth(_boundaries(scene, on_map, crs), _markings(scene, on_map, crs), _driving_lines(scene, on_map, crs),
+                 _surface(scene, on_map, crs))
+
+
+def _boundaries(scene, on_map, crs):
+    """Bottoms and tops of curbs, and edges of the pavement, in pieces of one kind."""
+    layer = Features("LineStringZ", TRUE_BOUNDARIES, crs=crs)
+    for ring, height, where, edge in zip(scene.ground.rings, scene.ground.heights, scene.where, scene.edges):
+        for some in _runs(ring, where, edge, scene.area):
+            bottom, tall = ring[some], height[some]
+            side = _side(scene, bottom[len(bottom) // 2])
+            lines = [("bottom", on_map(bottom))]
+            if edge[some[0]] != "pavement":
+                top = bottom + _FACE * _outward(ring)[some]
+                lines.append(("top", np.column_stack([on_map(top)[:, :2], lines[0][1][:, 2] + tall])))
+            for part, coordinates in lines:
+                line = shapely.LineString(coordinates)
+                layer.add(line, road=1, side=side, part=part, kind=str(where[some[0]]), edge=str(edge[some[0]]),
+                          height_m=float(np.median(tall)), length_m=float(line.length))
+    return layer
+
+
+def _outward(ring):
+    """(K, 2) unit vectors away from the carriageway, at the vertices of a ring."""
+    way = np.roll(ring, -1, axis=0) - np.roll(ring, 1, axis=0)
+    return np.column_stack([way[:, 1], -way[:, 0]]) / np.hypot(way[:, 0], way[:, 1])[:, None]
+
+
+def _runs(ring, where, edge, area):
+    """Indices of neighbouring vertices in the area with one kind of edge; where two kinds meet, both have the vertex between."""
+    count = len(ring)
+    inside = shapely.contains_xy(area, ring)
+    name = np.array([f"{a}|{b}" if here else "" for a, b, here in zip(where, edge, inside)])
+    changes = np.flatnonzero(name != np.roll(name, 1))
+    if len(changes) == 0:
+        return [np.append(np.arange(count), 0)] if inside.all() else []
+    runs = []
+    for start, end in zip(changes, np.append(changes[1:], changes[0] + count)):
+        if inside[start]:
+            last = end if inside[end % count] else end - 1
+            if last - start >= _LEAST:
+                runs.append(np.arange(start, last + 1) % count)
+    return runs
+
+
+def _side(scene, place):
+    """Side of a place as seen from the pass that drove nearest, in its direction of travel."""
+    nearest = min((way.path.locate(place[None]) for way, _ in scene.ways), key=lambda found: abs(found[1][0]))
+    return "left" if nearest[1][0] > 0 else "right"
+
+
+def _markings(scene, on_map, crs):
+    layer = Features("PolygonZ", TRUE_MARKINGS, crs=crs)
+    for mark in scene.paint.markings:
+        for outline in mark.outlines:
+            polygon = shapely.Polygon(on_map(densified(outline)))
+            layer.add(polygon, road=1, line=mark.line, pattern=mark.pattern, width_m=mark.width, wear=float(mark.wear),
+                      **{"class": mark.kind})
+    return layer
+
+
+def _driving_lines(scene, on_map, crs):
+    layer = Features("LineStringZ", TRUE_DRIVING_LINES, crs=crs)
+    for lane in scene.lanes:
+        middle = (lane.left + lane.right) / 2
+        bend = lane.path.curvature(lane.stations)
+        sharpest = float(np.abs(bend / (1.0 - bend * middle)).max())
+        line = shapely.LineString(on_map(lane.path.at(lane.stations, middle))[::lane.direction])
+        layer.add(line, road=lane.road, lane=lane.number, direction=lane.direction, radius_m=1.0 / sharpest if sharpest > 1e-4 else None,
+                  station_m=float(lane.stations[0]), end_m=float(lane.stations[-1]), length_m=float(line.length))
+    return layer
+
+
+def _surface(scene, on_map, crs):
+    layer = Features("PolygonZ", TRUE_SURFACE, crs=crs)
+    for part in shapely.get_parts(shapely.intersection(scene.carriageway, scene.area)):
+        rings = [on_map(densified(shapely.get_coordinates(ring)[:-1])) for ring in (part.exterior, *part.interiors)]
+        polygon = shapely.Polygon(rings[0], rings[1:])
+        layer.add(polygon, road=1, area_m2=float(polygon.area))
+    return layer

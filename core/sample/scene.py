@@ -1,0 +1,55 @@
+"""What a survey needs to know of a scene, be it a street along one axis or a plan."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from .scanner import Hits
+    from .street import Texture
+    from .truth import Truth
+
+
+class Way(Protocol):
+    """What a vehicle follows."""
+
+    @property
+    def length(self) -> float:
+        """m, of the surveyed stretch."""
+
+    def place(self, s: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """x and y (m, local) at stations and offsets."""
+
+    def under(self, s: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Height of the ground (m), its slope along the stations and its slope to the left (m per m)."""
+
+
+class SurveyedScene(Protocol):
+    """A scene. It locates places by two coordinates of its own, called station and offset here: those of a street, x and y of a plan."""
+
+    texture: Texture
+    obstacles: list[Any]
+
+    def passes_driven(self) -> list[tuple[Any, int, float, float]]:
+        """(Way, direction, offset in m, factor of the speed) of each pass."""
+
+    def meet(self, origin: np.ndarray, direction: np.ndarray, station: float, reach: float) -> Hits:
+        """Intersect pulses with the ground: (3, N) local origins, m, and unit directions, from a scanner near a station."""
+
+    def labels(self, strip: np.ndarray, s: np.ndarray, d: np.ndarray) -> np.ndarray:
+        """(N,) uint8 labels of places on the ground, whose strips are known."""
+
+    def repaired(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
+        """(N,) factors of the brightness of asphalt."""
+
+    def located(self, x: np.ndarray, y: np.ndarray, station: float) -> tuple[np.ndarray, np.ndarray]:
+        """Station and offset of places near a station, m."""
+
+    def surveyed(self, s: np.ndarray, d: np.ndarray, reach: float) -> np.ndarray:
+        """(N,) bool, places that belong to the survey."""
+
+    def truth(self, origin: Sequence[float], crs: str) -> Truth:
+        """The true layers, in map coordinates."""
