@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .street import Scene
+from .streets.street import Scene
 
 MAX_IMAGE_LENGTH = 150.0  # m of road in an image
 IMAGE_MARGIN = 7.0   # m of ground beyond the edges of the carriageway

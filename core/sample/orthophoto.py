@@ -20,8 +20,9 @@ from ..common.progress import Progress
 from ..common.schemas import CONTROL_POINTS
 from ..io.gdal_errors import gdal_exceptions
 from .camera import GROUND_PIXEL, Camera
-from .obstacles import Car, Crown, Post
-from .street import LABEL, Scene
+from .parts.materials import LABEL
+from .parts.obstacles import Car, Crown, Post
+from .streets.street import Scene
 
 if TYPE_CHECKING:
     from .survey import SampleSurvey

@@ -11,9 +11,9 @@ from .plan.motorway import motorway
 from .plan.roundabout import roundabout
 from .plan.scene import PlanScene
 from .plan.serpentine import serpentine
-from .street import Scene
 from .streets.lane_scenes import hatched_island, no_centre_line, one_lane, wide_lane
 from .streets.ordinary import rural, street, urban
+from .streets.street import Scene
 
 _SHORTEST = 20.0  # m of road
 

@@ -20,11 +20,12 @@ from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from ..survey.trajectory.trajectory import Trajectory
 from .camera import camera_over
-from .scanner import OBSTACLE, Scanner, brightness_of, butterfly, cast, label_hits, received
-from .scene import Way
+from .parts.materials import LABEL
+from .parts.scanner import OBSTACLE, Scanner, brightness_of, butterfly, cast, label_hits, received
+from .parts.scene import Followed
+from .parts.vehicle import Drive
 from .scenes import AnyScene, build_scene, length_of
-from .street import LABEL, Scene
-from .vehicle import Drive
+from .streets.street import Scene
 
 _SURVEY_DAY = datetime(2025, 5, 14, 2, 30)
 # Adjusted standard GPS time: seconds since 1980-01-06, leap seconds (18) not taken out, minus 1e9.
@@ -129,7 +130,7 @@ class SampleSurvey:
                                            settings.curb_height, settings.gutter)
         self.camera = camera_over(self.scene) if isinstance(self.scene, Scene) else None
         self.scanners = butterfly(settings.rotation_rate, settings.pulse_rate, settings.mount_yaw)
-        passes: list[tuple[Way, int, float, float]] = [*self.scene.passes_driven()]
+        passes: list[tuple[Followed, int, float, float]] = [*self.scene.passes_driven()]
         phases = np.random.default_rng([settings.seed, 2]).uniform(0, 2 * np.pi, len(passes))
         self.drives: list[Drive] = []
         start = _START_TIME

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import shapely
 from lanewright.core.io.geotiff import new_geotiff
-from lanewright.core.sample.street import CARRIAGEWAY_LABELS
+from lanewright.core.sample.parts.materials import CARRIAGEWAY_LABELS
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 
 # What a truth layer may be called; the first is the name in the sample survey

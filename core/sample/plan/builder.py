@@ -8,12 +8,13 @@ from typing import Union
 import numpy as np
 import shapely
 
-from ..obstacles import Car, Crown, Post, Rail, car_bodies
-from ..street import LABEL, Side, Texture
+from ..parts.materials import LABEL, Texture
+from ..parts.obstacles import Car, Crown, Post, Rail, car_bodies
+from ..parts.sides import Side
 from .ground import Ground, curb_heights, rings_of, terrain_over
 from .marks import Mark, PlanPaint, line_mark, stations_between
 from .path import Path
-from .scene import PlanLane, PlanScene, Way
+from .scene import PlanLane, PlanScene, Track
 
 Offset = Union[float, Callable[[np.ndarray], np.ndarray]]   # m from a path, left positive; the same everywhere, or a function of stations
 _FRAME = 10.0     # m of ground around the surveyed area
@@ -152,7 +153,7 @@ class PlanBuilder:
         edges = [np.where(has_curb[number], np.where(tall < _DROPPED, "dropped", "curb"), "pavement") for tall, number in zip(heights, numbers)]
         where = [np.asarray(where_at(ring, k)) for k, ring in enumerate(rings)]
         scene = PlanScene(self.name, ground, carriageway, self.area, where, edges, PlanPaint(self.markings, self.texture), self.texture,
-                          self.lanes, [(Way(path, ground), haste) for path, haste in passes], [], self.patches, self.factors,
+                          self.lanes, [(Track(path, ground), haste) for path, haste in passes], [], self.patches, self.factors,
                           np.array(self.manholes).reshape(-1, 3), gutter)
         for kind, place, heading, shape in self.objects:
             scene.obstacles += _standing(kind, place, heading, shape, ground)

@@ -9,7 +9,8 @@ import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
-from ..street import LABEL, LOWERED_CURB_HEIGHT, Side
+from ..parts.materials import LABEL
+from ..parts.sides import LOWERED_CURB_HEIGHT, Side
 
 EDGE_SPACING = 0.25  # m between vertices of an edge
 _LOOKUP = 0.125      # m, cells of the table of nearest vertices: with this spacing the nearest segment ends in the vertex found

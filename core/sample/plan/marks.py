@@ -13,7 +13,7 @@ import shapely
 from .path import Path
 
 if TYPE_CHECKING:
-    from ..street import Texture
+    from ..parts.materials import Texture
 
 _STEP = 0.25    # m along a line between vertices of its outline
 _PIECE = 16     # vertices along a line in one piece; short pieces are quickly looked up

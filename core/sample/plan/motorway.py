@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
-from ..paint import hatched_area
-from ..street import Side
+from ..parts.paint import hatched_area
+from ..parts.sides import Side
 from .builder import PlanBuilder, strip
 from .path import Path, path_of_elements
 from .scene import PlanScene

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
-from ..streets.axis import RoadAxis
+from ..parts.axis import RoadAxis
 
 _SPACING = 0.25  # m between nodes; chords of an arc of 10 m are then shorter than the arc by 0.003 percent
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
-from ..paint import rectangle, zebra_bars
-from ..street import Side, sidewalk
+from ..parts.paint import rectangle, zebra_bars
+from ..parts.sides import Side, sidewalk
 from .builder import PlanBuilder, strip
 from .path import path_of_elements, path_through
 from .scene import PlanScene

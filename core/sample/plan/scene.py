@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
-from ..scanner import Hits
-from ..street import LABEL, Texture
+from ..parts.materials import LABEL, Texture
+from ..parts.scanner import Hits
 from .ground import Ground
 from .marks import Areas, PlanPaint
 from .path import Path
 from .trace import trace
 
 if TYPE_CHECKING:
-    from ..truth import Truth
+    from ..parts.truth import Truth
 
 _ASKEW = 1.45   # m over the ground to the scanner, per m from the track: planes turned by 45 degrees
 
@@ -45,7 +45,7 @@ class PlanLane:
 
 
 @dataclass(frozen=True)
-class Way:
+class Track:
     """What a vehicle follows: a path over the terrain.
 
     Attributes
@@ -89,7 +89,7 @@ class PlanScene:
     paint : PlanPaint
     texture : Texture
     lanes : list of PlanLane
-    ways : list of (Way, factor of the speed), one for each pass
+    ways : list of (Track, factor of the speed), one for each pass
     obstacles : list of Car, Post, Crown and Rail
     patches : (n, 2) outlines of repaired asphalt
     patch_factors : of its brightness
@@ -106,7 +106,7 @@ class PlanScene:
     paint: PlanPaint
     texture: Texture
     lanes: list[PlanLane]
-    ways: list[tuple[Way, float]]
+    ways: list[tuple[Track, float]]
     obstacles: list[Any]
     patches: list[np.ndarray] = field(default_factory=list)
     patch_factors: list[float] = field(default_factory=list)
@@ -118,7 +118,7 @@ class PlanScene:
         self._kept = shapely.buffer(self.area, 0.3)
         shapely.prepare(self._kept)
 
-    def passes_driven(self) -> list[tuple[Way, int, float, float]]:
+    def passes_driven(self) -> list[tuple[Track, int, float, float]]:
         """(what is followed, direction, offset in m, factor of the speed) of each pass."""
         return [(way, 1, 0.0, haste) for way, haste in self.ways]
 

@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 from scipy.interpolate import LinearNDInterpolator
 
-from ..street import Side
+from ..parts.sides import Side
 from .builder import PlanBuilder, strip
 from .path import Path, path_of_elements
 from .scene import PlanScene

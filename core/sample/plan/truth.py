@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 
 from ...common.features import Features
-from ..truth import TRUE_BOUNDARIES, TRUE_DRIVING_LINES, TRUE_MARKINGS, TRUE_SURFACE, Truth, densified
+from ..parts.truth import TRUE_BOUNDARIES, TRUE_DRIVING_LINES, TRUE_MARKINGS, TRUE_SURFACE, Truth, densified
 
 if TYPE_CHECKING:
     from .scene import PlanScene

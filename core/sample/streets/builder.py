@@ -6,10 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..obstacles import Car, Crown, Post, car_bodies
-from ..paint import Marking, Paint, PaintedFigure, PaintedLine, TaperedLine
-from ..street import LABEL, Lane, Scene, Side, Texture
-from .axis import RoadAxis, winding_road
+from ..parts.axis import RoadAxis, winding_road
+from ..parts.materials import LABEL, Texture
+from ..parts.obstacles import Car, Crown, Post, car_bodies
+from ..parts.paint import Marking, Paint, PaintedFigure, PaintedLine, TaperedLine
+from ..parts.sides import Side
+from .street import Lane, Scene
 
 MODULE = 120.0  # m, length after which the objects of a street repeat
 _RUN_IN = 70.0   # m of road before station 0

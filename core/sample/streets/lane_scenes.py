@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..paint import hatched_area, straight_arrow
-from ..street import Scene, sidewalk
+from ..parts.paint import hatched_area, straight_arrow
+from ..parts.sides import sidewalk
 from .builder import MODULE, SceneBuilder
+from .street import Scene
 
 _PARKING = 2.3       # m from an edge line to the curb beyond the parked cars
 _MARGIN = 0.45       # m from an edge line to a curb without parking

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from ..paint import hatching, rectangle, straight_arrow, turn_arrow, zebra_bars
-from ..street import Scene, ditch, sidewalk
+from ..parts.paint import hatching, rectangle, straight_arrow, turn_arrow, zebra_bars
+from ..parts.sides import ditch, sidewalk
 from .builder import MODULE, SceneBuilder
+from .street import Scene
 
 
 def street(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:

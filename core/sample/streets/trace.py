@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..scanner import LONGEST, Hits
+from ..parts.scanner import LONGEST, Hits
 
 if TYPE_CHECKING:
-    from ..street import Scene
+    from .street import Scene
 
 _GRAZING = 0.02    # sine of the flattest downward direction that is traced
 _MARGIN = 1.0      # m around the surveyed stretch, within which the ground is computed

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 import shapely
-from lanewright.core.sample.paint import hatched_area
-from lanewright.core.sample.street import LABEL
+from lanewright.core.sample.parts.materials import LABEL
+from lanewright.core.sample.parts.paint import hatched_area
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 
 

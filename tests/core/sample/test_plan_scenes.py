@@ -7,8 +7,8 @@ import pytest
 import shapely
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.sample.orthophoto import uav_control_points
+from lanewright.core.sample.parts.materials import CARRIAGEWAY_LABELS, LABEL
 from lanewright.core.sample.plan.trace import trace
-from lanewright.core.sample.street import CARRIAGEWAY_LABELS, LABEL
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 
 PLANS = ("motorway", "serpentine", "crossing", "roundabout")

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
+from lanewright.core.sample.parts.materials import CARRIAGEWAY_LABELS, LABEL
 from lanewright.core.sample.scenes import SCENES
-from lanewright.core.sample.street import CARRIAGEWAY_LABELS, LABEL
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 
 GROUND = [LABEL[name] for name in ("road", "paint", "worn paint", "manhole", "gutter", "curb face", "curb stone",
@@ -154,7 +154,7 @@ def test_parked_cars_hide_the_curb_and_open_kerbside_shows_it():
 
 def test_no_pulse_goes_through_a_car(street, true_points):
     """Between the scanner and each point the way is free: no body holds its middle points."""
-    from lanewright.core.sample.obstacles import Car
+    from lanewright.core.sample.parts.obstacles import Car
 
     cars = [thing for thing in street.scene.obstacles if isinstance(thing, Car)]
     t = street.trajectory
@@ -180,7 +180,7 @@ def test_no_pulse_goes_through_a_car(street, true_points):
 
 
 def test_a_thing_in_the_way_takes_the_pulse_from_the_ground_behind_it(street):
-    from lanewright.core.sample.scanner import OBSTACLE, cast
+    from lanewright.core.sample.parts.scanner import OBSTACLE, cast
     from lanewright.core.sample.streets.trace import cast_ground
 
     drive = street.drives[0]

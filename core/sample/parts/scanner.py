@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .street import LABEL
+from .materials import LABEL
 from .vehicle import Drive, attitude
 
 if TYPE_CHECKING:

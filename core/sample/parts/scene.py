@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 if TYPE_CHECKING:
+    from .materials import Texture
     from .scanner import Hits
-    from .street import Texture
     from .truth import Truth
 
 
-class Way(Protocol):
+class Followed(Protocol):
     """What a vehicle follows."""
 
     @property
@@ -34,7 +34,7 @@ class SurveyedScene(Protocol):
     obstacles: list[Any]
 
     def passes_driven(self) -> list[tuple[Any, int, float, float]]:
-        """(Way, direction, offset in m, factor of the speed) of each pass."""
+        """(Followed, direction, offset in m, factor of the speed) of each pass."""
 
     def meet(self, origin: np.ndarray, direction: np.ndarray, station: float, reach: float) -> Hits:
         """Intersect pulses with the ground: (3, N) local origins, m, and unit directions, from a scanner near a station."""

@@ -11,7 +11,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from .street import Texture
+    from .materials import Texture
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from .scene import Way
+    from .scene import Followed
 
 SENSOR_HEIGHT = 2.6  # m from the ground to the reference point of the trajectory
 _RUN_OUT = 15.0      # m driven before and after the surveyed stretch
@@ -20,7 +20,7 @@ class Drive:
 
     Attributes
     ----------
-    way : Way
+    way : Followed
     direction : 1 along the axis, -1 against it
     offset : m, mean offset of the vehicle
     speed : m/s, mean
@@ -28,7 +28,7 @@ class Drive:
     phase : radians, phase of the sway of this pass
     """
 
-    way: Way
+    way: Followed
     direction: int
     offset: float
     speed: float

@@ -3,35 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..common.features import Features, Field
-from ..common.schemas import CURB_KIND, DRIVING_LINES, END, HEIGHT, LENGTH, PART, ROAD, SIDE, STATION, WIDTH
+from ...common.features import Features
+from ..parts.truth import TRUE_BOUNDARIES, TRUE_DRIVING_LINES, TRUE_MARKINGS, TRUE_SURFACE, VERTEX_STEP, Truth, densified
 
 if TYPE_CHECKING:
     from .street import Scene
 
-_VERTEX_STEP = 0.25      # m between vertices along the road
 _DROPPED = 0.05   # m: lower curbs are of the kind "dropped"
-
-TRUE_BOUNDARIES = [ROAD, SIDE, PART, CURB_KIND, Field("edge", str, "Edge (curb/dropped/pavement)"), STATION, END, HEIGHT, LENGTH]
-TRUE_MARKINGS = [ROAD, Field("class", str, "Class"), Field("line", int, "Line"), Field("pattern", str, "Pattern"),
-            STATION, END, WIDTH, Field("wear", float, "Share of paint worn away")]
-TRUE_DRIVING_LINES = [field for field in DRIVING_LINES if field.name in
-           ("road", "lane", "direction", "radius_m", "station_m", "end_m", "length_m")]
-TRUE_SURFACE = [ROAD, Field("area_m2", float, "Area (m²)")]
-
-
-class Truth(NamedTuple):
-    """The true layers of a scene, Features each, in map coordinates."""
-
-    boundaries: Features
-    markings: Features
-    driving_lines: Features
-    surface: Features
-
 
 def truth_of_street(scene: Scene, origin: Sequence[float], crs: str) -> Truth:
     """The true layers of a street.
@@ -51,7 +33,7 @@ def truth_of_street(scene: Scene, origin: Sequence[float], crs: str) -> Truth:
 
 
 def _stations(start, end):
-    return np.linspace(start, end, max(2, int(np.ceil((end - start) / _VERTEX_STEP)) + 1))
+    return np.linspace(start, end, max(2, int(np.ceil((end - start) / VERTEX_STEP)) + 1))
 
 
 def _coordinates(scene, origin, s, d):
@@ -122,14 +104,6 @@ def true_markings(scene: Scene, origin: Sequence[float], crs: str) -> Features:
                       wear=float(marking.wear), station_m=float(outline[:, 0].min()), end_m=float(outline[:, 0].max()),
                       **{"class": marking.kind})
     return layer
-
-
-def densified(outline: np.ndarray) -> np.ndarray:
-    """The closed ring of an outline, (n, 2) m, with vertices at least every quarter of a metre."""
-    closed = np.vstack([outline, outline[:1]])
-    sides = [a + np.linspace(0, 1, max(1, int(np.ceil(np.hypot(*(b - a)) / _VERTEX_STEP))), endpoint=False)[:, None] * (b - a)
-             for a, b in zip(closed[:-1], closed[1:])]
-    return np.vstack([*sides, outline[:1]])
 
 
 def true_driving_lines(scene: Scene, origin: Sequence[float], crs: str) -> Features:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .street import LABEL
+from .materials import LABEL
 
 
 @dataclass(frozen=True)
