@@ -377,7 +377,7 @@ def test_cancelling_leaves_no_file(tmp_path):
 
 
 @pytest.mark.parametrize("setting, value, word", [
-    ("scene", "harbour", "street, rural, urban"), ("length", 3.0, "between 20 and"), ("seed", -1, "seed"),
+    ("scene", "harbour", "street, rural, urban"), ("length", 3.0, "from 20 to 20000 m"), ("seed", -1, "seed"),
     ("speed_kmh", float("nan"), "speed"), ("curb_height", 0.6, "curb height")])
 def test_settings_that_make_no_street_are_refused_by_name(setting, value, word):
     with pytest.raises(RoadExtractionError, match=word):
