@@ -7,6 +7,7 @@ from .assess.assess_markings import AssessMarkings
 from .driving.driving_lines import DrivingLines
 from .driving.road_map import RoadMap
 from .export.check_map import CheckMap
+from .export.export_lanelet2 import ExportLanelet2
 from .export.import_lanelet2 import ImportLanelet2
 from .export.import_opendrive import ImportOpenDrive
 from .inventory.cross_sections import CrossSections
@@ -45,6 +46,7 @@ ALGORITHMS = (
     FitMarkingLines,
     DrivingLines,
     RoadMap,
+    ExportLanelet2,
     ImportOpenDrive,
     ImportLanelet2,
     CheckMap,

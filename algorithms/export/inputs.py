@@ -1,6 +1,6 @@
 """What the algorithms on map files share."""
 
-from ...core.common.schemas import DRIVING_LINES, LANES, MARKING_LINES, ROAD_EDGES
+from ...core.common.schemas import DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES
 from ..call import existing_file
 from ..parameters import CrsSpec, FileSpec
 from ..texts import tr
@@ -48,3 +48,31 @@ def write_map_layers(call, layers, progress):
     length = float(lanes.length[driven].sum())
     progress.info(tr("{count} lanes and pieces, {length:.0f} m of driven lanes.").format(count=len(lanes), length=length))
     return {"LANE_COUNT": float(len(lanes)), "LENGTH": length}
+
+
+LINE_FIELDS = tuple(field for field in DRIVING_LINES if field.name in ("road", "lane", "status", "station_m", "end_m"))
+MARKING_LINE_FIELDS = tuple(field for field in MARKING_LINES if field.name in ("road", "line", "kind", "pattern", "width_m"))
+EDGE_FIELDS = tuple(field for field in ROAD_EDGES if field.name in ("road", "height_m"))
+MARKING_FIELDS = tuple(field for field in MARKINGS if field.name in ("road", "class"))
+
+
+def add_road_map_layers(algorithm):
+    """The layers of the road map that an export takes."""
+    algorithm.add_layer("LANES", tr("Lanes"), tr("Made by Driving lines or Road map, with its fields and heights."), "PolygonZ")
+    algorithm.add_layer("DRIVING_LINES", tr("Driving lines"), tr(
+        "Held against the middles of the lanes: the report says how far apart they are."), "LineStringZ", optional=True)
+    algorithm.add_layer("MARKING_LINES", tr("Marking lines"), tr("The widths of the painted borders."), "LineStringZ", optional=True)
+    algorithm.add_layer("ROAD_EDGES", tr("Road edges"), tr("The heights of curbs."), "LineStringZ", optional=True)
+    algorithm.add_layer("MARKINGS", tr("Markings"), tr("Zebra crossings, stop lines, arrows and hatched areas."), "PolygonZ", optional=True)
+
+
+def road_map_source(call):
+    """The layers given, checked, as RoadMapSource."""
+    from ...core.driving.lanes_layer import lanes_from_features
+    from ...core.export.sources import RoadMapSource, checked
+
+    source = RoadMapSource(
+        lanes_from_features(call.features("LANES", LANES, "PolygonZ")), call.features("DRIVING_LINES", LINE_FIELDS, "LineStringZ"),
+        call.features("MARKING_LINES", MARKING_LINE_FIELDS, "LineStringZ"), call.features("ROAD_EDGES", EDGE_FIELDS, "LineStringZ"),
+        call.features("MARKINGS", MARKING_FIELDS, "PolygonZ"))
+    return checked(source)

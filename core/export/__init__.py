@@ -8,5 +8,7 @@ from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "map_layers": ("MapLayers", "MapLine"),
+    "painted_objects": ("stop_lines", "walked_crossings"),
+    "sources": ("RoadMapSource", "checked"),
     "xml_tree": ("XmlElement", "read_xml", "xml_text"),
 })

@@ -13,6 +13,7 @@ __getattr__, __all__ = public(__name__, {
     "inspection": ("inspection_report",),
     "intensity": ("intensity_correction_report",),
     "map_check": ("map_check_report",),
+    "map_export": ("map_export_report",),
     "page": ("Page",),
     "road_map": ("road_map_report",),
 })

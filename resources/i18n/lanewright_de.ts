@@ -1094,6 +1094,111 @@
             <translation>{fault}: {count}</translation>
         </message>
         <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>Export Lanelet2</source>
+            <translation>Lanelet2 exportieren</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>Writes lanes as a Lanelet2 map for planners such as Autoware: lanelets that share their borders, with heights and centre lines.</source>
+            <translation>Schreibt Fahrstreifen als Lanelet2-Karte für Planer wie Autoware: Lanelets, die ihre Ränder teilen, mit Höhen und Mittellinien.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>Lanes that are driven, their connectors, bicycle lanes and shoulders become lanelets; parking, hatched areas and medians do not. Where a lane begins beside another one, both are cut, so that neighbours share their border. Curbs are curbstone high or low, painted borders line_thin or line_thick, other edges road_border, and what is neither is virtual. Zebra crossings and stop lines come from the markings. What was inferred or bridged has the tags lanewright:status and lanewright:confidence.</source>
+            <translation>Befahrene Fahrstreifen, ihre Verbindungen, Radfahrstreifen und Seitenstreifen werden Lanelets; Parkstreifen, Sperrflächen und Mittelstreifen nicht. Wo ein Fahrstreifen neben einem anderen beginnt, werden beide geteilt, damit Nachbarn ihren Rand teilen. Borde sind curbstone high oder low, markierte Ränder line_thin oder line_thick, andere Ränder road_border, und was keines davon ist, virtual. Zebrastreifen und Haltlinien kommen aus den Markierungen. Was erschlossen oder überbrückt ist, trägt die Tags lanewright:status und lanewright:confidence.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>The file is read back and checked before it is handed over; the report names the transformation to latitude and longitude and what the heights are. Traffic lights, signs, right of way and regulatory elements are not there.</source>
+            <translation>Die Datei wird zurückgelesen und geprüft, bevor sie übergeben wird; der Bericht nennt die Transformation in Breite und Länge und was die Höhen sind. Ampeln, Schilder, Vorfahrt und Regelelemente sind nicht darin.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>osm</source>
+            <translation>osm</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>Autoware</source>
+            <translation>Autoware</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>planner</source>
+            <translation>Planer</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>Speed limit (km/h)</source>
+            <translation>Höchstgeschwindigkeit (km/h)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>Written to every lanelet for vehicles. 0 writes none: the survey does not know it.</source>
+            <translation>Steht an jedem Lanelet für Fahrzeuge. 0 schreibt keine: Die Vermessung kennt sie nicht.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>Lanelets</source>
+            <translation>Lanelets</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>Ways</source>
+            <translation>Wege</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>Nodes</source>
+            <translation>Knoten</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>Findings of the check</source>
+            <translation>Befunde der Prüfung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>Lanelet2 file</source>
+            <translation>Lanelet2-Datei</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>The map.</source>
+            <translation>Die Karte.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>Location</source>
+            <translation>Lage</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>Whether the roads are in a town; planners draw traffic rules from it.</source>
+            <translation>Ob die Straßen innerorts liegen; Planer leiten Verkehrsregeln daraus ab.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>Write local_x and local_y</source>
+            <translation>local_x und local_y schreiben</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>Autoware reads these metres within a square of 100 km instead of latitude and longitude.</source>
+            <translation>Autoware liest diese Meter innerhalb eines Quadrats von 100 km anstelle von Breite und Länge.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>{count} lanelets; latitude and longitude by: {way}.</source>
+            <translation>{count} Lanelets; Breite und Länge durch: {way}.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>{count} pieces of the type {kind} are no lanelets and were left out.</source>
+            <translation>{count} Stücke vom Typ {kind} sind keine Lanelets und wurden weggelassen.</translation>
+        </message>
+        <message>
             <location filename="../../algorithms/export/import_lanelet2.py" />
             <source>Import Lanelet2</source>
             <translation>Lanelet2 importieren</translation>
@@ -1112,26 +1217,6 @@
             <location filename="../../algorithms/export/import_lanelet2.py" />
             <source>Latitude and longitude are taken as WGS 84. A map with local_x and local_y alone gets layers in these coordinates, without CRS.</source>
             <translation>Breite und Länge gelten als WGS 84. Eine Karte, die nur local_x und local_y hat, ergibt Layer in diesen Koordinaten, ohne KBS.</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/export/import_lanelet2.py" />
-            <source>osm</source>
-            <translation>osm</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/export/import_lanelet2.py" />
-            <source>Autoware</source>
-            <translation>Autoware</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/export/import_lanelet2.py" />
-            <source>planner</source>
-            <translation>Planer</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/export/import_lanelet2.py" />
-            <source>Lanelet2 file</source>
-            <translation>Lanelet2-Datei</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/import_lanelet2.py" />
@@ -1227,6 +1312,31 @@
             <location filename="../../algorithms/export/inputs.py" />
             <source>Length of the driven lanes (m)</source>
             <translation>Länge der befahrenen Fahrstreifen (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/inputs.py" />
+            <source>Made by Driving lines or Road map, with its fields and heights.</source>
+            <translation>Von Fahrlinien oder Straßenkarte erzeugt, mit Feldern und Höhen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/inputs.py" />
+            <source>Held against the middles of the lanes: the report says how far apart they are.</source>
+            <translation>Mit den Mitten der Fahrstreifen verglichen: Der Bericht sagt, wie weit sie auseinander liegen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/inputs.py" />
+            <source>The widths of the painted borders.</source>
+            <translation>Die Breiten der markierten Ränder.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/inputs.py" />
+            <source>The heights of curbs.</source>
+            <translation>Die Höhen der Borde.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/inputs.py" />
+            <source>Zebra crossings, stop lines, arrows and hatched areas.</source>
+            <translation>Zebrastreifen, Haltlinien, Pfeile und Sperrflächen.</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/inputs.py" />

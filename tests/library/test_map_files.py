@@ -3,6 +3,7 @@
 import os
 
 import fiona
+import made_lanes
 import pytest
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.library import run
@@ -52,3 +53,29 @@ def test_a_good_and_a_faulty_map_are_told_apart(tmp_path):
 def test_what_is_no_map_is_refused_by_the_check(tmp_path):
     with pytest.raises(RoadExtractionError, match="neither as OpenDRIVE nor as Lanelet2"):
         run("checkhdmap", INPUT=written(tmp_path, "<gpx/>"), OUTPUT=tmp_path / "findings.gpkg")
+
+
+def lane_layer(folder, lanes, name="lanes.gpkg"):
+    from lanewright.core.driving.lanes_layer import lanes_to_features
+    from lanewright.library.layer_files import write_layer
+
+    write_layer(str(folder / name), "", lanes_to_features(lanes), lambda: None)
+    return folder / name
+
+
+def test_lanes_are_written_as_lanelet2_with_a_report(tmp_path):
+    results = run("exportlanelet2", LANES=lane_layer(tmp_path, made_lanes.crossing()), OUTPUT=tmp_path / "map.osm", REPORT=tmp_path / "report.html",
+                  SPEED_LIMIT=50)
+    assert results["LANELETS"] == 20 and results["SUCCESSORS"] == 24 and results["FINDINGS"] == 0
+    assert "WGS 84" in (tmp_path / "report.html").read_text() and "<svg" in (tmp_path / "report.html").read_text()
+    assert run("checkhdmap", INPUT=results["OUTPUT"], OUTPUT=tmp_path / "findings.gpkg")["FINDINGS"] == 0
+
+
+def test_an_export_that_is_refused_leaves_the_last_good_map(tmp_path):
+    (tmp_path / "map.osm").write_text("the last good map")
+    empty = lane_layer(tmp_path, made_lanes.LaneScene().lanes())
+    with pytest.raises(RoadExtractionError, match="empty"):
+        run("exportlanelet2", LANES=empty, OUTPUT=tmp_path / "map.osm")
+    assert (tmp_path / "map.osm").read_text() == "the last good map" and sorted(os.listdir(tmp_path)) == ["lanes.gpkg", "map.osm"]
+    with pytest.raises(RoadExtractionError, match=r"written as \.osm only"):
+        run("exportlanelet2", LANES=empty, OUTPUT=tmp_path / "map.xodr")

@@ -156,7 +156,7 @@ class _RoadCheck:
         if not driven:
             return None
         rings = [np.concatenate([inner, outer[::-1]])[:, :2] for inner, outer in (surface.borders(number, id, s, offsets) for id in driven)]
-        return shapely.union_all(shapely.make_valid(shapely.polygons([ring for ring in rings])))
+        return shapely.union_all(shapely.make_valid(np.array([shapely.Polygon(ring) for ring in rings], object)))
 
     def objects(self, road: MapRoad) -> None:
         for item in road.objects:

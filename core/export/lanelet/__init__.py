@@ -6,8 +6,10 @@ In: a file `.osm` or `Lanes`. Out: a `LaneletMap`, and from it layers or a file.
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
+    "exporter": ("LaneletDraft", "LaneletSettings", "draft_lanelets"),
     "layers": ("layers_of_lanelets",),
     "model": ("Lanelet", "LaneletMap", "Way"),
     "reader": ("read_lanelet2",),
     "routing": ("LaneletNetwork",),
+    "writer": ("Degrees", "lanelet2_text", "to_degrees"),
 })

@@ -1,0 +1,79 @@
+"""Lanes written as Lanelet2."""
+
+from ..algorithm import Algorithm
+from ..parameters import ChoiceSpec, FlagSpec, SettingSpec
+from ..texts import tr
+from .inputs import add_road_map_layers, road_map_source
+
+LANELETS = "export.lanelet.exporter:LaneletSettings"
+LOCATIONS = ("urban", "nonurban")
+LANELET_SETTINGS = (
+    SettingSpec("SPEED_LIMIT", LANELETS, "speed_limit", tr("Speed limit (km/h)"),
+                tr("Written to every lanelet for vehicles. 0 writes none: the survey does not know it.")),
+)
+NUMBERS = (("LANELETS", tr("Lanelets")), ("WAYS", tr("Ways")), ("NODES", tr("Nodes")), ("SUCCESSORS", tr("Links from one lane to the next")),
+           ("FINDINGS", tr("Findings of the check")))
+
+
+class ExportLanelet2(Algorithm):
+    ID, TITLE, GROUP = "exportlanelet2", "Export Lanelet2", "Export"
+    SUMMARY = "Writes lanes as a Lanelet2 map for planners such as Autoware: lanelets that share their borders, with heights and centre lines."
+    HELP = ("Lanes that are driven, their connectors, bicycle lanes and shoulders become lanelets; parking, hatched areas and medians do not. Where "
+            "a lane begins beside another one, both are cut, so that neighbours share their border. Curbs are curbstone high or low, painted borders "
+            "line_thin or line_thick, other edges road_border, and what is neither is virtual. Zebra crossings and stop lines come from the "
+            "markings. What was inferred or bridged has the tags lanewright:status and lanewright:confidence.\n\n"
+            "The file is read back and checked before it is handed over; the report names the transformation to latitude and longitude and what "
+            "the heights are. Traffic lights, signs, right of way and regulatory elements are not there.")
+    TAGS = ("Lanelet2", "osm", "HD map", "Autoware", "planner")
+
+    def declare(self):
+        add_road_map_layers(self)
+        self.add_settings(LANELET_SETTINGS)
+        self.add(ChoiceSpec("LOCATION", tr("Location"), tr("Whether the roads are in a town; planners draw traffic rules from it."),
+                            value=LOCATIONS[0], choices=LOCATIONS))
+        self.add(FlagSpec("LOCAL_COORDINATES", tr("Write local_x and local_y"), tr(
+            "Autoware reads these metres within a square of 100 km instead of latitude and longitude."), value=False))
+        self.add_file("OUTPUT", tr("Lanelet2 file"), tr("The map."), (".osm",), "Lanelet2 (*.osm)")
+        self.add_report()
+        for name, label in NUMBERS:
+            self.add_number(name, label)
+
+    def work(self, call, progress):
+        from pathlib import Path
+
+        from ...core.export.check.lanelets import check_lanelets
+        from ...core.export.lanelet.exporter import draft_lanelets
+        from ...core.export.lanelet.layers import layers_of_lanelets, node_places
+        from ...core.export.lanelet.reader import read_lanelet2
+        from ...core.export.lanelet.writer import lanelet2_text, to_degrees
+        from ...core.report.map_export import map_export_report
+
+        source = road_map_source(call)
+        progress.report(0.2)
+        draft = draft_lanelets(source, call.settings(LANELET_SETTINGS, location=call.choice("LOCATION")))
+        degrees = to_degrees(draft.nodes, source.lanes.crs)
+        path = call.new_file("OUTPUT")
+        Path(path).write_text(lanelet2_text(draft, degrees, call.flag("LOCAL_COORDINATES")), encoding="utf-8")
+        progress.report(0.6)
+        whole = read_lanelet2(path)
+        found = check_lanelets(whole, *node_places(whole, source.lanes.crs))
+        progress.report(0.8)
+        notes = [*source.notes, *(tr("{count} pieces of the type {kind} are no lanelets and were left out.").format(count=count, kind=kind)
+                                  for kind, count in draft.skipped.items())]
+        for note in notes:
+            progress.warn(note)
+        for fault, count in found.counts().items():
+            progress.warn(tr("{fault}: {count}").format(fault=fault, count=count))
+        numbers = {"LANELETS": float(len(draft.lanelets)), "WAYS": float(len(whole.ways)), "NODES": float(len(whole.node_ids)),
+                   "SUCCESSORS": float(found.successors), "FINDINGS": float(len(found.found))}
+        progress.info(tr("{count} lanelets; latitude and longitude by: {way}.").format(count=len(draft.lanelets), way=degrees.way))
+        if call.wants("REPORT"):
+            accuracy = f"{degrees.accuracy:g} m" if degrees.accuracy >= 0 else "not stated"
+            facts = [("Lanelets", len(draft.lanelets)), ("Links from one lane to the next", found.successors),
+                     ("Pairs of lanes side by side", found.neighbours), ("Ways", len(whole.ways)), ("Nodes", len(whole.node_ids)),
+                     ("Transformation to latitude and longitude", degrees.way), ("Accuracy of the transformation", accuracy),
+                     ("Heights", degrees.vertical)]
+            faults = [("Findings of the check", ("Fault", "Count"), sorted(found.counts().items()))] if found.found else []
+            call.text("REPORT", map_export_report("Lanelet2 map", call.layer_name("LANES"), facts, faults, notes,
+                                                  layers_of_lanelets(whole, source.lanes.crs)))
+        return numbers

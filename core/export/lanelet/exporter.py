@@ -1,0 +1,216 @@
+"""Lanes of a road map as lanelets: nodes and ways that neighbours share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import shapely
+
+from ...common.setting import check_limits, setting
+from ..painted_objects import stop_lines, walked_crossings
+from ..sources import RoadMapSource, nearest_values
+
+SAME_PLACE = 0.001      # m: vertices nearer than this are one node
+HIGH_CURB = 0.10        # m: lower ones can be driven over, as the format means by `low`
+THICK_LINE = 0.18       # m of paint from which a line is thick: above the narrow and below the broad lines of most countries
+NEAREST_EDGE = 0.5      # m from a border within which a road edge tells its height
+SUBTYPE_OF_LANE = {"driving": "road", "connector": "road", "bicycle": "bicycle_lane", "shoulder": "emergency_lane"}
+PARTICIPANTS = {"bicycle": "participant:bicycle", "shoulder": "participant:vehicle:emergency"}
+SUBTYPE_OF_PATTERN = {"solid": "solid", "dashed": "dashed", "double-solid": "solid_solid", "double-dashed": "dashed_dashed", "double": "solid_solid",
+                      "solid-dashed": "solid_dashed", "dashed-solid": "dashed_solid"}
+TURN = 0.5              # rad from which a way through a junction is a turn
+
+
+@dataclass(frozen=True)
+class LaneletSettings:
+    """speed_limit : km/h, 0 writes none; location : urban or nonurban."""
+
+    speed_limit: int = setting(0, 5, 200, "Speed limit", "km/h", zero="for none")
+    location: str = "urban"
+
+    def __post_init__(self) -> None:
+        check_limits(self)
+
+
+@dataclass
+class MadeWay:
+    """nodes : numbers; tags : what it is."""
+
+    nodes: tuple[int, ...]
+    tags: dict[str, str]
+
+
+@dataclass
+class MadeLanelet:
+    """left, right, centre : numbers of ways, centre -1 for none; tags; name : lane_id of the lane that it is a part of, "" for crossings."""
+
+    left: int
+    right: int
+    centre: int
+    tags: dict[str, str]
+    name: str = ""
+
+
+@dataclass
+class LaneletDraft:
+    """A map before it gets ids and degrees.
+
+    nodes : (N, 3) metres in the CRS of the survey; ways; lanelets; skipped : type of lane -> pieces that are no lanelets
+    """
+
+    nodes: np.ndarray
+    ways: list[MadeWay] = field(default_factory=list)
+    lanelets: list[MadeLanelet] = field(default_factory=list)
+    skipped: dict[str, int] = field(default_factory=dict)
+
+
+def draft_lanelets(source: RoadMapSource, settings: LaneletSettings = LaneletSettings()) -> LaneletDraft:
+    """Lanelets of the lanes that are driven, with crossings and stop lines of the markings.
+
+    A border between neighbours is one way. Where a lane begins or ends beside another, that other one is cut too, at the same place, so
+    that every lanelet has one way left and one right.
+
+    Parameters
+    ----------
+    source : RoadMapSource, checked
+    settings : LaneletSettings
+
+    Returns
+    -------
+    LaneletDraft
+    """
+    return _Drafting(source, settings).run()
+
+
+class _Drafting:
+    def __init__(self, source: RoadMapSource, settings: LaneletSettings) -> None:
+        self.source, self.settings, self.lanes = source, settings, source.lanes
+        lanes = source.lanes
+        every, numbers = _numbered(np.concatenate([lanes.left, lanes.right]))
+        self.draft = LaneletDraft(every)
+        self.left, self.right = numbers[:len(lanes.left)], numbers[len(lanes.left):]
+        self.way_of: dict[tuple[int, ...], int] = {}
+        self.heights = source.road_edges
+
+    def run(self) -> LaneletDraft:
+        lanes = self.lanes
+        used = [k for k in range(len(lanes)) if lanes.type[k] in SUBTYPE_OF_LANE]
+        for k in range(len(lanes)):
+            if lanes.type[k] not in SUBTYPE_OF_LANE:
+                self.draft.skipped[lanes.type[k]] = self.draft.skipped.get(lanes.type[k], 0) + 1
+        cuts = self._cuts(used)
+        for k in used:
+            first = lanes.start[k]
+            at = [first, *(row for row in range(first + 1, lanes.start[k + 1] - 1) if self.left[row] in cuts or self.right[row] in cuts),
+                  lanes.start[k + 1] - 1]
+            for a, b in zip(at[:-1], at[1:]):
+                self._lanelet(k, slice(a, b + 1))
+        self._objects()
+        return self.draft
+
+    def _cuts(self, used: Sequence[int]) -> set[int]:
+        """Nodes at which every lane beside them is cut."""
+        lanes = self.lanes
+        ends = [row for k in used for row in (lanes.start[k], lanes.start[k + 1] - 1)]
+        cuts = {int(side[row]) for row in ends for side in (self.left, self.right)}
+        while True:
+            known = np.isin(self.left, list(cuts)), np.isin(self.right, list(cuts))
+            rows = np.flatnonzero(known[0] ^ known[1])
+            rows = rows[np.isin(np.searchsorted(lanes.start, rows, side="right") - 1, used)]
+            more = {int(side[row]) for row in rows for side in (self.left, self.right)} - cuts
+            if not more:
+                return cuts
+            cuts |= more
+
+    def _lanelet(self, k: int, rows: slice) -> None:
+        lanes = self.lanes
+        left, right = (_without_repeats(side[rows]) for side in (self.left, self.right))
+        if len(left) < 2 or len(right) < 2:   # where a lane tapers away, one border may stand still
+            return
+        tags = {"type": "lanelet", "subtype": SUBTYPE_OF_LANE[lanes.type[k]], "location": self.settings.location, "one_way": "yes"}
+        tags[PARTICIPANTS.get(lanes.type[k], "participant:vehicle")] = "yes"
+        if self.settings.speed_limit and lanes.type[k] not in PARTICIPANTS:
+            tags["speed_limit"] = str(int(self.settings.speed_limit))
+        if lanes.type[k] == "connector":
+            tags["turn_direction"] = _turn((lanes.left[rows] + lanes.right[rows]) / 2)
+        if lanes.status[k] != "measured":
+            tags |= {"lanewright:status": lanes.status[k], "lanewright:confidence": f"{lanes.confidence[k]:.2f}"}
+        centre = self._new_nodes((lanes.left[rows] + lanes.right[rows]) / 2)
+        ways = [self._way(nodes, kind, pattern, line) for nodes, kind, pattern, line in (
+            (left, lanes.left_kind[k], lanes.left_pattern[k], lanes.left_line[k]),
+            (right, lanes.right_kind[k], lanes.right_pattern[k], lanes.right_line[k]))]
+        self.draft.ways.append(MadeWay(centre, {"type": "centerline"}))
+        self.draft.lanelets.append(MadeLanelet(ways[0], ways[1], len(self.draft.ways) - 1, tags, lanes.lane_id[k]))
+
+    def _way(self, nodes: tuple[int, ...], kind: str, pattern: str, line: str) -> int:
+        """The number of the way along these nodes, which neighbours share; one that says more about it takes precedence."""
+        key = min(nodes, nodes[::-1])
+        number = self.way_of.get(key)
+        if number is None:
+            number = self.way_of[key] = len(self.draft.ways)
+            self.draft.ways.append(MadeWay(nodes, {"type": "virtual"}))
+        way = self.draft.ways[number]
+        turned = way.nodes != nodes
+        if way.tags["type"] == "virtual":
+            mirrored = turned and "-" in pattern and "double" not in pattern
+            way.tags = self._tags(nodes, kind, "-".join(pattern.split("-")[::-1]) if mirrored else pattern, line)
+        return number
+
+    def _tags(self, nodes, kind, pattern, line):
+        places = self.draft.nodes[list(nodes)]
+        if kind == "curb":
+            height = np.nanmedian(np.append(nearest_values(places[:, :2], self.heights, "height_m", NEAREST_EDGE), [np.nan])) \
+                if self.heights is not None else np.nan
+            tags = {"type": "curbstone", "subtype": "low" if height < HIGH_CURB else "high"}
+            return tags | ({} if np.isnan(height) else {"height": f"{height:.2f}"})
+        if pattern in SUBTYPE_OF_PATTERN:
+            width = self._paint_width(line)
+            return {"type": "line_thick" if width > THICK_LINE else "line_thin", "subtype": SUBTYPE_OF_PATTERN[pattern]} | (
+                {} if np.isnan(width) else {"width": f"{width:.2f}"})
+        return {"type": "road_border"} if kind in ("edge", "pavement") else {"type": "virtual"}
+
+    def _paint_width(self, line):
+        """Metres of a border's paint; NaN where unknown."""
+        layer = self.source.marking_lines
+        if layer is None or not line.startswith("line "):
+            return np.nan
+        widths = [float(row["width_m"]) for row in layer.rows if str(row.get("line")) == line[5:] and row.get("width_m") is not None]
+        return float(np.median(widths)) if widths else np.nan
+
+    def _new_nodes(self, places: np.ndarray) -> tuple[int, ...]:
+        first = len(self.draft.nodes)
+        self.draft.nodes = np.concatenate([self.draft.nodes, places])
+        return tuple(range(first, first + len(places)))
+
+    def _objects(self) -> None:
+        for line in stop_lines(self.source.markings):
+            self.draft.ways.append(MadeWay(self._new_nodes(line), {"type": "stop_line", "subtype": "solid"}))
+        for left, right in walked_crossings(self.source.markings):
+            for side in (left, right):
+                self.draft.ways.append(MadeWay(self._new_nodes(side), {"type": "pedestrian_marking", "subtype": "dashed"}))
+            self.draft.lanelets.append(MadeLanelet(len(self.draft.ways) - 2, len(self.draft.ways) - 1, -1, {
+                "type": "lanelet", "subtype": "crosswalk", "location": self.settings.location, "one_way": "no", "participant:pedestrian": "yes"}))
+
+
+def _numbered(places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """((N, 3) places, each once; (V,) number of each of V vertices): vertices nearer than SAME_PLACE are one."""
+    points = shapely.points(places[:, :2])
+    near = shapely.STRtree(points).query(points, predicate="dwithin", distance=SAME_PLACE)
+    near = near[:, np.abs(places[near[0], 2] - places[near[1], 2]) < 100 * SAME_PLACE]
+    first = np.arange(len(places))
+    np.minimum.at(first, near[0], near[1])
+    every, numbers = np.unique(first, return_inverse=True)
+    return places[every], numbers
+
+
+def _without_repeats(nodes: np.ndarray) -> tuple[int, ...]:
+    return tuple(int(node) for k, node in enumerate(nodes) if not k or node != nodes[k - 1])
+
+
+def _turn(middle: np.ndarray) -> str:
+    """left, right or straight, as Autoware calls the ways through a junction."""
+    first, last = middle[1] - middle[0], middle[-1] - middle[-2]
+    turn = (np.arctan2(last[1], last[0]) - np.arctan2(first[1], first[0]) + np.pi) % (2 * np.pi) - np.pi
+    return "left" if turn > TURN else "right" if turn < -TURN else "straight"

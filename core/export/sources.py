@@ -1,0 +1,131 @@
+"""The layers of a road map on their way into another format: checked before anything is written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import shapely
+
+from ..common.errors import RoadExtractionError
+from ..common.features import Features
+from ..driving.lanes_layer import Lanes
+from ..io.crs import check_metric, parse_crs
+
+MOST_OVERLAP = 0.5       # share of a lane that may lie on lanes of another road: more is two roads at one place
+SAME_LEVEL = 2.0         # m of height within which two roads are no bridge
+FARTHEST_LAYER = 50.0    # m from the lanes: a layer that lies farther away is of another survey
+
+
+@dataclass
+class RoadMapSource:
+    """Lanes with the other layers of their road map.
+
+    lanes : Lanes in map coordinates
+    driving_lines, marking_lines, road_edges, markings : Features or None
+    notes : sentences for the user, filled by `checked`
+    """
+
+    lanes: Lanes
+    driving_lines: Features | None = None
+    marking_lines: Features | None = None
+    road_edges: Features | None = None
+    markings: Features | None = None
+    notes: list[str] = field(default_factory=list)
+
+    def others(self) -> Iterator[tuple[str, Features]]:
+        """(what messages call it, layer) of the layers beside the lanes that there are."""
+        for label, layer in (("Driving lines", self.driving_lines), ("Marking lines", self.marking_lines), ("Road edges", self.road_edges),
+                             ("Markings", self.markings)):
+            if layer is not None and len(layer):
+                yield label, layer
+
+
+def checked(source: RoadMapSource) -> RoadMapSource:
+    """The same source without successors that are not there, proven fit for a map.
+
+    Raises
+    ------
+    RoadExtractionError
+        If there are no lanes, the CRS is not in metres, a lane has no width or borders that cross, heights are missing, two roads lie at
+        one place, or a layer is of another survey.
+    """
+    lanes = source.lanes
+    if not len(lanes):
+        raise RoadExtractionError("The layer of lanes is empty. Run Driving lines or Road map where there are marking lines or road edges.")
+    crs = parse_crs(lanes.crs)
+    if crs is not None:
+        check_metric(crs, "The layer of lanes")
+    if not np.isfinite(lanes.left).all() or not np.isfinite(lanes.right).all():
+        raise RoadExtractionError("Some lanes have no heights or broken coordinates. Use the layer of lanes that Lanewright wrote.")
+    _check_shapes(lanes)
+    _check_places(lanes)
+    _check_layers(source)
+    known = set(lanes.lane_id)
+    lost = sum(name not in known for names in lanes.successors for name in names)
+    notes = list(source.notes)
+    if lost:
+        notes.append(f"{lost} successors name lanes that are not in the layer; these links were left out.")
+    kept = [tuple(name for name in names if name in known) for names in lanes.successors]
+    return replace(source, notes=notes, lanes=replace(lanes, successors=kept))
+
+
+def _check_shapes(lanes):
+    for k, width in enumerate(lanes.width):
+        left, right = lanes.borders(k)
+        if width < 0.01 or np.hypot(*np.diff(left[[0, -1]], axis=0)[0, :2]) + np.hypot(*np.diff(right[[0, -1]], axis=0)[0, :2]) < 0.01:
+            raise RoadExtractionError(f"Lane {lanes.lane_id[k]} has no two borders: it is {width:.2f} m wide. Delete it, or draw it as a strip.")
+        for border, side in ((left, "left"), (right, "right")):
+            line = shapely.linestrings(border[:, :2])
+            if not line.is_simple and not line.is_ring:
+                raise RoadExtractionError(f"The {side} border of lane {lanes.lane_id[k]} crosses itself near x {border[0, 0]:.1f}, "
+                                          f"y {border[0, 1]:.1f}. Mend it in the layer of lanes.")
+        if shapely.linestrings(left[:, :2]).crosses(shapely.linestrings(right[:, :2])):
+            raise RoadExtractionError(f"The borders of lane {lanes.lane_id[k]} cross each other near x {left[0, 0]:.1f}, y {left[0, 1]:.1f}. "
+                                      "Mend it in the layer of lanes.")
+
+
+def _check_places(lanes):
+    """Refuse two roads at one place; connectors may cross, and bridges."""
+    rows = np.flatnonzero(lanes.type == "driving")
+    if not len(rows):
+        return
+    rings = [np.concatenate([left, right[::-1]])[:, :2] for left, right in (lanes.borders(k) for k in rows)]
+    shapes = shapely.make_valid(np.array([shapely.Polygon(ring) for ring in rings], object))
+    height = np.array([lanes.borders(k)[0][:, 2].mean() for k in rows])
+    for first, second in shapely.STRtree(shapes).query(shapes, predicate="intersects").T:
+        a, b = rows[first], rows[second]
+        if first >= second or lanes.road[a] == lanes.road[b] or abs(height[first] - height[second]) > SAME_LEVEL:
+            continue
+        common, least = shapes[first].intersection(shapes[second]).area, min(shapes[first].area, shapes[second].area)
+        if common > MOST_OVERLAP * least:
+            raise RoadExtractionError(f"Roads {lanes.road[a]} and {lanes.road[b]} lie at one place: lanes {lanes.lane_id[a]} and "
+                                      f"{lanes.lane_id[b]} share {common:.0f} m². Keep the lanes of one of them.")
+
+
+def _check_layers(source):
+    lanes = source.lanes
+    low, high = lanes.left.min(0)[:2] - FARTHEST_LAYER, lanes.left.max(0)[:2] + FARTHEST_LAYER
+    for label, layer in source.others():
+        west, south, east, north = shapely.total_bounds(np.array([g for g in layer.geometries if g is not None], object))
+        if west > high[0] or east < low[0] or south > high[1] or north < low[1]:
+            raise RoadExtractionError(f"{label} do not lie where the lanes are: they begin at x {west:.0f}, y {south:.0f}, the lanes at "
+                                      f"x {low[0] + FARTHEST_LAYER:.0f}, y {low[1] + FARTHEST_LAYER:.0f}. Choose the layers of one survey.")
+
+
+def nearest_values(points: np.ndarray, layer: Features | None, name: str, farthest: float = 0.5) -> np.ndarray:
+    """(N,) a number of the line or area nearest to each of (N, 2) points, NaN where none lies near.
+
+    farthest : metres
+    """
+    found = np.full(len(points), np.nan)
+    rows: list[tuple[Any, float]] = [] if layer is None else [(g, float(row[name])) for g, row in layer
+                                                              if g is not None and row.get(name) is not None]
+    if not rows or not len(points):
+        return found
+    tree = shapely.STRtree(shapely.force_2d(np.array([g for g, _ in rows], object)))
+    which, place = tree.query_nearest(shapely.points(points), max_distance=farthest, all_matches=False)
+    found[which] = np.array([value for _, value in rows])[place]
+    return found

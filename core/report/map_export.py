@@ -1,0 +1,67 @@
+"""The report of an export: what was written, what was left out, how well it fits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..export.map_layers import MapLayers
+from .page import Page
+
+COLOUR_OF_LANE = {"driving": "#8a9299", "connector": "#c9b27c", "shoulder": "#b7bfc5", "bicycle": "#c47f6a", "parking": "#9fb4c9"}
+PICTURE_WIDTH, PICTURE_HEIGHT = 900, 520   # pixels
+Table = tuple[str, Sequence[str], Sequence[Sequence[Any]]]
+
+
+def map_export_report(title: str, subtitle: str, facts: Iterable[tuple[str, Any]], tables: Sequence[Table] = (), notes: Sequence[str] = (),
+                      shown: MapLayers | None = None) -> str:
+    """An HTML page.
+
+    Parameters
+    ----------
+    title, subtitle : of the page
+    facts : (name, value)
+    tables : (heading, names of the columns, rows)
+    notes : sentences to highlight
+    shown : what the file holds as our own reader sees it, for a picture; None for none
+    """
+    page = Page(title, subtitle)
+    for note in notes:
+        page.warning(note)
+    page.facts(facts)
+    for heading, names, rows in tables:
+        page.heading(heading)
+        page.table(names, rows)
+    if shown is not None and len(shown.lanes):
+        page.heading("The file as it is read back")
+        page.drawing(_map(shown), "Lanes by type and painted lines; north is up.")
+        present = [kind for kind in COLOUR_OF_LANE if (shown.lanes.type == kind).any()]
+        page.colour_key([(COLOUR_OF_LANE[kind], kind) for kind in present])
+    return page.html()
+
+
+def _map(shown: MapLayers) -> str:
+    """An SVG of lanes and lines."""
+    lanes = shown.lanes
+    every = np.concatenate([lanes.left, lanes.right])[:, :2]
+    low, high = every.min(0), every.max(0)
+    scale = min(PICTURE_WIDTH / max(high[0] - low[0], 1.0), PICTURE_HEIGHT / max(high[1] - low[1], 1.0))
+    size = (high - low) * scale + 20
+
+    def path(points):
+        placed = (points[:, :2] - low) * scale + 10
+        return " ".join(f"{x:.1f},{size[1] - y:.1f}" for x, y in placed)
+
+    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {size[0]:.0f} {size[1]:.0f}" width="{size[0]:.0f}" height="{size[1]:.0f}">']
+    for k in range(len(lanes)):
+        left, right = lanes.borders(k)
+        colour = COLOUR_OF_LANE.get(lanes.type[k], "#d5d9dc")
+        parts.append(f'<polygon points="{path(np.concatenate([left, right[::-1]]))}" fill="{colour}" fill-opacity="0.8" stroke="#ffffff" '
+                     'stroke-width="0.4"/>')
+    for line in shown.lines:
+        dash = ' stroke-dasharray="4 4"' if "dashed" in line.pattern else ""
+        colour = "#5a4632" if line.what == "edge" else "#1f2a33"
+        parts.append(f'<polyline points="{path(line.points)}" fill="none" stroke="{colour}" stroke-width="0.8"{dash}/>')
+    return "".join(parts) + "</svg>"
