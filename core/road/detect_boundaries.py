@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from .agreement import measure_agreement, select_curb_points
 from .common.curb_points import CurbPoints
-from .common.decimation import PointDecimation
+from .common.decimation import LevelGround, PointDecimation
 from .curb_returns.detect import with_curb_returns
 from .edges.fit import EdgeSettings, fit_road_edges
 from .edges.road_edges import RoadEdges
@@ -26,7 +23,6 @@ from .scanlines.source import SurveyScanlines
 if TYPE_CHECKING:
     from ..survey.frame.road_frame import RoadFrame
     from ..survey.open_survey import Survey
-    from .common.level_strip import LevelStrip
 
 BOUNDARY_METHODS = ("profiles", "scanlines", "both")
 PROFILES_PROGRESS = 0.3       # share of the work that profiles are, with both methods; of the rest,
@@ -114,15 +110,10 @@ def _find_curb_points(decimation, settings, progress):
     return found
 
 
-def _level_for(decimation: PointDecimation, settings: ScanlineBoundarySettings) -> Callable[[int, int, float, float], LevelStrip]:
-    """The function by which SurveyScanlines leaves out ground that can have no corner."""
-    across, along = (distance + LEVEL_STRIP_MARGIN for distance in (settings.distance_across, settings.distance_along + GAP_FILL_REACH))
-
-    def level(road, number, start, end):
-        profiles = int(np.floor(start / decimation.width)), int(np.ceil(end / decimation.width))
-        return decimation.level_strip(road, number, profiles, across, along)
-
-    return level
+def _level_for(decimation, settings):
+    """The ground that SurveyScanlines leaves out, which can have no corner."""
+    along = settings.distance_along + GAP_FILL_REACH + LEVEL_STRIP_MARGIN
+    return LevelGround(decimation, settings.distance_across + LEVEL_STRIP_MARGIN, along)
 
 
 def _better_points(found, frame):

@@ -12,6 +12,9 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
+from ..execution.phase import Executor, Recipe
+from ..execution.plain import read_plain, write_plain
+from ..execution.threads import THREADS
 from ..io.crs import check_projected, crs_note, parse_crs
 from .adjustment.adjust import adjust_passes
 from .clock_check import check_clock
@@ -32,6 +35,8 @@ if TYPE_CHECKING:
 
 ROAD_HEIGHT_STEP = 0.25      # m between the stations at which points are compared with the height of the road
 INGEST_PROGRESS = 0.7        # of the work, where the passes are adjusted afterwards
+SURVEY_FOLDER, SURVEY_FILE = "survey", "survey.npz"   # of a survey that other processes open
+SHIPPED = ("frame", "crs", "sensor_height", "scanner_field", "scanners", "has_intensity", "has_time", "counts", "moves", "above_road")
 LOWEST_SENSOR = 0.5          # m above the road: no scanner rides lower, but lines and places drawn on the road lie within
 SUSPICIOUS_SENSOR_HEIGHT = 5.0, 15.0  # m: higher than any survey vehicle; 1.5 to 4.5 m expressed in feet
 
@@ -81,6 +86,7 @@ class Survey:
     counts : numbers of points read, kept and outside
     moves : PassCorrections by which points and tracks were moved, None where they are as measured
     above_road : metres above the road up to which points are returned
+    executor : Executor of the phases that read from this survey
     """
 
     files: list[CloudHeader]
@@ -95,9 +101,27 @@ class Survey:
     counts: dict[str, int] = field(default_factory=dict)
     moves: PassCorrections | None = None
     above_road: float = KEPT_ABOVE_ROAD
+    executor: Executor = THREADS
 
     def __post_init__(self) -> None:
         self.store.finish = self._finished
+
+    def recipe(self, folder: Path) -> Recipe:
+        """Move the points to a folder, unless they are there, and say how other processes open the survey."""
+        own = folder / SURVEY_FOLDER
+        if not own.exists():
+            own.mkdir()
+            self.store.move_to(own)
+            write_plain(own / SURVEY_FILE, {name: getattr(self, name) for name in SHIPPED})
+        return Recipe("survey.open_survey:survey_in_folder", dict(folder=str(own)))
+
+    def stretch(self, road: int, start: float, end: float) -> str:
+        """What messages call the road between two stations (m), with the files whose points may lie there."""
+        s = np.linspace(start, end, 5)
+        x, y = self.frame.to_map(road, s, 0.0)
+        near = [Path(file.path).name for file in self.files if file.count and file.minimum[0] - CORRIDOR <= x.max() and x.min() <= file.maximum[0]
+                + CORRIDOR and file.minimum[1] - CORRIDOR <= y.max() and y.min() <= file.maximum[1] + CORRIDOR]
+        return f"road {road}, {start:.0f} to {end:.0f} m" + (f" ({', '.join(near)})" if near else "")
 
     def window(self, road: int, start: float, end: float) -> Points:
         """Points of a road with start <= station < end (m) near its height, scanners numbered from 0."""
@@ -134,6 +158,11 @@ class Survey:
     def road_height(self, road: int, s: np.ndarray) -> np.ndarray:
         """(N,) local z of the road under the track at (N,) stations, accurate to decimetres."""
         return self.frame.track_height(road, s, self.sensor_height)
+
+
+def survey_in_folder(folder: str) -> Survey:
+    """The survey that `Survey.recipe` put into a folder, without the files that it was read from."""
+    return Survey(files=[], store=SectionStore.opened(Path(folder)), **read_plain(Path(folder) / SURVEY_FILE))
 
 
 def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),

@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...common.order_statistics import decimate_cells
+from ...execution.phase import Executor, Recipe
 from ...survey.store.records import COORDINATE_SCALE, Points
 from ...survey.store.spill_file import SpillFile
 from .level_strip import MIN_LEVEL_POINTS, LevelStrip, find_level_strip
@@ -60,6 +62,16 @@ class PointDecimation:
         self._strips: dict = {}       # (road, first profile) -> {pass number: LevelStrip}
         self._locks = [threading.Lock() for _ in range(DECIMATION_LOCKS)]
         self._file: SpillFile | None = None
+
+    @property
+    def executor(self) -> Executor:
+        """Who runs the phases that read these points."""
+        return self.survey.executor
+
+    def recipe(self, folder: Path) -> Recipe:
+        """How other processes open the points; they decide anew, which gives the same selection."""
+        return Recipe("road.common.decimation:PointDecimation", dict(survey=self.survey.recipe(folder), width=self.width, spacing=self.spacing,
+                                                                     min_step=self.min_step))
 
     def close(self) -> None:
         """Forget the decisions and free the disk space."""
@@ -175,6 +187,28 @@ class PointDecimation:
             if self._file is None:
                 self._file = SpillFile()
         return self._file.put(bits)
+
+
+class LevelGround:
+    """Ground about the track of a pass that is left out, since no curb lies in it.
+
+    Parameters
+    ----------
+    decimation : PointDecimation that knows it
+    across, along : m kept from ground that is not level
+    """
+
+    def __init__(self, decimation: PointDecimation, across: float, along: float):
+        self.decimation, self.across, self.along = decimation, across, along
+
+    def __call__(self, road: int, number: int, start: float, end: float) -> LevelStrip:
+        """The LevelStrip of a road and pass number between two stations, m."""
+        profiles = int(np.floor(start / self.decimation.width)), int(np.ceil(end / self.decimation.width))
+        return self.decimation.level_strip(road, number, profiles, self.across, self.along)
+
+    def recipe(self, folder: Path) -> Recipe:
+        """How other processes open it."""
+        return Recipe("road.common.decimation:LevelGround", dict(decimation=self.decimation.recipe(folder), across=self.across, along=self.along))
 
 
 def blocks_of_profiles(points: Points, start: float, width: float) -> list[Points]:

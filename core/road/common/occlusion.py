@@ -7,12 +7,9 @@ road is open: a driveway, a junction.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from .pseudo_scanlines import PseudoScanLines
 
 OCCLUSION_CELL = 0.25         # m across
 MIN_OCCLUDER_HEIGHT = 0.45    # m above the expected road, from which a thing can hide a curb
@@ -42,14 +39,14 @@ class OcclusionGrid:
         self.ground = np.full((count, self.cells), np.nan, np.float32)
         self.tall = np.zeros((count, self.cells), bool)
 
-    def add_points(self, u: np.ndarray, s: np.ndarray, h: np.ndarray, profiles: tuple[int, int], lines: PseudoScanLines) -> None:
+    def add_points(self, u: np.ndarray, s: np.ndarray, h: np.ndarray, profiles: tuple[int, int], lines: Any) -> None:
         """Add what one pass saw of some profiles.
 
         Parameters
         ----------
         u, s, h : (N,) m, outward offset, station, and height above the expected road of the tall points
         profiles : (first, last + 1)
-        lines : PseudoScanLines of these profiles
+        lines : PseudoScanLines or HeightGrid of these profiles
         """
         first, last = profiles[0] - self.first, profiles[1] - self.first
         row = np.floor(s / self.width).astype(np.int64) - self.first
@@ -61,6 +58,12 @@ class OcclusionGrid:
         lowest = np.fmin.reduceat(lines.low, starts, axis=1)
         seen = self.ground[first:last]
         seen[:, place[starts]] = np.fmin(seen[:, place[starts]], lowest)
+
+    def add(self, part: OcclusionGrid) -> None:
+        """Add what a grid of some of these profiles holds."""
+        own = slice(part.first - self.first, part.first - self.first + len(part.tall))
+        self.tall[own] |= part.tall
+        self.ground[own] = np.fmin(self.ground[own], part.ground)
 
     def add_level_ground(self, profiles: tuple[int, int], nearest: np.ndarray, farthest: np.ndarray, height: np.ndarray) -> None:
         """Add ground without gaps.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -118,8 +118,11 @@ def _rows_by_pass(numbers, mask):
     return [(int(number), own[numbers == number]) for number in np.flatnonzero(np.bincount(numbers))]
 
 
-def expected_height(survey: Survey, road: int, s: np.ndarray) -> np.ndarray:
-    """(N,) m, local z at which the road is expected at (N,) stations, interpolated between nodes HEIGHT_NODE_SPACING apart."""
+def expected_height(survey: Any, road: int, s: np.ndarray) -> np.ndarray:
+    """(N,) m, local z at which the road is expected at (N,) stations, interpolated between nodes HEIGHT_NODE_SPACING apart.
+
+    `survey` is a Survey, or whatever else has `road_height`.
+    """
     if not len(s):
         return np.empty(0)
     first = int(np.floor(np.min(s) / HEIGHT_NODE_SPACING))

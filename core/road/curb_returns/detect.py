@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...common.parallel import ordered_map
 from ...common.progress import Progress
+from ...execution.phase import Phase
 from ...survey.frame.road_frame import CORRIDOR
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.decimation import POINTS_PER_LEVEL_CELL_IN_PLAN, PointDecimation
@@ -113,12 +113,11 @@ def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str,
     survey = decimation.survey
     limits = {side: SearchLimit(points, SIDE_SIGNS[side]) for side, points in main.items()}
     line = survey.frame.road(road)
-    known, barrier = cKDTree(_places_along(line, main, MAX_JOINED_GAP)), _places_along(line, main, MIN_OPENING_LENGTH).T
-
-    def work(section):
-        return _steps_of_section(decimation, road, section, limits, known, barrier, settings)
-
-    found = [part for part in ordered_map(work, work_sections(survey, road, settings.profile_width), progress) if part is not None]
+    known, barrier = KnownPlaces(_places_along(line, main, MAX_JOINED_GAP)), _places_along(line, main, MIN_OPENING_LENGTH).T
+    phase = Phase(plan_steps_of_section, decimation, (road, limits, known, barrier, settings),
+                  lambda section: survey.stretch(road, *(k * settings.profile_width for k in section)))
+    sections = work_sections(survey, road, settings.profile_width)
+    found = [part for part in decimation.executor.run(phase, sections, progress) if part is not None]
     if not found:
         return []
     steps, falls = PlanSteps.join([part for part, _, _ in found]), np.concatenate([part for _, part, _ in found])
@@ -184,9 +183,51 @@ def _runs(main, line):
     return found
 
 
-def _steps_of_section(decimation, road, section, limits, known, barrier, settings,
-                      points_per_cell=POINTS_PER_LEVEL_CELL_IN_PLAN):
-    """(PlanSteps of a section, where the ground behind each falls again, the scanner's noise); None where there are none."""
+class KnownPlaces:
+    """Places along main curbs, where no other curb is looked for.
+
+    Parameters
+    ----------
+    places : (N, 2) local metres
+    """
+
+    def __init__(self, places: np.ndarray):
+        self.places = places
+        self._tree = cKDTree(places)
+
+    def __getstate__(self) -> dict:
+        return dict(places=self.places)
+
+    def __setstate__(self, state: dict) -> None:
+        KnownPlaces.__init__(self, **state)
+
+    def within(self, x: np.ndarray, y: np.ndarray, distance: float) -> np.ndarray:
+        """(N,) bool, is one of the places within a distance of (N,) local places?"""
+        if not self._tree.n or not len(x):
+            return np.zeros(len(x), bool)
+        return self._tree.query(np.c_[x, y])[0] <= distance
+
+
+def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int], road: int, limits: Mapping[str, SearchLimit],
+                          known: KnownPlaces, barrier: np.ndarray, settings: CurbSettings,
+                          points_per_cell: int | None = POINTS_PER_LEVEL_CELL_IN_PLAN) -> tuple[PlanSteps, np.ndarray, np.ndarray] | None:
+    """The phase of curb returns: steps in plan in one section of a road.
+
+    Parameters
+    ----------
+    decimation : PointDecimation of the survey
+    section : (first, last + 1) profile numbers
+    road : number of the road
+    limits : side -> SearchLimit
+    known : places of the main curbs
+    barrier : (2, M) local x and y of places that the driven ground does not go beyond
+    settings : CurbSettings
+    points_per_cell : as in `decimated_points`, where the ground is not uneven nearly everywhere
+
+    Returns
+    -------
+    PlanSteps, (N,) bool where the ground behind each falls again, and (N,) m the scanner's noise; None where there are no steps
+    """
     survey, width = decimation.survey, decimation.width
     margin = int(np.ceil(SECTION_MARGIN / width))
     profiles = section[0] - margin, section[1] + margin
@@ -197,25 +238,23 @@ def _steps_of_section(decimation, road, section, limits, known, barrier, setting
     if not seen:
         return None
     *place, along, inner = (np.concatenate(column) for column in zip(*seen))
-    raster = ground_raster(*place, settings.layer_jump)
+    raster = ground_raster(place[0], place[1], place[2], settings.layer_jump)
     if raster is None:
         return None
     dense = len(raster.x) >= MIN_AVERAGING_POINTS * np.isfinite(raster.low).sum()
     noisy = dense and raster.noise > NOISY_RASTER_SHARE * settings.min_height
     if noisy and limit is not None:
         # averages need every point
-        return _steps_of_section(decimation, road, section, limits, known, barrier, settings, points_per_cell=None)
+        return plan_steps_of_section(decimation, section, road, limits, known, barrier, settings, points_per_cell=None)
     line = survey.frame.road(road)
     slopes = ground_slopes(raster.low)
-    driven, stepped = driven_ground(raster, slopes, *_track(survey, road, first, last), [v[inner] for v in place[:2]], *barrier,
-                                    settings.min_height)
+    track = _track(survey, road, first, last)
+    driven, stepped = driven_ground(raster, slopes, track[0], track[1], [v[inner] for v in place[:2]], barrier[0], barrier[1], settings.min_height)
 
     def wanted(x, y):
         own, _ = line.locate(x, y)
         fresh = (own >= start) & (own < end)
-        if known.n and len(x):
-            fresh &= known.query(np.c_[x, y])[0] > MAIN_CURB_DISTANCE
-        return fresh
+        return fresh & ~known.within(x, y, MAIN_CURB_DISTANCE)
 
     x, y, nx, ny = step_places(raster, slopes, driven, stepped, settings.min_height, settings.max_height, wanted)
     fresh = wanted(x, y)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from contextlib import closing
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ...common.errors import RoadExtractionError
-from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
+from ...execution.phase import Phase
 from ..common.corners import CurbSteps
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.decimation import POINTS_PER_LEVEL_CELL, PointDecimation
@@ -117,29 +117,49 @@ def _steps_of_road(decimation, road, settings, progress):
     survey, width = decimation.survey, decimation.width
     sections = work_sections(survey, road, width)
     first, last = sections[0][0], sections[-1][1]
-    around = max(SPREAD_PROFILES, int(np.ceil(AVERAGING_LENGTH / width)))
     occlusion = {side: OcclusionGrid(width, first, last - first, MAX_CURB_OFFSET) for side in SIDE_SIGNS}
-    tracks = {side: OutermostTrack(survey.frame, road, sign) for side, sign in SIDE_SIGNS.items()}
-
-    def work(section):
-        found = {side: [] for side in SIDE_SIGNS}
-        wide = section[0] - around, section[1] + around
-        limit = None if decimation.mostly_uneven(road, sum(section) // 2) else POINTS_PER_LEVEL_CELL
-        seen = list(side_profiles(decimation, road, wide, tracks, settings, limit))
-        # averages need every point
-        if limit and any((lines.part(*section).spread > NOISY_SHARE * settings.min_height).any() for *_, lines in seen):
-            seen = side_profiles(decimation, road, wide, tracks, settings, points_per_cell=None)
-        for side, _, beside, lines in seen:
-            occlusion[side].add_points(*beside, section, lines.part(*section))
-            steps = _steps_by_noise(lines, section, settings)
-            found[side].append(steps[steps.u > tracks[side](steps.s) + MIN_TRACK_DISTANCE])
-        return {side: _merge_passes(steps) for side, steps in found.items() if steps}
-
+    phase = Phase(steps_of_section, decimation, (road, settings), lambda section: survey.stretch(road, *(k * width for k in section)))
     parts = {side: [] for side in SIDE_SIGNS}
-    for found in ordered_map(work, sections, progress):
+    for found, beside in decimation.executor.run(phase, sections, progress):
         for side, steps in found.items():
             parts[side].append(steps)
+        for side, seen in beside.items():
+            occlusion[side].add(seen)
     return {side: CurbSteps.join(parts[side]) if parts[side] else None for side in SIDE_SIGNS}, occlusion
+
+
+def steps_of_section(decimation: PointDecimation, section: tuple[int, int], road: int,
+                     settings: CurbSettings) -> tuple[dict[str, CurbSteps], dict[str, OcclusionGrid]]:
+    """The phase of profiles: steps in one section of a road.
+
+    Parameters
+    ----------
+    decimation : PointDecimation of the survey
+    section : (first, last + 1) profile numbers
+    road : number of the road
+    settings : CurbSettings
+
+    Returns
+    -------
+    steps : side -> CurbSteps, passes merged
+    occlusion : side -> OcclusionGrid of these profiles
+    """
+    width = decimation.width
+    around = max(SPREAD_PROFILES, int(np.ceil(AVERAGING_LENGTH / width)))
+    tracks = {side: OutermostTrack(decimation.survey.frame, road, sign) for side, sign in SIDE_SIGNS.items()}
+    occlusion = {side: OcclusionGrid(width, section[0], section[1] - section[0], MAX_CURB_OFFSET) for side in SIDE_SIGNS}
+    found: dict[str, list[CurbSteps]] = {side: [] for side in SIDE_SIGNS}
+    wide = section[0] - around, section[1] + around
+    limit = None if decimation.mostly_uneven(road, sum(section) // 2) else POINTS_PER_LEVEL_CELL
+    seen: Any = list(side_profiles(decimation, road, wide, tracks, settings, limit))
+    # averages need every point
+    if limit and any((lines.part(*section).spread > NOISY_SHARE * settings.min_height).any() for *_, lines in seen):
+        seen = side_profiles(decimation, road, wide, tracks, settings, points_per_cell=None)
+    for side, _, (u, s, h), lines in seen:
+        occlusion[side].add_points(u, s, h, section, lines.part(*section))
+        steps = _steps_by_noise(lines, section, settings)
+        found[side].append(steps[steps.u > tracks[side](steps.s) + MIN_TRACK_DISTANCE])
+    return {side: _merge_passes(steps) for side, steps in found.items() if steps}, occlusion
 
 
 def _steps_by_noise(lines, section, settings):

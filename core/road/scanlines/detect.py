@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...common.errors import RoadExtractionError
-from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
+from ...execution.phase import Phase
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.occlusion import HIDDEN_POINT_SPACING, MIN_OCCLUDER_HEIGHT, OcclusionGrid
 from ..common.pseudo_scanlines import MIN_SCANNER_NOISE
@@ -116,39 +116,58 @@ def _corners_of_road(source, road, settings, progress):
     interval = source.interval
     sections = _sections(*source.span(road), interval)
     first, last = sections[0][0], sections[-1][1]
-    margin = max(plane_fit_rows(interval, settings), NEIGHBOUR_LINES + gap_fill_rows(interval)) + 1
     occlusion = {side: OcclusionGrid(interval, first, last - first, MAX_CURB_OFFSET) for side in SIDE_SIGNS}
-    tracks = {side: OutermostTrack(source.frame, road, sign) for side, sign in SIDE_SIGNS.items()}
-
-    def work(section):
-        begin, end = section
-        rows = begin - margin, end + margin
-        stations = np.arange(*rows) * interval
-        nearest = {side: tracks[side](stations) + MIN_TRACK_DISTANCE for side in SIDE_SIGNS}
-        found = {side: [] for side in SIDE_SIGNS}
-        for lines in source.runs(road, (rows[0] - 0.5) * interval, (rows[1] - 0.5) * interval):
-            heights = lines.z - np.repeat(expected_height(source, road, lines.station), np.diff(lines.first))
-            grid = height_grid(lines, heights, rows, interval, min(MAX_CURB_OFFSET, source.corridor), settings.clipping_height)
-            closed = grid.closed(gap_fill_rows(interval))
-            tall = _tall(lines, heights, interval)
-            candidates, strip = {}, _level_beside(source, road, int(lines.pass_number[0]), stations[margin:-margin])
-            for side, sign in SIDE_SIGNS.items():
-                origin = np.floor(nearest[side].min())
-                outward = grid.outward(sign, origin)
-                occlusion[side].add_points(sign * tall[0], *tall[1:], section, outward.part(margin, margin + end - begin))
-                if strip is not None:
-                    occlusion[side].add_level_ground(section, *strip[sign])
-                of_side = find_candidates(closed.outward(sign, origin), outward.low, nearest[side], settings)
-                candidates[side] = of_side[(of_side.row >= margin) & (of_side.row < margin + end - begin)]
-            for side, corners in _corners(lines, heights, rows, interval, candidates, settings):
-                found[side].append(corners)
-        return {side: merged_corners(parts) for side, parts in found.items() if parts}
-
+    phase = Phase(corners_of_section, source, (road, settings), lambda section: source.stretch(road, *(k * interval for k in section)))
     parts = {side: [] for side in SIDE_SIGNS}
-    for found in ordered_map(work, sections, progress):
+    for found, beside in source.executor.run(phase, sections, progress):
         for side, corners in found.items():
             parts[side].append(corners)
+        for side, seen in beside.items():
+            occlusion[side].add(seen)
     return {side: _with_scanner_noise(CurbCorners.join(found)) if found else None for side, found in parts.items()}, occlusion
+
+
+def corners_of_section(source: SurveyScanlines | LayerScanlines, section: tuple[int, int], road: int,
+                       settings: ScanlineBoundarySettings) -> tuple[dict[str, CurbCorners], dict[str, OcclusionGrid]]:
+    """The phase of scanlines: corners in one section of a road.
+
+    Parameters
+    ----------
+    source : SurveyScanlines or LayerScanlines
+    section : (first, last + 1) numbers of planes
+    road : number of the road
+    settings : ScanlineBoundarySettings
+
+    Returns
+    -------
+    corners : side -> CurbCorners, merged over passes and scanners where they agree
+    occlusion : side -> OcclusionGrid of these planes
+    """
+    interval, (begin, end) = source.interval, section
+    margin = max(plane_fit_rows(interval, settings), NEIGHBOUR_LINES + gap_fill_rows(interval)) + 1
+    tracks = {side: OutermostTrack(source.frame, road, sign) for side, sign in SIDE_SIGNS.items()}
+    occlusion = {side: OcclusionGrid(interval, begin, end - begin, MAX_CURB_OFFSET) for side in SIDE_SIGNS}
+    rows = begin - margin, end + margin
+    stations = np.arange(*rows) * interval
+    nearest = {side: tracks[side](stations) + MIN_TRACK_DISTANCE for side in SIDE_SIGNS}
+    found: dict[str, list[CurbCorners]] = {side: [] for side in SIDE_SIGNS}
+    for lines in source.runs(road, (rows[0] - 0.5) * interval, (rows[1] - 0.5) * interval):
+        heights = lines.z - np.repeat(expected_height(source, road, lines.station), np.diff(lines.first))
+        grid = height_grid(lines, heights, rows, interval, min(MAX_CURB_OFFSET, source.corridor), settings.clipping_height)
+        closed = grid.closed(gap_fill_rows(interval))
+        tall = _tall(lines, heights, interval)
+        candidates, strip = {}, _level_beside(source, road, int(lines.pass_number[0]), stations[margin:-margin])
+        for side, sign in SIDE_SIGNS.items():
+            origin = np.floor(nearest[side].min())
+            outward = grid.outward(sign, origin)
+            occlusion[side].add_points(sign * tall[0], tall[1], tall[2], section, outward.part(margin, margin + end - begin))
+            if strip is not None:
+                occlusion[side].add_level_ground(section, *strip[sign])
+            of_side = find_candidates(closed.outward(sign, origin), outward.low, nearest[side], settings)
+            candidates[side] = of_side[(of_side.row >= margin) & (of_side.row < margin + end - begin)]
+        for side, corners in _corners(lines, heights, rows, interval, candidates, settings):
+            found[side].append(corners)
+    return {side: merged_corners(parts) for side, parts in found.items() if parts}, occlusion
 
 
 def _sections(start, end, interval):

@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
+from ...execution.phase import Phase
 from ...survey.lattice.scan_lattice import ScanLattice, find_lattice, scanner_runs
 from ..common.sides import BLOCK_SECTION_LENGTH
 from .from_points import MIN_SLICE_LENGTH, point_scanlines
@@ -134,10 +134,13 @@ def all_scanlines(survey: Survey, road: int, settings: ScanlineSettings = Scanli
     start, end = survey.store.span(road)
     bounds = np.linspace(start, end, max(int(np.ceil((end - start) / BLOCK_SECTION_LENGTH)), 1) + 1)
 
-    def work(section):
-        return scanlines_of(survey, road, *section, settings, lattice)
+    phase = Phase(scanlines_of_section, survey, (road, settings, lattice), lambda section: survey.stretch(road, *section))
+    yield from survey.executor.run(phase, list(zip(bounds[:-1].tolist(), bounds[1:].tolist())), progress)
 
-    yield from ordered_map(work, list(zip(bounds[:-1].tolist(), bounds[1:].tolist())), progress)
+
+def scanlines_of_section(survey: Survey, section: tuple[float, float], road: int, settings: ScanlineSettings, lattice: ScanLattice) -> Scanlines:
+    """The phase of normalized scanlines: those of one section, (start, end) in metres of station, of a road; else as in `scanlines_of`."""
+    return scanlines_of(survey, road, *section, settings, lattice)
 
 
 def _margin(survey, road, lattice):

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
+from ...execution.phase import Executor, Recipe
+from ...execution.threads import THREADS
 from ...survey.lattice.scan_lattice import ScanLattice, find_lattice
 from ...survey.sensor_height import DEFAULT_SENSOR_HEIGHT, sensor_height_of
 from .grid import LINE_SEPARATION
@@ -19,7 +21,7 @@ from .section_planes import ScanlineSettings, scanline_runs
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.open_survey import Survey
-    from ..common.decimation import LevelStrip
+    from ..common.decimation import LevelGround
 
 
 class SurveyScanlines:
@@ -32,7 +34,7 @@ class SurveyScanlines:
     sensor_height : m from the trajectory down to the road, 0 = from the data
     lattice : ScanLattice, or None to find it here
     progress : Progress of finding it
-    level : function of road, pass number, start and end (m) that returns the LevelStrip to be left out; None uses all points
+    level : LevelGround that is left out; None uses all points
 
     Attributes
     ----------
@@ -42,12 +44,26 @@ class SurveyScanlines:
     """
 
     def __init__(self, survey: Survey, settings: ScanlineSettings = ScanlineSettings(), sensor_height: float = 0.0,
-                 lattice: ScanLattice | None = None, progress: Progress = Progress(), level: Callable[[int, int,
-                 float, float], LevelStrip | None] | None = None):
+                 lattice: ScanLattice | None = None, progress: Progress = Progress(), level: LevelGround | None = None):
         self.settings, self.sensor_height, self.level = settings, sensor_height, level
         self.survey, self.interval, self.corridor = survey, self.settings.interval, self.settings.corridor
         self.lattice = find_lattice(survey, self.settings.rotation_frequency, progress) if lattice is None else lattice
         self.frame, self.crs = survey.frame, survey.crs
+
+    @property
+    def executor(self) -> Executor:
+        """Who runs the phases that read these scanlines."""
+        return self.survey.executor
+
+    def recipe(self, folder: Path) -> Recipe:
+        """How other processes open the scanlines."""
+        level = None if self.level is None else self.level.recipe(folder)
+        return Recipe("road.scanlines.source:SurveyScanlines", dict(survey=self.survey.recipe(folder), settings=self.settings, level=level,
+                                                                    sensor_height=self.sensor_height, lattice=self.lattice))
+
+    def stretch(self, road: int, start: float, end: float) -> str:
+        """What messages call the road between two stations, m."""
+        return self.survey.stretch(road, start, end)
 
     def roads(self) -> list[int]:
         """Numbers of the roads."""
@@ -94,7 +110,8 @@ class LayerScanlines:
 
     def __init__(self, lines: dict[int, Scanlines], frame: RoadFrame, interval: float, crs: str, sensor_height: float = 0.0):
         self.lines = {road: found for road, found in sorted(lines.items()) if len(found)}
-        self.level: Callable[[int, int, float, float], LevelStrip | None] | None = None
+        self.level: LevelGround | None = None
+        self.executor: Executor = THREADS
         self.frame, self.interval, self.crs = frame, interval, crs
         if not any(len(np.unique(found.station)) > 1 for found in self.lines.values()):
             raise RoadExtractionError("The scanlines of every road lie on fewer than two section planes, so no curb can be followed along "
@@ -116,6 +133,10 @@ class LayerScanlines:
                 known[p.number] = height
         typical = float(np.median(list(known.values()))) if known else DEFAULT_SENSOR_HEIGHT
         return {p.number: known.get(p.number, typical) for p in self.frame.passes}
+
+    def stretch(self, road: int, start: float, end: float) -> str:
+        """What messages call the road between two stations, m."""
+        return f"road {road}, {start:.0f} to {end:.0f} m"
 
     def roads(self) -> list[int]:
         """Numbers of the roads."""

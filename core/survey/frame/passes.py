@@ -6,7 +6,7 @@ The trajectory is split where it pauses, turns back, crosses itself or returns t
 from __future__ import annotations
 
 from bisect import bisect_left
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from math import hypot
 from typing import TYPE_CHECKING
 
@@ -250,6 +250,13 @@ class Pass:
     _by_station: tuple[np.ndarray, np.ndarray, np.ndarray] | None = field(default=None, repr=False)
     _progress: np.ndarray | None = field(default=None, repr=False)
     _by_tick: dict = field(default_factory=dict, repr=False)
+
+    def __getstate__(self) -> dict:
+        """What was driven, without the tables that speed up its use."""
+        return {one.name: getattr(self, one.name) for one in fields(self) if one.init and not one.name.startswith("_")}
+
+    def __setstate__(self, state: dict) -> None:
+        Pass.__init__(self, **state)
 
     def at(self, time: np.ndarray, *names: str) -> list[np.ndarray]:
         """The state of the vehicle at given times, constant before the first and after the last sample.

@@ -49,6 +49,13 @@ class Road:
         self.length = self.end - FRAME_EXTENSION
         self._tree: cKDTree | None = None
 
+    def __getstate__(self) -> dict:
+        """What the reference line is made of; the rest follows from it."""
+        return dict(number=self.number, nodes_x=self.x, nodes_y=self.y, start=self.start)
+
+    def __setstate__(self, state: dict) -> None:
+        Road.__init__(self, **state)
+
     def _at(self, s):
         u = np.clip((np.asarray(s, float) - self.start) / NODE_SPACING, 0, len(self.x) - 1)
         k = np.minimum(u.astype(np.int64), len(self.x) - 2)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
+import os
 import threading
 from bisect import bisect_left
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,13 +20,14 @@ from ...common.order_statistics import bucket_argsort
 from ...common.parallel import check_cancelled
 from .columns import Columns, columns_in_order
 from .records import COORDINATE_SCALE, Points
-from .spill_file import SpillFile
+from .spill_file import Packing, SpillFile, StoredColumn
 from .stored_section import StoredSection
 
 SECTION_LENGTH = 5.0       # m of station; results do not depend on it
 MEMORY_LIMIT = 64 * 2**20  # bytes of records in memory before they are spilled
 CACHE_LIMIT = 64 * 2**20   # bytes of spilled sections cached as last read: neighbouring windows ask for them again
 STRIPS_PER_SECTION = 16    # points wait strip by strip until a section is sorted, so that points sorted together lie together in memory
+POINTS_FILE, SECTIONS_FILE = "points.bin", "sections.json"   # of a store that lies in a folder
 SECTION_LOCKS = 16         # locks that the sections share while they are read
 
 
@@ -258,6 +262,46 @@ class SectionStore:
         with self._lock:
             self._cache.clear()
             self._cache_bytes = 0
+
+    def move_to(self, folder: Path) -> None:
+        """Keep all points in a folder from now on, where `opened` finds them, in this process and in others; none are added any more.
+
+        Parameters
+        ----------
+        folder : that is there; it gets the files POINTS_FILE and, when these are complete, SECTIONS_FILE
+        """
+        file = SpillFile(folder / POINTS_FILE)
+        index = []
+        for key in sorted(self._sections):
+            records = self.section(*key)
+            if not len(records):
+                self._sections.pop(key)
+                continue
+            stored = {name: file.put(records[name]) for name in self.dtype.names or ()}
+            section = self._sections[key] = StoredSection(self.dtype, True)
+            section.parts.append(stored)
+            self._drop_from_cache(key)
+            index.append([*key, len(records), {name: [place, packing.least, list(packing.widths)] for name, (place, packing) in stored.items()}])
+        if self._file is not None:
+            self._file.close()
+        self._file, self._waiting_bytes = file, 0
+        text = json.dumps(dict(columns=[list(column) for column in self.dtype.descr], section_length=self.section_length, sections=index))
+        unfinished = folder / f"{SECTIONS_FILE}.part"
+        unfinished.write_text(text, encoding="utf-8")
+        os.replace(unfinished, folder / SECTIONS_FILE)
+
+    @classmethod
+    def opened(cls, folder: Path) -> SectionStore:
+        """The store whose points `move_to` keeps in a folder; they can be read."""
+        found = json.loads((folder / SECTIONS_FILE).read_text(encoding="utf-8"))
+        store = cls(np.dtype([tuple(column) for column in found["columns"]]), found["section_length"])
+        store._file = SpillFile(folder / POINTS_FILE, read_only=True)
+        for road, number, count, columns in found["sections"]:
+            section = store._sections[road, number] = StoredSection(store.dtype, True)
+            section.parts.append({name: StoredColumn(place, Packing(store.dtype[name], count, least, tuple(widths)))
+                                  for name, (place, least, widths) in columns.items()})
+            store._count += count
+        return store
 
     def close(self) -> None:
         """Release all points and their disk space."""

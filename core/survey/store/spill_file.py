@@ -11,7 +11,8 @@ import tempfile
 import threading
 import weakref
 from bisect import insort
-from typing import NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -131,15 +132,21 @@ class StoredColumn(NamedTuple):
 
 
 class SpillFile:
-    """Columns in a temporary file without a name, which a killed run does not leave behind (on Windows it is deleted when it is closed).
+    """Columns in a file.
+
+    Parameters
+    ----------
+    path : of the file; by default it is a temporary one without a name, which a killed run does not leave behind (on Windows it
+        is deleted when it is closed)
+    read_only : open a file that is there
 
     Attributes
     ----------
     end : bytes of the file
     """
 
-    def __init__(self) -> None:
-        self._file = tempfile.TemporaryFile(prefix="lanewright-", buffering=0)
+    def __init__(self, path: Path | None = None, read_only: bool = False) -> None:
+        self._file: Any = open(path, "rb" if read_only else "w+b", buffering=0) if path else tempfile.TemporaryFile(prefix="lanewright-", buffering=0)
         # Closed with this object; otherwise Python warns of an unclosed file.
         weakref.finalize(self, self._file.close)
         self._lock = threading.Lock()

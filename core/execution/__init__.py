@@ -1,0 +1,15 @@
+"""Phases of the work and who runs them: threads of this process, or worker processes.
+
+In: a `Phase`, a public function with what it reads from and plain settings, and the sections of road it is to work on. Out: its results in
+the order of the sections, the same from every `Executor`.
+"""
+
+from ..lazy import public
+
+__getattr__, __all__ = public(__name__, {
+    "choice": ("ExecutionSettings", "executor_for"),
+    "phase": ("Executor", "Phase", "Recipe"),
+    "plain": ("read_plain", "write_plain"),
+    "processes": ("WorkerProcesses",),
+    "threads": ("THREADS", "Threads"),
+})

@@ -1,0 +1,201 @@
+"""Phases run by worker processes of this computer: subprocesses that share points and results with the caller in a folder."""
+
+from __future__ import annotations
+
+import json
+import queue
+import shutil
+import subprocess  # nosec B404
+import tempfile
+import threading
+from collections.abc import Iterator, Sequence
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+from ..common.errors import RoadExtractionError
+from ..common.parallel import POLL_INTERVAL, check_cancelled, ordered_map
+from ..common.progress import Progress
+from .interpreter import command_of, environment, import_folders, no_window
+from .phase import Phase, name_of
+from .plain import read_plain, write_plain
+from .tasks import ShippedPhase
+
+TRIALS = 2          # of an item whose worker ended; what kills two workers kills a third
+END_TIME = 5.0      # s that a worker may take to end by itself
+LAST_WORDS = 2000   # characters of what a dead worker wrote that are passed on
+
+
+class WorkerProcesses:
+    """Executor that uses worker processes.
+
+    Workers are started when they are first needed and kept until `close`. What a phase reads from is put into a folder, once;
+    each result is written there by its worker under a temporary name, renamed, and read and removed by the caller.
+
+    Parameters
+    ----------
+    interpreter : path of a Python interpreter that `find_interpreter` tried
+    workers : number of processes
+    """
+
+    def __init__(self, interpreter: str, workers: int):
+        self.interpreter, self.workers = interpreter, workers
+        self.folder = Path(tempfile.mkdtemp(prefix="lanewright-"))
+        self._idle: queue.SimpleQueue[_Worker] = queue.SimpleQueue()
+        self._all: set[_Worker] = set()
+        self._lock = threading.Lock()
+        self._numbers = count()
+
+    def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress()) -> Iterator[Any]:
+        """Yield the results of all items in their order; see `Executor`.
+
+        Raises
+        ------
+        RoadExtractionError
+            Of the phase; or if a worker process ended TRIALS times at one item, ran out of memory, or the folder is full.
+        """
+        items = list(items)
+        shipped = f"phase{next(self._numbers)}.npz"
+        try:
+            write_plain(self.folder / shipped, ShippedPhase(name_of(phase.function), phase.source.recipe(self.folder), tuple(phase.arguments)))
+        except OSError as error:
+            raise self._disk_error(error) from error
+        yield from ordered_map(lambda item: self._result(phase, shipped, item), items, progress, self.workers)
+        (self.folder / shipped).unlink(missing_ok=True)
+
+    def _result(self, phase, shipped, item):
+        """The result of one item, from whichever worker is free."""
+        number = next(self._numbers)
+        task = dict(phase=shipped, item=f"item{number}.npz", result=f"result{number}.npz")
+        try:
+            write_plain(self.folder / task["item"], item)
+            self._ask(phase, item, task)
+            return read_plain(self.folder / task["result"])
+        except OSError as error:
+            raise self._disk_error(error) from error
+        finally:
+            for name in ("item", "result"):
+                (self.folder / task[name]).unlink(missing_ok=True)
+
+    def _ask(self, phase, item, task):
+        """Have a task done; raises what went wrong."""
+        last = ""
+        for _ in range(TRIALS):
+            worker = self._take()
+            try:
+                answer = worker.answer_to(task)
+            except BaseException:
+                # of no use any more: it works on what nobody waits for
+                self._drop(worker)
+                raise
+            if answer is None:
+                last = worker.last_words()
+                self._drop(worker)
+                continue
+            self._idle.put(worker)
+            if answer:
+                self._raise(phase, item, answer)
+            return
+        raise RoadExtractionError(
+            f"Worker processes ended {TRIALS} times while they worked on {phase.place(item)}; usually the computer is out of memory. "
+            f"Try fewer workers, or 0 for the automatic choice. {last}".rstrip())
+
+    def _raise(self, phase, item, answer):
+        if "refused" in answer:
+            raise RoadExtractionError(answer["refused"])
+        if "memory" in answer:
+            raise RoadExtractionError(f"A worker process ran out of memory at {phase.place(item)}. Try fewer workers.")
+        if "disk" in answer:
+            raise OSError(answer["disk"])
+        raise RuntimeError(f"A worker process failed at {phase.place(item)}:\n{answer['bug']}")
+
+    def _disk_error(self, error):
+        return RoadExtractionError(f"The folder for temporary files, {self.folder}, cannot be used: {error}. "
+                                   "Free some space there, or run without worker processes.")
+
+    def _take(self):
+        """A worker without a task."""
+        try:
+            return self._idle.get_nowait()
+        except queue.Empty:
+            worker = _Worker(self.interpreter, self.folder)
+            with self._lock:
+                self._all.add(worker)
+            return worker
+
+    def _drop(self, worker):
+        worker.kill()
+        with self._lock:
+            self._all.discard(worker)
+
+    def close(self) -> None:
+        """End the workers and remove the folder."""
+        workers, self._all = self._all, set()
+        for worker in workers:
+            worker.end()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+class _Worker:
+    """One process; used by one thread at a time."""
+
+    def __init__(self, interpreter, folder):
+        self._words = tempfile.TemporaryFile(prefix="lanewright-")
+        self._process = subprocess.Popen(  # nosec B603
+            command_of(interpreter, str(folder)), env=environment(), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._words,
+            text=True, encoding="utf-8", creationflags=no_window())
+        self._answers: queue.SimpleQueue[str] = queue.SimpleQueue()
+        threading.Thread(target=self._listen, daemon=True).start()
+        self._say(json.dumps(import_folders()))
+
+    def _listen(self):
+        """Hand on the answers; "" after the last one."""
+        for line in self._process.stdout:
+            self._answers.put(line)
+        self._answers.put("")
+
+    def _say(self, line):
+        try:
+            self._process.stdin.write(f"{line}\n")
+            self._process.stdin.flush()
+        except OSError:
+            pass   # it has ended, which its missing answer tells
+
+    def answer_to(self, task):
+        """What the worker answers to a task; None if it ended instead. Asks meanwhile whether the user cancelled."""
+        self._say(json.dumps(task))
+        while True:
+            check_cancelled()
+            try:
+                line = self._answers.get(timeout=POLL_INTERVAL)
+            except queue.Empty:
+                continue
+            return json.loads(line) if line.endswith("\n") else None
+
+    def last_words(self):
+        """The end of what the worker wrote about itself, and how it ended."""
+        code = self._process.wait(END_TIME)
+        self._words.seek(0)
+        words = self._words.read().decode(errors="replace").strip()[-LAST_WORDS:]
+        return f"The last one ended with code {code}" + (f": {words}" if words else ".")
+
+    def kill(self):
+        self._process.kill()
+        self._finish()
+
+    def end(self):
+        """End the process politely."""
+        self._say(json.dumps(dict(end=True)))
+        try:
+            self._process.wait(END_TIME)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+        self._finish()
+
+    def _finish(self):
+        self._process.wait()
+        for file in (self._process.stdin, self._process.stdout, self._words):
+            try:
+                file.close()
+            except OSError:
+                pass

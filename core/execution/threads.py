@@ -1,0 +1,32 @@
+"""Phases run by threads of this process: for small surveys, and wherever nothing else works."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from ..common.parallel import ordered_map
+from ..common.progress import Progress
+from .phase import Phase
+
+
+class Threads:
+    """Executor that uses threads.
+
+    Parameters
+    ----------
+    count : number of threads; None for one per processor core, at most four
+    """
+
+    def __init__(self, count: int | None = None):
+        self.count = count
+
+    def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress()) -> Iterator[Any]:
+        """Yield the results of all items in their order; see `Executor`."""
+        return ordered_map(phase.result, items, progress, self.count)
+
+    def close(self) -> None:
+        """Nothing is left to end."""
+
+
+THREADS = Threads()

@@ -1,0 +1,85 @@
+"""A worker process: reads tasks from its input, one JSON object a line, and writes each result to a file.
+
+Run as a file by an interpreter that knows nothing of Lanewright:
+
+    python -I worker.py --try          prints the versions that it can import
+    python -I worker.py FOLDER         works until its input ends
+
+The first line of the input lists the folders to import from. A task names a phase, a file with one item and the file for its
+result; the answer is one line: {} or what went wrong. FOLDER is removed where the caller is gone without saying so.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import shutil
+import sys
+import traceback
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .tasks import Tasks
+
+PACKAGE = "lanewright"
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def import_package(folders: list[str]) -> None:
+    """Import the checkout that this file lies in, whatever its folder is called; folders that are new go to the end of the search path."""
+    sys.path += [folder for folder in folders if folder not in sys.path]
+    spec: Any = importlib.util.spec_from_file_location(PACKAGE, ROOT / "__init__.py", submodule_search_locations=[str(ROOT)])
+    package = importlib.util.module_from_spec(spec)
+    sys.modules[PACKAGE] = package
+    spec.loader.exec_module(package)
+
+
+def main() -> None:
+    # what a library prints must not come between the answers
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)
+    import_package(json.loads(sys.stdin.readline()))
+    if sys.argv[1] == "--try":
+        from lanewright.core.execution.interpreter import NEEDED, versions
+
+        for name in NEEDED:
+            __import__(name)
+        answers.write(json.dumps(versions()))
+        answers.close()
+        return
+    from lanewright.core.execution.tasks import Tasks
+
+    tasks, folder = Tasks(), Path(sys.argv[1])
+    for line in sys.stdin:
+        task = json.loads(line)
+        if task.get("end"):
+            return
+        try:
+            answers.write(json.dumps(answer_to(tasks, folder, task)) + "\n")
+            answers.flush()
+        except BrokenPipeError:
+            break
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+def answer_to(tasks: Tasks, folder: Path, task: dict[str, str]) -> dict[str, Any]:
+    """Do a task; what went wrong, by kind and in words."""
+    from lanewright.core.common.errors import RoadExtractionError
+
+    try:
+        tasks.do(folder / task["phase"], folder / task["item"], folder / task["result"])
+    except RoadExtractionError as error:
+        return {"refused": str(error)}
+    except MemoryError:
+        return {"memory": True}
+    except OSError as error:
+        return {"disk": str(error)}
+    except Exception:
+        return {"bug": traceback.format_exc()}
+    return {}
+
+
+if __name__ == "__main__":
+    main()

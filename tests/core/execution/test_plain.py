@@ -1,0 +1,62 @@
+"""Plain values in files: what comes back, and what is refused."""
+
+import json
+
+import numpy as np
+import pytest
+from lanewright.core.execution.plain import read_plain, write_plain
+from lanewright.core.road.common.occlusion import OcclusionGrid
+from lanewright.core.road.profiles.detect import CurbSettings
+from lanewright.core.survey.frame.passes import Pass
+from lanewright.core.survey.frame.road_frame import Road
+
+
+def there_and_back(tmp_path, value):
+    write_plain(tmp_path / "value.npz", value)
+    return read_plain(tmp_path / "value.npz")
+
+
+@pytest.mark.parametrize("value", [None, True, 3, 0.1 + 0.2, float("inf"), "Straße", [], (1, ("a", None)), {(0, 1): [2.5], "k": {}}])
+def test_numbers_texts_and_what_holds_them_come_back_as_they_were(tmp_path, value):
+    found = there_and_back(tmp_path, value)
+    assert found == value and type(found) is type(value)
+
+
+@pytest.mark.parametrize("array", [np.arange(5, dtype=np.int32), np.empty((0, 3)), np.array([1 + 2j]), np.array([True]), np.zeros(2, "f4,i8")])
+def test_arrays_keep_their_type_and_every_bit(tmp_path, array):
+    found = there_and_back(tmp_path, [array])[0]
+    assert found.dtype == array.dtype and found.tobytes() == array.tobytes() and found.shape == array.shape
+
+
+def test_settings_and_objects_of_core_come_back(tmp_path):
+    grid = OcclusionGrid(0.25, 4, 3, 2.0)
+    grid.tall[1, 2] = True
+    settings, found = there_and_back(tmp_path, (CurbSettings(slope=45.0), grid))
+    assert settings == CurbSettings(slope=45.0)
+    assert found.tall[1, 2] and np.isnan(found.ground).all() and found.first == 4
+
+
+def test_a_road_comes_back_to_the_last_bit_and_a_pass_without_its_tables(tmp_path):
+    u = np.linspace(0, 3, 400)
+    road, line = Road(2, 30 * np.sin(u), 30 * np.cos(u), -10.0), np.linspace(0, 30, 60)
+    driven = Pass(0, 2, 1, line, line, line, line, line, 0.0 * line)
+    driven.position(line)
+    found, again = there_and_back(tmp_path, [road, driven])
+    s = np.linspace(-5, 25, 50)
+    assert [v.tobytes() for v in found.to_map(s, 1.0)] == [v.tobytes() for v in road.to_map(s, 1.0)]
+    np.testing.assert_array_equal(again.position(line), driven.position(line))
+    assert (tmp_path / "value.npz").stat().st_size < 20_000
+
+
+@pytest.mark.parametrize("value", [object(), np.array([None]), {1, 2}, json.JSONDecoder()], ids=["object", "array of objects", "set", "other class"])
+def test_what_is_not_plain_is_refused_and_leaves_no_file(tmp_path, value):
+    with pytest.raises(TypeError):
+        write_plain(tmp_path / "value.npz", [value])
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_file_that_names_a_class_outside_core_makes_nothing_of_it(tmp_path):
+    text = json.dumps({"object": "os:system", "state": []})
+    np.savez(tmp_path / "value.npz", tree=np.frombuffer(text.encode(), np.uint8))
+    with pytest.raises(ImportError):
+        read_plain(tmp_path / "value.npz")

@@ -1,0 +1,153 @@
+"""Boundaries found by worker processes: those that threads find, to the last bit; and what happens when a worker ends."""
+
+import threading
+import time
+
+import pytest
+from curbed_streets import parked_car, street, survey_of
+from lanewright.core.common.errors import Cancelled, RoadExtractionError
+from lanewright.core.common.progress import Progress
+from lanewright.core.execution import interpreter, processes
+from lanewright.core.execution.choice import ExecutionSettings, executor_for
+from lanewright.core.execution.phase import Phase
+from lanewright.core.execution.processes import WorkerProcesses
+from lanewright.core.execution.threads import Threads
+from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
+from lanewright.core.survey.sensor_height import sensor_height_of
+
+
+@pytest.fixture(scope="module")
+def python():
+    found = interpreter.find_interpreter()
+    assert found, "this Python itself can do the work"
+    return found
+
+
+def boundaries(executor, method="both", progress=Progress()):
+    survey = survey_of(parked_car(street(open_left=[(25.0, 33.0)]), start=40.0))
+    survey.executor = executor
+    try:
+        return draw_boundaries(find_curb_points(survey, BoundarySettings(method), progress), survey.frame)
+    finally:
+        survey.store.close()
+        executor.close()
+
+
+def numbers_of(found):
+    course, points = found.edges.course, found.curb_points
+    columns = [course.x, course.y, course.z, course.s, course.d, found.edges.agree, found.edges.rmse, found.edges.chain, found.edges.nearest_pass,
+               points.x, points.y, points.z, points.station, points.offset, points.height, points.support]
+    return [column.tobytes() for column in columns], list(points.status), list(points.kind), list(found.edges.status)
+
+
+@pytest.fixture(scope="module")
+def by_threads():
+    return numbers_of(boundaries(Threads(1)))
+
+
+def test_three_threads_find_what_one_finds(by_threads):
+    assert numbers_of(boundaries(Threads(3))) == by_threads
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("workers", [1, 2, 3])
+def test_worker_processes_find_what_threads_find_and_leave_nothing(by_threads, python, workers):
+    executor = WorkerProcesses(python, workers)
+    assert numbers_of(boundaries(executor)) == by_threads
+    assert not executor.folder.exists()
+
+
+def killed_while_it_works(executor, times):
+    """Kill workers that have a task, so many of them."""
+    def kill():
+        for _ in range(times):
+            while not (busy := [worker for worker in list(executor._all) if worker._process.poll() is None]):
+                time.sleep(0.01)
+            time.sleep(0.3)
+            busy[0]._process.kill()
+            time.sleep(0.2)
+
+    threading.Thread(target=kill, daemon=True).start()
+    return executor
+
+
+def test_a_worker_that_is_killed_is_replaced_and_nothing_is_lost(by_threads, python):
+    executor = killed_while_it_works(WorkerProcesses(python, 1), 1)
+    assert numbers_of(boundaries(executor)) == by_threads
+    assert not executor.folder.exists()
+
+
+def test_where_workers_keep_ending_the_road_is_named(python, monkeypatch):
+    monkeypatch.setattr(processes, "TRIALS", 1)
+    executor = killed_while_it_works(WorkerProcesses(python, 1), 1)
+    with pytest.raises(RoadExtractionError, match=r"road 0, -?\d+ to \d+ m.*fewer workers"):
+        boundaries(executor)
+    assert not executor.folder.exists()
+
+
+def test_cancel_ends_the_workers_within_two_seconds(python):
+    class Impatient(Progress):
+        at = None
+
+        def report(self, fraction):
+            if executor._all:
+                self.at = self.at or time.monotonic()
+                raise Cancelled
+
+    executor, impatient = WorkerProcesses(python, 2), Impatient()
+    workers = executor._all
+    with pytest.raises(Cancelled):
+        boundaries(executor, progress=impatient)
+    assert time.monotonic() - impatient.at < 2.0
+    assert not executor.folder.exists() and all(worker._process.poll() is not None for worker in workers)
+
+
+def test_a_bug_in_a_worker_keeps_its_traceback(python):
+    executor = WorkerProcesses(python, 1)
+    with pytest.raises(RuntimeError, match="TypeError.*sensor_height_of"):
+        list(executor.run(Phase(sensor_height_of, survey_of(street()), ("more", "arguments", "than it takes")), [0]))
+    executor.close()
+
+
+def test_a_full_or_missing_folder_for_temporary_files_is_named(python):
+    executor = WorkerProcesses(python, 1)
+    executor.folder.rmdir()
+    with pytest.raises(RoadExtractionError, match="folder for temporary files"):
+        boundaries(executor, "profiles")
+
+
+class Heard(Progress):
+    def __init__(self):
+        self.lines = []
+
+    def info(self, text):
+        self.lines.append(text)
+
+
+def test_threads_do_small_surveys_and_worker_processes_those_that_ask_for_them(python):
+    assert isinstance(executor_for(1_000_000), Threads)
+    heard = Heard()
+    executor = executor_for(1_000_000, ExecutionSettings(workers=2), heard)
+    assert isinstance(executor, WorkerProcesses) and executor.workers == 2 and "2 worker process" in heard.lines[0]
+    executor.close()
+
+
+def test_where_no_interpreter_can_do_the_work_one_line_says_so_and_threads_do_it(monkeypatch):
+    monkeypatch.setattr(interpreter, "candidates", lambda: iter(["/bin/false", "/no/such/python"]))
+    interpreter.find_interpreter.cache_clear()
+    heard = Heard()
+    assert isinstance(executor_for(1_000_000, ExecutionSettings(workers=2), heard), Threads)
+    assert len(heard.lines) == 1 and "No Python interpreter" in heard.lines[0]
+    interpreter.find_interpreter.cache_clear()
+
+
+def test_a_negative_number_of_workers_is_refused():
+    with pytest.raises(RoadExtractionError, match="number of workers"):
+        ExecutionSettings(workers=-1)
+
+
+def test_nothing_of_qgis_is_mistaken_for_python(monkeypatch):
+    monkeypatch.setattr(interpreter.sys, "executable", "/usr/bin/qgis")
+    assert all("qgis" not in path for path in interpreter.candidates())
+
+
