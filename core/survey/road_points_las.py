@@ -24,6 +24,7 @@ EXTRA_FIELDS = [("road", "uint16", "Road", None), ("pass", "uint16", "Pass", Non
                 ("half_width", "uint16", "Half width of the road", 1e-3), ("covered", "uint8", "Beneath something on the road", None)]
 CORRECTED_FIELD = ("intensity_corrected", "float32", "Intensity, range corrected", None)
 CLUSTER_FIELD = ("cluster", "int32", "Cluster of paint", None)
+SPACING_FIELD = ("spacing", "uint16", "Spacing across the road", 1e-3)
 REQUIRED_FIELDS = ("road", "pass", "station_m", "offset_m", "half_width")
 
 
@@ -61,7 +62,8 @@ def _header(road_points):
     # times are written as they were read
     header.global_encoding.gps_time_type = laspy.header.GpsTimeType.STANDARD
     header.generating_software = "Lanewright"
-    extra = EXTRA_FIELDS + ([CORRECTED_FIELD] if road_points.has_corrected else []) + ([CLUSTER_FIELD] if road_points.has_cluster else [])
+    extra = EXTRA_FIELDS + ([CORRECTED_FIELD] if road_points.has_corrected else []) + ([CLUSTER_FIELD] if road_points.has_cluster else []) \
+        + ([SPACING_FIELD] if road_points.has_spacing else [])
     header.add_extra_dims([
         laspy.ExtraBytesParams(name=name, type=kind, description=text,
                                **({} if scale is None else dict(scales=np.array([scale]), offsets=np.array([0.0]))))
@@ -110,6 +112,8 @@ def _record(road_points, road, number, header):
         out.array["intensity_corrected"] = records["corrected"]
     if road_points.has_cluster:
         out.array["cluster"] = records["cluster"]
+    if road_points.has_spacing:
+        out.array["spacing"] = records["spacing"]
     return out
 
 
@@ -143,7 +147,7 @@ def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadP
         farthest = max((np.abs(np.r_[header.mins, header.maxs][[0, 1, 3, 4]] - origin[[0, 1, 0, 1]])).max(), 0.0) if total else 0.0
         dtype = point_dtype(ROAD_POINT, farthest)
         crs, moves = header.parse_crs(), PassCorrections.of_records(header.vlrs)
-    has_corrected, has_cluster = "intensity_corrected" in names, "cluster" in names
+    has_corrected, has_cluster, has_spacing = (name in names for name in ("intensity_corrected", "cluster", "spacing"))
     store = SectionStore(dtype)
     done = 0
     for block in read_blocks(path, POINTS_PER_BLOCK):
@@ -163,6 +167,8 @@ def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadP
         records["corrected"] = block["intensity_corrected"] if has_corrected else np.nan
         records["cluster"] = block["cluster"] if has_cluster else 0
         records["covered"] = block["covered"] if "covered" in names else 0
+        if has_spacing:
+            records["spacing"] = np.rint(np.asarray(block["spacing"], float) / 1e-3)
         if moves is not None:
             for name, moved in zip("xyz", moves.units(records)):
                 records[name] += moved
@@ -173,4 +179,4 @@ def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadP
         progress.report(done / max(total, 1))
     if not store.count:
         raise RoadExtractionError(f"{path} holds no points. Run the stage that made it again with other settings.")
-    return RoadPoints(store, origin, "" if crs is None else crs.to_wkt(), has_corrected, has_cluster, moves)
+    return RoadPoints(store, origin, "" if crs is None else crs.to_wkt(), has_corrected, has_cluster, moves, has_spacing)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 from ...common.order_statistics import order_by
 from ...common.progress import Progress
@@ -25,6 +26,7 @@ from .connected_cells import components, occupied
 from .marking_objects import make_marking_objects
 from .outline import band, cell_outline, painted_cells, parts, to_local
 from .road_grid import CELL_UNITS
+from .scan_tracks import track_reach
 from .shape import measure
 from .split_merge import join_fragments, split_compounds
 
@@ -39,7 +41,7 @@ MIN_FRAGMENT_POINTS = 1                       # points: the smallest worn rest t
 STRIP_KINDS = LINE_KINDS + ("zebra", "stop")  # drawn as even strips, the others cell by cell
 MAX_SKEW_OF_EVEN_STRIPES = np.radians(5.0)    # stripes of a crossing that is more askew end askew to their run
 REACH_ALONG_FACTOR = 2.5                      # neighbours may be this times the distance apart along the road,
-REACH_ACROSS_DIVISOR = 2.0                    # and across it the distance over this
+REACH_ACROSS_DIVISOR = 2.0                    # and across it the distance over this, or the reach between tracks of the scan
 
 
 @dataclass(frozen=True)
@@ -83,15 +85,15 @@ def cluster_markings(marking_points: RoadPoints, frame: RoadFrame, settings: Clu
         records, labels = connected_points(marking_points, road, settings.distance, part.part(0, 0.4))
         order, starts, _ = _by_cluster(split_compounds(records, labels), MIN_FRAGMENT_POINTS)
         records = records.take(order)
-        s, d = records["s"], records["d"]
-        pieces = [measure(s[a:b], d[a:b]) for a, b in zip(starts[:-1].tolist(), starts[1:].tolist())]
+        s, d, spacing = records["s"], records["d"], records["spacing"]
+        pieces = [measure(s[a:b], d[a:b], spacing[a:b]) for a, b in zip(starts[:-1].tolist(), starts[1:].tolist())]
         joins = join_fragments(pieces, settings.classes.max_width)
         again, starts, labels = _by_cluster(_relabelled(records, starts, joins), settings.min_points)
         records, order = records.take(again), order[again]
         bounds = list(zip(starts[:-1].tolist(), starts[1:].tolist()))
-        s, d = records["s"], records["d"]
+        s, d, spacing = records["s"], records["d"], records["spacing"]
         alone = _alone(pieces, joins)
-        shapes = [alone.get(label) or measure(s[a:b], d[a:b]) for label, (a, b) in zip(labels.tolist(), bounds)]
+        shapes = [alone.get(label) or measure(s[a:b], d[a:b], spacing[a:b]) for label, (a, b) in zip(labels.tolist(), bounds)]
         half_width, hidden = records["half_width"].astype(float), records["covered"]
         half_widths = [median(half_width[a:b]) * 1e-3 for a, b in bounds]
         covered = [float(np.count_nonzero(hidden[a:b])) / (b - a) for a, b in bounds]
@@ -193,7 +195,30 @@ def _components(records, distance):
     s, d = (np.bincount(member, records[name], len(cells)) for name in ("s", "d"))
     places = np.stack([s / size / REACH_ALONG_FACTOR, d / size * REACH_ACROSS_DIVISOR], axis=1) * COORDINATE_SCALE
     size_of_cell = CELL_UNITS * COORDINATE_SCALE / REACH_ALONG_FACTOR, CELL_UNITS * COORDINATE_SCALE * REACH_ACROSS_DIVISOR
-    return cells, member, components(cells, places, size_of_cell, distance)
+    found = components(cells, places, size_of_cell, distance)
+    reach = np.zeros(len(cells))
+    reach[member] = track_reach(records["spacing"])
+    pairs = _across_tracks(places / [distance, REACH_ACROSS_DIVISOR], reach)
+    if len(pairs):
+        number = int(found.max()) + 1
+        graph = coo_matrix((np.ones(len(pairs), bool), tuple(found[pairs].T)), shape=(number, number))
+        found = connected_components(graph, directed=False)[1][found]
+    return cells, member, found
+
+
+def _across_tracks(places, reach):
+    """(P, 2) cells on neighbouring tracks of the scan, where these lie farther apart than points that join anyway.
+
+    places : (K, 2) along the road in units of the reach there, across it in metres
+    reach : (K,) m across the road
+    """
+    rows = np.flatnonzero(reach)
+    if not len(rows):
+        return np.empty((0, 2), np.int64)
+    widest = reach[rows].max()
+    pairs = rows[cKDTree(places[rows] / [1.0, widest]).query_pairs(1.0, output_type="ndarray").reshape(-1, 2)]
+    along, across = (places[pairs[:, 0]] - places[pairs[:, 1]]).T
+    return pairs[along**2 + (across / reach[pairs].min(axis=1)) ** 2 <= 1.0]
 
 
 def _shared(cells, labels, others, other_labels):
@@ -227,7 +252,7 @@ def _outline(records, shape, kind, road):
     if kind in STRIP_KINDS and not (kind == "zebra" and abs(shape.direction) > MAX_SKEW_OF_EVEN_STRIPES):
         drawn = band(records["s"], records["d"], shape)
     else:
-        drawn = cell_outline(*painted_cells(records["s"] * COORDINATE_SCALE, records["d"] * COORDINATE_SCALE))
+        drawn = cell_outline(*painted_cells(records["s"] * COORDINATE_SCALE, records["d"] * COORDINATE_SCALE, records["spacing"]))
     places = np.stack([records["x"], records["y"], records["z"]], axis=1) * COORDINATE_SCALE
     return [to_local(part, road, places) for part in parts(drawn)]
 

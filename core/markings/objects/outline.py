@@ -17,7 +17,8 @@ from scipy.spatial import cKDTree
 from ...curves.robust import row_medians
 from ...survey.store.records import COORDINATE_SCALE
 from .road_grid import CELL_SIZE
-from .shape import fill_gaps, middle_line
+from .scan_tracks import fill_gaps, filled_between_tracks, track_reach
+from .shape import middle_line
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import Road
@@ -47,7 +48,7 @@ def band(s: np.ndarray, d: np.ndarray, shape: Shape) -> shapely.Polygon:
     """
     c, n = (1.0, 0.0) if shape.along else (np.cos(shape.direction), np.sin(shape.direction))
     u, v = (s, d) if shape.along else (np.rint(s * c + d * n).astype(np.int64), np.rint(d * c - s * n).astype(np.int64))
-    nodes, offsets = middle_line(u, v)
+    nodes, offsets = middle_line(u, v, shape.spacing)
     all_nodes = np.concatenate([[u.min()], nodes, [u.max()]])
     offsets, nodes = np.interp(all_nodes, nodes, offsets) * COORDINATE_SCALE, all_nodes * COORDINATE_SCALE
     keep = np.append(True, np.diff(nodes) > 1e-6)
@@ -57,12 +58,13 @@ def band(s: np.ndarray, d: np.ndarray, shape: Shape) -> shapely.Polygon:
     return shapely.simplify(shapely.Polygon(ring @ np.array([[c, n], [-n, c]])), STRIP_TOLERANCE)
 
 
-def painted_cells(s: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def painted_cells(s: np.ndarray, d: np.ndarray, spacing: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Cells covered by a cluster.
 
     Parameters
     ----------
     s, d : (N,) metres
+    spacing : (N,) int, mm across the road between the tracks of the scan; None where it is not known
 
     Returns
     -------
@@ -70,9 +72,7 @@ def painted_cells(s: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     first : (2,) int, the cell number of mask[0, 0]: it begins at first * CELL
     """
     cells = np.floor(np.c_[s, d] / CELL_SIZE).astype(np.int64)
-    first = cells.min(axis=0) - 1
-    mask = np.zeros(cells.max(axis=0) - first + 2, bool)
-    mask[tuple((cells - first).T)] = True
+    mask, first = filled_between_tracks(cells, track_reach(spacing if spacing is not None else np.zeros(len(cells))))
     mask = fill_gaps(mask, int(round(CLOSE_ALONG / CELL_SIZE)), 0)
     mask = fill_gaps(mask, int(round(CLOSE_ACROSS / CELL_SIZE)), 1)
     return _without_small_holes(mask), first

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 
 from ...common.order_statistics import order_by
@@ -12,8 +11,10 @@ from ...curves.robust import median, percentiles
 from ...survey.store.records import COORDINATE_SCALE
 from .connected_cells import occupied
 from .road_grid import CELL_UNITS
+from .scan_tracks import fill_gaps, filled_between_tracks, track_reach
 
 MIDDLE_LINE_STEP_UNITS = 5000                         # units: 0.5 m of station that the run of a line is followed in
+TRACKS_PER_STEP = 10.0                                # times the distance between the tracks of the scan that the step is at least
 WIDTH_PERCENT = 95.0                                  # % of the points that the width spans; divided out again
 MAX_ANGLE_ALONG = np.radians(20.0)                    # closer to the road's direction than this is "along" it
 MIN_ANGLE_ACROSS = np.radians(60.0)                   # farther from it is "across"
@@ -31,6 +32,7 @@ class Shape:
     `closed_area` is the area with the gaps between scan lines, of what runs across the road or is small (`area` of the rest);
     `begin` and `finish` are the offsets of its middle line at s0 and s1 (the median for what is not along the road).
     `stems` are the shares of its length, from s0 on and from s1 back, over which it is a single stroke.
+    `spacing` is the distance between the tracks of the scan that it was seen on, where these are farther apart than cells, else 0.
     """
 
     s0: float
@@ -47,6 +49,7 @@ class Shape:
     finish: float
     closed_area: float
     stems: tuple
+    spacing: float = 0.0
 
     @property
     def elongation(self) -> float:
@@ -67,24 +70,31 @@ class Shape:
         return abs(self.direction) > MIN_ANGLE_ACROSS
 
 
-def measure(s: np.ndarray, d: np.ndarray) -> Shape:
+def measure(s: np.ndarray, d: np.ndarray, spacing: np.ndarray | None = None) -> Shape:
     """The Shape of a cluster.
 
     Parameters
     ----------
     s, d : (N,) int, station and offset in units of 0.1 mm (integers, so that the order of points does not matter)
+    spacing : (N,) int, mm across the road between the tracks of the scan; None where it is not known
 
     Notes
     -----
     Width is the 95 % range across the local tangent, scaled to the full range of
     evenly spread points: a principal axis would call every bend wide.
     """
-    cells, _ = occupied(s // CELL_UNITS, d // CELL_UNITS)
+    cells, member = occupied(s // CELL_UNITS, d // CELL_UNITS)
+    apart = 0.0
+    if spacing is not None and (reach := track_reach(spacing)).any():
+        reach_of_cell = np.zeros(len(cells))
+        reach_of_cell[member] = reach
+        mask, first = filled_between_tracks(cells, reach_of_cell)
+        cells, apart = np.argwhere(mask) + first, median(spacing) * 1e-3
     direction = _principal_direction(cells)
     s0, s1, d0, d1 = s.min(), s.max(), d.min(), d.max()
     if abs(direction) <= MAX_ANGLE_ALONG and s1 - s0 > 2 * MIDDLE_LINE_STEP_UNITS:
         length = (s1 - s0) * COORDINATE_SCALE
-        nodes, offsets = middle_line(s, d)
+        nodes, offsets = middle_line(s, d, apart)
         across = d - np.interp(s, nodes, offsets)
         begin, finish = offsets[0] * COORDINATE_SCALE, offsets[-1] * COORDINATE_SCALE
     else:
@@ -100,21 +110,7 @@ def measure(s: np.ndarray, d: np.ndarray) -> Shape:
     area, closed_area = (count * (CELL_UNITS * COORDINATE_SCALE) ** 2 for count in (len(cells), closed))
     return Shape(s0 * COORDINATE_SCALE, s1 * COORDINATE_SCALE, d0 * COORDINATE_SCALE, d1 * COORDINATE_SCALE, median(d) * COORDINATE_SCALE,
                  float(length), full_width(across) * COORDINATE_SCALE, direction, area, len(s), float(begin), float(finish), closed_area,
-                 _stems(cells))
-
-
-def fill_gaps(mask: np.ndarray, limit: int, axis: int = 0) -> np.ndarray:
-    """Close runs of at most `limit` cells that are off between two that are on, along one axis."""
-    if limit < 1:
-        return mask.copy()
-    length = limit + 1
-    size, behind = ((1, length), (0, length - 1)) if axis == 0 else ((length, 1), (length - 1, 0))
-    along = np.ones(size[::-1], np.uint8)
-    margin = [length, length, 0, 0] if axis == 0 else [0, 0, length, length]
-    # off beyond the rim, so that nothing is closed towards it
-    grown = cv2.dilate(cv2.copyMakeBorder(mask.astype(np.uint8), *margin, cv2.BORDER_CONSTANT, value=0), along, anchor=(0, 0))
-    closed = cv2.erode(grown, along, anchor=behind)
-    return closed[margin[0]:margin[0] + mask.shape[0], margin[2]:margin[2] + mask.shape[1]].astype(bool)
+                 _stems(cells), apart)
 
 
 def _closed(cells, gaps):
@@ -153,18 +149,21 @@ def _principal_direction(cells):
     return float(angle)
 
 
-def middle_line(s: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def middle_line(s: np.ndarray, d: np.ndarray, spacing: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
     """The middle line of an elongated cluster.
 
     Parameters
     ----------
     s, d : (N,) int, along and across it, units of 0.1 mm
+    spacing : m between the tracks of the scan
 
     Returns
     -------
-    stations, offsets : (K,) float, nodes every 0.5 m, smoothed over 2.5 m
+    stations, offsets : (K,) float, nodes every 0.5 m, smoothed over 2.5 m; of a line seen on few tracks, each of which
+        shows it at one place of its width, they lie ten track spacings apart
     """
-    bins = (s - s.min()) // MIDDLE_LINE_STEP_UNITS
+    step = max(MIDDLE_LINE_STEP_UNITS, int(round(TRACKS_PER_STEP * spacing / COORDINATE_SCALE)))
+    bins = (s - s.min()) // step
     order = order_by(d, bins)
     sorted_bins = bins[order]
     starts = np.flatnonzero(np.append(True, sorted_bins[1:] != sorted_bins[:-1]))
@@ -172,12 +171,12 @@ def middle_line(s: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     count = ends - starts
     # the middle between the outer eighths is steadier than a median where paint is worn on one side
     low, high = d[order[starts + count // 8]], d[order[ends - 1 - count // 8]]
-    nodes = s.min() + (sorted_bins[starts] + 0.5) * MIDDLE_LINE_STEP_UNITS
+    nodes = s.min() + (sorted_bins[starts] + 0.5) * step
     weight = np.minimum(count, 30).astype(float)
-    return nodes, _smooth(nodes, (low + high) / 2, weight)
+    return nodes, _smooth(nodes, (low + high) / 2, weight, step)
 
 
-def _smooth(nodes, values, weight):
+def _smooth(nodes, values, weight, step):
     """A straight line fitted to the five nodes about each, so that ends and slopes stay."""
     if len(values) < 3:
         return np.full(len(values), np.average(values, weights=weight))
@@ -186,10 +185,10 @@ def _smooth(nodes, values, weight):
     inside = (rows >= 0) & (rows < len(values))
     rows = np.clip(rows, 0, len(values) - 1)
     x = nodes[rows] - nodes[:, None]
-    w = weight[rows] * inside * (np.abs(x) <= 2.6 * MIDDLE_LINE_STEP_UNITS)
+    w = weight[rows] * inside * (np.abs(x) <= 2.6 * step)
     y = values[rows]
     sw, sx, sy = w.sum(1), (w * x).sum(1), (w * y).sum(1)
     sxx, sxy = (w * x * x).sum(1), (w * x * y).sum(1)
     spread_x = sw * sxx - sx * sx
-    steady = spread_x > 1e-6 * sw * sw * MIDDLE_LINE_STEP_UNITS**2
+    steady = spread_x > 1e-6 * sw * sw * step**2
     return np.where(steady, (sxx * sy - sx * sxy) / np.where(steady, spread_x, 1.0), sy / sw)

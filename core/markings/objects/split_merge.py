@@ -27,14 +27,18 @@ from .classify import STRIPE_WIDTH, columns_of, zebra_stripes
 from .connected_cells import occupied
 from .near_pairs import overlapping_pairs
 from .road_grid import CELL_UNITS
+from .scan_tracks import filled_between_tracks, track_reach
 
 if TYPE_CHECKING:
     from ...survey.store.columns import Columns
     from .shape import Shape
 
-MIN_STRIP_LENGTH = 5.0                        # m of a strip
+STRIP_WINDOWS = (8.0, 8.0), (4.0, 5.0)        # m that a line is looked for in, and its least length
+LINE_SHARE = 0.85                             # of the window that is painted, gaps between scan lines closed
+MAX_BORDER_SLOPE = 0.20                       # to the road: the borders of hatched areas lie askew by one in five at most
+MAX_BORDER_DRIFT = 0.16                       # m that a line may leave the nearest slope that is tried, over the window
 COMPOUND_LENGTH, COMPOUND_BREADTH = 9.0, 0.5  # m: no arrow or letter is so long; a line that is broader somewhere has something beside it
-MIN_RUN_ALONG = 1.0                           # m along the road that a strip does not break off; stop lines and hatching bars are shorter
+WIDTH_STEP, WIDTH_TOLERANCE = 12, 2           # cells along a line whose width is taken together, and across by which it may be uneven
 MIN_RUN_ACROSS = 2.0                          # m across the road that a bar does not break off; no arrow or letter is as broad
 MIN_LENGTH_BESIDE_BAR = 1.0                   # m along the road: what is shorter is nothing but a bar
 MAX_PAINT_GAP = 0.24                          # m across the road, closed; the stripes of a zebra crossing leave more
@@ -74,18 +78,39 @@ def split_compounds(records: Columns, labels: np.ndarray) -> np.ndarray:
     for a, b in zip(starts[large], np.r_[starts[1:], len(order)][large]):
         rows = order[a:b]
         cells, member = occupied(along[a:b] // CELL_UNITS, across[a:b] // CELL_UNITS)
-        parts, count = _parts(cells)
+        spacing = np.zeros(len(cells))
+        spacing[member] = records["spacing"][rows]
+        parts, count = _parts(cells, spacing)
         if count > 1:
             labels[rows] = following + parts[member]
             following += count
     return labels
 
 
-def _parts(cells):
-    """(K,) the part of every cell, numbered from 0, and how many parts there are."""
+def _parts(cells, spacing):
+    """(K,) the part of every cell, numbered from 0, and how many parts there are; spacing : (K,) mm of the scan's tracks."""
+    reach = track_reach(spacing)
+    if not reach.any():
+        return _parts_of_filled(cells)
+    mask, first = filled_between_tracks(cells, reach)
+    number = np.full(mask.shape, -1)
+    filled = np.argwhere(mask)
+    parts, _ = _parts_of_filled(filled + first)
+    number[tuple(filled.T)] = parts
+    _, parts = np.unique(number[tuple((cells - first).T)], return_inverse=True)
+    return parts, int(parts.max()) + 1
+
+
+def _parts_of_filled(cells):
     size = CELL_UNITS * COORDINATE_SCALE
-    parts, every = np.full(len(cells), -1), np.arange(len(cells))
-    count = _number_strips(parts, 0, cells, every[_in_runs(cells, MAX_SCAN_GAP, MIN_RUN_ALONG)], MAX_SCAN_GAP, size, MIN_STRIP_LENGTH)
+    parts, count = np.full(len(cells), -1), 0
+    for window, least in STRIP_WINDOWS:
+        rest = np.flatnonzero(parts < 0)
+        strip = rest[_in_lines(cells[rest], MAX_SCAN_GAP, window)]
+        before, count = count, _number_strips(parts, count, cells, strip, MAX_SCAN_GAP, size, least)
+        for number in range(before, count):
+            inside = np.flatnonzero(parts == number)
+            parts[inside[~_in_even_strip(cells[inside])]] = -1
     rest, turned = np.flatnonzero(parts < 0), cells[:, ::-1]
     # scan lines lie apart within a bar
     bars = rest[_in_runs(turned[rest], MAX_PAINT_GAP, MIN_RUN_ACROSS)]
@@ -103,6 +128,55 @@ def _parts(cells):
         owned = np.flatnonzero(~lost)
         parts[lost] = parts[owned[cKDTree(cells[owned]).query(cells[lost])[1]]]
     return parts, int(count + kept.sum())
+
+
+def _in_lines(cells, longest_gap, window):
+    """(K,) whether a cell lies on a straight line roughly along the road that is painted over most of `window` metres.
+
+    Bars, letters and the stripes of a crossing are shorter than the window; the line itself may be worn and askew.
+    """
+    result = np.zeros(len(cells), bool)
+    if not len(cells):
+        return result
+    size = CELL_UNITS * COORDINATE_SCALE
+    steps = int(MAX_BORDER_SLOPE * window / MAX_BORDER_DRIFT)
+    gap, length, chunk = round(longest_gap / size) // 2 * 2, round(window / size) | 1, int(MORPHOLOGY_CHUNK / size)
+    numbers = np.floor_divide(cells[:, 0], chunk)
+    for number in np.unique(numbers):
+        first = number * chunk - 2 * length
+        rows = np.flatnonzero((cells[:, 0] >= first) & (cells[:, 0] < (number + 1) * chunk + 2 * length))
+        column, across = cells[rows, 0] - first, cells[rows, 1]
+        own = numbers[rows] == number
+        share = np.max([_painted_share(column, across, slope, gap, length)
+                        for slope in np.arange(-steps, steps + 1) * (MAX_BORDER_DRIFT / window)], axis=0)
+        result[rows[own]] = share[own] >= LINE_SHARE
+    return result
+
+
+def _in_even_strip(cells):
+    """(K,) whether the cells of a strip lie in a strip of its usual width about its middle; what touches it in places does not."""
+    step = (cells[:, 0] - cells[:, 0].min()) // WIDTH_STEP
+    count = int(step.max()) + 1
+    low, high = np.full(count, np.inf), np.full(count, -np.inf)
+    np.minimum.at(low, step, cells[:, 1])
+    np.maximum.at(high, step, cells[:, 1])
+    seen = np.isfinite(low)
+    usual = np.median((high - low)[seen])
+    even = np.flatnonzero(seen & (high - low <= usual + WIDTH_TOLERANCE))
+    middle = np.interp(step, even, ((low + high) / 2)[even])
+    return np.abs(cells[:, 1] - middle) <= (usual + WIDTH_TOLERANCE) / 2
+
+
+def _painted_share(column, across, slope, gap, length):
+    """(K,) the greatest painted share of `length` cells along a slope that hold a cell; gaps of `gap` cells are closed."""
+    row = across - np.rint(slope * column).astype(np.int64)
+    row = row - row.min() + 1
+    mask = np.zeros((row.max() + 2, column.max() + 1), np.uint8)
+    mask[row, column] = 1
+    # a line may leave its row of cells by one
+    joined = cv2.dilate(cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((1, gap + 1), np.uint8)), np.ones((3, 1), np.uint8))
+    share = cv2.boxFilter(joined.astype(np.float32), -1, (length, 1), borderType=cv2.BORDER_CONSTANT)
+    return cv2.dilate(share, np.ones((1, length), np.uint8), borderValue=0)[row, column]
 
 
 def _number_strips(parts, count, cells, rows, gap, gap_across, least):

@@ -9,7 +9,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Iterable
 from contextlib import nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from os import PathLike
 
 import numpy as np
@@ -34,6 +34,7 @@ from .noisy import CellAverages, ViewSamples, noisy_paint_cells, views
 from .peaks import PeakSettings, points_on_peaks
 from .point_segments import SegmentSettings, points_in_segments
 from .scatter import ScannerScatter
+from .spacing import track_spacing
 from .threshold_bins import MIN_BIN_CELLS, AsphaltBin, OtsuSplit, asphalt_bins, bin_edges, split_bins
 
 RIM_WIDTH = 0.60         # m from the rim of the road: gutters; asphalt is taken from the cells inside
@@ -143,7 +144,7 @@ def _extract_from_points(road_points: RoadPoints, settings: MarkingSettings, pro
 def _extract_from_image(road_points: RoadPoints, image: IntensityRaster, frame: RoadFrame, settings: MarkingSettings, progress: Progress,
                         burn: Burn | None) -> RoadPoints:
     """Paint by multi-thresholds on the image, and from averages where points are noisy."""
-    paint = RoadPoints.empty_like(road_points)
+    paint = replace(RoadPoints.empty_like(road_points), has_spacing=True)
     roads = road_points.roads()
     windows = [(road, window) for road in roads for window in _windows(road_points, road)]
     scatter = ScannerScatter.of(lambda road, window: _window(road_points, road, window), windows, progress.part(0.0, 0.1))
@@ -258,7 +259,7 @@ class WindowExtractor:
         parts = [piece for beside in (window - 1, window, window + 1) for piece in self._in_cells(beside)]
         cells = RoadCells.of(parts, window * THRESHOLD_WINDOW - WINDOW_HALO, (window + 1) * THRESHOLD_WINDOW + WINDOW_HALO)
         rims = rim_distance(cells.occupied), edge_distance(cells.half_width, cells.grid.offsets())
-        return _WindowView(cells.grid, cells.grid.read(self.image, self.frame, self.road), rims)
+        return _WindowView(cells.grid, cells.grid.read(self.image, self.frame, self.road), rims, cells.occupied)
 
     def bins(self, window: int) -> list[tuple[AsphaltBin, OtsuSplit]]:
         """Bins of asphalt and Otsu's splits of one window; an empty list where there are no data."""
@@ -315,7 +316,7 @@ class WindowExtractor:
             mask = morphology((z > threshold * scale) & ~gutter, self.settings)
         # the background that was subtracted from the cell is subtracted from the point as well
         least = (brightness - z * spread) + (threshold - 0.5) * (spread * scale)
-        return self._paint_in(parts, grid, mask, least)
+        return self._paint_in(parts, grid, view.occupied, mask, least)
 
     def _from_averages(self, window: int) -> Paint:
         """Paint where single points are noisy: bright pieces must have the shape of paint, too."""
@@ -331,14 +332,19 @@ class WindowExtractor:
         averages = CellAverages.of(cell, points.value, points.records["z"], cells.grid.shape)
         samples = ViewSamples(cell, points.value, points.covered > 0, views(points, self.frame))
         mask = noisy_paint_cells(averages, rim_distance(cells.occupied), samples, self.settings.faint)
-        return self._paint_in([part for part in parts if part.grid.first >= first and part.grid.last <= last], cells.grid, mask)
+        return self._paint_in([part for part in parts if part.grid.first >= first and part.grid.last <= last], cells.grid, cells.occupied, mask)
 
     def _nothing(self) -> Paint:
         return join_columns([], self.road_points.store.dtype), np.empty(0), np.empty(0)
 
-    def _paint_in(self, parts: list[PieceOfRoad], grid: RoadGrid, mask: np.ndarray, least: np.ndarray | None = None) -> Paint:
-        """Records of the window's own parts in painted cells, brighter than `least` of their cell, and the mask's pixels."""
+    def _paint_in(self, parts: list[PieceOfRoad], grid: RoadGrid, occupied: np.ndarray, mask: np.ndarray,
+                  least: np.ndarray | None = None) -> Paint:
+        """Records of the window's own parts in painted cells, brighter than `least` of their cell, and the mask's pixels.
+
+        occupied, mask, least : (rows, columns) of the grid
+        """
         found, on = [], np.zeros(grid.shape, bool)
+        spacing = np.rint(track_spacing(occupied) * 1e3).astype(np.uint16)
         for part in parts:
             place = part.within(grid)
             rows, cell = part.points_on(mask[place])
@@ -346,7 +352,7 @@ class WindowExtractor:
             if least is not None:
                 bright = np.flatnonzero(Points(records).value > least[place].ravel().take(cell))
                 records, cell = take_rows(records, bright), cell.take(bright)
-            found.append(records)
+            found.append(records.with_columns(spacing=spacing[place].ravel().take(cell)))
             own = np.zeros(part.grid.shape, bool)
             own.ravel()[cell] = True
             on[place] = own
@@ -367,8 +373,10 @@ class _WindowView:
     grid : RoadGrid
     brightness : (rows, columns) float32, NaN where there is no data
     rims : (rows, columns) distances from the rim of the scanned road and from the road's edges, m
+    occupied : (rows, columns) bool, cells that points lie in
     """
 
     grid: RoadGrid
     brightness: np.ndarray
     rims: tuple[np.ndarray, np.ndarray]
+    occupied: np.ndarray

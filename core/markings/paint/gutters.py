@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 
 from ..objects.road_grid import CELL_SIZE
-from ..objects.shape import fill_gaps
+from ..objects.scan_tracks import fill_gaps
 
 BAND_CELLS = 2       # bands of 8 cm inwards from the rim
 GUTTER_BANDS = 9     # 0.72 m: no gutter is wider

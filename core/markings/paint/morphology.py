@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 
 from ..objects.road_grid import CELL_SIZE
-from ..objects.shape import fill_gaps
+from ..objects.scan_tracks import fill_gaps
 
 if TYPE_CHECKING:
     from .extract import MarkingSettings

@@ -21,8 +21,9 @@ SURVEY_POINT = np.dtype([
 ])
 
 # `half_width` is in millimetres; `corrected` is NaN where intensity was not corrected;
-# `cluster` is 0 before clustering; `covered` is 1 beneath objects on the road and directly beside them.
-ROAD_POINT = np.dtype(SURVEY_POINT.descr + [("corrected", "f4"), ("half_width", "u2"), ("cluster", "i4"), ("covered", "u1")])
+# `cluster` is 0 before clustering; `covered` is 1 beneath objects on the road and directly beside them;
+# `spacing`, in millimetres, is that of the tracks of the scan across the road, 0 where it is less than a cell or not known.
+ROAD_POINT = np.dtype(SURVEY_POINT.descr + [("corrected", "f4"), ("half_width", "u2"), ("cluster", "i4"), ("covered", "u1"), ("spacing", "u2")])
 
 
 def point_dtype(dtype: np.dtype, farthest: float) -> np.dtype:
@@ -61,12 +62,13 @@ class Points:
     ----------
     records : (N,) Columns or structured array
     x, y, z, s, d : (N,) float64, metres
-    half_width : (N,) float64, metres
+    half_width, spacing : (N,) float64, metres
     time : (N,) float64, seconds
     intensity, corrected, source, pass_number, scanner, returns, cluster, covered : (N,) the columns as they are
     """
 
     METRIC = frozenset("xyzsd")
+    MILLIMETRES = frozenset(("half_width", "spacing"))
 
     def __init__(self, records: np.ndarray | Columns):
         self.records = records
@@ -79,8 +81,8 @@ class Points:
             raise AttributeError(name)
         if name in self.METRIC:
             return self.records[name] * COORDINATE_SCALE
-        if name == "half_width":
-            return self.records["half_width"] * 1e-3
+        if name in self.MILLIMETRES:
+            return self.records[name] * 1e-3
         if name in (self.records.dtype.names or ()):
             return self.records[name]
         raise AttributeError(f"points have no column {name!r}")

@@ -21,7 +21,7 @@ class RoadPoints:
     store : SectionStore of ROAD_POINT records
     origin : (3,) whole numbers, map coordinates in metres that were subtracted from x, y, z
     crs : WKT, "" where unknown
-    has_corrected, has_cluster : whether the columns `corrected` and `cluster` hold values
+    has_corrected, has_cluster, has_spacing : whether the columns `corrected`, `cluster` and `spacing` hold values
     moves : PassCorrections, the shifts of the passes against the coordinates that were measured; None where there are none
     """
 
@@ -31,13 +31,14 @@ class RoadPoints:
     has_corrected: bool = False
     has_cluster: bool = False
     moves: Any = None
+    has_spacing: bool = False
 
     @classmethod
     def empty_like(cls, other: RoadPoints | None = None, origin: Any = None, crs: str = "") -> RoadPoints:
         """A new, empty set: with the sections, origin, CRS and columns of `other`, or with the given origin and CRS."""
         if other is not None:
             store = SectionStore(other.store.dtype, other.store.section_length, other.store.memory_limit)
-            return cls(store, other.origin, other.crs, other.has_corrected, other.has_cluster, other.moves)
+            return cls(store, other.origin, other.crs, other.has_corrected, other.has_cluster, other.moves, other.has_spacing)
         return cls(SectionStore(ROAD_POINT), np.asarray(origin, float), crs)
 
     @classmethod
@@ -47,7 +48,7 @@ class RoadPoints:
         The points stay in the store of the Survey, which lives as long as the road points and is closed with them.
         """
         dtype = point_dtype(ROAD_POINT, np.inf if survey.store.dtype["x"] == np.int64 else 0.0)
-        store = PointSubset(survey.store, dtype, ("half_width", "covered"), dict(corrected=np.nan, cluster=0))
+        store = PointSubset(survey.store, dtype, ("half_width", "covered"), dict(corrected=np.nan, cluster=0, spacing=0))
         return cls(store, np.asarray(survey.frame.origin, float), survey.crs, moves=survey.moves)
 
     def close(self) -> None:

@@ -60,6 +60,22 @@ def test_a_stop_line_of_scan_lines_far_apart_is_cut_from_its_dash():
     assert share_together(labels, owner, 0) > 0.85 and share_together(labels, owner, 1) > 0.9
 
 
+@pytest.mark.parametrize("gap", [0.0, 0.08])
+def test_a_line_that_touches_a_zebra_stripe_stays_a_line(gap):
+    records, owner = paint((0, 33, 0.0, 0.15), (30, 34, 0.15 + gap, 0.65 + gap))
+    labels = split(records)
+    assert len(np.unique(labels)) == 2
+    assert share_together(labels, owner, 0) > 0.95 and share_together(labels, owner, 1) > 0.8
+
+
+def test_hatching_is_cut_from_the_line_that_borders_it():
+    records, owner = paint((0, 30, 3.0, 3.15), *((s, s + 1.3, 3.15, 5.0) for s in np.arange(2.0, 28.0, 3.0)))
+    labels = split(records)
+    assert share_together(labels, owner, 0) > 0.98
+    bars = labels[(owner > 0) & (records["d"] > 34000)]
+    assert np.bincount(labels[owner == 0]).argmax() not in bars and len(np.unique(bars)) == 9
+
+
 def test_a_stop_line_alone_stays_whole():
     assert len(np.unique(split(paint((0, 0.5, 0.0, 3.2))[0]))) == 1
 
