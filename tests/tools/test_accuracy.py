@@ -51,6 +51,7 @@ def test_every_method_is_measured(measured):
 def test_the_page_sets_published_figures_beside_ours_and_survives_json(measured):
     _, figures = measured
     text = page(json.loads(json.dumps([figures])), samples=True)
+    assert "Streets of every kind" in text and "surveyed otherwise" not in text
     assert "short (simulated)" in text and "**simulated**" in text
     for part in ("table 4.2", "table 4.12", "table 4.13", "table 4.14", "table 4.15", "table 3", "76.9 / 91.3 / 83.4"):
         assert part in text

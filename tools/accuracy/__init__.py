@@ -1,7 +1,8 @@
 """`make accuracy`: every method over surveys with truth, into docs/accuracy.md beside the published figures.
 
 surveys (what is measured on) → chain (what is run) → judge (how right it is) → figures
-(all numbers of one survey) → page (the document).
+(all numbers of one survey) → page (the document). Beside the steps, the road map as a whole: otherwise (of a street
+and of its variants) → streets (how right it is, by length) → streets_page.
 """
 
 import sys

@@ -11,7 +11,7 @@ from pathlib import Path
 from . import ROOT
 from .figures import figures_of
 from .page import page
-from .surveys import SAMPLES, make_samples, surveys_in
+from .surveys import OTHERS, SAMPLES, make_samples, surveys_in
 
 BUILD = ROOT / "build" / "accuracy"
 
@@ -21,7 +21,7 @@ def main():
     parser.add_argument("--surveys", type=Path, help="a folder of surveys with truth (default: the sample scenes, made anew)")
     parser.add_argument("--page", type=Path, help="where the page is written (default: docs/accuracy.md for the sample scenes, "
                                                   "accuracy.md in the folder of surveys otherwise)")
-    parser.add_argument("--quick", action="store_true", help="without the ablation and the image resolutions")
+    parser.add_argument("--quick", action="store_true", help="without the ablation, the image resolutions and the streets surveyed otherwise")
     parser.add_argument("--one", type=Path, help=argparse.SUPPRESS)
     parser.add_argument("--into", type=Path, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
@@ -33,7 +33,7 @@ def main():
     folder = arguments.surveys
     if folder is None:
         folder = BUILD / "surveys"
-        print(f"Making {len(SAMPLES)} sample surveys …", flush=True)
+        print(f"Making {len(SAMPLES) + len(OTHERS)} sample surveys …", flush=True)
         make_samples(folder)
     found = surveys_in(folder)
     if not found:

@@ -16,6 +16,7 @@ from lanewright.core.survey.trajectory.reader import read_trajectory
 from . import judge
 from .ablations import ABLATIONS
 from .chain import Work, run, set_in
+from .otherwise import street_figures
 from .surveys import read_case
 
 DEFAULT = RoadMapSettings()
@@ -28,6 +29,10 @@ def figures_of(folder, quick=False):
     # every raster made in memory would be said to lack a CRS
     gdal.PushErrorHandler("CPLQuietErrorHandler")
     case = read_case(folder)
+    streets = street_figures(case, variants=not quick)
+    if not case.steps:
+        return dict(name=case.name, kind=case.kind, text=case.text, points=len_of(case.cloud), has=sorted(case.truth.has), steps=False,
+                    streets=streets)
     with tempfile.TemporaryDirectory() as scratch:
         began = time.perf_counter()
         survey = open_survey([case.cloud], read_trajectory(case.trajectory))
@@ -36,7 +41,7 @@ def figures_of(folder, quick=False):
             work = run(Work(survey, Path(scratch)))
             figures = dict(
                 name=case.name, kind=case.kind, text=case.text, points=len_of(case.cloud), road_points=len(work.road),
-                has=sorted(case.truth.has), beams=work.beams,
+                has=sorted(case.truth.has), beams=work.beams, steps=True, streets=streets,
                 seconds={"survey": reading, **work.seconds}, whole=judged(case, work))
             figures["boundaries"] = boundary_methods(case, work)
             figures["methods"] = marking_methods(case, work)

@@ -40,7 +40,10 @@ def paint(case, polygons):
     """Rates in cells of 4 cm, strict and with a cell of tolerance, and the share found of each class."""
     found = assess_markings(polygons, case.truth.markings, reference_classes=case.truth.classes, area=case.truth.area, seen=case.seen)
     classes = {name: 100.0 * one.found_beside / one.reference for name, one in found.by_class.items() if one.reference}
-    return dict(strict=rates(found.strict), tolerant=rates(found.tolerant), classes=classes)
+    tolerant = found.tolerant
+    counts = dict(right=tolerant.right, false=tolerant.false, missed=tolerant.missed,
+                  found=tolerant.right if tolerant.found is None else tolerant.found)
+    return dict(strict=rates(found.strict), tolerant=rates(tolerant), classes=classes, counts=counts)
 
 
 def markings(case, features):

@@ -2,35 +2,19 @@
 
 from . import published
 from .ablations import ABLATIONS
+from .streets_page import otherwise_section, streets_section
+from .tables import mean, number, table, triple
 
 STAGES = {"Road surface": ("survey", "curbs", "edges", "surface"), "Marking extraction": ("intensity", "image", "markings"),
           "Outlier removal": ("outliers",), "Clustering": ("clusters",), "Lines": ("lines", "driving")}
 
 
 def page(figures, samples):
-    sections = (_intro(figures, samples), _road_points(figures), _cells(figures), _classes(figures), _seconds(figures),
+    every, figures = figures, [f for f in figures if f["steps"]]
+    sections = (_intro(every, samples), streets_section(every), otherwise_section(every), _road_points(figures),
+                _cells(figures), _classes(figures), _seconds(figures),
                 _markings(figures), _methods(figures), _driving(figures), _boundaries(figures), _ablation(figures, samples))
     return "\n\n".join(section for section in sections if section) + "\n"
-
-
-def table(head, rows, words=1):
-    """Markdown; the first `words` columns hold words, the others numbers."""
-    lines = [head, ["---"] * words + ["---:"] * (len(head) - words), *rows]
-    return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines)
-
-
-def number(value, digits=1):
-    return "–" if value is None else f"{value:,.{digits}f}"
-
-
-def triple(rates):
-    """recall / precision / F1"""
-    return " / ".join(number(rates[name]) for name in ("recall", "precision", "f1"))
-
-
-def mean(values):
-    known = [value for value in values if value is not None]
-    return sum(known) / len(known) if known else None
 
 
 def _label(figure):
@@ -52,9 +36,11 @@ def _intro(figures, samples):
         table(["survey", "what it is", "points"], rows, words=2),
         "To measure on surveys of your own: `make accuracy SURVEYS=folder`, where each survey is a folder with `cloud.laz`, "
         "`trajectory.csv` (time, x, y, z) and `truth.gpkg` (or `truth/truth.gpkg`) with any of the layers `boundaries` or "
-        "`curb_bottom` (lines; `side`; `kind` = *curb*, other kinds are not judged), `markings` (polygons; `class`), `driving_lines` and "
+        "`curb_bottom` (lines; `side`; `edge` = *curb*, *dropped* or *pavement*, `kind` = *main*, *corner*, *island* or "
+        "*side_street*), `markings` (polygons; `class`), `driving_lines` and "
         "`surface` or `road_surface`. Optional are `truth/scanned.tif`, empty where nothing was seen and paint is not judged, and "
-        "`about.json`: `{\"kind\": \"real\", \"text\": \"what it is\"}`. The page is written into that folder."))
+        "`about.json`: `{\"kind\": \"real\", \"text\": \"what it is\", \"steps\": true}`; without steps only the road map as a whole is judged. "
+        "The page is written into that folder."))
 
 
 def _road_points(figures):

@@ -6,7 +6,8 @@ A survey is a folder with
     trajectory.csv                       time, x, y, z in the cloud's CRS
     truth.gpkg  or  truth/truth.gpkg     what is there: any of the layers in LAYERS
     truth/scanned.tif                    optional: what was seen; paint elsewhere is not judged
-    about.json                           optional: {"kind": "real" or "simulated", "text": "what it is"}
+    about.json                           optional: {"kind": "real" or "simulated", "text": "what it is", "steps": false where the
+                                         road map is judged as a whole alone}
 """
 
 import json
@@ -30,6 +31,17 @@ SAMPLES = {
     "rural": (SampleSettings(scene="rural"), "country road without curbs, one pass"),
     "urban": (SampleSettings(scene="urban", gutter=0.30), "four lanes, concrete gutters, parked cars, two passes"),
 }
+# Streets of other kinds, on which the road map is judged as a whole but its steps are not measured one by one
+OTHERS = {
+    "one lane": (SampleSettings(scene="one-lane"), "one lane of 5.8 m with arrows in its middle, parked cars, one pass"),
+    "wide lane": (SampleSettings(scene="wide-lane"), "one lane of 7 m with arrows in its middle, parked cars, one pass"),
+    "no centre line": (SampleSettings(scene="no-centre-line"), "two lanes without a line between them, parked cars, one pass"),
+    "hatched island": (SampleSettings(scene="hatched-island"), "two lanes, held apart by a hatched island, two passes"),
+    "motorway": (SampleSettings(scene="motorway"), "two lanes and a hard shoulder each way, an exit, 100 km/h, two passes"),
+    "serpentine": (SampleSettings(scene="serpentine"), "hairpins of 12 m radius, no curbs, one pass"),
+    "crossing": (SampleSettings(scene="crossing"), "four arms with turning lanes, one not driven, two passes"),
+    "roundabout": (SampleSettings(scene="roundabout"), "four arms with splitter islands, one not driven, two passes"),
+}
 CELL, SEEN = 0.04, 3   # m; cells about a point of road that count as seen
 
 
@@ -51,13 +63,15 @@ def _cloud(folder):
 class Truth:
     """Shapely geometries in map coordinates; an empty list where the survey has no such truth.
 
-    curbs, with the side of each; aside : curbs that are not judged (dropped ones, islands, corners);
+    curbs, with the side of each; aside : curbs that are not judged (dropped ones, islands, corners); edges : all of them and the edges
+    of the pavement, each with what it is (curb, dropped, pavement) and where it runs (main, side_street, corner, island);
     markings, with the class of each; area : polygon outside of which nothing is judged, or None
     """
 
     curbs: list = field(default_factory=list)
     sides: list = field(default_factory=list)
     aside: list = field(default_factory=list)
+    edges: list = field(default_factory=list)
     markings: list = field(default_factory=list)
     classes: list = field(default_factory=list)
     driving: list = field(default_factory=list)
@@ -67,7 +81,7 @@ class Truth:
 
 @dataclass
 class Case:
-    """One survey: `kind` is simulated, real or not stated."""
+    """One survey: `kind` is simulated, real or not stated; `steps` says whether the methods of each step are measured too."""
 
     name: str
     cloud: Path
@@ -76,6 +90,7 @@ class Case:
     seen: Path
     kind: str
     text: str
+    steps: bool = True
 
 
 def read_case(folder):
@@ -84,7 +99,8 @@ def read_case(folder):
     about = json.loads(about.read_text()) if about.exists() else {}
     seen = folder / "truth" / "scanned.tif"
     return Case(folder.name, _cloud(folder), folder / "trajectory.csv", _read_truth(_truth_file(folder)),
-                seen if seen.exists() else None, about.get("kind", "not stated"), about.get("text", ""))
+                seen if seen.exists() else None, about.get("kind", "not stated"), about.get("text", ""),
+                about.get("steps", True))
 
 
 def _read_truth(path):
@@ -103,6 +119,9 @@ def _read_truth(path):
         if row.get("part") == "top":
             continue
         edge, where = row.get("edge", row.get("kind")), row.get("scope") if "edge" not in row else row.get("kind")
+        truth.edges.append((geometry, edge or "curb", where or "main"))
+        if edge in ("pavement", "none"):
+            continue
         if edge in (None, "curb") and where in (None, "main"):
             truth.curbs.append(geometry)
             truth.sides.append(row.get("side"))
@@ -128,11 +147,11 @@ def _features(layer):
 
 
 def make_samples(folder):
-    for name, (settings, text) in SAMPLES.items():
-        _make_sample(folder / name, settings, text)
+    for name, (settings, text) in {**SAMPLES, **OTHERS}.items():
+        _make_sample(folder / name, settings, text, name in SAMPLES)
 
 
-def _make_sample(folder, settings, text):
+def _make_sample(folder, settings, text, steps=True):
     from make_sample import write_layers
 
     (folder / "truth").mkdir(parents=True, exist_ok=True)
@@ -148,7 +167,7 @@ def _make_sample(folder, settings, text):
     (folder / "truth.gpkg").unlink(missing_ok=True)
     write_layers(folder / "truth.gpkg", dict(boundaries=sample.truth_boundaries, markings=sample.truth_markings,
                                              driving_lines=sample.truth_driving_lines, surface=sample.truth_surface))
-    about = dict(kind="simulated", text=f"{settings.length:g} m, {text}")
+    about = dict(kind="simulated", text=f"{settings.length:g} m, {text}", steps=steps)
     (folder / "about.json").write_text(json.dumps(about))
 
 
