@@ -214,6 +214,34 @@ def test_gravel_beside_the_asphalt_is_told_by_its_brightness():
     assert 3.3 < left < 3.56 and -3.56 < right < -3.3
 
 
+def test_gravel_twice_as_bright_as_the_asphalt_and_as_smooth_is_no_road_beside_an_edge_line():
+    rough = lambda d: np.where(np.abs(d) > 3.8, 0.02, 0.0)
+    seen = lambda d: np.select([np.abs(d) > 3.8, np.abs(d) > 3.5, (np.abs(d) > 3.0) & (np.abs(d) < 3.12)], [2600.0, 2000.0, 6000.0], 1000.0)
+    points, _ = taken(survey(curbs(20.0), roughness=rough, intensity=seen))
+    right, left = width_seen(points, 5, 55)
+    assert 3.3 < left < 3.56 and -3.56 < right < -3.3
+
+
+def test_where_the_road_widens_as_in_a_hairpin_its_edge_is_followed():
+    half_width = lambda s: 3.5 + np.interp(s, [15, 30, 45], [0.0, 1.8, 0.0])
+    bank = lambda s, d: np.where(np.abs(d) > half_width(s), 0.3 * (np.abs(d) - half_width(s)), 0.0)
+    points, _ = taken(survey(bank, density=400))
+    for start in np.arange(6, 54, 4.0):
+        right, left = width_seen(points, start, start + 2)
+        assert left == pytest.approx(half_width(start + 1), abs=0.25) and -right == pytest.approx(half_width(start + 1), abs=0.25)
+
+
+@pytest.mark.parametrize("beyond", [0.6, 1.0])
+def test_a_guard_rail_beside_the_road_does_not_pull_its_edge(beyond):
+    rng = np.random.default_rng(8)
+    rail = rng.uniform(0, 60, 30_000), 4.0 + beyond + rng.uniform(-0.05, 0.05, 30_000), rng.uniform(0.45, 0.75, 30_000)
+    rough = lambda d: np.where(np.abs(d) > 4.0, 0.02, 0.0)
+    shadowed = lambda s, d: (d < 4.05 + beyond) | (rng.random(len(d)) < 0.2)
+    points, _ = taken(survey(curbs(20.0), roughness=rough, keep=shadowed, extra=rail))
+    right, left = width_seen(points, 5, 55)
+    assert 3.75 < left < 4.1 and -4.1 < right < -3.75
+
+
 def test_an_edge_line_painted_along_the_verge_stays_on_the_road():
     rough = lambda d: np.where(np.abs(d) > 3.5, 0.02, 0.0)
     painted = lambda d: np.where((np.abs(d) > 3.3) & (np.abs(d) < 3.5), 3000.0, 1000.0)
