@@ -7,7 +7,7 @@ from pathlib import Path
 
 from processing.gui.AlgorithmDialog import AlgorithmDialog
 from qgis.core import Qgis, QgsProcessingAlgorithm, QgsProcessingParameterDefinition, QgsSettings
-from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QInputDialog, QMenu, QPushButton, QWidget
+from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QInputDialog, QMenu, QPushButton, QTextBrowser, QWidget
 
 from ..processing_provider.texts import tr
 
@@ -31,6 +31,10 @@ class LanewrightDialog(AlgorithmDialog):
         self.presets = QMenu(self)
         self.presets.aboutToShow.connect(self._list_presets)
         self.presets_button.setMenu(self.presets)
+        self.updateRunButtonVisibility()  # the box shows all of its buttons when it gets another
+        help_shown = self.findChild(QTextBrowser, "textShortHelp")
+        if help_shown is not None:
+            help_shown.setHtml(help_shown.toHtml().replace(algorithm.displayName(), title, 1))
 
     def _button(self, text, tip):
         button = QPushButton(text)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from qgis.core import Qgis, QgsLayerTreeGroup, QgsMapLayer, QgsProject
 from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QWidget
 
+from ..processing_provider.results.layer_tree import ALGORITHM
 from ..processing_provider.results.runs import GROUP
 from ..processing_provider.texts import tr
 from .map_layout import PAPERS, SCALES
@@ -15,7 +16,8 @@ ROAD_MAP = ("road_edges", "driving_lines", "marking_lines", "markings", "road_su
 
 def road_map_groups(project: QgsProject) -> list[QgsLayerTreeGroup]:
     """Groups with layers of a road map, the newest first; groups of a survey, or of an image alone, are none."""
-    return [group for group in project.layerTreeRoot().findGroups() if group.name().startswith(GROUP) and _holds_a_map(group)]
+    ours = (group for group in project.layerTreeRoot().findGroups() if group.customProperty(ALGORITHM) or group.name().startswith(GROUP))
+    return [group for group in ours if _holds_a_map(group)]
 
 
 def _holds_a_map(group: QgsLayerTreeGroup) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import signal
 import sys
@@ -24,8 +25,9 @@ METAVARS = (
     (specs.CloudSpec, "FILE"), (specs.FileSpec, "FILE"), (specs.RasterSpec, "FILE"), (specs.PaintedSpec, "FILE"), (specs.OutputSpec, "FILE"),
     (specs.CrsSpec, "EPSG:NUMBER"), (specs.FlagSpec, "true|false"), (specs.ExpressionSpec, "CONDITION"), (specs.TextSpec, "TEXT"),
 )
+JSON = "--json"
 LAYERS = ("A layer is a file (.gpkg, .fgb, .shp, .geojson), or one layer of a GeoPackage: map.gpkg|layername=lanes. "
-          "A result that is not named is not made.")
+          "A result that is not named is not made. With --json the results, or the reason of a failure, are printed as JSON.")
 
 
 class Parser(argparse.ArgumentParser):
@@ -34,24 +36,32 @@ class Parser(argparse.ArgumentParser):
 
 
 def main(arguments=None):
-    """Run the program; its exit code: 0, 1 after one sentence on stderr, 130 after Ctrl-C."""
+    """Run the program; its exit code: 0, 1 after one sentence on stderr (with --json on stdout too), 130 after Ctrl-C."""
     arguments = sys.argv[1:] if arguments is None else list(arguments)
+    as_json = JSON in arguments
+    arguments = [argument for argument in arguments if argument != JSON]
     try:
         missing = [name for name in ("numpy", "scipy", "laspy", "lazrs", "shapely", "pyproj", "fiona", "cv2", "jinja2") if find_spec(name) is None]
         if missing:
             raise RoadExtractionError(f"These Python packages are missing: {', '.join(missing)}. pip install lanewright brings them.")
-        return _main(arguments)
+        return _main(arguments, as_json)
     except RoadExtractionError as error:
-        print(error, file=sys.stderr)
+        _tell_failure(str(error), as_json)
     except (Cancelled, KeyboardInterrupt):
-        print("Cancelled", file=sys.stderr)
+        _tell_failure("Cancelled", as_json)
         return 128 + signal.SIGINT
     except BrokenPipeError:  # whoever read the output has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return 1
 
 
-def _main(arguments):
+def _tell_failure(sentence, as_json):
+    print(sentence, file=sys.stderr)
+    if as_json:
+        print(json.dumps({"error": sentence}, ensure_ascii=False))
+
+
+def _main(arguments, as_json):
     known = algorithms()
     first = arguments[0] if arguments else "--help"
     if first in ("-h", "--help", "help"):
@@ -71,6 +81,9 @@ def _main(arguments):
     progress = TextProgress()
     with cancelled_by_signals(progress):
         results = run(FileCall(algorithm, given, progress), progress)
+    if as_json:
+        print(json.dumps({"results": results}, ensure_ascii=False, default=str))
+        return 0
     for name, value in results.items():
         print(f"{name}: {value}")
     return 0

@@ -41,7 +41,7 @@ def run_of(algorithm: str, clouds: list[str], whole: bool, context: QgsProcessin
     store = context.temporaryLayerStore()  # an object of Qt, which keeps a value for whoever comes next
     survey = survey_name(clouds) or str(store.property(SURVEY_OF_RUN) or "")
     store.setProperty(SURVEY_OF_RUN, survey)
-    name = f"{GROUP} – {survey}" if survey else GROUP
+    name = survey or GROUP
     return Run(algorithm, survey, f"{name}, {datetime.now():%Y-%m-%d %H:%M:%S}" if whole else name)
 
 

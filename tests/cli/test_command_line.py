@@ -35,7 +35,7 @@ def survey(sample_survey, tmp_path_factory):
 
 
 def one_sentence(run):
-    """What went wrong; qgis_process itself says it three times, we say nothing besides."""
+    """What went wrong; we say nothing besides."""
     assert run.returncode == 1, run.stdout + run.stderr
     said = complaints(run.stderr)
     assert len(said) == 1, run.stderr
@@ -45,6 +45,17 @@ def one_sentence(run):
 def test_all_algorithms_and_the_model_are_listed(tmp_path):
     listed = qgis_process("list", folder=tmp_path).stdout
     assert "lanewright:roadmap\t" in listed and "lanewright:roadmapstages" in listed
+
+
+@pytest.mark.parametrize("form", ["", "--json", "-"])
+def test_a_failure_is_said_once_and_in_json_where_that_is_asked_for(tmp_path, form):
+    given = json.dumps({"inputs": {"POINT_CLOUDS": ["none.laz"], "TRAJECTORY": "none.csv", "REPORT": "r.html"}})
+    words = ["-"] if form == "-" else ["--POINT_CLOUDS=none.laz", "--TRAJECTORY=none.csv", "--REPORT=r.html"]
+    run = subprocess.run([QGIS_PROCESS, *(["--json"] if form == "--json" else []), "run", "lanewright:inspectsurvey", *words],
+                         cwd=tmp_path, input=given, capture_output=True, text=True)
+    assert run.returncode == 1 and run.stderr.count("there is no file none.laz") == 1, run.stderr
+    if form:
+        assert "there is no file none.laz" in json.loads(run.stdout)["error"]
 
 
 def test_another_python_first_on_the_path_is_not_taken_for_that_of_qgis(tmp_path):

@@ -4,6 +4,7 @@ import pytest
 from lanewright.algorithms.catalogue import ALGORITHMS
 from lanewright.desktop.algorithm_dialog import LanewrightDialog, destinations, presets_of
 from qgis.core import QgsApplication, QgsVectorLayer
+from qgis.PyQt.QtWidgets import QTextBrowser
 
 
 @pytest.fixture(autouse=True)
@@ -28,6 +29,7 @@ def dialog():
 
 def test_the_dialog_opens_under_the_plain_title(dialog):
     assert isinstance(dialog, LanewrightDialog) and dialog.windowTitle() == "Road map"
+    assert "5.1" not in dialog.findChild(QTextBrowser, "textShortHelp").toPlainText()
     assert algorithm_of("roadmapstages").createCustomParametersWidget().windowTitle() == "Road map stages"
 
 

@@ -1,5 +1,6 @@
 """Algorithms from Python and from the command line: results whole or not at all."""
 
+import json
 import os
 import re
 import signal
@@ -135,6 +136,14 @@ def test_the_command_prints_results_on_lines_and_says_the_rest_on_stderr(survey,
     printed = capsys.readouterr()
     assert code == 0 and re.fullmatch(rf"OUTPUT: {re.escape(str(tmp_path))}/o.gpkg\nROWS: \d+\nWARNINGS: 0\n", printed.out)
     assert "Trajectory: " in printed.err
+
+
+def test_json_holds_the_results_or_the_reason_of_a_failure(survey, tmp_path, capsys):
+    assert command_line.main(["importtrajectory", "--json", f"--INPUT={survey}/drive.gpkg", f"--OUTPUT={tmp_path}/o.gpkg"]) == 0
+    assert json.loads(capsys.readouterr().out)["results"]["OUTPUT"] == f"{tmp_path}/o.gpkg"
+    assert command_line.main(["importtrajectory", f"--INPUT={tmp_path}/none.csv", f"--OUTPUT={tmp_path}/o.gpkg", "--json"]) == 1
+    printed = capsys.readouterr()
+    assert "none.csv" in json.loads(printed.out)["error"] and printed.err.count("\n") == 1
 
 
 @pytest.mark.parametrize("arguments, says", [
