@@ -24,7 +24,7 @@ def embed_style(name, dest, title, schema=()):
     if path.suffix.lower() in (".tif", ".tiff"):
         _beside_the_raster(path, qml)
     elif path.suffix.lower() == ".gpkg":
-        _in_the_package(_layer_uri(dest, path), title, qml, schema)
+        _in_the_package(_layer_uri(dest, path), title, qml, schema, name)
 
 
 def _beside_the_raster(path, qml):
@@ -34,11 +34,11 @@ def _beside_the_raster(path, qml):
         layer.saveNamedStyle(str(path.with_suffix(".qml")))  # QGIS looks for it under this name
 
 
-def _in_the_package(uri, title, qml, schema):
+def _in_the_package(uri, title, qml, schema, output):
     layer = QgsVectorLayer(uri, title, "ogr")
     if not layer.isValid():
         return
-    apply_style(layer, qml, schema)
+    apply_style(layer, qml, schema, output)
     # The style of an earlier run into the same table would win
     count, ids, names, _, _ = layer.listStylesInDatabase()
     for number in range(max(count, 0)):

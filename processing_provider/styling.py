@@ -10,10 +10,13 @@ from qgis.core import (
     QgsRasterMinMaxOrigin,
     QgsRuleBasedRenderer,
     QgsSingleBandGrayRenderer,
+    QgsVectorLayer,
 )
 from qgis.PyQt.QtXml import QDomDocument
 
+from .results.attributes import explain_attributes
 from .results.layer_tree import place_layer
+from .results.ready_styles import add_ready_styles
 from .results.runs import GROUP
 from .texts import tr
 
@@ -66,25 +69,24 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
         return styler
 
     def postProcessLayer(self, layer, context, feedback):
-        apply_style(layer, self.qml, self.schema)
+        apply_style(layer, self.qml, self.schema, self.output)
+        if isinstance(layer, QgsVectorLayer):
+            add_ready_styles(layer)
         if self.run is not None and context.project() is not None:
             place_layer(layer, context.project(), self.output, self.run)
         layer.triggerRepaint()
 
 
-def apply_style(layer, qml, schema=()):
-    """Give a layer the look of a QML file, its fields their aliases, an image its stretch."""
+def apply_style(layer, qml, schema=(), output=""):
+    """Give the layer of a result the look of a QML file, its fields names and formats, an image its stretch."""
     if Path(qml).exists():
         # loadNamedStyle would look into the layer's database first and bring yesterday's style back
         document = QDomDocument()
         document.setContent(Path(qml).read_text(encoding="utf-8"))
         layer.importNamedStyle(document)
         translate_legend(layer)
-    for column in schema:
-        # A scratch layer's own fields cannot carry them
-        index = layer.fields().lookupField(column.name)
-        if index >= 0:
-            layer.setFieldAlias(index, tr(column.alias))
+    if isinstance(layer, QgsVectorLayer):
+        explain_attributes(layer, output, schema)
     if isinstance(layer, QgsRasterLayer) and isinstance(layer.renderer(), QgsSingleBandGrayRenderer):
         # Intensities have no common scale: every image is stretched to its own values
         layer.setContrastEnhancement(

@@ -3634,6 +3634,166 @@
             <translation>Modelle</translation>
         </message>
         <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>along the road</source>
+            <translation>mit der Straße</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>against the road</source>
+            <translation>gegen die Straße</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>not driven</source>
+            <translation>nicht befahren</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>measured</source>
+            <translation>gemessen</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>bridged</source>
+            <translation>überbrückt</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>inferred</source>
+            <translation>erschlossen</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>hidden</source>
+            <translation>verdeckt</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>grown</source>
+            <translation>gewachsen</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>left</source>
+            <translation>links</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>right</source>
+            <translation>rechts</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>bottom</source>
+            <translation>unten</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>top</source>
+            <translation>oben</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>marking</source>
+            <translation>Markierung</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>other paint</source>
+            <translation>andere Farbe</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>between two lines</source>
+            <translation>zwischen zwei Linien</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>beside one line</source>
+            <translation>neben einer Linie</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>correct</source>
+            <translation>richtig</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>missed</source>
+            <translation>verpasst</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>false</source>
+            <translation>falsch</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>excluded</source>
+            <translation>ausgenommen</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>station</source>
+            <translation>Station</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>Road edge</source>
+            <translation>Fahrbahnrand</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>height</source>
+            <translation>Höhe</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>Edge line</source>
+            <translation>Randlinie</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>Centre line</source>
+            <translation>Mittellinie</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>Lane line</source>
+            <translation>Fahrstreifenlinie</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>Lane</source>
+            <translation>Fahrstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>Paint</source>
+            <translation>Farbe</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>Curb point</source>
+            <translation>Bordsteinpunkt</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/ready_styles.py" />
+            <source>By class</source>
+            <translation>Nach Klasse</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/ready_styles.py" />
+            <source>By status</source>
+            <translation>Nach Status</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/ready_styles.py" />
+            <source>By confidence</source>
+            <translation>Nach Vertrauen</translation>
+        </message>
+        <message>
             <location filename="../../processing_provider/results/run_table.py" />
             <source>Runs of Lanewright</source>
             <translation>Läufe von Lanewright</translation>
@@ -3832,11 +3992,6 @@
             <location filename="../../core/common/schemas.py" />
             <source>Fitted function (JSON)</source>
             <translation>Eingepasste Funktion (JSON)</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
-            <source>Lane</source>
-            <translation>Fahrstreifen</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
@@ -4387,21 +4542,6 @@
             <location filename="../../resources/styles/marking_lines.qml" />
             <source>Dashed</source>
             <translation>Gestrichelt</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/markings.qml" />
-            <source>Edge line</source>
-            <translation>Randlinie</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/markings.qml" />
-            <source>Lane line</source>
-            <translation>Fahrstreifenlinie</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/markings.qml" />
-            <source>Centre line</source>
-            <translation>Mittellinie</translation>
         </message>
         <message>
             <location filename="../../resources/styles/markings.qml" />

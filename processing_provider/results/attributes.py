@@ -1,0 +1,129 @@
+"""How the rows of a layer read: short names of fields, rounded numbers, values in the user's words, a line that says what a feature is."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Any
+
+from qgis.core import QgsEditorWidgetSetup, QgsVectorLayer
+
+from ..texts import tr
+
+# Unit at the end of a field's name -> decimals that mean something
+DECIMALS = {"m": 2, "cm": 1, "m2": 2, "ft": 2, "deg": 2, "pct": 1, "x": 3, "y": 3}
+DECIMALS_OF = {"rmse_m": 3, "resid_m": 3, "loo_m": 3, "residual_m": 3, "radius_m": 1, "radius_ft": 1, "confidence": 2, "time": 3,
+               "roll": 2, "pitch": 2, "heading": 1, "elongation": 1, "pixel": 1, "line_px": 1}
+MOST_DECIMALS = 2  # of any other number
+
+# Field -> {value: words}; what is not among them is shown as it is
+WORDS = {
+    "status": {"measured": tr("measured"), "bridged": tr("bridged"), "inferred": tr("inferred"), "occluded": tr("hidden"), "grown": tr("grown")},
+    "side": {"left": tr("left"), "right": tr("right")},
+    "part": {"bottom": tr("bottom"), "top": tr("top")},
+    "use": {"keep": tr("marking"), "other": tr("other paint")},
+    "source": {"pair": tr("between two lines"), "offset": tr("beside one line")},
+    "turn": {"left": tr("left"), "right": tr("right")},
+    "outcome": {"correct": tr("correct"), "missed": tr("missed"), "false": tr("false"), "excluded": tr("excluded")},
+}
+DIRECTIONS = {1: tr("along the road"), -1: tr("against the road"), 0: tr("not driven")}
+
+# Result -> what a feature is, in an expression of QGIS; fields are named in quotes
+TITLES = {
+    "ROAD_EDGES": '{edge}, {side}, {length}, {status}',
+    "BOUNDARIES": '{edge}, {side}, {length}, {status}',
+    "MARKING_LINES": '{line}, {pattern}, {length}, {status}',
+    "DRIVING_LINES": '{lane}, {direction}, {length}, {status}',
+    "LANES": '{lane}, {direction}, {length}, {status}',
+    "MARKINGS": '{class}, {length}',
+    "ROAD_SURFACE": '{surface}, {status}',
+    "CURB_POINTS": '{curb_point}, {side}, {height}, {status}',
+}
+
+
+def _part(text, field, *fields):
+    """A piece of a title: an expression, and the fields that it needs."""
+    return text, (field, *fields)
+
+
+def _parts():
+    """The pieces of the titles, in the user's language."""
+    value = lambda field: f'represent_value("{field}")'  # noqa: E731
+    return {
+        "edge": _part(f"'{tr('Road edge')}'", "road"),
+        "side": _part(value("side"), "side"),
+        "length": _part('format_number("length_m", 0) || \' m\'', "length_m"),
+        "height": _part(f"'{tr('height')} ' || format_number(\"height_m\", 2) || ' m'", "height_m"),
+        "status": _part(value("status"), "status"),
+        "line": _part(f"CASE WHEN \"kind\" = 'edge' THEN '{tr('Edge line')}' WHEN \"kind\" = 'centre' THEN '{tr('Centre line')}' "
+                      f"ELSE '{tr('Lane line')}' END || ' ' || \"line\"", "kind", "line"),
+        "pattern": _part('"pattern"', "pattern"),
+        "lane": _part(f"'{tr('Lane')} ' || \"lane\"", "lane"),
+        "direction": _part(value("direction"), "direction"),
+        "class": _part(f"coalesce(\"class\", '{tr('Paint')}')", "class"),
+        "surface": _part(f"'{tr('Road surface')}'", "road"),
+        "curb_point": _part(f"'{tr('Curb point')}'", "road"),
+    }
+
+
+def explain_attributes(layer: QgsVectorLayer, output: str, schema: Sequence[Any]) -> None:
+    """Set names, formats and titles of the fields that a layer has.
+
+    Parameters
+    ----------
+    layer : of a result
+    output : the result, such as ROAD_EDGES
+    schema : columns of the result, with aliases
+    """
+    for column in schema:
+        index = layer.fields().lookupField(column.name)
+        if index < 0:
+            continue
+        # A scratch layer's own fields cannot carry them
+        layer.setFieldAlias(index, short_alias(tr(column.alias)))
+        setup = widget_of(column)
+        if setup is not None:
+            layer.setEditorWidgetSetup(index, setup)
+    title = title_of(output, {field.name() for field in layer.fields()})
+    if title:
+        layer.setDisplayExpression(title)
+        layer.setMapTipTemplate(map_tip(layer))
+
+
+def short_alias(alias: str) -> str:
+    """A field's name without the values it may have, which the table shows anyway: "Side (left/right)" -> "Side"."""
+    found = re.fullmatch(r"(.*) \(([^)]*)\)", alias)
+    if found is None or not re.search(r"[/,|]", found[2]):
+        return alias
+    unit = found[2].split(",")[0]
+    return f"{found[1]} ({unit})" if len(unit) <= 2 and not unit.lstrip("-").isdigit() else found[1]
+
+
+def widget_of(column: Any) -> QgsEditorWidgetSetup | None:
+    """How the values of a column are shown; None for those that are shown as they are."""
+    if column.type is float:
+        decimals = DECIMALS_OF.get(column.name, DECIMALS.get(column.name.rsplit("_", 1)[-1], MOST_DECIMALS))
+        return QgsEditorWidgetSetup("Range", {"Precision": decimals, "AllowNull": True, "Style": "SpinBox"})
+    words = DIRECTIONS if column.name == "direction" else WORDS.get(column.name)
+    if words is None:
+        return None
+    return QgsEditorWidgetSetup("ValueMap", {"map": [{label: str(value)} for value, label in words.items()]})
+
+
+def title_of(output: str, fields: set[str]) -> str:
+    """The display expression of a result, of the pieces whose fields the layer has; "" where there is none."""
+    parts = _parts()
+    wanted = re.findall(r"{(\w+)}", TITLES.get(output, ""))
+    found = [parts[name][0] for name in wanted if set(parts[name][1]) <= fields]
+    # pieces without a value are left out together with their comma
+    return f"array_to_string(array_filter(array({', '.join(found)}), @element IS NOT NULL AND @element <> ''), ', ')" if found else ""
+
+
+def map_tip(layer: QgsVectorLayer) -> str:
+    """What a map tip shows: the title and where along the road."""
+    names = {field.name() for field in layer.fields()}
+    where = ""
+    if {"road", "station_m"} <= names:
+        end = "|| coalesce(' – ' || format_number(\"end_m\", 1), '')" if "end_m" in names else ""
+        where = f"<br>{tr('Road')} [% \"road\" %], {tr('station')} [% format_number(\"station_m\", 1) {end} %] m"
+    return f"<b>[% {layer.displayExpression()} %]</b>{where}"

@@ -1,0 +1,57 @@
+"""Further looks of a layer to switch to: what was measured and what was not, and how sure it is."""
+
+from __future__ import annotations
+
+from qgis.core import (
+    Qgis,
+    QgsCategorizedSymbolRenderer,
+    QgsGraduatedSymbolRenderer,
+    QgsRendererCategory,
+    QgsRendererRange,
+    QgsSymbol,
+    QgsVectorLayer,
+)
+from qgis.PyQt.QtGui import QColor
+
+from ..texts import tr
+
+STATUS = (("measured", "#1a9850"), ("bridged", "#fdae61"), ("inferred", "#d73027"), ("occluded", "#7b3294"), ("grown", "#b8860b"))
+CONFIDENCE = ((0.0, 0.5, "#d73027"), (0.5, 0.8, "#fdae61"), (0.8, 1.0, "#1a9850"))
+LINE_WIDTH = 0.7  # mm
+
+
+def add_ready_styles(layer: QgsVectorLayer) -> None:
+    """Styles "by status" and "by confidence" beside the one that a layer has, which stays in force; only for fields it has."""
+    names = {field.name() for field in layer.fields()}
+    looks = (("status", tr("By status"), _by_status), ("confidence", tr("By confidence"), _by_confidence))
+    further = [(title, renderer) for field, title, renderer in looks if field in names]
+    manager = layer.styleManager()
+    if not further or len(manager.styles()) > 1 or not layer.isSpatial():
+        return
+    own = tr("By class")
+    manager.renameStyle(manager.currentStyle(), own)
+    for name, renderer in further:
+        manager.addStyleFromLayer(name)
+        manager.setCurrentStyle(name)
+        layer.setRenderer(renderer(layer))
+    manager.setCurrentStyle(own)
+
+
+def _by_status(layer):
+    words = {"measured": tr("measured"), "bridged": tr("bridged"), "inferred": tr("inferred"), "occluded": tr("hidden"), "grown": tr("grown")}
+    found = layer.uniqueValues(layer.fields().lookupField("status"))
+    return QgsCategorizedSymbolRenderer("status", [QgsRendererCategory(value, _symbol(layer, colour), words[value]) for value, colour in STATUS
+                                                   if value in found or not found])
+
+
+def _by_confidence(layer):
+    return QgsGraduatedSymbolRenderer("confidence", [QgsRendererRange(low, high, _symbol(layer, colour), f"{low:g} – {high:g}")
+                                                     for low, high, colour in CONFIDENCE])
+
+
+def _symbol(layer, colour):
+    symbol = QgsSymbol.defaultSymbol(layer.geometryType())
+    symbol.setColor(QColor(colour))
+    if layer.geometryType() == Qgis.GeometryType.Line:
+        symbol.setWidth(LINE_WIDTH)
+    return symbol

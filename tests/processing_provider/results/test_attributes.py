@@ -1,0 +1,94 @@
+"""What identify, attribute tables and map tips show of a result."""
+
+import pytest
+from lanewright.core.common.schemas import CURB_POINTS, DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES, ROAD_SURFACE
+from lanewright.processing_provider.layers import qgis_fields
+from lanewright.processing_provider.results.attributes import TITLES, short_alias
+from lanewright.processing_provider.styling import LOOKS, STYLES, Styler
+from qgis.core import (
+    QgsApplication,
+    QgsExpression,
+    QgsExpressionContext,
+    QgsExpressionContextUtils,
+    QgsFeature,
+    QgsGeometry,
+    QgsProcessingContext,
+    QgsVectorLayer,
+)
+
+SCHEMAS = {"ROAD_EDGES": ("LineStringZ", ROAD_EDGES), "MARKING_LINES": ("LineStringZ", MARKING_LINES), "LANES": ("PolygonZ", LANES),
+           "DRIVING_LINES": ("LineStringZ", DRIVING_LINES), "MARKINGS": ("PolygonZ", MARKINGS), "ROAD_SURFACE": ("PolygonZ", ROAD_SURFACE),
+           "CURB_POINTS": ("PointZ", CURB_POINTS)}
+
+
+def loaded(output, **row):
+    """A layer as it comes into the project, with one feature."""
+    kind, schema = SCHEMAS[output]
+    layer = QgsVectorLayer(f"{kind}?crs=EPSG:32650", "layer", "memory")
+    layer.dataProvider().addAttributes(list(qgis_fields(schema, with_aliases=False)))
+    layer.updateFields()
+    feature = QgsFeature(layer.fields())
+    if kind == "LineStringZ":
+        feature.setGeometry(QgsGeometry.fromWkt("LINESTRING Z (0 0 0, 84 0 0)"))
+    for name, value in row.items():
+        feature[name] = value
+    layer.dataProvider().addFeature(feature)
+    look = LOOKS.get(output, (None, 0))[0]
+    Styler.make(STYLES / f"{look}.qml", schema, output).postProcessLayer(layer, QgsProcessingContext(), None)
+    return layer
+
+
+def evaluated(layer, text):
+    context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(layer))
+    context.setFeature(next(layer.getFeatures()))
+    return QgsExpression.replaceExpressionText(text, context)
+
+
+@pytest.mark.parametrize("output, row, said", [
+    ("MARKING_LINES", dict(line=12, kind="edge", pattern="solid", length_m=84.27, status="measured"), "Edge line 12, solid, 84 m, measured"),
+    ("DRIVING_LINES", dict(lane=2, direction=-1, length_m=120.4, status="bridged"), "Lane 2, against the road, 120 m, bridged"),
+    ("ROAD_EDGES", dict(road=0, side="left", length_m=7.7), "Road edge, left, 8 m"),
+    ("MARKINGS", {"class": "zebra crossing", "length_m": 4.0}, "zebra crossing, 4 m"),
+])
+def test_a_feature_says_what_it_is(qgis_app, output, row, said):
+    layer = loaded(output, **row)
+    assert evaluated(layer, f"[% {layer.displayExpression()} %]") == said
+    assert said in evaluated(layer, layer.mapTipTemplate())
+
+
+@pytest.mark.parametrize("output", sorted(set(TITLES) & set(SCHEMAS)))
+def test_every_title_can_be_evaluated(qgis_app, output):
+    expression = QgsExpression(loaded(output).displayExpression())
+    assert not expression.hasParserError(), expression.parserErrorString()
+
+
+def shown(layer, name):
+    """What the attribute table shows of a field of the first feature."""
+    index = layer.fields().lookupField(name)
+    setup = layer.editorWidgetSetup(index)
+    formatter = QgsApplication.fieldFormatterRegistry().fieldFormatter(setup.type())
+    return formatter.representValue(layer, index, setup.config(), None, next(layer.getFeatures())[name])
+
+
+def test_numbers_are_rounded_to_what_they_mean_and_values_are_words(qgis_app):
+    layer = loaded("DRIVING_LINES", station_m=12.3456789, rmse_m=0.0123456, radius_m=251.27, direction=1, status="inferred")
+    assert [shown(layer, name) for name in ("station_m", "rmse_m", "radius_m", "direction", "status")] == \
+        ["12.35", "0.012", "251.3", "along the road", "inferred"]
+
+
+@pytest.mark.parametrize("alias, short", [
+    ("Side (left/right)", "Side"), ("Station (m)", "Station (m)"), ("Offset, left positive (m)", "Offset, left positive (m)"),
+    ("Heading (°, clockwise from grid north)", "Heading (°)"), ("Direction (1 along, -1 against the road)", "Direction"),
+    ("Kind (main/corner/side_street/island)", "Kind"), ("D (° per 100 ft)", "D (° per 100 ft)"),
+])
+def test_a_name_is_short_and_keeps_its_unit(alias, short):
+    assert short_alias(alias) == short
+
+
+def test_looks_by_status_and_confidence_stand_ready_and_the_usual_one_is_in_force(qgis_app):
+    layer = loaded("LANES", status="measured", confidence=0.9)
+    assert set(layer.styleManager().styles()) == {"By class", "By confidence", "By status"}
+    assert layer.styleManager().currentStyle() == "By class"
+    layer.styleManager().setCurrentStyle("By status")
+    assert layer.renderer().classAttribute() == "status"
+    assert layer.displayExpression() and layer.attributeAlias(layer.fields().lookupField("direction")) == "Direction"
