@@ -2,7 +2,7 @@
 
     python tools/make_sample.py build/sample --scene street --length 120 --seed 1
 
-Leaves cloud.laz, trajectory.csv and truth.gpkg (boundaries, markings, driving lines, surface).
+Leaves cloud.laz, trajectory.csv and truth.gpkg (boundaries, markings, driving lines, surface, lanes).
 """
 
 import argparse
@@ -66,7 +66,8 @@ def main():
                fmt=["%.6f"] + ["%.4f"] * 3 + ["%.5f"] * 3, delimiter=",", header="time,x,y,z,roll,pitch,heading", comments="")
     (folder / "truth.gpkg").unlink(missing_ok=True)
     write_layers(folder / "truth.gpkg", {"boundaries": sample.truth_boundaries, "markings": sample.truth_markings,
-                                         "driving_lines": sample.truth_driving_lines, "surface": sample.truth_surface})
+                                         "driving_lines": sample.truth_driving_lines, "surface": sample.truth_surface,
+                                         "lanes": sample.truth_lanes})
     print(f"{count} points in {spent:.1f} s ({count / spent:.0f} per second) in {folder}")
 
 

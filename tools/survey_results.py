@@ -40,6 +40,7 @@ TRUTH = {
     "TRUTH_MARKINGS": "markings",
     "TRUTH_DRIVING_LINES": "driving_lines",
     "TRUTH_SURFACE": "surface",
+    "TRUTH_LANES": "lanes",
 }
 
 

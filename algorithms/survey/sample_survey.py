@@ -66,6 +66,7 @@ TRUTHS = (
     ("TRUTH_MARKINGS", "truth_markings", "PolygonZ", tr("True markings")),
     ("TRUTH_DRIVING_LINES", "truth_driving_lines", "LineStringZ", tr("True driving lines")),
     ("TRUTH_SURFACE", "truth_surface", "PolygonZ", tr("True road surface")),
+    ("TRUTH_LANES", "truth_lanes", "PolygonZ", tr("True lanes")),
 )
 
 

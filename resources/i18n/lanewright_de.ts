@@ -3195,6 +3195,11 @@
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />
+            <source>True lanes</source>
+            <translation>Wahre Fahrstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/sample_survey.py" />
             <source>Point cloud</source>
             <translation>Punktwolke</translation>
         </message>

@@ -166,7 +166,7 @@ def _make_sample(folder, settings, text, steps=True):
                ["%.6f"] + ["%.4f"] * 3 + ["%.5f"] * 3, ",", header="time,x,y,z,roll,pitch,heading", comments="")
     (folder / "truth.gpkg").unlink(missing_ok=True)
     write_layers(folder / "truth.gpkg", dict(boundaries=sample.truth_boundaries, markings=sample.truth_markings,
-                                             driving_lines=sample.truth_driving_lines, surface=sample.truth_surface))
+                                             driving_lines=sample.truth_driving_lines, surface=sample.truth_surface, lanes=sample.truth_lanes))
     about = dict(kind="simulated", text=f"{settings.length:g} m, {text}", steps=steps)
     (folder / "about.json").write_text(json.dumps(about))
 

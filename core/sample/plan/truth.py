@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 
 from ...common.features import Features
-from ..parts.truth import TRUE_BOUNDARIES, TRUE_DRIVING_LINES, TRUE_MARKINGS, TRUE_SURFACE, Truth, densified
+from ..parts.truth import TRUE_BOUNDARIES, TRUE_DRIVING_LINES, TRUE_LANES, TRUE_MARKINGS, TRUE_SURFACE, Truth, add_lane, densified
 
 if TYPE_CHECKING:
     from .scene import PlanScene
@@ -35,7 +35,7 @@ def truth_of_plan(scene: PlanScene, origin: Sequence[float], crs: str) -> Truth:
         return np.column_stack([places, scene.ground.height(*places.T) + rise]) + origin
 
     return Truth(_boundaries(scene, on_map, crs), _markings(scene, on_map, crs), _driving_lines(scene, on_map, crs),
-                 _surface(scene, on_map, crs))
+                 _surface(scene, on_map, crs), _lanes(scene, on_map, crs))
 
 
 def _boundaries(scene, on_map, crs):
@@ -113,4 +113,13 @@ def _surface(scene, on_map, crs):
         rings = [on_map(densified(shapely.get_coordinates(ring)[:-1])) for ring in (part.exterior, *part.interiors)]
         polygon = shapely.Polygon(rings[0], rings[1:])
         layer.add(polygon, road=1, area_m2=float(polygon.area))
+    return layer
+
+
+def _lanes(scene, on_map, crs):
+    layer = Features("PolygonZ", TRUE_LANES, crs=crs)
+    for lane in scene.lanes:
+        left, right = (on_map(lane.path.at(lane.stations, border)) for border in (lane.left, lane.right))
+        add_lane(layer, left, right, lane.direction, road=lane.road, lane=lane.number, station_m=float(lane.stations[0]),
+                 end_m=float(lane.stations[-1]))
     return layer

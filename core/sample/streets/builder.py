@@ -54,15 +54,15 @@ class SceneBuilder:
         if inside:
             self.markings.append(PaintedFigure(kind, None, inside, self.random.uniform(0.08, 0.25)))
 
-    def lane(self, number: int, direction: int, *places: tuple[float, float]) -> None:
-        """Add a lane through (station, offset) places, cut at the end of the road."""
-        stations, offsets = np.array(places, dtype=float).T
+    def lane(self, number: int, direction: int, *places: tuple[float, float, float]) -> None:
+        """Add a lane through (station, offset, width) places, cut at the end of the road."""
+        stations, offsets, widths = np.array(places, dtype=float).T
         end = min(stations[-1], self.length)
         if end - stations[0] < 2.0:
             return
         before = stations < end
         self.lanes.append(Lane(number, direction, np.append(stations[before], end),
-                               np.append(offsets[before], np.interp(end, stations, offsets))))
+                               *(np.append(values[before], np.interp(end, stations, values)) for values in (offsets, widths))))
 
     def manhole(self, station: float, offset: float, radius: float = 0.35) -> None:
         """Add a cover of cast iron."""

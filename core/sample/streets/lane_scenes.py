@@ -64,10 +64,10 @@ def _between_edge_lines(name, width, one_way, length, seed, radius, curb_height,
         road.trees(base + 5.0, base + MODULE - 3.0, -right_edge - 2.6, 18.0)
         road.poles(base + 20.0, base + MODULE, left_edge + 0.6, 32.0)
     if one_way:
-        road.lane(1, 1, (0.0, 0.0), (length, 0.0))
+        road.lane(1, 1, (0.0, 0.0, width), (length, 0.0, width))
     else:
-        road.lane(1, -1, (0.0, half / 2), (length, half / 2))
-        road.lane(2, 1, (0.0, -half / 2), (length, -half / 2))
+        road.lane(1, -1, (0.0, half / 2, half), (length, half / 2, half))
+        road.lane(2, 1, (0.0, -half / 2, half), (length, -half / 2, half))
     track = 0.0 if one_way else -half / 2
     return road.scene(name, sidewalk(1, left_edge, curb_height, lowered_left), sidewalk(-1, right_edge, curb_height, lowered_right),
                       [(1, track, 1.0)], gutter)
@@ -115,8 +115,8 @@ def hatched_island(length: float, seed: int, radius: float, curb_height: float, 
     road.line("edge line", 7, half, 0.0, length, width=_LINE)
     road.line("edge line", 8, -half, 0.0, length, width=_LINE)
     middle = _cut([*middle, (middle[-1][0] + MODULE, 0.0)], length)
-    road.lane(1, -1, *((s, (d + half) / 2) for s, d in middle))
-    road.lane(2, 1, *((s, -(d + half) / 2) for s, d in middle))
+    road.lane(1, -1, *((s, (d + half) / 2, half - d) for s, d in middle))
+    road.lane(2, 1, *((s, -(d + half) / 2, half - d) for s, d in middle))
     return road.scene("hatched-island", sidewalk(1, edge, curb_height, lowered), sidewalk(-1, edge, curb_height, lowered),
                       [(1, -2.35, 1.0), (-1, 2.35, 1.1)], gutter)
 

@@ -32,9 +32,9 @@ def street(length: float, seed: int, radius: float, curb_height: float, gutter: 
         road.figure("zebra crossing", *zebra_bars(z0, z1, -right_edge + 0.3, left_edge - 0.3))
         road.figure("arrow", turn_arrow(base + 82.0, -4.35, 1))
         road.figure("arrow", straight_arrow(base + 82.0, -1.5, 1))
-        road.lane(2, 1, (base, -1.825), (stop_right, -1.825), (z1 + 0.5, -1.75), (base + 68.0, -1.75))
-        road.lane(2, 1, (base + 72.0, -1.475), (base + 114.0, -1.475))
-        road.lane(3, 1, (base + 72.0, -4.35), (base + 114.0, -4.35))
+        road.lane(2, 1, (base, -1.825, 3.35), (stop_right, -1.825, 3.35), (z1 + 0.5, -1.75, 3.5), (base + 68.0, -1.75, 3.5))
+        road.lane(2, 1, (base + 72.0, -1.475, 2.95), (base + 114.0, -1.475, 2.95))
+        road.lane(3, 1, (base + 72.0, -4.35, 2.8), (base + 114.0, -4.35, 2.8))
         road.manhole(base + 14.0, -1.0)
         road.manhole(base + 54.0, 2.1)
         road.manhole(base + 91.0, -4.6, 0.40)
@@ -59,7 +59,8 @@ def _through_lane(road, direction, beside_double, beside_single, zebra):
     for base in road.modules():
         places += [(base + 4.0, beside_double), (base + zebra[0] - 2.0, beside_double),
                    (base + zebra[1] + 2.4, beside_single), (base + MODULE - 4.0, beside_single)]
-    road.lane(1, direction, *places, (places[-1][0] + 4.0, beside_single))
+    # from the line beside it to the edge line at 3.5 m
+    road.lane(1, direction, *((s, d, 2 * (3.5 - d)) for s, d in [*places, (places[-1][0] + 4.0, beside_single)]))
 
 
 def rural(length: float, seed: int, radius: float, curb_height: float, gutter: float) -> Scene:
@@ -67,8 +68,8 @@ def rural(length: float, seed: int, radius: float, curb_height: float, gutter: f
     road = SceneBuilder(length, seed, 1.5 * radius)
     road.line("edge line", 1, 3.10, 0.0, length, width=0.12)
     road.line("edge line", 2, -3.10, 0.0, length, width=0.12)
-    road.lane(1, -1, (0.0, 1.55), (length, 1.55))
-    road.lane(2, 1, (0.0, -1.55), (length, -1.55))
+    road.lane(1, -1, (0.0, 1.55, 3.1), (length, 1.55, 3.1))
+    road.lane(2, 1, (0.0, -1.55, 3.1), (length, -1.55, 3.1))
     for base in road.modules():
         road.repair(base + 20.0, base + 31.0, -2.6, -0.6, 1.35)
         road.repair(base + 70.0, base + 76.0, 0.4, 2.3, 0.70)
@@ -115,8 +116,8 @@ def urban(length: float, seed: int, radius: float, curb_height: float, gutter: f
         road.trees(base + 11.0, end - 3.0, -right_edge - 2.4, 17.0)
         road.poles(base + 20.0, end, left_edge + 0.6, 30.0, height=8.0)
         road.poles(base + 5.0, end, -right_edge - 0.6, 30.0, height=8.0)
-    for number, direction, offset in ((1, -1, 4.975), (2, -1, 1.75), (3, 1, -1.75), (4, 1, -4.975)):
-        road.lane(number, direction, (0.0, offset), (length, offset))
+    for number, direction, offset, width in ((1, -1, 4.975, 3.25), (2, -1, 1.75, 3.2), (3, 1, -1.75, 3.2), (4, 1, -4.975, 3.25)):
+        road.lane(number, direction, (0.0, offset, width), (length, offset, width))
     left = sidewalk(1, left_edge, curb_height, lowered)
     right = sidewalk(-1, right_edge, curb_height, lowered)
     return road.scene("urban", left, right, [(1, -1.7, 1.0), (-1, 4.9, 1.12)], gutter)

@@ -28,12 +28,14 @@ class Lane:
     number : of the lane
     direction : 1 along the axis, -1 against it
     stations, offsets : (K,) m
+    widths : (K,) m, between the middles of its border lines
     """
 
     number: int
     direction: int
     stations: np.ndarray
     offsets: np.ndarray
+    widths: np.ndarray
 
 
 @dataclass

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...common.features import Features
-from ..parts.truth import TRUE_BOUNDARIES, TRUE_DRIVING_LINES, TRUE_MARKINGS, TRUE_SURFACE, VERTEX_STEP, Truth, densified
+from ..parts.truth import TRUE_BOUNDARIES, TRUE_DRIVING_LINES, TRUE_LANES, TRUE_MARKINGS, TRUE_SURFACE, VERTEX_STEP, Truth, add_lane, densified
 
 if TYPE_CHECKING:
     from .street import Scene
@@ -28,7 +28,7 @@ def truth_of_street(scene: Scene, origin: Sequence[float], crs: str) -> Truth:
     -------
     Truth
     """
-    layers = (true_boundaries, true_markings, true_driving_lines, true_surface)
+    layers = (true_boundaries, true_markings, true_driving_lines, true_surface, true_lanes)
     return Truth(*(layer(scene, origin, crs) for layer in layers))
 
 
@@ -156,4 +156,26 @@ def true_surface(scene: Scene, origin: Sequence[float], crs: str) -> Features:
     polygon = Polygon(np.vstack([left, right]))
     layer = Features("PolygonZ", TRUE_SURFACE, crs=crs)
     layer.add(polygon, road=1, area_m2=float(polygon.area))
+    return layer
+
+
+def true_lanes(scene: Scene, origin: Sequence[float], crs: str) -> Features:
+    """Lanes between the middles of their border lines.
+
+    Parameters
+    ----------
+    scene : Scene
+    origin : (3,) m, map coordinates of the local origin
+    crs : WKT
+
+    Returns
+    -------
+    Features TRUE_LANES, PolygonZ
+    """
+    layer = Features("PolygonZ", TRUE_LANES, crs=crs)
+    for lane in scene.lanes:
+        s = _stations(lane.stations[0], lane.stations[-1])
+        middle, half = np.interp(s, lane.stations, lane.offsets), np.interp(s, lane.stations, lane.widths) / 2
+        left, right = (_coordinates(scene, origin, s, middle + side) for side in (half, -half))
+        add_lane(layer, left, right, lane.direction, road=1, lane=lane.number, station_m=float(s[0]), end_m=float(s[-1]))
     return layer

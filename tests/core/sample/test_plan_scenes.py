@@ -190,7 +190,7 @@ def test_neighbouring_lanes_of_opposite_directions_pass_each_other_on_the_left(p
 
 def test_true_shapes_are_valid_and_carry_heights(plan):
     sample = plan.sample
-    for layer in (sample.truth_markings, sample.truth_surface, sample.truth_boundaries, sample.truth_driving_lines):
+    for layer in (sample.truth_markings, sample.truth_surface, sample.truth_boundaries, sample.truth_driving_lines, sample.truth_lanes):
         names = {field.name for field in layer.schema}
         assert len(layer)
         for geometry, row in layer:
@@ -292,7 +292,7 @@ def test_a_roundabout_is_a_ring_about_an_island_with_two_splitter_islands_in_eac
 @pytest.mark.parametrize("length", [90.0, 300.0])
 def test_a_plan_of_another_length_has_truth_too(scene, length):
     sample = make_sample_survey(SampleSettings(scene=scene, length=length))
-    for layer in (sample.truth_markings, sample.truth_surface, sample.truth_boundaries, sample.truth_driving_lines):
+    for layer in (sample.truth_markings, sample.truth_surface, sample.truth_boundaries, sample.truth_driving_lines, sample.truth_lanes):
         assert len(layer) and all(geometry.is_valid for geometry in layer.geometries)
 
 
@@ -307,3 +307,17 @@ def test_a_scene_that_cannot_be_so_long_is_refused_with_what_can_be():
 def test_a_plan_has_no_uav_image_and_says_so():
     with pytest.raises(RoadExtractionError, match="no UAV image of the scene crossing"):
         uav_control_points(make_sample_survey(SampleSettings(scene="crossing")))
+
+
+@pytest.mark.parametrize("scene", PLANS)
+def test_a_true_lane_lies_about_its_driving_line_between_its_borders_left_one_first(scene):
+    sample = make_sample_survey(SampleSettings(scene=scene))
+    assert len(sample.truth_lanes) == len(sample.truth_driving_lines)
+    for (lane, row), (line, same) in zip(sample.truth_lanes, sample.truth_driving_lines):
+        assert (row["lane"], row["direction"], row["station_m"]) == (same["lane"], same["direction"], same["station_m"])
+        ring, middle = shapely.get_coordinates(lane.exterior)[:-1], shapely.get_coordinates(line)
+        left, right = ring[:len(middle)], ring[len(middle):][::-1]
+        np.testing.assert_allclose((left + right) / 2, middle, atol=1e-6)
+        ahead = np.gradient(middle, axis=0)
+        assert np.all(ahead[:, 0] * (left - right)[:, 1] - ahead[:, 1] * (left - right)[:, 0] > 0)
+        assert np.median(np.hypot(*(left - right).T)) == pytest.approx(row["width_m"])

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import shapely
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.sample.parts.materials import CARRIAGEWAY_LABELS, LABEL
 from lanewright.core.sample.scenes import SCENES
@@ -247,7 +248,7 @@ def test_painted_points_lie_in_the_true_markings(street, true_points):
 @pytest.mark.parametrize("scene", STREETS)
 def test_true_shapes_are_valid_and_carry_heights(scene):
     sample = survey(scene, length=130.0)
-    for layer in (sample.truth_markings, sample.truth_surface, sample.truth_boundaries, sample.truth_driving_lines):
+    for layer in (sample.truth_markings, sample.truth_surface, sample.truth_boundaries, sample.truth_driving_lines, sample.truth_lanes):
         names = {field.name for field in layer.schema}
         for geometry, row in layer:
             assert geometry.is_valid and geometry.has_z
@@ -398,3 +399,17 @@ def test_a_concrete_gutter_lies_along_the_curb_and_shines_brighter_than_asphalt(
     assert np.all((np.abs(gutter["offset"]) > side - 0.30) & (np.abs(gutter["offset"]) <= side))
     at = [part[(part["range"] > 3) & (part["range"] < 4)]["intensity"] for part in (gutter, road)]
     assert np.median(at[0]) > 1.5 * np.median(at[1])
+
+
+@pytest.mark.parametrize("scene", STREETS)
+def test_a_true_lane_lies_about_its_driving_line_between_its_borders_left_one_first(scene):
+    sample = survey(scene, length=130.0)
+    assert len(sample.truth_lanes) == len(sample.truth_driving_lines)
+    for (lane, row), (line, same) in zip(sample.truth_lanes, sample.truth_driving_lines):
+        assert (row["lane"], row["direction"], row["station_m"]) == (same["lane"], same["direction"], same["station_m"])
+        ring, middle = shapely.get_coordinates(lane.exterior)[:-1], shapely.get_coordinates(line)
+        left, right = ring[:len(middle)], ring[len(middle):][::-1]
+        np.testing.assert_allclose((left + right) / 2, middle, atol=1e-6)
+        ahead = np.gradient(middle, axis=0)
+        assert np.all(ahead[:, 0] * (left - right)[:, 1] - ahead[:, 1] * (left - right)[:, 0] > 0)
+        assert np.median(np.hypot(*(left - right).T)) == pytest.approx(row["width_m"])
