@@ -92,19 +92,23 @@ class Algorithm:
     def add(self, spec):
         self.parameters.append(spec)
 
-    def add_survey(self, trajectory_optional=False):
-        """Point clouds, trajectory and the CRS for clouds that carry none."""
+    def add_survey(self, trajectory_optional=False, without=""):
+        """Point clouds, trajectory and the CRS for clouds that carry none; `without` says what happens without a trajectory."""
+        self.add_point_clouds()
+        self.add_trajectory(trajectory_optional, without)
+        self.add_crs()
+
+    def add_point_clouds(self):
         self.add(PointCloudsSpec("POINT_CLOUDS", tr("Point clouds"),
                                  tr("LAS, LAZ or COPC files of one survey, or a folder that holds them, or names with wildcards "
                                     "(/data/B12/tile_*.laz). Files may overlap and come in any order.")))
-        self.add_trajectory(trajectory_optional)
-        self.add_crs()
 
-    def add_trajectory(self, optional=False):
-        self.add(TrajectorySpec("TRAJECTORY", tr("Trajectory"), tr(
+    def add_trajectory(self, optional=False, without=""):
+        text = tr(
             "Where the vehicle drove: a point or line layer with heights, a table with columns time, x, y, z, or "
             "the path of a CSV, TXT or SBET file. Made with Import trajectory it needs no further care."
-        ), optional))
+        )
+        self.add(TrajectorySpec("TRAJECTORY", tr("Trajectory"), f"{text} {without}".strip(), optional))
 
     def add_crs(self):
         self.add(CrsSpec(

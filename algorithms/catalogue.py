@@ -24,12 +24,14 @@ from .road.detect_curbs import DetectCurbs
 from .road.extract_road_surface import ExtractRoadSurface
 from .road.fit_road_edges import FitRoadEdges
 from .road.normalized_scanlines import NormalizedScanlines
+from .survey.estimate_trajectory import EstimateTrajectory
 from .survey.import_trajectory import ImportTrajectory
 from .survey.inspect_survey import InspectSurvey
 from .survey.sample_survey import SampleSurvey
 
 ALGORITHMS = (
     ImportTrajectory,
+    EstimateTrajectory,
     InspectSurvey,
     SampleSurvey,
     NormalizedScanlines,

@@ -37,6 +37,23 @@ SURVEY_SETTINGS = (
 )
 
 
+WITHOUT_TRAJECTORY = tr("Left out, it is estimated from the points (see Estimate trajectory).")
+
+
+def estimated_trajectory(call, progress):
+    """The EstimatedTrajectory of POINT_CLOUDS where TRAJECTORY was left out, None where it was given; says so in the log."""
+    if call.given("TRAJECTORY"):
+        return None
+    from ..core.survey.estimation import estimate_trajectory
+
+    progress.info(tr("No trajectory was given; it is estimated from the points …"))
+    found = estimate_trajectory(call.point_clouds(), call.crs(), call.settings(SURVEY_SETTINGS).scanner_field, progress)
+    for note in found.notes:
+        progress.warn(note)
+    progress.info(found.summary())
+    return found
+
+
 def survey_inputs(call, progress):
     """Paths of POINT_CLOUDS, and TRAJECTORY brought to the clouds' CRS."""
     from ..core.survey.las.reader import read_headers

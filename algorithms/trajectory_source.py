@@ -95,12 +95,15 @@ def _number(value):
         return np.nan
 
 
-def trajectory_features(trajectory):
-    """A cleaned trajectory as a point layer, each row with its road, pass and station where it has one."""
+def trajectory_features(trajectory, **further):
+    """A cleaned trajectory as a point layer, each row with its road, pass and station where it has one.
+
+    `further` columns, name to (N,) values, belong to an estimated trajectory.
+    """
     import shapely
 
     from ..core.common.features import Features
-    from ..core.common.schemas import TRAJECTORY
+    from ..core.common.schemas import ESTIMATED_TRAJECTORY, TRAJECTORY
     from ..core.io.crs import parse_crs
 
     placed = [(None, None, None)] * len(trajectory)
@@ -113,7 +116,10 @@ def trajectory_features(trajectory):
         dict(zip(("time", "roll", "pitch", "heading", "road", "pass", "station_m"), (*values, *where)))
         for values, where in zip(np.stack(columns, axis=1).tolist(), placed)
     ]
-    return Features("PointZ", TRAJECTORY, list(points), rows, trajectory.crs)
+    for name, values in further.items():
+        for row, value in zip(rows, values.tolist()):
+            row[name] = value
+    return Features("PointZ", ESTIMATED_TRAJECTORY if further else TRAJECTORY, list(points), rows, trajectory.crs)
 
 
 def _road_pass_station(trajectory):

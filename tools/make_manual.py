@@ -23,6 +23,7 @@ KINDS = {
 FILES = {
     "POINT_CLOUDS": "survey.laz", "POINT_CLOUD": "survey.laz", "TRAJECTORY": "trajectory.gpkg", "ROAD_EDGES": "road_edges.gpkg",
     "ROAD_POINTS": "road_points.laz", "INTENSITY_IMAGE": "intensity_image.tif",
+    "estimatetrajectory.TRAJECTORY": "estimated_trajectory.gpkg",
     "importtrajectory.INPUT": "trajectory.csv", "importtrajectory.OUTPUT": "trajectory.gpkg",
     "correctintensity.OUTPUT": "road_points_corrected.laz", "intensityimage.ROAD_POINTS": "road_points_corrected.laz",
     "extractmarkings.ROAD_POINTS": "road_points_corrected.laz", "removeoutliers.INPUT": "marking_points.laz",
@@ -47,6 +48,7 @@ NAMED = {
     "importtrajectory": ("POINT_CLOUDS",), "inspectsurvey": ("TRAJECTORY",), "extractroadsurface": ("ROAD_EDGES",),
     "drivinglines": ("MARKINGS", "ROAD_EDGES", "ROAD_POINTS"), "georeferenceimage": ("GCPS",),
     "crosssections": ("ROAD_EDGES", "MARKING_LINES", "DRIVING_LINES"),
+    "roadmap": ("TRAJECTORY",),
 }
 
 

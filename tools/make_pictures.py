@@ -38,6 +38,7 @@ def stages(folder):
     survey = dict(POINT_CLOUDS=[sample["POINT_CLOUD"]], TRAJECTORY=sample["TRAJECTORY"])
     drive = dict(TRAJECTORY=sample["TRAJECTORY"])
     made["importtrajectory"] = run("importtrajectory", INPUT=sample["TRAJECTORY"], OUTPUT=at("trajectory.gpkg"))
+    made["estimatetrajectory"] = run("estimatetrajectory", POINT_CLOUDS=survey["POINT_CLOUDS"], TRAJECTORY=at("estimated.gpkg"))
     made["inspectsurvey"] = run("inspectsurvey", **survey, DENSITY=at("density.tif"))
     made["normalizedscanlines"] = run("normalizedscanlines", **survey, INTERVAL=0.5, SCANLINES=at("scanlines.gpkg"))
     made["boundariesfromscanlines"] = run("boundariesfromscanlines", SCANLINES=made["normalizedscanlines"]["SCANLINES"], **drive,
@@ -83,6 +84,7 @@ ON_WHITE = ("samplesurvey", "normalizedscanlines", "extractroadsurface", "inspec
 DRAWN = {
     "samplesurvey": (["TRUTH_DRIVING_LINES", "TRUTH_BOUNDARIES", "TRUTH_MARKINGS"], False, False),
     "importtrajectory": ([("OUTPUT", "TRAJECTORY")], True, False),
+    "estimatetrajectory": (["TRAJECTORY"], True, False),
     "inspectsurvey": (["DENSITY"], False, False),
     "normalizedscanlines": (["SCANLINES"], False, True),
     "boundariesfromscanlines": ([("CORNERS", "CURB_POINTS"), ("BOUNDARIES", "ROAD_EDGES")], True, True),

@@ -16,7 +16,7 @@ from ..road.detect_boundaries import METHOD_SETTING, PLANE_SETTINGS
 from ..road.detect_curbs import CURB_SETTINGS
 from ..road.extract_road_surface import SURFACE_SETTINGS
 from ..road.fit_road_edges import EDGE_SETTINGS
-from ..survey_input import SURVEY_SETTINGS, survey_inputs
+from ..survey_input import SURVEY_SETTINGS, WITHOUT_TRAJECTORY, estimated_trajectory, survey_inputs
 from ..texts import tr
 from .driving_lines import DRIVING_SETTINGS
 from .road_map_numbers import NUMBERS, road_map_numbers
@@ -52,6 +52,9 @@ LAYERS = (
 )
 
 
+ESTIMATED = 0.2   # of the work, where the trajectory is estimated first
+
+
 class RoadMap(Algorithm):
     ID, TITLE, GROUP = "roadmap", "Road map", "Road map"
     SUMMARY = "From a survey to driving lines in one call: edges, surface, intensity image, markings, lines and curve elements."
@@ -61,7 +64,7 @@ class RoadMap(Algorithm):
     NEEDS_GDAL = True  # the stages hand the intensity image on as a GeoTIFF
 
     def declare(self):
-        self.add_survey()
+        self.add_survey(trajectory_optional=True, without=WITHOUT_TRAJECTORY)
         self.add_settings((METHOD_SETTING,))
         self.add(FlagSpec(
             "CORRECT_INTENSITY", tr("Correct intensity first"),
@@ -96,12 +99,16 @@ class RoadMap(Algorithm):
             survey=call.settings(SURVEY_SETTINGS, crs=call.crs()),
             **{field: call.settings(specs) for field, specs in STAGES.items()},
         )
-        paths, trajectory = survey_inputs(call, progress)
         if not any(call.wants(one.name) for one in self.outputs()):
             raise RoadExtractionError(tr(
                 "No result was asked for, and all of the work would be lost. Name at least one output, such as DRIVING_LINES, MARKINGS or REPORT."))
+        estimated = estimated_trajectory(call, progress.part(0.0, ESTIMATED))
+        paths, trajectory = (call.point_clouds(), estimated.trajectory) if estimated else survey_inputs(call, progress)
+        progress = progress.part(ESTIMATED if estimated else 0.0, 1.0)
         image_path = call.new_file("INTENSITY_IMAGE") or call.scratch_file("intensity.tif")
         road_map = make_road_map(paths, trajectory, image_path, settings, progress.part(0.0, 0.95))
+        if estimated:
+            road_map.survey_facts["trajectory"] = estimated.summary()
         if call.wants("ROAD_POINTS"):
             write_road_points(road_map.road_points, call.new_file("ROAD_POINTS"), progress.part(0.95, 1.0))
         road_map.road_points.close()

@@ -88,6 +88,8 @@ CONTROL_POINTS = [Field("point", str, "Point"), Field("role", str, "Role (contro
                   Field("kind", str, "What was pointed at")]
 TRAJECTORY = [Field("time", float, "Time (s)"), Field("roll", float, "Roll (°)"), Field("pitch", float, "Pitch (°)"),
               Field("heading", float, "Heading (°, clockwise from grid north)"), PASS, ROAD, STATION]
+ESTIMATED_TRAJECTORY = [*TRAJECTORY, Field("sigma_m", float, "Uncertainty of the place, one sigma (m)"),
+                        Field("sigma_z_m", float, "Uncertainty of the height, one sigma (m)")]
 OUTCOME = Field("outcome", str, "Outcome (correct/missed/false/excluded)")
 WHY = Field("why", str, "Why")
 ASSESSED_BOUNDARIES = [OUTCOME, WHY, Field("road", int, "Road, or line of the reference"), SIDE, STATION, END,

@@ -9,6 +9,7 @@ from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "assessment": ("boundary_report", "driving_report", "marking_report"),
+    "estimated_trajectory": ("estimated_trajectory_report",),
     "georeferencing": ("georeferencing_report",),
     "inspection": ("inspection_report",),
     "intensity": ("intensity_correction_report",),

@@ -70,6 +70,8 @@ def _survey(page, road_map):
     page.facts((("Files", facts["files"]), ("Points read", facts["read"]), ("Points near the road", facts["kept"]),
                 ("Roads", facts["roads"]), ("Passes", facts["passes"]), ("Scanners", facts["scanners"]),
                 ("Trajectory above the road", heights), ("Road points", road_map.counts["road_points"])))
+    if "trajectory" in facts:
+        page.note(facts["trajectory"])
     for note in road_map.frame.notes:
         page.note(note)
 

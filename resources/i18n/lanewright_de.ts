@@ -50,6 +50,11 @@
         </message>
         <message>
             <location filename="../../algorithms/algorithm.py" />
+            <source>Where the vehicle drove: a point or line layer with heights, a table with columns time, x, y, z, or the path of a CSV, TXT or SBET file. Made with Import trajectory it needs no further care.</source>
+            <translation>Wo das Fahrzeug fuhr: ein Punkt- oder Linienlayer mit Höhen, eine Tabelle mit den Spalten time, x, y, z oder der Pfad einer CSV-, TXT- oder SBET-Datei. Mit „Trajektorie einlesen“ erzeugt, braucht sie keine weitere Pflege.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/algorithm.py" />
             <source>Warnings</source>
             <translation>Warnungen</translation>
         </message>
@@ -67,11 +72,6 @@
             <location filename="../../algorithms/algorithm.py" />
             <source>Trajectory</source>
             <translation>Trajektorie</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/algorithm.py" />
-            <source>Where the vehicle drove: a point or line layer with heights, a table with columns time, x, y, z, or the path of a CSV, TXT or SBET file. Made with Import trajectory it needs no further care.</source>
-            <translation>Wo das Fahrzeug fuhr: ein Punkt- oder Linienlayer mit Höhen, eine Tabelle mit den Spalten time, x, y, z oder der Pfad einer CSV-, TXT- oder SBET-Datei. Mit „Trajektorie einlesen“ erzeugt, braucht sie keine weitere Pflege.</translation>
         </message>
         <message>
             <location filename="../../algorithms/algorithm.py" />
@@ -2834,6 +2834,81 @@
             <translation>Punkte in gleichen Schritten längs der Scanlinien, mit Intensität, Station und Abstand: eine Wolke gleichmäßiger Dichte.</translation>
         </message>
         <message>
+            <location filename="../../algorithms/survey/estimate_trajectory.py" />
+            <source>Estimate trajectory</source>
+            <translation>Trajektorie schätzen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/estimate_trajectory.py" />
+            <source>Where the scanner was, from the point clouds alone, for surveys that come without a trajectory.</source>
+            <translation>Wo der Scanner war, allein aus den Punktwolken, für Aufnahmen ohne Trajektorie.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/estimate_trajectory.py" />
+            <source>Every return lies on the ray that the scanner's mirror had at its time. All rays together tell where the scanner was, how it was turned and how it is mounted; what stands along the road does not matter. This takes clouds from vehicles with rotating mirrors, whole, with the gps_time of every point; lines or points may be thinned out.</source>
+            <translation>Jeder Messpunkt liegt auf dem Strahl, den der Spiegel des Scanners zu seiner Zeit hatte. Alle Strahlen zusammen sagen, wo der Scanner war, wie er gedreht war und wie er eingebaut ist; was an der Straße steht, ist gleichgültig. Das braucht Wolken von Fahrzeugen mit rotierenden Spiegeln, vollständig, mit der gps_time jedes Punktes; Zeilen oder Punkte dürfen ausgedünnt sein.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/estimate_trajectory.py" />
+            <source>The positions are those of the scanner, of the middle between several: where the vehicle's own trajectory refers to another place of the vehicle, the two differ by a constant arm. Heading, roll and pitch are relative to the way driven and the road. What a cloud is displaced by as a whole does not show in it, nor in the uncertainty.</source>
+            <translation>Die Positionen sind die des Scanners, bei mehreren die ihrer Mitte: Bezieht sich die Trajektorie des Fahrzeugs auf eine andere Stelle am Fahrzeug, so unterscheiden sich beide um einen festen Hebelarm. Kurswinkel, Roll- und Nickwinkel gelten gegenüber dem gefahrenen Weg und der Straße. Worum eine Wolke als Ganzes verschoben ist, zeigt sich weder in ihr noch in der Unsicherheit.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/estimate_trajectory.py" />
+            <source>Without gps_time, or where no mirror is seen to turn, the track follows the density of the points: it is rough, half a metre off and with a height known to 0.3 m, and says so. Airborne, terrestrial and handheld clouds are refused.</source>
+            <translation>Ohne gps_time, oder wo kein Spiegel zu erkennen ist, der sich dreht, folgt die Spur der Punktdichte: Sie ist grob, einen halben Meter ungenau und in der Höhe auf 0,3 m bekannt, und es wird gesagt. Wolken aus der Luft, vom Stativ und aus der Hand werden abgelehnt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/estimate_trajectory.py" />
+            <source>trajectory</source>
+            <translation>Trajektorie</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/estimate_trajectory.py" />
+            <source>no trajectory</source>
+            <translation>keine Trajektorie</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/estimate_trajectory.py" />
+            <source>scanner position</source>
+            <translation>Scannerposition</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/estimate_trajectory.py" />
+            <source>rotating mirror</source>
+            <translation>rotierender Spiegel</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/estimate_trajectory.py" />
+            <source>gps time</source>
+            <translation>GPS-Zeit</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/estimate_trajectory.py" />
+            <source>Positions</source>
+            <translation>Positionen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/estimate_trajectory.py" />
+            <source>Length driven (m)</source>
+            <translation>Gefahrene Länge (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/estimate_trajectory.py" />
+            <source>Scanners that took part</source>
+            <translation>Beteiligte Scanner</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/estimate_trajectory.py" />
+            <source>Uncertainty of the place, median (m)</source>
+            <translation>Unsicherheit der Lage, Median (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/estimate_trajectory.py" />
+            <source>Uncertainty of the height, median (m)</source>
+            <translation>Unsicherheit der Höhe, Median (m)</translation>
+        </message>
+        <message>
             <location filename="../../algorithms/survey/import_trajectory.py" />
             <source>Import trajectory</source>
             <translation>Trajektorie einlesen</translation>
@@ -2847,11 +2922,6 @@
             <location filename="../../algorithms/survey/import_trajectory.py" />
             <source>Columns may come in any order, with or without a header, in degrees or radians. Rows are sorted by time; repeated and unusable rows are dropped and counted.</source>
             <translation>Spalten dürfen in beliebiger Reihenfolge kommen, mit oder ohne Kopfzeile, in Grad oder Radiant. Zeilen werden nach der Zeit sortiert; wiederholte und unbrauchbare werden weggelassen und gezählt.</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/survey/import_trajectory.py" />
-            <source>trajectory</source>
-            <translation>Trajektorie</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/import_trajectory.py" />
@@ -2870,18 +2940,8 @@
         </message>
         <message>
             <location filename="../../algorithms/survey/import_trajectory.py" />
-            <source>gps time</source>
-            <translation>GPS-Zeit</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/survey/import_trajectory.py" />
             <source>Imported trajectory</source>
             <translation>Eingelesene Trajektorie</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/survey/import_trajectory.py" />
-            <source>Positions</source>
-            <translation>Positionen</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/import_trajectory.py" />
@@ -3235,6 +3295,11 @@
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />
+            <source>Left out, it is estimated from the points (see Estimate trajectory).</source>
+            <translation>Fehlt sie, wird sie aus den Punkten geschätzt (siehe „Trajektorie schätzen“).</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
             <source>Points farther out are left unread. Wider reaches the far side of a broad avenue, but takes longer and brings in the neighbouring street.</source>
             <translation>Punkte weiter außen werden nicht gelesen. Weiter erreicht die ferne Seite einer breiten Allee, dauert aber länger und holt die Nachbarstraße herein.</translation>
         </message>
@@ -3267,6 +3332,11 @@
             <location filename="../../algorithms/survey_input.py" />
             <source>Where two drives over a road measurably lie centimetres apart, as navigation drifts between them, each is moved by its share until curbs and paint agree, and the log says how far. Off keeps every point where it was measured, for surveys adjusted to control points already; what the passes differ by then blurs curbs and doubles lines.</source>
             <translation>Wo zwei Befahrungen einer Straße messbar Zentimeter auseinanderliegen, weil die Navigation zwischen ihnen driftet, wird jede um ihren Anteil verschoben, bis Bordsteine und Farbe übereinstimmen; das Protokoll sagt, um wie viel. Ausgeschaltet bleibt jeder Punkt, wo er gemessen wurde: für Aufnahmen, die schon an Passpunkten ausgeglichen sind. Worin die Befahrungen sich dann unterscheiden, macht Bordsteine unscharf und Linien doppelt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
+            <source>No trajectory was given; it is estimated from the points …</source>
+            <translation>Es wurde keine Trajektorie angegeben; sie wird aus den Punkten geschätzt …</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />
@@ -4362,6 +4432,16 @@
             <location filename="../../core/common/schemas.py" />
             <source>Heading (°, clockwise from grid north)</source>
             <translation>Kurs (°, im Uhrzeigersinn von Gitternord)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Uncertainty of the place, one sigma (m)</source>
+            <translation>Unsicherheit der Lage, ein Sigma (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Uncertainty of the height, one sigma (m)</source>
+            <translation>Unsicherheit der Höhe, ein Sigma (m)</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />

@@ -12,6 +12,7 @@ from qgis.core import Qgis, QgsProcessingParameterDefinition
 # Commands, models and scripts call these; a name that changes breaks them.
 INTERFACE = {
     "importtrajectory": "INPUT INPUT_CRS TARGET_CRS POINT_CLOUDS TIME OUTPUT",
+    "estimatetrajectory": "POINT_CLOUDS CRS TRAJECTORY REPORT",
     "inspectsurvey": "POINT_CLOUDS TRAJECTORY CRS REPORT DENSITY",
     "samplesurvey": "SCENE LENGTH SEED POINT_CLOUD TRAJECTORY TRUTH_BOUNDARIES TRUTH_MARKINGS TRUTH_DRIVING_LINES",
     "normalizedscanlines": "POINT_CLOUDS TRAJECTORY CRS INTERVAL CORRIDOR SIMPLIFY SCANLINES RESAMPLED_POINTS",

@@ -1,0 +1,186 @@
+"""The trajectory of a survey from its points alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ...common.errors import RoadExtractionError
+from ...common.progress import Progress
+from ...io.crs import check_projected, crs_note
+from ..las.reader import read_headers
+from ..trajectory.trajectory import Trajectory
+from .adjustment import PER_INTERVAL, Adjusted, Returns
+from .first_poses import Spinning, first_poses, known_intervals, spinning_scanners
+from .first_track import first_track
+from .growth import grown_poses
+from .kinds import refuse_airborne, refuse_handheld, refuse_terrestrial
+from .poses import YAW, Poses
+from .ridge import FIRST_HEIGHT, ridge_of
+from .samples import MAX_GAP_IN_DRIVE, Samples, read_samples
+
+ROW_SPACING = 0.02         # s between the positions written: a third of a metre on a motorway
+MAX_SIGMA = 0.3            # m: a position that is known less well is not written
+LEAST_SIGMA = 0.002        # m: what calibration leaves, however many returns agree
+DENSITY_SIGMA, DENSITY_HEIGHT_SIGMA = 0.5, 0.3   # m, of a track by density alone
+READ, TRACKED = 0.4, 0.55  # of the work
+
+
+@dataclass
+class EstimatedTrajectory:
+    """A trajectory and how well it is known.
+
+    trajectory : Trajectory of the middle of the scanners
+    sigma, sigma_height : (N,) m, standard deviation of the place on the map and of the height
+    method : "rays" of mirrors, or "density" of points alone, which is rough
+    scanners : the scanners that took part
+    adjusted : Adjusted, None with density alone
+    notes : sentences for the user
+    """
+
+    trajectory: Trajectory
+    sigma: np.ndarray
+    sigma_height: np.ndarray
+    method: str
+    scanners: list[Spinning] = field(default_factory=list)
+    adjusted: Adjusted | None = None
+    notes: list[str] = field(default_factory=list)
+
+    def summary(self) -> str:
+        """One sentence on how it was estimated and how well it is known."""
+        way = "the rays of the mirrors" if self.method == "rays" else "the density of the points, which is rough"
+        return (f"Trajectory estimated from {way}: {len(self.trajectory):,} positions over {self.length:.0f} m, place known to "
+                f"{np.median(self.sigma):.3f} m, height to {np.median(self.sigma_height):.3f} m (median, one sigma).")
+
+    @property
+    def length(self) -> float:
+        """Metres driven, gaps between drives left out."""
+        track = self.trajectory
+        step = np.hypot(np.diff(track.x), np.diff(track.y))
+        return float(step[np.diff(track.time) <= MAX_GAP_IN_DRIVE].sum())
+
+
+def estimate_trajectory(paths: Sequence[str | Path], crs: str = "", scanner_field: str = "automatic",
+                        progress: Progress = Progress()) -> EstimatedTrajectory:
+    """Estimate where the scanners of a survey were.
+
+    With times, and a mirror that turns, every return must lie on the ray that the mirror had at its time: an adjustment of all
+    of them gives place and attitude. Without, the track is the ridge of the points' density, which is rough.
+
+    Parameters
+    ----------
+    paths : LAS, LAZ or COPC files in any order
+    crs : WKT for clouds that carry none
+    scanner_field : "automatic", "scanner_channel" or "point_source_id"
+    progress : Progress
+
+    Returns
+    -------
+    EstimatedTrajectory, on the clock of the points
+
+    Raises
+    ------
+    RoadExtractionError
+        If a file cannot be read, the CRS is geographic or not in metres, or the cloud was not measured from a vehicle on a road.
+    """
+    files = read_headers(paths)
+    wkt = check_projected(files, crs)
+    if note := crs_note(files, crs, wkt):
+        progress.warn(note)
+    samples = read_samples(files, scanner_field, progress.part(0.0, READ))
+    if not samples.has_time:
+        return _without_time(samples, wkt)
+    if not samples.drives:
+        raise RoadExtractionError(
+            "The points come in pieces too short to tell a drive: no stretch of time without gaps of a second holds enough of them. "
+            "Give the whole survey.")
+    tracks = []
+    for number, drive in enumerate(samples.drives):
+        tracks.append(first_track(samples.time[drive], samples.place[drive]))
+        progress.report(READ + (TRACKED - READ) * (number + 1) / len(samples.drives))
+    refuse_airborne(tracks)
+    scanners = spinning_scanners(samples, tracks)
+    refuse_terrestrial(tracks, scanners)
+    refuse_handheld(tracks, scanners)
+    if not scanners:
+        return _by_density(samples, tracks, wkt)
+    poses = first_poses(samples, tracks, scanners)
+    found = grown_poses(poses, known_intervals(poses, scanners), _returns(samples, poses, scanners), progress.part(TRACKED, 1.0))
+    return _of_rays(samples, scanners, found, wkt)
+
+
+def _returns(samples: Samples, poses: Poses, scanners: list[Spinning]) -> Returns:
+    """Up to PER_INTERVAL returns of every interval and scanner."""
+    order = np.full(256, -1)
+    order[[one.number for one in scanners]] = np.arange(len(scanners))
+    parts = []
+    for drive, knots in zip(samples.drives, poses.drives):
+        scanner = order[samples.scanner[drive]]
+        interval, share = knots.interval(samples.time[drive])
+        key = (interval - knots.first) * (poses.scanners + 1) + scanner + 1
+        by_key = np.argsort(key, kind="stable")
+        ordered = key[by_key]
+        rank = np.arange(len(key)) - np.searchsorted(ordered, ordered)
+        thinned = rank % -(-np.bincount(ordered)[ordered] // PER_INTERVAL) == 0
+        rows = np.sort(by_key[thinned & (scanner[by_key] >= 0)])
+        parts.append((interval[rows], share[rows], samples.time[drive][rows], samples.place[drive][rows], scanner[rows]))
+    return Returns(*(np.concatenate(column) for column in zip(*parts)))
+
+
+def _of_rays(samples, scanners, found, crs):
+    """The poses at even times, as far as they are known well enough."""
+    rows, lost = [], 0.0
+    for drive, knots in zip(samples.drives, found.poses.drives):
+        first, last = float(samples.time[drive.start]), float(samples.time[drive.stop - 1])
+        time = np.append(np.arange(first, last, ROW_SPACING), last)
+        interval, share = knots.interval(time)
+        covariance = found.place_covariance[interval + 1 + (share > 0.5)]
+        flat = np.sqrt(covariance[:, 0, 0] + covariance[:, 1, 1] + LEAST_SIGMA**2)
+        known = flat <= MAX_SIGMA
+        lost += np.count_nonzero(~known) * ROW_SPACING
+        rows.append(np.column_stack([time, found.poses.at(interval, share)[:, :YAW + 1], flat, np.sqrt(covariance[:, 2, 2] + LEAST_SIGMA**2)])[known])
+    time, x, y, z, roll, pitch, yaw, flat, up = np.concatenate(rows).T
+    if not len(time):
+        raise RoadExtractionError(
+            f"The places of the scanner could not be told to {MAX_SIGMA:g} m anywhere. The times may be those of an export, not of the measuring: "
+            "give the cloud as the scanner's own program writes it, or a trajectory.")
+    ox, oy, oz = samples.origin
+    trajectory = Trajectory(time + samples.start, x + ox, y + oy, z + oz, np.degrees(roll), np.degrees(pitch), (90.0 - np.degrees(yaw)) % 360.0, crs)
+    result = EstimatedTrajectory(trajectory, flat, up, "rays", scanners, found)
+    left_out = samples.scanners - len(scanners)
+    if left_out:
+        result.notes.append(f"{left_out} of {samples.scanners} scanners show no steadily turning mirror and took no part.")
+    if lost >= 1.0:
+        result.notes.append(f"For {lost:.0f} s of the survey the place is not known to {MAX_SIGMA:g} m and was left out; "
+                            "points measured then will be, too.")
+    if samples.left_out:
+        result.notes.append(f"{samples.left_out:,} points came in short pieces between gaps of time and were left out.")
+    return result
+
+
+def _by_density(samples, tracks, crs):
+    """The first track as the trajectory, where no mirror was seen to turn."""
+    time, place, heading = (np.concatenate(column) for column in zip(*((track.time, track.foot, track.heading) for track in tracks)))
+    trajectory = _rough(time + samples.start, place + [0.0, 0.0, FIRST_HEIGHT], heading, samples.origin, crs, True)
+    return EstimatedTrajectory(trajectory, np.full(len(time), DENSITY_SIGMA), np.full(len(time), DENSITY_HEIGHT_SIGMA), "density", notes=[
+        "No mirror was seen to turn in the points' times, so the track follows the density of the points alone: it is rough, its place "
+        f"known to about {DENSITY_SIGMA:g} m and its height above the road to {DENSITY_HEIGHT_SIGMA:g} m."])
+
+
+def _without_time(samples, crs):
+    """The ridge of density of a cloud without times."""
+    place = ridge_of(samples.place)
+    step = np.gradient(place[:, :2], axis=0)
+    trajectory = _rough(np.arange(len(place), dtype=float), place, np.arctan2(step[:, 1], step[:, 0]), samples.origin, crs, False)
+    notes = [f"The points have no times, so the track is the ridge of their density: it is rough, its place known to about {DENSITY_SIGMA:g} m, "
+             f"its height above the road to {DENSITY_HEIGHT_SIGMA:g} m, "
+             "and which way was driven is not known. It is the longest drive; what branches off is not in it."]
+    return EstimatedTrajectory(trajectory, np.full(len(place), DENSITY_SIGMA), np.full(len(place), DENSITY_HEIGHT_SIGMA), "density", notes=notes)
+
+
+def _rough(time, place, yaw, origin, crs, has_time):
+    unknown = np.full(len(time), np.nan)
+    return Trajectory(time, *(place + origin).T, unknown, unknown, (90.0 - np.degrees(yaw)) % 360.0, crs, has_time)

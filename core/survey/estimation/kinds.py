@@ -1,0 +1,64 @@
+"""Clouds that no vehicle on a road has measured are refused by name."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...common.errors import RoadExtractionError
+from .first_poses import Spinning
+from .first_track import FirstTrack
+
+FARTHEST_MEDIAN = 15.0     # m: half of what a vehicle on a road sees at a time is nearer; an aircraft's swath is wider
+MIN_PATH = 5.0           # m between the outermost places: less is no drive
+WALKING_PACE = 2.0       # m/s: nobody surveys a road by car at that pace all the time
+MIN_STANDING_TIME = 2.0  # s of measuring before standing still means anything
+
+
+def refuse_airborne(tracks: list[FirstTrack]) -> None:
+    """Refuse a cloud whose points are spread so wide at any time that they were measured from high above.
+
+    Raises
+    ------
+    RoadExtractionError
+        If it is one.
+    """
+    reach = float(np.nanmedian(np.concatenate([track.reach for track in tracks])))
+    if reach > FARTHEST_MEDIAN:
+        raise RoadExtractionError(
+            f"This looks like an airborne survey: at any moment half of its points lie more than {reach:.0f} m from where they are densest, and "
+            f"a vehicle on the road sees half of them within {FARTHEST_MEDIAN:.0f} m. A trajectory is estimated for mobile laser scanning from "
+            "the road alone.")
+
+
+def refuse_terrestrial(tracks: list[FirstTrack], scanners: list[Spinning]) -> None:
+    """Refuse a cloud that was measured from one place.
+
+    Raises
+    ------
+    RoadExtractionError
+        If it is one.
+    """
+    places = [fixes.place for one in scanners for fixes in one.fixes if len(fixes.time)] or [track.foot for track in tracks]
+    low, high = (one(np.concatenate(places)[:, :2], q, axis=0) for one, q in ((np.quantile, 0.05), (np.quantile, 0.95)))
+    seconds = sum(float(np.ptp(track.time)) for track in tracks)
+    if np.hypot(*(high - low)) < MIN_PATH and seconds > MIN_STANDING_TIME:
+        raise RoadExtractionError(
+            f"This looks like a terrestrial scan: in {seconds:.0f} s the scanner stayed within {np.hypot(*(high - low)):.1f} m. A trajectory is "
+            "estimated for clouds measured while driving; give those, or the scanner's position as a trajectory where a map is wanted from here.")
+
+
+def refuse_handheld(tracks: list[FirstTrack], scanners: list[Spinning]) -> None:
+    """Refuse a cloud measured at walking pace by a scanner without a steadily mounted mirror.
+
+    Raises
+    ------
+    RoadExtractionError
+        If it is one.
+    """
+    if scanners:
+        return
+    pace = np.concatenate([np.hypot(*np.gradient(track.foot[:, :2], track.time, axis=0).T) for track in tracks if len(track.time) > 1])
+    if len(pace) and np.quantile(pace, 0.9) < WALKING_PACE:
+        raise RoadExtractionError(
+            f"This looks like a handheld or backpack survey: it moved at {np.median(pace):.1f} m/s, at walking pace, and no mirror turns steadily "
+            "in it. A trajectory is estimated for scanners on vehicles; give the trajectory that the scanner's own program has computed.")

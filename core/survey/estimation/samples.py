@@ -1,0 +1,121 @@
+"""The points from which a trajectory is estimated: an even sample of the first returns of a survey, in order of time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...common.errors import RoadExtractionError
+from ...common.parallel import ordered_map
+from ...common.progress import Progress
+from ..las.parallel_reader import ParallelCloudReader
+from ..las.reader import POINTS_PER_BLOCK, CloudHeader
+from ..scanners import ScannerCensus, numbers_by_value, times_by_value
+from ..trajectory.time_systems import SECONDS_PER_WEEK, wrapped_week
+
+SAMPLED_LAYERS = ("z", "point_source_id", "gps_time", "flags")  # LAZ layers that are decoded
+MAX_SAMPLES = 6_000_000   # points held in memory: 250 MB while they are sorted
+MAX_GAP_IN_DRIVE = 1.0    # s without points end a drive
+MIN_DRIVE_SAMPLES = 2000  # a drive with fewer is not estimated
+COLUMN_OF_FIELD = {"point_source_id": 0, "scanner_channel": 1}
+
+
+@dataclass
+class Samples:
+    """Points in order of time.
+
+    Attributes
+    ----------
+    time : (N,) seconds since `start`; zeros without time
+    place : (N, 3) metres from `origin`
+    scanner : (N,) numbers of the scanners from 0
+    start : s, the first gps_time
+    origin : (3,) map coordinates
+    has_time : whether the points' times differ
+    drives : slices of the rows between gaps in time
+    left_out : points of drives too short to be estimated
+    """
+
+    time: np.ndarray
+    place: np.ndarray
+    scanner: np.ndarray
+    start: float
+    origin: np.ndarray
+    has_time: bool
+    drives: list[slice]
+    left_out: int = 0
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    @property
+    def scanners(self) -> int:
+        """The number of scanners."""
+        return int(self.scanner.max()) + 1 if len(self) else 0
+
+
+def read_samples(files: Sequence[CloudHeader], scanner_field: str = "automatic", progress: Progress = Progress()) -> Samples:
+    """Every n-th first return of the files, n such that MAX_SAMPLES are read at most.
+
+    Parameters
+    ----------
+    files : headers of the clouds
+    scanner_field : "automatic", "scanner_channel" or "point_source_id"
+    progress : Progress
+
+    Raises
+    ------
+    RoadExtractionError
+        If a file cannot be read, or too few points are left.
+    """
+    stride = max(-(-sum(file.count for file in files) // MAX_SAMPLES), 1)
+    stride += stride > 1 and stride % 2 == 0   # an even one could follow the pattern of two scanners that take turns
+    origin = np.floor(np.min([file.minimum for file in files if file.count], axis=0))
+    census, parts = ScannerCensus(), []
+
+    with ParallelCloudReader(SAMPLED_LAYERS) as readers:
+        for found in ordered_map(lambda load: _sample(load(), stride, origin), readers.blocks(files, POINTS_PER_BLOCK), progress):
+            time, place, numbers = found
+            for name, column in COLUMN_OF_FIELD.items():
+                census.take(name, times_by_value(numbers[:, column], time))
+            parts.append(found)
+    time, place, numbers = (np.concatenate(column) for column in zip(*parts))
+    del parts
+    if len(time) < MIN_DRIVE_SAMPLES:
+        raise RoadExtractionError(
+            f"The point clouds have {len(time)} usable points; a trajectory is estimated from {MIN_DRIVE_SAMPLES} and more. Give the whole survey.")
+    field, values = census.choose(scanner_field)
+    scanner = np.zeros(len(time), np.uint8)
+    if field is not None:
+        column = numbers[:, COLUMN_OF_FIELD[field]]
+        scanner = numbers_by_value(values, int(column.max()) + 1)[column]
+    span = float(time.min()), float(time.max())
+    if span[0] == span[1]:
+        return Samples(np.zeros(len(time)), place, scanner, span[0], origin, False, [slice(0, len(time))])
+    if wrapped_week(span):
+        time = np.where(time < SECONDS_PER_WEEK / 2, time + SECONDS_PER_WEEK, time)
+    order = np.argsort(time, kind="stable")
+    time, place, scanner = time[order], place[order], scanner[order]
+    start = float(time[0])
+    time -= start
+    cuts = np.flatnonzero(np.diff(time) > MAX_GAP_IN_DRIVE) + 1
+    drives = [slice(int(a), int(b)) for a, b in zip(np.r_[0, cuts], np.r_[cuts, len(time)])]
+    long = [drive for drive in drives if drive.stop - drive.start >= MIN_DRIVE_SAMPLES]
+    left_out = len(time) - sum(drive.stop - drive.start for drive in long)
+    return Samples(time, place, scanner, start, origin, True, long, left_out * stride)
+
+
+def _sample(block, stride, origin):
+    """(N,) gps_time, (N, 3) local places and (N, 2) source and channel of every `stride`-th first return of a block."""
+    raw, names = block.array, set(block.point_format.dimension_names)
+    first = np.flatnonzero(np.asarray(block["return_number"]) <= 1)[stride // 2::stride]
+    if "withheld" in names:
+        first = first[np.asarray(block["withheld"])[first] == 0]
+    place = np.stack([raw[name][first] * scale + (offset - start)
+                      for name, scale, offset, start in zip("XYZ", block.scales, block.offsets, origin)], axis=1)
+    time = raw["gps_time"][first].astype(float) if "gps_time" in raw.dtype.names else np.zeros(len(first))
+    channel = np.asarray(block["scanner_channel"])[first] if "scanner_channel" in names else np.zeros(len(first), np.int64)
+    usable = np.isfinite(time)
+    return time[usable], place[usable], np.stack([raw["point_source_id"][first], channel], axis=1).astype(np.int64)[usable]

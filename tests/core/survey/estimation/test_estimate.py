@@ -1,0 +1,150 @@
+"""A known trajectory that is left out comes back from the points alone."""
+
+import numpy as np
+import pytest
+from drives import EAST, NORTH, write_cloud
+from lanewright.core.common.errors import RoadExtractionError
+from lanewright.core.survey.estimation.estimate import MAX_SIGMA, estimate_trajectory
+from mirror_drives import START, Mirror, mirror_drive, section, swaying
+
+BUTTERFLY = (Mirror(-45.0, -20.0, (0.0, 0.32, 0.0)), Mirror(45.0, -20.0, (0.0, -0.32, 0.0), ahead=0.55))
+OPEN = section(wall=(20.0, 1.0))
+
+
+def close(drive, found, place=0.03, height=0.02):
+    """Whether a trajectory lies on the truth: within `place` to the side and `height` up, but for its ends within a few centimetres."""
+    ahead, left, up = drive.errors(found.trajectory)
+    time = found.trajectory.time
+    inner = (time > time[0] + 0.5) & (time < time[-1] - 0.5)
+    assert np.ptp(time) > 5.0
+    assert np.sqrt(np.mean(left[inner] ** 2)) < place and np.sqrt(np.mean(up[inner] ** 2)) < height
+    assert np.abs(np.stack([left, up])).max() < 0.3 and np.abs(ahead).max() < 0.3
+
+
+CASES = {
+    "two scanners, their planes crossed": dict(mirrors=BUTTERFLY),
+    "one scanner straight across": dict(mirrors=[Mirror(0.0, 0.0)]),
+    "one turned and leaning": dict(mirrors=[Mirror(-40.0, -12.0)]),
+    "leaning forward by as much as it is turned": dict(mirrors=[Mirror(30.0, 30.0)]),
+    "the other way round": dict(mirrors=[Mirror(45.0, -20.0, rate=-100.0)]),
+    "slow and sparse": dict(mirrors=[Mirror(45.0, -20.0, rate=20.0, pulses=6000.0)]),
+    "two of different rates": dict(mirrors=[Mirror(-45.0, -20.0, (0.0, 0.4, 0.0), rate=80.0), Mirror(45.0, -20.0, (0.0, -0.4, 0.0), rate=120.0)]),
+    "a rotation that swings": dict(mirrors=BUTTERFLY, wander=0.005),
+    "a steep crown": dict(mirrors=BUTTERFLY, corners=section(crown=0.05), poses=swaying(crossfall=0.05)),
+    "no walls": dict(mirrors=BUTTERFLY, corners=OPEN),
+    "noisy ranges": dict(mirrors=BUTTERFLY, noise=0.03),
+}
+
+
+@pytest.mark.parametrize("case", CASES.values(), ids=CASES)
+def test_a_trajectory_left_out_comes_back_within_centimetres(tmp_path, case):
+    drive = mirror_drive(**case)
+    found = estimate_trajectory([drive.write(tmp_path / "cloud.laz")])
+    assert found.method == "rays" and len(found.scanners) == len(case["mirrors"])
+    close(drive, found)
+
+
+@pytest.fixture(scope="module")
+def street():
+    return mirror_drive(BUTTERFLY)
+
+
+def test_the_mounting_is_found(tmp_path, street):
+    poses = estimate_trajectory([street.write(tmp_path / "cloud.laz")]).adjusted.poses
+    np.testing.assert_allclose(np.degrees(poses.turn), [-45.0, 45.0], atol=0.3)
+    np.testing.assert_allclose(np.degrees(poses.lean), [-20.0, -20.0], atol=0.3)
+    np.testing.assert_allclose(poses.lever, [[0.0, 0.32, 0.0], [0.0, -0.32, 0.0]], atol=0.02)
+
+
+def test_attitude_follows_the_springs(tmp_path, street):
+    track = estimate_trajectory([street.write(tmp_path / "cloud.laz")]).trajectory
+    _, _, _, roll, pitch, yaw = street.poses(track.time)
+    inner = slice(50, -50)
+    for found, true in ((track.roll, np.degrees(roll)), (track.pitch, np.degrees(pitch)), (90.0 - track.heading, np.degrees(yaw))):
+        off = (found - true + 180.0) % 360.0 - 180.0
+        assert np.std(off[inner]) < 0.1 and np.abs(np.mean(off[inner])) < 1.0
+
+
+def test_the_uncertainty_grows_where_few_points_are(tmp_path, street):
+    time = street.time - START
+    kept = (time < 2.0) | (time > 2.9)
+    found = estimate_trajectory([street.write(tmp_path / "cloud.laz", kept)])
+    at = found.trajectory.time - START
+    gap, rest = (at > 2.3) & (at < 2.6), (at > 0.5) & (at < 1.7)
+    assert found.sigma[gap].max() > 3 * found.sigma[rest].max()
+    assert found.sigma.max() <= MAX_SIGMA
+    ahead, left, _ = street.errors(found.trajectory)
+    assert np.mean(np.hypot(ahead, left) <= 3 * found.sigma) > 0.9
+
+
+@pytest.mark.parametrize("keep", [4, 10], ids=["one in four", "one in ten"])
+def test_a_thinned_cloud_gives_the_same_trajectory(tmp_path, street, keep):
+    chosen = np.random.default_rng(1).random(len(street.time)) < 1 / keep
+    close(street, estimate_trajectory([street.write(tmp_path / "thin.laz", chosen)]))
+
+
+def test_files_may_come_in_any_order_and_the_points_too(tmp_path, street):
+    whole = estimate_trajectory([street.write(tmp_path / "cloud.laz")]).trajectory
+    mixed = np.random.default_rng(2).permutation(len(street.time))
+    halves = [street.write(tmp_path / f"{name}.laz", mixed[k::2]) for k, name in enumerate("ba")]
+    parts = estimate_trajectory(halves).trajectory
+    np.testing.assert_allclose(parts.time, whole.time, atol=1e-6)
+    np.testing.assert_allclose(np.c_[parts.x, parts.y, parts.z][25:-25], np.c_[whole.x, whole.y, whole.z][25:-25], atol=0.002)
+
+
+def test_a_gap_in_time_makes_two_drives(tmp_path):
+    drive = mirror_drive(BUTTERFLY, seconds=14.0)
+    since = drive.time - START
+    found = estimate_trajectory([drive.write(tmp_path / "cloud.laz", (since < 6.0) | (since > 8.0))])
+    at = found.trajectory.time - START
+    assert not ((at > 6.1) & (at < 7.9)).any()
+    close(drive, found)
+    assert found.length == pytest.approx(120.0, abs=3.0)
+
+
+def test_without_time_the_ridge_of_density_is_followed_and_said_to_be_rough(tmp_path):
+    drive = mirror_drive(BUTTERFLY, seconds=8.0)
+    found = estimate_trajectory([drive.write(tmp_path / "cloud.laz", with_time=False)])
+    assert found.method == "density" and not found.trajectory.has_time
+    assert "rough" in found.notes[0]
+    track = found.trajectory
+    inner = (track.x - EAST > 5.0) & (track.x - EAST < 75.0)
+    assert inner.sum() > 100
+    assert np.abs(track.y[inner] - NORTH - -1.5).max() < 0.6
+    assert np.abs(track.z[inner] - 100.0 - 2.5).max() < 0.5
+
+
+def test_an_airborne_cloud_is_refused_by_name(tmp_path):
+    rng = np.random.default_rng(4)
+    time = START + np.arange(0.0, 3.0, 1e-4)
+    x, y = 60.0 * (time - START), 300.0 * np.tan(np.radians(25.0) * np.sin(2 * np.pi * 50.0 * time))
+    path = write_cloud(tmp_path / "air.laz", x + EAST, y + NORTH, 100.0 + rng.normal(0, 0.05, len(x)), time)
+    with pytest.raises(RoadExtractionError, match="airborne"):
+        estimate_trajectory([path])
+
+
+def test_a_terrestrial_scan_is_refused_by_name(tmp_path):
+    def tripod(time):
+        t = np.asarray(time) - START
+        zero = np.zeros(len(t))
+        return zero, zero - 1.0, zero + 1.8, zero, zero, np.radians(20.0) * t
+
+    drive = mirror_drive([Mirror(0.0, 0.0, rate=50.0)], seconds=9.0, poses=tripod)
+    with pytest.raises(RoadExtractionError, match="terrestrial"):
+        estimate_trajectory([drive.write(tmp_path / "tripod.laz")])
+
+
+def test_a_handheld_cloud_is_refused_by_name(tmp_path):
+    rng = np.random.default_rng(5)
+    time = np.sort(START + rng.uniform(0.0, 30.0, 60_000))
+    around = rng.uniform(0.0, 2 * np.pi, len(time))
+    reach = np.abs(rng.standard_cauchy(len(time)).clip(-8, 8)) + 0.5
+    x, y = 1.2 * (time - START) + reach * np.cos(around), reach * np.sin(around)
+    path = write_cloud(tmp_path / "walk.laz", x + EAST, y + NORTH, 100.0 + rng.normal(0, 0.02, len(x)), time)
+    with pytest.raises(RoadExtractionError, match="handheld"):
+        estimate_trajectory([path])
+
+
+def test_too_few_points_are_refused(tmp_path, street):
+    with pytest.raises(RoadExtractionError, match="whole survey"):
+        estimate_trajectory([street.write(tmp_path / "few.laz", slice(0, 900))])
