@@ -6,6 +6,7 @@ which knows how values are given there and how layers are read and written.
 
 import os
 import tempfile
+from contextlib import ExitStack
 from pathlib import Path
 
 from ..core.common.errors import RoadExtractionError
@@ -37,6 +38,7 @@ class Call:
         self._scratch = tempfile.TemporaryDirectory(prefix="lanewright-")
         self._results = {}
         self._layers = []
+        self._at_end = ExitStack()
 
     def label(self, name):
         return self.algorithm.parameter(name).label
@@ -244,7 +246,12 @@ class Call:
         """A message with the names of unfinished files replaced by those the user gave."""
         return self._files.in_users_names(text)
 
+    def at_end(self, action):
+        """Call a function when the run ends, however it does."""
+        self._at_end.callback(action)
+
     def discard_unfinished(self):
+        self._at_end.close()
         self._files.discard()
         self._scratch.cleanup()
 

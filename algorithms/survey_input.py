@@ -36,6 +36,16 @@ SURVEY_SETTINGS = (
     ),
 )
 
+EXECUTION_SETTINGS = (
+    SettingSpec(
+        "WORKERS", "execution.choice:ExecutionSettings", "workers", tr("Worker processes, 0 = automatic (whole number)"),
+        tr("So many further processes of Python find curbs and make scanlines, with the same results. More are faster as long as there "
+           "are processor cores for them, and each takes some hundred MB of memory. Automatic takes one per core for surveys of more than "
+           "100 million points, and none for smaller ones. Where no Python can be started, this program does their work, and the log says so."),
+        advanced=True,
+    ),
+)
+
 
 WITHOUT_TRAJECTORY = tr("Left out, it is estimated from the points (see Estimate trajectory).")
 
@@ -65,11 +75,13 @@ def survey_inputs(call, progress):
 
 
 def open_survey_of(call, progress):
-    """The survey of POINT_CLOUDS and TRAJECTORY."""
+    """The survey of POINT_CLOUDS and TRAJECTORY, open until the run ends."""
     from ..core.survey.open_survey import open_survey
 
     paths, trajectory = survey_inputs(call, progress)
-    return open_survey(paths, trajectory, call.settings(SURVEY_SETTINGS, crs=call.crs()), progress)
+    survey = open_survey(paths, trajectory, call.settings(SURVEY_SETTINGS, crs=call.crs()), progress, call.settings(EXECUTION_SETTINGS))
+    call.at_end(survey.store.close)
+    return survey
 
 
 def frame_of(call, crs, progress, road_points=None, layers=None):

@@ -46,7 +46,7 @@ def executor_for(points: int, settings: ExecutionSettings = ExecutionSettings(),
         return Threads()
     interpreter = find_interpreter()
     if not interpreter:
-        progress.info("No Python interpreter was found that worker processes can be started with, so threads of this program do the work.")
+        progress.info("No Python interpreter was found that worker processes can be started with, so threads of this program do their work.")
         return Threads()
-    progress.info(f"{workers} worker process(es) of {interpreter} do the work.")
+    progress.info(f"Curbs and scanlines are found by {workers} worker process(es), {interpreter}.")
     return WorkerProcesses(interpreter, workers)

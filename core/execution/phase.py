@@ -89,6 +89,9 @@ class Executor(Protocol):
             Whatever the function raises.
         """
 
+    def release(self) -> None:
+        """Free memory that is of use in further phases alone."""
+
     def close(self) -> None:
         """End what was started and remove what was written."""
 

@@ -8,6 +8,7 @@ import shutil
 import subprocess  # nosec B404
 import tempfile
 import threading
+import weakref
 from collections.abc import Iterator, Sequence
 from itertools import count
 from pathlib import Path
@@ -41,6 +42,8 @@ class WorkerProcesses:
     def __init__(self, interpreter: str, workers: int):
         self.interpreter, self.workers = interpreter, workers
         self.folder = Path(tempfile.mkdtemp(prefix="lanewright-"))
+        # where nobody closes it; workers end by themselves when their input does
+        self._left = weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
         self._idle: queue.SimpleQueue[_Worker] = queue.SimpleQueue()
         self._all: set[_Worker] = set()
         self._lock = threading.Lock()
@@ -128,11 +131,16 @@ class WorkerProcesses:
         with self._lock:
             self._all.discard(worker)
 
+    def release(self) -> None:
+        """End the workers; the next phase starts new ones."""
+        self._idle = queue.SimpleQueue()
+        while self._all:
+            self._all.pop().end()
+
     def close(self) -> None:
-        """End the workers and remove the folder."""
-        workers, self._all = self._all, set()
-        for worker in workers:
-            worker.end()
+        """End the workers and remove the folder; nothing more is run."""
+        self.release()
+        self._left.detach()
         shutil.rmtree(self.folder, ignore_errors=True)
 
 

@@ -25,6 +25,9 @@ class Threads:
         """Yield the results of all items in their order; see `Executor`."""
         return ordered_map(phase.result, items, progress, self.count)
 
+    def release(self) -> None:
+        """Nothing is kept between phases."""
+
     def close(self) -> None:
         """Nothing is left to end."""
 

@@ -18,6 +18,7 @@ from ..common.features import Features
 from ..common.progress import Progress
 from ..driving.driving_layers import curve_elements_to_features, driving_lines_to_features
 from ..driving.driving_lines import DrivingSettings, make_driving_lines
+from ..execution.choice import ExecutionSettings
 from ..intensity.correction import IntensitySettings, correct_intensity
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image
 from ..io.geotiff import IntensityImage
@@ -52,6 +53,7 @@ class RoadMapSettings:
     """The settings of every stage, and whether intensity is corrected first."""
 
     survey: SurveySettings = SurveySettings()
+    execution: ExecutionSettings = ExecutionSettings()
     boundary_method: str = BoundarySettings.method
     curbs: CurbSettings = CurbSettings()
     planes: ScanlineSettings = ScanlineSettings()
@@ -152,7 +154,8 @@ def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_pat
     """
     stages = Stages(progress, Extent.expected(paths, trajectory, settings.survey.crs), settings.boundary_method,
                     () if settings.correct else ("intensity",))
-    survey = stages.run("survey", "Reading the survey …", open_survey, paths, trajectory, settings.survey)
+    survey = stages.run("survey", "Reading the survey …", open_survey, paths, trajectory, settings.survey,
+                        execution=settings.execution)
     try:
         return _map_of(survey, image_path, settings, stages)
     except BaseException:
@@ -168,6 +171,7 @@ def _map_of(survey, image_path, settings, stages):
         # before hours of work, not after
         check_fits(*_span(survey), settings.image)
     found = stages.run("curbs", "Detecting curbs …", find_curb_points, survey, settings.boundaries)
+    survey.executor.release()
     boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, found, survey.frame, settings.edges)
     road_points, surface = stages.run("surface", "Extracting the road surface …", extract_road_surface,
                                       survey, boundaries.edges, settings.surface)

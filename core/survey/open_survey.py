@@ -12,6 +12,7 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
+from ..execution.choice import ExecutionSettings, executor_for
 from ..execution.phase import Executor, Recipe
 from ..execution.plain import read_plain, write_plain
 from ..execution.threads import THREADS
@@ -166,7 +167,7 @@ def survey_in_folder(folder: str) -> Survey:
 
 
 def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
-                progress: Progress = Progress()) -> Survey:
+                progress: Progress = Progress(), execution: ExecutionSettings = ExecutionSettings()) -> Survey:
     """Read point clouds once and project every point into the road frame.
 
     Parameters
@@ -175,10 +176,11 @@ def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: S
     trajectory : Trajectory in any CRS and time system
     settings : SurveySettings
     progress : Progress
+    execution : who runs the phases that read from the survey
 
     Returns
     -------
-    Survey
+    Survey; closing its store ends everything that was started for it
 
     Raises
     ------
@@ -239,6 +241,8 @@ def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: S
         check_clock(survey, progress)
     if again:
         adjust_passes(survey, progress.part(INGEST_PROGRESS, 1.0))
+    survey.executor = executor_for(survey.store.count, execution, progress)
+    survey.store.at_close = survey.executor.close
     return survey
 
 

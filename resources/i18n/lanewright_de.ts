@@ -3335,6 +3335,16 @@
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />
+            <source>Worker processes, 0 = automatic (whole number)</source>
+            <translation>Arbeitsprozesse, 0 = automatisch (ganze Zahl)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
+            <source>So many further processes of Python find curbs and make scanlines, with the same results. More are faster as long as there are processor cores for them, and each takes some hundred MB of memory. Automatic takes one per core for surveys of more than 100 million points, and none for smaller ones. Where no Python can be started, this program does their work, and the log says so.</source>
+            <translation>So viele weitere Python-Prozesse suchen Bordsteine und bilden Scanlinien, mit denselben Ergebnissen. Mehr sind schneller, solange es Prozessorkerne für sie gibt; jeder braucht einige hundert MB Speicher. Automatisch ist einer je Kern bei Aufnahmen mit mehr als 100 Millionen Punkten, keiner bei kleineren. Wo sich kein Python starten lässt, übernimmt dieses Programm ihre Arbeit, und das Protokoll sagt es.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
             <source>No trajectory was given; it is estimated from the points …</source>
             <translation>Es wurde keine Trajektorie angegeben; sie wird aus den Punkten geschätzt …</translation>
         </message>

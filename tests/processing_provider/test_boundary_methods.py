@@ -2,6 +2,7 @@
 
 import pytest
 from osgeo import ogr
+from qgis.core import QgsProcessingFeedback
 
 pytestmark = pytest.mark.slow
 
@@ -30,6 +31,22 @@ def test_every_method_draws_both_sides(survey, tmp_path, method):
     assert {row["side"] for row in rows} == {"left", "right"}
     told = [row["agree_cm"] for row in rows if row["agree_cm"] is not None]
     assert bool(told) == (method == "both") and all(cm < 5 for cm in told)
+
+
+def test_worker_processes_draw_the_same_edges(survey, tmp_path):
+    """To the last bit, started from inside QGIS."""
+    import processing
+
+    drawn = []
+    for workers in (0, 2):
+        edges, heard = tmp_path / f"edges{workers}.gpkg", QgsProcessingFeedback(False)
+        processing.run("lanewright:detectboundaries", {
+            "POINT_CLOUDS": [survey["POINT_CLOUD"]], "TRAJECTORY": survey["TRAJECTORY"], "WORKERS": workers, "ROAD_EDGES": str(edges),
+        }, feedback=heard)
+        assert ("worker process" in heard.textLog()) == bool(workers)
+        source = ogr.Open(str(edges))
+        drawn.append([(bytes(feature.geometry().ExportToWkb()), feature.items()) for feature in source.GetLayer(0)])
+    assert drawn[0] == drawn[1]
 
 
 def test_the_road_map_report_shows_how_far_apart_the_methods_are(survey, tmp_path):

@@ -82,6 +82,7 @@ class SectionStore:
         self._waiting_bytes = 0
         self._file: SpillFile | None = None
         self._count = 0
+        self.at_close: Callable[[], None] | None = None   # called once the points are released
 
     @property
     def count(self) -> int:
@@ -311,6 +312,8 @@ class SectionStore:
         if self._file is not None:
             self._file.close()
             self._file = None
+        if self.at_close is not None:
+            self.at_close()
 
 
 class _ColumnOverlay(SectionStore):
