@@ -109,9 +109,11 @@ class PlanBuilder:
         return path.at(s, _offsets(offset, s))
 
     def rail(self, path: Path, start: float, end: float, offset: Offset, length: float = 4.0) -> None:
-        """Add a guard rail with posts."""
+        """Add a guard rail with posts, in lengths of the path; where the offset jumps to the other side, the rail is interrupted."""
         ends = self.along(path, start, end, length, offset)
         for a, b in zip(ends[:-1], ends[1:]):
+            if np.hypot(*(b - a)) > 2 * length:
+                continue
             heading = float(np.arctan2(*(b - a)[::-1]))
             self.objects.append(("rail", (a + b) / 2, heading, (float(np.hypot(*(b - a))),)))
             self.pole(a, 0.75, 0.05)

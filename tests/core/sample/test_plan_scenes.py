@@ -8,6 +8,7 @@ import shapely
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.sample.orthophoto import uav_control_points
 from lanewright.core.sample.parts.materials import CARRIAGEWAY_LABELS, LABEL
+from lanewright.core.sample.parts.obstacles import Rail
 from lanewright.core.sample.plan.trace import trace
 from lanewright.core.sample.survey import SampleSettings, make_sample_survey
 
@@ -255,6 +256,16 @@ def test_hairpins_have_a_radius_of_12_m_are_wider_and_lean_inward():
     sign = np.sign(bend[hairpin])
     inner, outer = (scene.height(*axis.at(s[hairpin], way * sign * 2.0).T) for way in (1, -1))
     np.testing.assert_allclose((outer - inner) / 4.0, 0.06, atol=0.008)
+
+
+@pytest.mark.parametrize("scene", ["motorway", "serpentine"])
+def test_no_rail_stands_on_the_carriageway(scene):
+    scene = make_sample_survey(SampleSettings(scene=scene)).scene
+    rails = [thing for thing in scene.obstacles if isinstance(thing, Rail)]
+    assert len(rails) > 20
+    for rail in rails:
+        along = np.linspace(-rail.length / 2, rail.length / 2, 20)
+        assert not shapely.contains_xy(scene.carriageway, rail.x + along * np.cos(rail.heading), rail.y + along * np.sin(rail.heading)).any()
 
 
 def test_curbs_are_dropped_at_the_zebra_crossings_and_the_truth_says_so(curbed):
