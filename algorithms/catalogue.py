@@ -8,6 +8,7 @@ from .driving.driving_lines import DrivingLines
 from .driving.road_map import RoadMap
 from .export.check_map import CheckMap
 from .export.export_lanelet2 import ExportLanelet2
+from .export.export_opendrive import ExportOpenDrive
 from .export.import_lanelet2 import ImportLanelet2
 from .export.import_opendrive import ImportOpenDrive
 from .inventory.cross_sections import CrossSections
@@ -48,6 +49,7 @@ ALGORITHMS = (
     FitMarkingLines,
     DrivingLines,
     RoadMap,
+    ExportOpenDrive,
     ExportLanelet2,
     ImportOpenDrive,
     ImportLanelet2,

@@ -48,7 +48,7 @@ class ExportLanelet2(Algorithm):
         from ...core.export.lanelet.writer import lanelet2_text, to_degrees
         from ...core.report.map_export import map_export_report
 
-        source = road_map_source(call)
+        source = road_map_source(call, progress.part(0.0, 0.2))
         progress.report(0.2)
         draft = draft_lanelets(source, call.settings(LANELET_SETTINGS, location=call.choice("LOCATION")))
         degrees = to_degrees(draft.nodes, source.lanes.crs)

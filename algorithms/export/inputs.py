@@ -3,6 +3,7 @@
 from ...core.common.schemas import DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES
 from ..call import existing_file
 from ..parameters import CrsSpec, FileSpec
+from ..survey_input import road_points_of
 from ..texts import tr
 
 OPENDRIVE_FILTER = "OpenDRIVE (*.xodr *.XODR *.xml);;All files (*.*)"
@@ -64,10 +65,13 @@ def add_road_map_layers(algorithm):
     algorithm.add_layer("MARKING_LINES", tr("Marking lines"), tr("The widths of the painted borders."), "LineStringZ", optional=True)
     algorithm.add_layer("ROAD_EDGES", tr("Road edges"), tr("The heights of curbs."), "LineStringZ", optional=True)
     algorithm.add_layer("MARKINGS", tr("Markings"), tr("Zebra crossings, stop lines, arrows and hatched areas."), "PolygonZ", optional=True)
+    algorithm.add_cloud("ROAD_POINTS", tr("Road points"), tr("With it the borders have the heights of the road's surface."), optional=True)
 
 
-def road_map_source(call):
+def road_map_source(call, progress):
     """The layers given, checked, as RoadMapSource."""
+    from dataclasses import replace
+
     from ...core.driving.lanes_layer import lanes_from_features
     from ...core.export.sources import RoadMapSource, checked
 
@@ -75,4 +79,13 @@ def road_map_source(call):
         lanes_from_features(call.features("LANES", LANES, "PolygonZ")), call.features("DRIVING_LINES", LINE_FIELDS, "LineStringZ"),
         call.features("MARKING_LINES", MARKING_LINE_FIELDS, "LineStringZ"), call.features("ROAD_EDGES", EDGE_FIELDS, "LineStringZ"),
         call.features("MARKINGS", MARKING_FIELDS, "PolygonZ"))
-    return checked(source)
+    source = checked(source)
+    if call.cloud("ROAD_POINTS"):
+        from ...core.export.surface_heights import with_surface_heights
+
+        road_points = road_points_of(call, "ROAD_POINTS", progress)
+        lanes, share = with_surface_heights(source.lanes, road_points)
+        road_points.close()
+        progress.info(tr("{share:.0f} % of the border vertices have heights of road points.").format(share=100 * share))
+        source = replace(source, lanes=lanes)
+    return source

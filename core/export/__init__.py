@@ -7,8 +7,10 @@ ours; findings on a map.
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
+    "fit_of_export": ("Misses", "border_misses", "driving_line_misses"),
     "map_layers": ("MapLayers", "MapLine"),
     "painted_objects": ("stop_lines", "walked_crossings"),
     "sources": ("RoadMapSource", "checked"),
+    "surface_heights": ("with_surface_heights",),
     "xml_tree": ("XmlElement", "read_xml", "xml_text"),
 })

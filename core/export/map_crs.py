@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..common.errors import RoadExtractionError
-from ..io.crs import check_metric, horizontal_part, parse_crs
+from ..io.crs import check_metric, horizontal_part, parse_crs, same_crs
 
 
 def crs_of_reference(text: str, given: str) -> tuple[str, str]:
@@ -36,6 +36,20 @@ def crs_of_reference(text: str, given: str) -> tuple[str, str]:
     except RoadExtractionError as problem:
         return "", (f"The geoReference of the file cannot be used ({problem}) The layers have no CRS; where you know it, give it by the "
                     "parameter CRS.")
+
+
+def reference_of_crs(wkt: str) -> str:
+    """The text of geoReference for a CRS: PROJ where that says the same, else WKT; "" where unknown."""
+    import warnings
+
+    crs = horizontal_part(parse_crs(wkt))
+    if crs is None:
+        return ""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")   # pyproj warns that PROJ texts may lose something: what they lose is looked at here
+        text = crs.to_proj4()
+        same = bool(text) and same_crs(parse_crs(text), crs)
+    return text if same else str(crs.to_wkt())
 
 
 def metric_wkt(text: str, what: str) -> str:

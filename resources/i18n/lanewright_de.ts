@@ -1199,6 +1199,111 @@
             <translation>{count} Stücke vom Typ {kind} sind keine Lanelets und wurden weggelassen.</translation>
         </message>
         <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>Export OpenDRIVE</source>
+            <translation>OpenDRIVE exportieren</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>Writes lanes as an OpenDRIVE map for simulators: roads with a reference line, lane sections, heights, road marks and junctions.</source>
+            <translation>Schreibt Fahrstreifen als OpenDRIVE-Karte für Simulatoren: Straßen mit Referenzlinie, Abschnitten, Höhen, Markierungen und Knoten.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>The reference line is made of lines, arcs and spirals, where the tolerance allows none of them of parametric cubics. Lanes beside each other are one road; a section begins where a lane begins or ends. Widths are cubics, heights an elevation with superelevation or, on a crowned road, the shape of the cross-section. Connectors are the roads of junctions. Curbs are narrow lanes with their height; zebra crossings, stop lines, arrows and hatched areas are objects. What was inferred or bridged is said in userData.</source>
+            <translation>Die Referenzlinie besteht aus Geraden, Bögen und Klothoiden, wo die Toleranz keine davon zulässt aus parametrischen Polynomen dritten Grades. Fahrstreifen nebeneinander sind eine Straße; ein Abschnitt beginnt, wo ein Fahrstreifen beginnt oder endet. Breiten sind Polynome dritten Grades, Höhen ein Höhenverlauf mit Querneigung oder, bei Dachprofil, die Form des Querschnitts. Verbindungen sind die Straßen der Knoten. Borde sind schmale Streifen mit ihrer Höhe; Zebrastreifen, Haltlinien, Pfeile und Sperrflächen sind Objekte. Was erschlossen oder überbrückt ist, steht in userData.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>The file is read back and checked before it is handed over: the report says how far its borders lie from the survey's. OpenDRIVE stores no line to drive on; the report also says how far the middles of the lanes are from the driving lines. Signals, signs, speed limits and buildings are not there.</source>
+            <translation>Die Datei wird zurückgelesen und geprüft, bevor sie übergeben wird: Der Bericht sagt, wie weit ihre Ränder von denen der Vermessung liegen. OpenDRIVE speichert keine Fahrlinie; der Bericht sagt auch, wie weit die Mitten der Fahrstreifen von den Fahrlinien liegen. Signale, Schilder, Geschwindigkeiten und Gebäude sind nicht darin.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>xodr</source>
+            <translation>xodr</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>simulator</source>
+            <translation>Simulator</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>CARLA</source>
+            <translation>CARLA</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>esmini</source>
+            <translation>esmini</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>Tolerance (m)</source>
+            <translation>Toleranz (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>How far borders may be missed, across and in height. Smaller follows the survey more closely with more and shorter elements.</source>
+            <translation>Wie weit Ränder verfehlt werden dürfen, quer und in der Höhe. Kleiner folgt der Vermessung genauer, mit mehr und kürzeren Elementen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>Junctions</source>
+            <translation>Knoten</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>Largest distance of a border from the survey's (m)</source>
+            <translation>Größter Abstand eines Rands von dem der Vermessung (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>Largest difference in height of a border (m)</source>
+            <translation>Größter Höhenunterschied eines Rands (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>95th percentile of the distance of driving lines from the middles of lanes (m)</source>
+            <translation>95. Perzentil des Abstands der Fahrlinien von den Mitten der Fahrstreifen (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>OpenDRIVE file</source>
+            <translation>OpenDRIVE-Datei</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>Version</source>
+            <translation>Version</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>Of the format; older simulators read 1.7.</source>
+            <translation>Des Formats; ältere Simulatoren lesen 1.7.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>Automatic takes it from roads with lanes in both directions; choose it where all roads are one-way.</source>
+            <translation>Automatisch entnimmt sie Straßen mit Fahrstreifen in beiden Richtungen; wählen Sie sie, wo alle Straßen Einbahnstraßen sind.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>The layer of lanes has no CRS: the file has no geoReference.</source>
+            <translation>Der Layer der Fahrstreifen hat kein KBS: Die Datei hat keine geoReference.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>{roads} roads, {junctions} junctions; borders within {across:.3f} m of the survey's.</source>
+            <translation>{roads} Straßen, {junctions} Knoten; Ränder innerhalb {across:.3f} m von denen der Vermessung.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>Borders lie up to {across:.3f} m beside and {rise:.3f} m above or below those of the survey, more than the tolerance.</source>
+            <translation>Ränder liegen bis zu {across:.3f} m neben und {rise:.3f} m über oder unter denen der Vermessung, mehr als die Toleranz.</translation>
+        </message>
+        <message>
             <location filename="../../algorithms/export/import_lanelet2.py" />
             <source>Import Lanelet2</source>
             <translation>Lanelet2 importieren</translation>
@@ -1247,31 +1352,6 @@
             <location filename="../../algorithms/export/import_opendrive.py" />
             <source>Lanes of a section are a piece; lanes of roads in a junction are connectors. Sidewalks are no lanes: a road edge is drawn where one begins. Files that declare entities, or are not what a map can be, are refused.</source>
             <translation>Der Fahrstreifen eines Abschnitts ist ein Stück; Fahrstreifen von Straßen in einem Knoten sind Verbindungen. Gehwege sind keine Fahrstreifen: Wo einer beginnt, wird ein Fahrbahnrand gezeichnet. Dateien, die Entitäten vereinbaren oder keine Karte sein können, werden abgelehnt.</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/export/import_opendrive.py" />
-            <source>xodr</source>
-            <translation>xodr</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/export/import_opendrive.py" />
-            <source>simulator</source>
-            <translation>Simulator</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/export/import_opendrive.py" />
-            <source>CARLA</source>
-            <translation>CARLA</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/export/import_opendrive.py" />
-            <source>esmini</source>
-            <translation>esmini</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/export/import_opendrive.py" />
-            <source>OpenDRIVE file</source>
-            <translation>OpenDRIVE-Datei</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/import_opendrive.py" />
@@ -1340,6 +1420,11 @@
         </message>
         <message>
             <location filename="../../algorithms/export/inputs.py" />
+            <source>With it the borders have the heights of the road's surface.</source>
+            <translation>Damit haben die Ränder die Höhen der Fahrbahn.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/inputs.py" />
             <source>CRS of the layers</source>
             <translation>KBS der Layer</translation>
         </message>
@@ -1347,6 +1432,11 @@
             <location filename="../../algorithms/export/inputs.py" />
             <source>{count} lanes and pieces, {length:.0f} m of driven lanes.</source>
             <translation>{count} Fahrstreifen und Stücke, {length:.0f} m befahrene Fahrstreifen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/inputs.py" />
+            <source>{share:.0f} % of the border vertices have heights of road points.</source>
+            <translation>{share:.0f} % der Stützpunkte der Ränder haben Höhen von Fahrbahnpunkten.</translation>
         </message>
         <message>
             <location filename="../../algorithms/inventory/cross_sections.py" />

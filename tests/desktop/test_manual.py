@@ -55,8 +55,8 @@ def test_the_troubleshooting_quotes_what_is_really_said():
 
 
 def test_every_file_a_command_reads_is_written_by_the_command_of_another_page(made):
-    """In one folder, from the sample survey on; a trajectory as text and a map from elsewhere are what people bring."""
-    read, written = set(), {"trajectory.csv", "map.xodr", "map.osm", "lanes.gpkg"}
+    """In one folder, from the sample survey on; a trajectory as text is what people bring."""
+    read, written = set(), {"trajectory.csv", "lanes.gpkg"}
     for algorithm in ALGORITHMS:
         made_with = LanewrightAlgorithm(algorithm()).create()
         definitions = {d.name(): d for d in made_with.parameterDefinitions()}

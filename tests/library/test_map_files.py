@@ -79,3 +79,21 @@ def test_an_export_that_is_refused_leaves_the_last_good_map(tmp_path):
     assert (tmp_path / "map.osm").read_text() == "the last good map" and sorted(os.listdir(tmp_path)) == ["lanes.gpkg", "map.osm"]
     with pytest.raises(RoadExtractionError, match=r"written as \.osm only"):
         run("exportlanelet2", LANES=empty, OUTPUT=tmp_path / "map.xodr")
+
+
+def test_lanes_are_written_as_opendrive_with_a_report_that_says_how_well_they_fit(tmp_path):
+    lanes = lane_layer(tmp_path, made_lanes.s_curve(slope=0.02, crown=0.025))
+    results = run("exportopendrive", LANES=lanes, OUTPUT=tmp_path / "map.xodr", REPORT=tmp_path / "report.html", VERSION="1.8")
+    assert results["ROADS"] == 1 and results["FINDINGS"] == 0 and results["BORDER_MAXIMUM"] < 0.02
+    report = (tmp_path / "report.html").read_text()
+    assert "spiral" in report and "<svg" in report and 'revMinor="8"' in (tmp_path / "map.xodr").read_text()
+    assert run("importopendrive", INPUT=results["OUTPUT"], LANES=tmp_path / "again.gpkg")["LANE_COUNT"] == 2
+    with fiona.open(tmp_path / "again.gpkg") as layer:
+        assert layer.crs.to_epsg() == 25832
+
+
+@pytest.mark.parametrize("tolerance", ["0", "-1", "nan", "1e9"])
+def test_a_tolerance_that_is_none_is_refused(tmp_path, tolerance):
+    with pytest.raises(RoadExtractionError, match="Tolerance"):
+        run("exportopendrive", LANES=lane_layer(tmp_path, made_lanes.street()), OUTPUT=tmp_path / "map.xodr", TOLERANCE=tolerance)
+    assert not (tmp_path / "map.xodr").exists()

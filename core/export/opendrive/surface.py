@@ -8,6 +8,8 @@ from .geometry import Cubics
 from .model import MapRoad
 
 BORDER_STEP = 0.5   # m between the places at which borders are computed
+SAGITTA = 0.0005    # m by which the chord between two of them may miss a curve
+LEAST_BORDER_STEP = 0.05   # m
 
 
 class RoadSurface:
@@ -24,6 +26,8 @@ class RoadSurface:
     def stations(self, number: int, step: float = BORDER_STEP) -> np.ndarray:
         """(N,) metres of s at which a section is cut: evenly, and wherever a function of it changes."""
         road, first, last = self.road, self.road.sections[number].s, self.road.section_end(number)
+        bend = np.abs(road.plan.at(np.linspace(first, last, max(int((last - first) / step), 1) + 1))[2]).max()
+        step = min(step, max(float(np.sqrt(8 * SAGITTA / max(bend, 1e-9))), LEAST_BORDER_STEP))
         even = np.linspace(first, last, max(int(np.ceil((last - first) / step - 1e-9)), 1) + 1)
         own = [lane.width.rows[:, 0] + first for lane in road.sections[number].lanes.values()]
         knots = np.concatenate([even, [element.s for element in road.plan.elements], road.lane_offset.rows[:, 0], *own])

@@ -1,0 +1,106 @@
+"""Lanes written as OpenDRIVE."""
+
+from ..algorithm import Algorithm
+from ..parameters import ChoiceSpec, SettingSpec
+from ..texts import tr
+from .inputs import OPENDRIVE_FILTER, add_road_map_layers, road_map_source
+
+ROADS = "export.opendrive.exporter:OpenDriveSettings"
+VERSIONS, SIDES = ("1.7", "1.8"), ("automatic", "right", "left")
+ROAD_SETTINGS = (
+    SettingSpec("TOLERANCE", ROADS, "tolerance", tr("Tolerance (m)"),
+                tr("How far borders may be missed, across and in height. Smaller follows the survey more closely with more and shorter elements.")),
+)
+NUMBERS = (("ROADS", tr("Roads")), ("JUNCTIONS", tr("Junctions")), ("SUCCESSORS", tr("Links from one lane to the next")),
+           ("BORDER_MAXIMUM", tr("Largest distance of a border from the survey's (m)")),
+           ("HEIGHT_MAXIMUM", tr("Largest difference in height of a border (m)")),
+           ("DRIVING_LINE_P95", tr("95th percentile of the distance of driving lines from the middles of lanes (m)")),
+           ("FINDINGS", tr("Findings of the check")))
+
+
+class ExportOpenDrive(Algorithm):
+    ID, TITLE, GROUP = "exportopendrive", "Export OpenDRIVE", "Export"
+    SUMMARY = "Writes lanes as an OpenDRIVE map for simulators: roads with a reference line, lane sections, heights, road marks and junctions."
+    HELP = ("The reference line is made of lines, arcs and spirals, where the tolerance allows none of them of parametric cubics. Lanes beside each "
+            "other are one road; a section begins where a lane begins or ends. Widths are cubics, heights an elevation with superelevation or, on a "
+            "crowned road, the shape of the cross-section. Connectors are the roads of junctions. Curbs are narrow lanes with their height; zebra "
+            "crossings, stop lines, arrows and hatched areas are objects. What was inferred or bridged is said in userData.\n\n"
+            "The file is read back and checked before it is handed over: the report says how far its borders lie from the survey's. OpenDRIVE "
+            "stores no line to drive on; the report also says how far the middles of the lanes are from the driving lines. Signals, signs, "
+            "speed limits and buildings are not there.")
+    TAGS = ("OpenDRIVE", "xodr", "HD map", "simulator", "CARLA", "esmini")
+
+    def declare(self):
+        add_road_map_layers(self)
+        self.add(ChoiceSpec("VERSION", tr("Version"), tr("Of the format; older simulators read 1.7."), value=VERSIONS[0], choices=VERSIONS))
+        self.add_settings(ROAD_SETTINGS)
+        self.add(ChoiceSpec("TRAFFIC_SIDE", tr("Side of traffic"), tr(
+            "Automatic takes it from roads with lanes in both directions; choose it where all roads are one-way."), value=SIDES[0], choices=SIDES))
+        self.add_file("OUTPUT", tr("OpenDRIVE file"), tr("The map."), (".xodr",), OPENDRIVE_FILTER.split(" *.XODR")[0] + ")")
+        self.add_report()
+        for name, label in NUMBERS:
+            self.add_number(name, label)
+
+    def work(self, call, progress):
+        from pathlib import Path
+
+        from ...core.export.check.roads import check_opendrive
+        from ...core.export.fit_of_export import border_misses, driving_line_misses
+        from ...core.export.map_crs import reference_of_crs
+        from ...core.export.opendrive.exporter import draft_opendrive
+        from ...core.export.opendrive.layers import layers_of_opendrive
+        from ...core.export.opendrive.reader import read_opendrive
+        from ...core.export.opendrive.writer import opendrive_text
+
+        source = road_map_source(call, progress.part(0.0, 0.2))
+        settings = call.settings(ROAD_SETTINGS, version=call.choice("VERSION"), traffic_side=call.choice("TRAFFIC_SIDE"))
+        draft = draft_opendrive(source, settings, progress.part(0.2, 0.7))
+        draft.map.reference = reference_of_crs(source.lanes.crs)
+        path = call.new_file("OUTPUT")
+        Path(path).write_text(opendrive_text(draft.map), encoding="utf-8")
+        whole = read_opendrive(path)
+        shown, found = layers_of_opendrive(whole, source.lanes.crs), check_opendrive(whole, source.lanes.crs, progress.part(0.7, 0.9))
+        across, rise = border_misses(source.lanes, shown.lanes)
+        driven = driving_line_misses(source.driving_lines, shown.lanes)
+        notes = [*source.notes, *draft.notes]
+        if not source.lanes.crs:
+            notes.append(tr("The layer of lanes has no CRS: the file has no geoReference."))
+        if across.largest > settings.tolerance or rise.largest > settings.tolerance:
+            notes.append(tr("Borders lie up to {across:.3f} m beside and {rise:.3f} m above or below those of the survey, more than the "
+                            "tolerance.").format(across=across.largest, rise=rise.largest))
+        for note in notes:
+            progress.warn(note)
+        for fault, count in found.counts().items():
+            progress.warn(tr("{fault}: {count}").format(fault=fault, count=count))
+        progress.info(tr("{roads} roads, {junctions} junctions; borders within {across:.3f} m of the survey's.").format(
+            roads=len(whole.roads), junctions=len(whole.junctions), across=across.largest))
+        if call.wants("REPORT"):
+            call.text("REPORT", _report(call, whole, found, shown, (across, rise, driven), notes))
+        numbers = {"ROADS": len(whole.roads), "JUNCTIONS": len(whole.junctions), "SUCCESSORS": found.successors, "FINDINGS": len(found.found),
+                   "BORDER_MAXIMUM": across.largest, "HEIGHT_MAXIMUM": rise.largest}
+        if driven.places:
+            numbers["DRIVING_LINE_P95"] = driven.p95
+        return {name: float(value) for name, value in numbers.items()}
+
+
+def _report(call, whole, found, shown, misses, notes):
+    from collections import defaultdict
+
+    from ...core.report.map_export import map_export_report
+
+    lengths = defaultdict(float)
+    for road in whole.roads:
+        for element in road.plan.elements:
+            lengths[element.kind] += element.length
+    facts = [("Roads", len(whole.roads)), ("Junctions", len(whole.junctions)), ("Lanes of sections that are driven", found.lanes),
+             ("Links from one lane to the next", found.successors), ("Pairs of lanes side by side", found.neighbours),
+             ("False origin", f"{whole.offset[0]:g}, {whole.offset[1]:g}"), ("geoReference", whole.reference or "none")]
+    names = ("Borders, across", "Borders, in height", "Driving lines from the middles of lanes (measured)")
+    tables = [
+        ("Against the survey", ("", "Mean (m)", "95 % (m)", "Largest (m)", "Places"),
+         [(name, round(one.mean, 4), round(one.p95, 4), round(one.largest, 4), one.places) for name, one in zip(names, misses) if one.places]),
+        ("Elements of the reference lines", ("Element", "Length (m)"), sorted((kind, round(metres, 1)) for kind, metres in lengths.items())),
+    ]
+    if found.found:
+        tables.append(("Findings of the check", ("Fault", "Count"), sorted(found.counts().items())))
+    return map_export_report("OpenDRIVE map", call.layer_name("LANES"), facts, tables, notes, shown)

@@ -1,0 +1,66 @@
+"""How well an exported map keeps what it was made from."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+
+from ..common.features import Features
+from ..driving.lanes_layer import Lanes
+
+NEAR_BORDER = 1.0     # m from a line within which a place is held against it
+
+
+class Misses(NamedTuple):
+    """Metres: mean, 95th percentile, largest; and at how many places."""
+
+    mean: float
+    p95: float
+    largest: float
+    places: int
+
+
+def border_misses(source: Lanes, exported: Lanes) -> tuple[Misses, Misses]:
+    """(across, in height) of the source's border vertices against the borders that are read back."""
+    vertices = np.concatenate([source.left, source.right])
+    pieces = []
+    for k in range(len(exported)):
+        for border in exported.borders(k):
+            pieces.append(np.concatenate([border[:-1], border[1:]], axis=1))
+    segments = np.concatenate(pieces) if pieces else np.empty((0, 6))
+    return _misses(vertices, segments)
+
+
+def driving_line_misses(driving_lines: Features | None, exported: Lanes, measured_only: bool = True) -> Misses:
+    """Across, of driving lines against the middles of the lanes that are read back."""
+    middles = [(left + right) / 2 for left, right in (exported.borders(k) for k in range(len(exported))
+                                                      if exported.type[k] in ("driving", "connector"))]
+    rows = [shapely.get_coordinates(geometry, include_z=True) for geometry, row in driving_lines or ()
+            if geometry is not None and (not measured_only or row.get("status") in (None, "measured"))]
+    if not rows or not middles:
+        return _summary(np.empty(0))
+    return _misses(np.concatenate(rows), np.concatenate([np.concatenate([line[:-1], line[1:]], axis=1) for line in middles]))[0]
+
+
+def _misses(places, segments):
+    """(across, in height) of (N, 3) places against (M, 6) segments from end to end."""
+    lines = shapely.linestrings(segments.reshape(-1, 2, 3)[:, :, :2])
+    which, nearest = shapely.STRtree(lines).query_nearest(shapely.points(places[:, :2]), max_distance=NEAR_BORDER, all_matches=True)
+    first, last = segments[nearest, :3], segments[nearest, 3:]
+    run = (last - first)[:, :2]
+    share = np.clip(((places[which, :2] - first[:, :2]) * run).sum(1) / np.maximum((run**2).sum(1), 1e-12), 0.0, 1.0)
+    foot = first + share[:, None] * (last - first)
+    across = np.hypot(*(places[which, :2] - foot[:, :2]).T)
+    # where borders of neighbours lie on each other, the one at the place's own height counts
+    rise = np.full(len(places), np.inf)
+    np.minimum.at(rise, which, np.abs(places[which, 2] - foot[:, 2]))
+    found = np.unique(which, return_index=True)[1]
+    return _summary(across[found]), _summary(rise[np.isfinite(rise)])
+
+
+def _summary(values):
+    if not len(values):
+        return Misses(np.nan, np.nan, np.nan, 0)
+    return Misses(float(values.mean()), float(np.percentile(values, 95)), float(values.max()), len(values))

@@ -1,0 +1,233 @@
+"""Lanes of a road map as a map of OpenDRIVE."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ...common.progress import Progress
+from ...common.setting import check_limits, setting
+from ..sources import RoadMapSource, nearest_values
+from .junctions import link_roads
+from .model import MapLane, MapRoad, OpenDriveMap, RoadMark
+from .road_objects import add_objects
+from .road_shape import add_heights, add_lanes, centre_of, shape_of
+from .strips import Cell, Slice, cut_into_cells, is_connector, mark_junctions, slices_of, strips_of
+
+ROUND_ORIGIN = 100.0      # m: the false origin is a multiple of it
+LONGEST_JUNCTION = 100.0  # m of road between two ends of a junction
+SHORTEST_WAY = 2.0        # m at least of a road that is cut off for a way straight on through a junction
+LONGEST_WAY = 10.0        # m at most
+CURB_WIDTH = 0.15         # m, of a curb stone seen from above
+NEAREST_CURB = 0.5        # m from a border within which a road edge tells its height
+TYPE_OF_LANE = {"driving": "driving", "connector": "driving", "shoulder": "shoulder", "parking": "parking", "bicycle": "biking",
+                "hatched": "restricted", "median": "median"}
+MARK_OF_PATTERN = {"solid": "solid", "dashed": "broken", "double-solid": "solid solid", "double": "solid solid", "double-dashed": "broken broken",
+                   "solid-dashed": "solid broken", "dashed-solid": "broken solid"}
+USUAL_DASH = (3.0, 6.0)   # m of a dash and a gap where the country is not known, as on German roads out of town
+
+
+@dataclass(frozen=True)
+class OpenDriveSettings:
+    """tolerance : metres that borders may be missed; version : 1.7 or 1.8; traffic_side : automatic, right or left."""
+
+    tolerance: float = setting(0.02, 0.002, 0.5, "Tolerance", "m")
+    version: str = "1.7"
+    traffic_side: str = "automatic"
+    dash: tuple[float, float] = USUAL_DASH
+
+    def __post_init__(self) -> None:
+        check_limits(self)
+
+
+@dataclass
+class DraftRoad:
+    """A road with the cells that its lanes come from.
+
+    road; strip : slices; numbers : lane of every cell of every slice; single : whether it is a way through a junction
+    """
+
+    road: MapRoad
+    strip: list[Slice]
+    numbers: list[list[int]]
+    single: bool
+
+
+@dataclass
+class OpenDriveDraft:
+    """The map, the place of every cell in it, and notes for the user.
+
+    place : id of a cell -> (road, section, lane); cells : list of Cell
+    """
+
+    map: OpenDriveMap
+    roads: list[DraftRoad] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+
+def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDriveSettings(), progress: Progress = Progress()) -> OpenDriveDraft:
+    """Roads with reference line, sections, widths, heights, marks, objects, links and junctions.
+
+    Lanes that share borders lie side by side in one road; it goes on while one slice of lanes follows another. Connectors, and the lanes that
+    go straight on beside them, are the roads of a junction, one for each lane.
+
+    Parameters
+    ----------
+    source : RoadMapSource, checked
+    settings : OpenDriveSettings
+    progress : told of the share of the roads
+
+    Returns
+    -------
+    OpenDriveDraft
+    """
+    lanes = source.lanes
+    places = np.concatenate([lanes.left, lanes.right])
+    origin = np.append(np.floor(places[:, :2].mean(0) / ROUND_ORIGIN) * ROUND_ORIGIN, 0.0)
+    local = replace(source, lanes=replace(lanes, left=lanes.left - origin, right=lanes.right - origin))
+    drafting = _Drafting(local, origin, settings)
+    draft = OpenDriveDraft(OpenDriveMap((1, int(settings.version[-1])), "Lanewright", offset=(float(origin[0]), float(origin[1]), 0.0, 0.0)))
+    draft.notes += drafting.notes
+    strips = drafting.strips()
+    for number, (strip, single) in enumerate(strips, start=1):
+        made = drafting.road(strip, number, single)
+        draft.roads.append(made)
+        draft.map.roads.append(made.road)
+        progress.report(number / len(strips))
+    draft.notes += link_roads(draft.map, draft.roads)
+    add_objects(draft.map, source.markings, origin)
+    return draft
+
+
+class _Drafting:
+    def __init__(self, source: RoadMapSource, origin: np.ndarray, settings: OpenDriveSettings) -> None:
+        self.source, self.lanes, self.origin, self.settings = source, source.lanes, origin, settings
+        self.notes: list[str] = []
+        self.cells = cut_into_cells(self.lanes)
+        self.slices = slices_of(self.cells, self.lanes)
+        self.left_hand = self._left_hand()
+
+    def _left_hand(self) -> bool:
+        """Whether traffic keeps left: told by roads with both directions."""
+        if self.settings.traffic_side != "automatic":
+            return self.settings.traffic_side == "left"
+        votes = 0.0
+        for one in self.slices:
+            ways = [cell.direction for cell in one.cells if cell.direction]
+            if 1 in ways and -1 in ways:
+                votes += one.length * (1 if ways.index(-1) < ways.index(1) else -1)
+        if not votes:
+            self.notes.append("No road has lanes in both directions; traffic was taken to keep right. Set Side of traffic where it keeps left.")
+        return votes < 0
+
+    def strips(self) -> list[tuple[list[Slice], bool]]:
+        """(slices of a road, whether it is a way through a junction), ordinary roads first."""
+        mark_junctions(self.slices, self.lanes)
+        ordinary, inside = [], []
+        for one in self.slices:
+            if one.at_start and one.at_end and one.length < LONGEST_JUNCTION:
+                inside.append(one)
+                continue
+            if one.at_start:
+                part, one = one.split(_cut_row(one, False))
+                inside.append(part)
+            if one.at_end:
+                one, part = one.split(_cut_row(one, True))
+                inside.append(part)
+            ordinary.append(one)
+        owner = {id(cell): one for one in ordinary for cell in one.cells}
+        breaks = {(id(one), id(owner[id(other)])) for one in ordinary for cell in one.cells for other in cell.after if id(other) in owner
+                  and any(id(near) not in owner for near in cell.after + other.before)}
+        found = [([one.turned() for one in strip[::-1]] if _against(strip) else strip, False) for strip in strips_of(ordinary, breaks)]
+        ways = [cell for one in inside for cell in one.cells if cell.direction] + [cell for cell in self.cells if is_connector(cell, self.lanes)]
+        lost = sum(1 for one in inside for cell in one.cells if not cell.direction)
+        if lost:
+            self.notes.append(f"{lost} pieces that nobody drives lie within junctions, where OpenDRIVE has no place for them.")
+        for cell in ways:
+            single = Slice([cell])
+            found.append(([single.turned() if cell.direction < 0 else single], True))
+        return found
+
+    def road(self, strip: list[Slice], number: int, single: bool) -> DraftRoad:
+        tolerance = self.settings.tolerance
+        centres = [centre_of(one, self.left_hand) for one in strip]
+        shape = shape_of(strip, centres, tolerance / 2)
+        roads = sorted({int(self.lanes.road[cell.piece]) for one in strip for cell in one.cells})
+        road = MapRoad(str(number), shape.plan.length, shape.plan, f"Road {', '.join(map(str, roads))}", rule="LHT" if self.left_hand else "RHT")
+        numbers = add_lanes(road, shape, strip, centres, tolerance / 2)
+        add_heights(road, shape, tolerance)
+        status: dict[str, float] = defaultdict(float)
+        for one, ids, section, centre in zip(strip, numbers, road.sections, centres):
+            for cell, id in zip(one.cells, ids):
+                self._describe(section.lanes[id], cell)
+                status[str(self.lanes.status[cell.piece])] += cell.length
+            self._mark_centre(section.lanes[0], one, centre)
+            self._add_curbs(section.lanes, one, ids)
+            section.order = sorted(section.lanes, reverse=True)
+        if set(status) != {"measured"}:
+            road.data = {f"lanewright:{name}_m": f"{metres:.1f}" for name, metres in sorted(status.items())}
+        return DraftRoad(road, strip, numbers, single)
+
+    def _describe(self, lane: MapLane, cell: Cell) -> None:
+        lane.type = TYPE_OF_LANE[self.lanes.type[cell.piece]]
+        lane.marks = [self._mark(cell, lane.id > 0)]
+        lane.data = {"lanewright:lane_id": str(self.lanes.lane_id[cell.piece])}
+        if self.lanes.status[cell.piece] != "measured":
+            lane.data |= {"lanewright:status": str(self.lanes.status[cell.piece]),
+                          "lanewright:confidence": f"{self.lanes.confidence[cell.piece]:.2f}"}
+
+    def _about(self, cell: Cell, left: bool) -> tuple[str, str, str]:
+        """(kind, pattern, line) of the border on one side along the road."""
+        lanes, k = self.lanes, cell.piece
+        side = left if cell.direction >= 0 else not left
+        columns = (lanes.left_kind, lanes.left_pattern, lanes.left_line) if side else (lanes.right_kind, lanes.right_pattern, lanes.right_line)
+        return columns[0][k], columns[1][k], columns[2][k]
+
+    def _mark(self, cell: Cell, left: bool) -> RoadMark:
+        kind, pattern, line = self._about(cell, left)
+        if kind == "curb":
+            return RoadMark(0.0, "curb" if not pattern else MARK_OF_PATTERN.get(pattern, "none"))
+        name = MARK_OF_PATTERN.get(pattern, "none")
+        mark = RoadMark(0.0, name, "white" if name != "none" else "standard", self._paint_width(line))
+        if "broken" in name:
+            mark.dash, mark.gap = self.settings.dash
+        return mark
+
+    def _mark_centre(self, lane: MapLane, one: Slice, centre: int) -> None:
+        right = self._mark(one.cells[centre], True) if centre < len(one.cells) else None
+        left = self._mark(one.cells[centre - 1], False) if centre else None
+        lane.marks = [next((mark for mark in (right, left) if mark is not None and mark.type != "none"), right or left or RoadMark(0.0, "none"))]
+
+    def _paint_width(self, line: str) -> float:
+        layer = self.source.marking_lines
+        rows = layer.rows if layer is not None and line.startswith("line ") else ()
+        widths = [float(row["width_m"]) for row in rows if str(row.get("line")) == line[5:] and row.get("width_m") is not None]
+        return round(float(np.median(widths)), 3) if widths else RoadMark(0.0, "none").width
+
+    def _add_curbs(self, lanes: dict[int, MapLane], one: Slice, ids: list[int]) -> None:
+        for cell, id, border, left in ((one.cells[0], ids[0], one.cells[0].left, True), (one.cells[-1], ids[-1], one.cells[-1].right, False)):
+            if self._about(cell, left)[0] != "curb":
+                continue
+            beyond = max(lanes) + 1 if left else min(lanes) - 1
+            curb = MapLane(beyond, "curb", type(lanes[id].width).constant(CURB_WIDTH), [RoadMark(0.0, "none")])
+            heights = nearest_values(border[:, :2] + self.origin[:2], self.source.road_edges, "height_m", NEAREST_CURB)
+            if np.isfinite(heights).any():
+                curb.heights = np.array([[0.0, 0.0, round(float(np.nanmedian(heights)), 3)]])
+            lanes[beyond] = curb
+
+
+def _against(strip):
+    """Whether a road is driven against its direction alone."""
+    ways = {cell.direction for one in strip for cell in one.cells}
+    return -1 in ways and 1 not in ways
+
+
+def _cut_row(one: Slice, at_end: bool) -> int:
+    """The vertex at which a way through a junction is cut off from a slice: some metres from its end, a third of it at most."""
+    middle = (one.cells[0].left + one.cells[-1].right)[:, :2] / 2
+    along = np.append(0.0, np.cumsum(np.hypot(*np.diff(middle, axis=0).T)))
+    wanted = min(max(SHORTEST_WAY, along[-1] / 3), LONGEST_WAY)
+    row = int(np.argmin(np.abs(along - (along[-1] - wanted if at_end else wanted))))
+    return min(max(row, 1), len(along) - 2) if len(along) > 2 else 1

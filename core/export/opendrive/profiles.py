@@ -1,0 +1,129 @@
+"""Smooth functions along a road as piecewise cubics, with no more pieces than the tolerance asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from .geometry import Cubics
+
+STIFFNESS = 1e-3      # weight of the bending against the deviations: it decides only where there are too few places
+MOST_PIECES = 400     # of one section
+
+
+def fit_cubics(s: Sequence[np.ndarray], values: Sequence[np.ndarray], start: float, end: float, tolerance: float) -> list[Cubics]:
+    """Functions with common pieces, whose values and slopes go on from piece to piece.
+
+    Parameters
+    ----------
+    s, values : for each function (n,) metres, rising, and its values there
+    start, end : metres, of the functions; the first and last value are met there
+    tolerance : how far a value may be missed
+
+    Returns
+    -------
+    list of Cubics, `start` counted as 0
+    """
+    knots = np.array([start, end])
+    s = [np.asarray(one, float) for one in s]
+    while True:
+        fitted = [_hermite(one, value, knots) for one, value in zip(s, values)]
+        worst = np.zeros(len(knots) - 1)
+        for one, value, (levels, slopes) in zip(s, values, fitted):
+            missed = np.abs(_evaluated(one, knots, levels, slopes) - value)
+            np.maximum.at(worst, np.clip(np.searchsorted(knots, one, side="right") - 1, 0, len(worst) - 1), missed)
+        bad = np.flatnonzero(worst > tolerance)
+        inner = [(knots[k] + knots[k + 1]) / 2 for k in bad if _places_within(s, knots[k], knots[k + 1]) > 1]
+        if not inner or len(knots) > MOST_PIECES:
+            return [_pieces(knots, levels, slopes) for levels, slopes in fitted]
+        knots = np.sort(np.append(knots, inner))
+
+
+def broken_lines(s: Sequence[np.ndarray], values: Sequence[np.ndarray], start: float, end: float) -> list[Cubics]:
+    """The same functions by straight pieces from place to place of the first one: never below what they join."""
+    knots = np.unique(np.concatenate([[start], s[0][(s[0] > start + 1e-3) & (s[0] < end - 1e-3)], [end]]))
+    found = []
+    for one, value in zip(s, values):
+        levels = np.interp(knots, one, value)
+        found.append(Cubics(np.c_[knots[:-1] - start, levels[:-1], np.diff(levels) / np.diff(knots), np.zeros((len(knots) - 1, 2))]))
+    return found
+
+
+def difference(first: Cubics, second: Cubics) -> Cubics:
+    """first less second, which have the same pieces."""
+    return Cubics(np.c_[first.rows[:, 0], first.rows[:, 1:] - second.rows[:, 1:]])
+
+
+def simplified(cubics: Cubics) -> Cubics:
+    """Without pieces that only repeat the one before: constant and straight functions have one row."""
+    rows = cubics.rows
+    keep = [0]
+    for k in range(1, len(rows)):
+        ds = rows[k, 0] - rows[keep[-1], 0]
+        _, a, b, c, d = rows[keep[-1]]
+        moved = np.array([a + ds * (b + ds * (c + ds * d)), b + ds * (2 * c + ds * 3 * d), c + 3 * d * ds, d])
+        if np.abs(moved - rows[k, 1:]).max() > 1e-9:
+            keep.append(k)
+    tiny = rows[keep].copy()
+    tiny[:, 1:][np.abs(tiny[:, 1:]) < 1e-12] = 0.0
+    return Cubics(tiny)
+
+
+def _places_within(s, first, last):
+    return max(int(((one > first) & (one < last)).sum()) for one in s)
+
+
+def _basis(u: np.ndarray, h: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Hermite's functions: (value at start, slope at start, value at end, slope at end)."""
+    return 2 * u**3 - 3 * u**2 + 1, h * (u**3 - 2 * u**2 + u), 3 * u**2 - 2 * u**3, h * (u**3 - u**2)
+
+
+def _hermite(s, values, knots):
+    """(K,) levels and slopes at the knots by least squares; both ends are met."""
+    count = len(knots)
+    k = np.clip(np.searchsorted(knots, s, side="right") - 1, 0, count - 2)
+    h = np.diff(knots)
+    row = np.arange(len(s))
+    matrix = np.zeros((len(s), 2 * count))
+    for columns, weights in zip((k, count + k, k + 1, count + k + 1), _basis((s - knots[k]) / h[k], h[k])):
+        matrix[row, columns] = weights
+    # bending of every piece: the integral of the squared second derivative, by its values at both ends
+    stiff = np.zeros((2 * (count - 1), 2 * count))
+    j = np.arange(count - 1)
+    for at, (a, b) in enumerate((((-6, -4), (6, -2)), ((6, 2), (-6, 4)))):
+        rows = 2 * j + at
+        stiff[rows, j], stiff[rows, count + j] = a[0] / h**2, a[1] / h
+        stiff[rows, j + 1], stiff[rows, count + j + 1] = b[0] / h**2, b[1] / h
+    first, last = _at_ends(s, values, knots)
+    fixed = np.array([0, count - 1])
+    free = np.setdiff1d(np.arange(2 * count), fixed)
+    system = np.concatenate([matrix, STIFFNESS * stiff])
+    target = np.concatenate([values, np.zeros(len(stiff))]) - system[:, fixed] @ np.array([first, last])
+    found = np.empty(2 * count)
+    found[fixed] = first, last
+    found[free] = np.linalg.lstsq(system[:, free], target, rcond=None)[0]
+    return found[:count], found[count:]
+
+
+def _at_ends(s, values, knots):
+    """Values at the first and last knot, by the straight line through the outermost two places."""
+    found = []
+    for at, (i, j) in ((knots[0], (0, 1)), (knots[-1], (-1, -2))):
+        run = s[i] - s[j]
+        found.append(float(values[i] + ((values[i] - values[j]) / run * (at - s[i]) if abs(run) > 1e-6 else 0.0)))
+    return found
+
+
+def _evaluated(s, knots, levels, slopes):
+    k = np.clip(np.searchsorted(knots, s, side="right") - 1, 0, len(knots) - 2)
+    h = np.diff(knots)[k]
+    a, b, c, d = _basis((s - knots[k]) / h, h)
+    return a * levels[k] + b * slopes[k] + c * levels[k + 1] + d * slopes[k + 1]
+
+
+def _pieces(knots, levels, slopes):
+    h, rise = np.diff(knots), np.diff(levels)
+    c = (3 * rise / h - 2 * slopes[:-1] - slopes[1:]) / h
+    d = (slopes[:-1] + slopes[1:] - 2 * rise / h) / h**2
+    return Cubics(np.c_[knots[:-1] - knots[0], levels[:-1], slopes[:-1], c, d])

@@ -1,0 +1,222 @@
+"""One road of OpenDRIVE from slices of lanes: reference line, lane offset, widths, heights."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .geometry import Cubics, PlanView
+from .model import LaneSection, MapLane, MapRoad
+from .profiles import broken_lines, difference, fit_cubics, simplified
+from .reference_line import fit_reference, polynomial_reference
+from .strips import Slice
+
+NEAREST_POINTS = 0.005   # m between points of a guide line
+FLAT = 0.001             # m of height that a cross-section may miss without a crossfall of its own
+ROLLED = 0.001           # m by which a superelevation may move a border in plan: readers differ on whether it does
+SHAPE_STEP = 5.0         # m between cross-sections
+LEAST_END = 0.5          # m of width from which the end of a road has a direction
+MOST_ASKEW = 0.2         # rad between the end of a road and a square cut: more is askew on purpose
+FOOT_ROUNDS = 8
+LEAST_STEP = 0.001       # m along the road between places that count
+
+
+@dataclass
+class RoadShape:
+    """plan : reference line; s, t, z : for each slice a (borders, n) array of its vertices; starts : (sections + 1,) metres."""
+
+    plan: PlanView
+    s: list[np.ndarray]
+    t: list[np.ndarray]
+    z: list[np.ndarray]
+    starts: np.ndarray
+
+
+def centre_of(one: Slice, left_hand: bool) -> int:
+    """Number of the border at which lane 0 lies: traffic along the road is right of it, in left-hand traffic left."""
+    ways = [cell.direction for cell in one.cells]
+    along = [k for k, way in enumerate(ways) if way > 0]
+    against = [k for k, way in enumerate(ways) if way < 0]
+    if along:
+        return along[-1] + 1 if left_hand else along[0]
+    if against:
+        return against[0] if left_hand else against[-1] + 1
+    return len(ways) if left_hand else 0
+
+
+def shape_of(strip: list[Slice], centres: list[int], tolerance: float) -> RoadShape:
+    """The reference line through the borders at which lane 0 lies, and every vertex in its s and t.
+
+    Where lane 0 jumps aside, as where a lane for the opposite traffic begins, the reference line goes on beside it.
+
+    Parameters
+    ----------
+    strip : slices end to end
+    centres : number of a border in each
+    tolerance : metres that the centre border may lie beside the reference line; what is missed is made up by the lane offset
+    """
+    guide, index = _guide(strip, centres)
+    keep = np.append(True, np.hypot(*np.diff(guide, axis=0).T) > NEAREST_POINTS)
+    ends, widest = _end_headings(strip, guide)
+    plan = fit_reference(guide[keep], tolerance, ends, tolerance / max(widest, 1.0)) or fit_reference(guide[keep], tolerance) \
+        or polynomial_reference(guide[keep])
+    along = np.append(0.0, np.cumsum(np.hypot(*np.diff(guide, axis=0).T)))
+    along *= plan.length / along[-1]
+    s_all, t_all, z_all = [], [], []
+    for one, rows in zip(strip, index):
+        places = np.stack(one.borders())
+        s, t = feet(plan, places[..., :2].reshape(-1, 2), np.tile(along[rows], len(places)))
+        s_all.append(s.reshape(places.shape[:2]))
+        t_all.append(t.reshape(places.shape[:2]))
+        z_all.append(places[..., 2])
+    cuts = [float((s_all[k - 1][centres[k - 1], -1] + s_all[k][centres[k], 0]) / 2) for k in range(1, len(strip))]
+    return RoadShape(plan, s_all, t_all, z_all, np.array([0.0, *cuts, plan.length]))
+
+
+def _guide(strip, centres):
+    """((N, 2) places, rows of them for each slice) along lane 0 without its jumps, from the longest slice outwards."""
+    lines = [one.borders()[centre][:, :2] for one, centre in zip(strip, centres)]
+    first = int(np.argmax([one.length for one in strip]))
+    placed = {first: lines[first]}
+    for k in range(first + 1, len(strip)):
+        placed[k] = _beside(lines[k], placed[k - 1][-1], 0)
+    for k in range(first - 1, -1, -1):
+        placed[k] = _beside(lines[k], placed[k + 1][0], -1)
+    rows, at = [], 0
+    for k in range(len(strip)):
+        rows.append(np.arange(at, at + len(lines[k])))
+        at += len(lines[k]) - 1
+    return np.concatenate([placed[0], *(placed[k][1:] for k in range(1, len(strip)))]), rows
+
+
+def _end_headings(strip, guide):
+    """((start, end) headings square to the ends of the road, None where they are cut askew; metres, its width)."""
+    found, widest = [], 0.0
+    for one, row, way in ((strip[0], 0, guide[min(2, len(guide) - 1)] - guide[0]), (strip[-1], -1, guide[-1] - guide[-min(3, len(guide))])):
+        across = (one.cells[0].left[row] - one.cells[-1].right[row])[:2]
+        widest = max(widest, float(np.hypot(*across)))
+        heading, along = float(np.arctan2(-across[0], across[1])), float(np.arctan2(way[1], way[0]))
+        askew = abs((heading - along + np.pi) % (2 * np.pi) - np.pi)
+        found.append(heading if np.hypot(*across) > LEAST_END and askew < MOST_ASKEW else None)
+    return tuple(found), widest
+
+
+def _beside(line, place, end):
+    """A line moved aside as far as its end lies from a place."""
+    away = place - line[end]
+    if np.hypot(*away) < NEAREST_POINTS:
+        return line
+    way = np.gradient(line, axis=0)
+    normal = np.c_[-way[:, 1], way[:, 0]] / np.maximum(np.hypot(*way.T), 1e-9)[:, None]
+    return line + normal * (away @ normal[end])
+
+
+def feet(plan: PlanView, places: np.ndarray, near: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """((N,) s, (N,) t) of (N, 2) places, found from s nearby; beyond the ends the first and last element go on."""
+    s = np.array(near, float)
+    for _ in range(FOOT_ROUNDS):
+        on, heading, bend = plan.at(s)
+        dx, dy = places[:, 0] - on[:, 0], places[:, 1] - on[:, 1]
+        across = dy * np.cos(heading) - dx * np.sin(heading)
+        s = s + (dx * np.cos(heading) + dy * np.sin(heading)) / np.clip(1 - bend * across, 0.2, 5.0)
+    on, heading, _ = plan.at(s)
+    dx, dy = places[:, 0] - on[:, 0], places[:, 1] - on[:, 1]
+    return s, dy * np.cos(heading) - dx * np.sin(heading)
+
+
+def add_lanes(road: MapRoad, shape: RoadShape, strip: list[Slice], centres: list[int], tolerance: float) -> list[list[int]]:
+    """Give a road its lane offset and sections with widths.
+
+    Returns
+    -------
+    the number of the lane of every cell of every slice
+    """
+    offsets, numbers = [], []
+    for k, (one, centre) in enumerate(zip(strip, centres)):
+        start, end = shape.starts[k], shape.starts[k + 1]
+        s, t = zip(*(_rising(a, b) for a, b in zip(shape.s[k], shape.t[k])))
+        functions = fit_cubics(s, t, start, end, tolerance)
+        if _crossing(functions, end - start):
+            functions = broken_lines(s, _untangled(s, t, centre), start, end)
+        section = LaneSection(float(start))
+        section.lanes[0] = MapLane(0, "none")
+        ids = [centre - j if j < centre else centre - j - 1 for j in range(len(one.cells))]
+        for j, id in enumerate(ids):
+            section.lanes[id] = MapLane(id, width=simplified(difference(functions[j], functions[j + 1])))
+        road.sections.append(section)
+        numbers.append(ids)
+        offsets.append(simplified(functions[centre]).moved(start).rows)
+    rows = np.concatenate(offsets)
+    road.lane_offset = Cubics.constant() if np.abs(rows[:, 1:]).max() < 1e-4 else Cubics(rows)
+    return numbers
+
+
+def _rising(s, values):
+    keep = np.append(True, np.diff(np.maximum.accumulate(s)) > LEAST_STEP)
+    return s[keep], values[keep]
+
+
+def _crossing(functions, length):
+    return any(difference(left, right).least(length)[0] < -1e-9 for left, right in zip(functions[:-1], functions[1:]))
+
+
+def _untangled(s, t, centre):
+    """Offsets that never cross, from lane 0 outwards, at the places of the first border."""
+    levels = [np.interp(s[0], one, value) for one, value in zip(s, t)]
+    for k in range(centre - 1, -1, -1):
+        levels[k] = np.maximum(levels[k], levels[k + 1])
+    for k in range(centre + 1, len(levels)):
+        levels[k] = np.minimum(levels[k], levels[k - 1])
+    return [np.interp(one, s[0], level) for one, level in zip(s, levels)]
+
+
+def add_heights(road: MapRoad, shape: RoadShape, tolerance: float) -> None:
+    """Give a road its elevation, and a superelevation where the cross-section is a plane, else its shape.
+
+    A superelevation is taken only where its roll moves no border by more than a millimetre: readers differ on whether it does.
+    """
+    along: list[float] = []
+    level: list[float] = []
+    sections: list[tuple[float, np.ndarray, np.ndarray]] = []
+    for s, t, z in zip(shape.s, shape.t, shape.z):
+        for column in range(s.shape[1]):
+            order = np.argsort(t[:, column], kind="stable")
+            across, height = t[order, column], z[order, column]
+            at = float(s[int(np.argmin(np.abs(t[:, column]))), column])
+            middle = float(_extended(0.0, across, height))
+            along.append(at)
+            level.append(middle)
+            sections.append((at, across, height - middle))
+    order = np.argsort(along, kind="stable")
+    places, values = _rising(np.array(along)[order], np.array(level)[order])
+    road.elevation = simplified(fit_cubics([places], [values], 0.0, road.length, tolerance / 2)[0])
+    sections = [sections[k] for k in order]
+    if max(np.abs(rise).max() for _, _, rise in sections) < FLAT:
+        return
+    slopes = np.array([float((t @ rise) / max(t @ t, 1e-9)) for _, t, rise in sections])
+    missed = max(float(np.abs(rise - t * slope).max()) for (_, t, rise), slope in zip(sections, slopes))
+    moved = max(float(np.abs(t).max()) * (1 - np.cos(np.arctan(slope))) for (_, t, _), slope in zip(sections, slopes))
+    if missed < tolerance / 2 and moved < ROLLED:
+        at, roll = _rising(np.array([s for s, _, _ in sections]), np.arctan(slopes))
+        widest = max(float(np.abs(t).max()) for _, t, _ in sections)
+        road.superelevation = simplified(fit_cubics([at], [roll], 0.0, road.length, tolerance / 2 / widest)[0])
+        return
+    rows, last = [], -np.inf
+    for k, (place, offsets, heights) in enumerate(sections):
+        if place - last < SHAPE_STEP and k != len(sections) - 1:
+            continue
+        last, inside = place, float(np.clip(place, 0.0, road.length))
+        t, rise = _rising(offsets, heights)
+        slope = np.diff(rise) / np.diff(t) if len(t) > 1 else np.zeros(1)
+        rows += [[inside, a, b, c, 0.0, 0.0] for a, b, c in zip(t, rise, [*slope, 0.0])]
+    road.shape = np.array(rows)
+
+
+def _extended(at, x, y):
+    """Linear interpolation that goes on beyond the ends."""
+    if len(x) > 1 and (at < x[0] or at > x[-1]):
+        i, j = (0, 1) if at < x[0] else (-1, -2)
+        run = x[i] - x[j]
+        return y[i] + (y[i] - y[j]) / run * (at - x[i]) if abs(run) > 0.1 else y[i]
+    return np.interp(at, x, y)

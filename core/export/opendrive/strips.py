@@ -1,0 +1,242 @@
+"""Lanes of a road map laid out for OpenDRIVE: cut at common places, side by side in slices, slices end to end in strips."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass, field
+
+import numpy as np
+import shapely
+
+from ...driving.lanes_layer import Lanes
+
+SAME_VERTEX = 0.001      # m in plan between vertices that are one
+SAME_VERTEX_RISE = 0.3   # m in height: a border between road and curb has two
+
+
+@dataclass
+class Cell:
+    """A part of one lane between two cuts, with borders along the road's direction.
+
+    piece : row of Lanes; left, right : (n, 3) local metres; left_nodes, right_nodes : their numbers
+    before, after : cells that touch its start and its end along the road, by its lane or by successors
+    """
+
+    piece: int
+    left: np.ndarray
+    right: np.ndarray
+    left_nodes: tuple[int, ...]
+    right_nodes: tuple[int, ...]
+    direction: int
+    before: list[Cell] = field(default_factory=list, repr=False)
+    after: list[Cell] = field(default_factory=list, repr=False)
+
+    @property
+    def length(self) -> float:
+        """Metres in plan along the middle."""
+        return float(np.hypot(*np.diff((self.left + self.right)[:, :2] / 2, axis=0).T).sum())
+
+
+@dataclass
+class Slice:
+    """Cells side by side from left to right, all with vertices at the same places.
+
+    at_start, at_end : whether ways through a junction begin or end within the slice, there
+    """
+
+    cells: list[Cell]
+    at_start: bool = False
+    at_end: bool = False
+
+    @property
+    def length(self) -> float:
+        """Metres of its longest cell."""
+        return max(cell.length for cell in self.cells)
+
+    def borders(self) -> list[np.ndarray]:
+        """(n, 3) each, from left to right, one more than cells."""
+        return [self.cells[0].left, *(cell.right for cell in self.cells)]
+
+    def split(self, row: int) -> tuple[Slice, Slice]:
+        """The slice cut at a vertex, linked as it was."""
+        parts: tuple[list[Cell], list[Cell]] = ([], [])
+        for cell in self.cells:
+            first, last = (Cell(cell.piece, cell.left[rows], cell.right[rows], cell.left_nodes[rows], cell.right_nodes[rows], cell.direction)
+                           for rows in (slice(0, row + 1), slice(row, None)))
+            first.before, first.after, last.before, last.after = cell.before, [last], [first], cell.after
+            for others, new in ((cell.before, first), (cell.after, last)):
+                for other in others:
+                    for links in (other.before, other.after):
+                        links[:] = [new if link is cell else link for link in links]
+            parts[0].append(first)
+            parts[1].append(last)
+        return Slice(parts[0], self.at_start, False), Slice(parts[1], False, self.at_end)
+
+    def turned(self) -> Slice:
+        """The same slice seen along the opposite direction of the road; its cells are changed."""
+        for cell in self.cells:
+            cell.left, cell.right = cell.right[::-1], cell.left[::-1]
+            cell.left_nodes, cell.right_nodes = cell.right_nodes[::-1], cell.left_nodes[::-1]
+            cell.before, cell.after, cell.direction = cell.after, cell.before, -cell.direction
+        return Slice(self.cells[::-1], self.at_end, self.at_start)
+
+
+def cut_into_cells(lanes: Lanes) -> list[Cell]:
+    """Every lane cut wherever a lane beside it begins, ends or is cut; connectors are left whole.
+
+    Parameters
+    ----------
+    lanes : Lanes, with local coordinates
+
+    Returns
+    -------
+    list of Cell, linked along the road. Lanes driven against the road are turned round; connectors run with their traffic
+    """
+    numbers = _numbered(np.concatenate([lanes.left, lanes.right]))
+    left, right = numbers[:len(lanes.left)], numbers[len(lanes.left):]
+    ordinary = np.repeat(lanes.type != "connector", np.diff(lanes.start))
+    cuts = _cuts(lanes, left, right, ordinary)
+    cells, first_of, last_of = [], {}, {}
+    for k in range(len(lanes)):
+        a, b = lanes.start[k], lanes.start[k + 1] - 1
+        inner = [row for row in range(a + 1, b) if left[row] in cuts or right[row] in cuts] if ordinary[a] else []
+        at = [a, *inner, b]
+        made = []
+        for first, last in zip(at[:-1], at[1:]):
+            rows = slice(first, last + 1)
+            sides = [(lanes.left[rows], tuple(left[rows])), (lanes.right[rows], tuple(right[rows]))]
+            against = lanes.direction[k] < 0 and ordinary[a]
+            if against:
+                sides = [(line[::-1], nodes[::-1]) for line, nodes in sides[::-1]]
+            made.append(Cell(k, sides[0][0], sides[1][0], sides[0][1], sides[1][1], int(lanes.direction[k]) if ordinary[a] else 1))
+        for one, following in zip(made[:-1], made[1:]):
+            _link(one, following)
+        first_of[lanes.lane_id[k]], last_of[lanes.lane_id[k]] = made[0], made[-1]
+        cells += made
+    for k, names in enumerate(lanes.successors):
+        for name in names:
+            _link(last_of[lanes.lane_id[k]], first_of[name])
+    _link_undriven(cells)
+    return cells
+
+
+def is_connector(cell: Cell, lanes: Lanes) -> bool:
+    """Whether a cell is a way through a junction."""
+    return bool(lanes.type[cell.piece] == "connector")
+
+
+def _link(one: Cell, following: Cell) -> None:
+    """Join two cells in the direction of travel; what is before and after is told along the road."""
+    for cell, other, ahead in ((one, following, True), (following, one, False)):
+        side = cell.after if ahead == (cell.direction >= 0) else cell.before
+        if not any(known is other for known in side):
+            side.append(other)
+
+
+def _link_undriven(cells):
+    """Cells that nobody drives follow each other where they share their ends."""
+    starts = {(cell.left_nodes[0], cell.right_nodes[0]): cell for cell in cells if cell.direction == 0}
+    for cell in cells:
+        other = starts.get((cell.left_nodes[-1], cell.right_nodes[-1])) if cell.direction == 0 else None
+        if other is not None and other is not cell and not cell.after:
+            cell.after.append(other)
+            other.before.append(cell)
+
+
+def _cuts(lanes, left, right, ordinary):
+    """Nodes at which every lane beside them is cut."""
+    rows = np.concatenate([lanes.start[:-1], lanes.start[1:] - 1]).astype(int)
+    rows = rows[ordinary[rows]]
+    cuts = set(left[rows].tolist()) | set(right[rows].tolist())
+    while True:
+        known = np.array(sorted(cuts))
+        one_sided = np.flatnonzero((np.isin(left, known) ^ np.isin(right, known)) & ordinary)
+        more = (set(left[one_sided].tolist()) | set(right[one_sided].tolist())) - cuts
+        if not more:
+            return cuts
+        cuts |= more
+
+
+def _numbered(places: np.ndarray) -> np.ndarray:
+    """(V,) a number for each of V vertices, the same where they are at one place."""
+    points = shapely.points(places[:, :2])
+    near = shapely.STRtree(points).query(points, predicate="dwithin", distance=SAME_VERTEX)
+    near = near[:, np.abs(places[near[0], 2] - places[near[1], 2]) < SAME_VERTEX_RISE]
+    first = np.arange(len(places))
+    np.minimum.at(first, near[0], near[1])
+    return np.unique(first, return_inverse=True)[1]
+
+
+def slices_of(cells: list[Cell], lanes: Lanes) -> list[Slice]:
+    """Cells that share a border side by side; connectors stand alone and are not among them."""
+    ordinary = [cell for cell in cells if not is_connector(cell, lanes)]
+    by_left = {cell.left_nodes: cell for cell in ordinary if len(set(cell.left_nodes)) > 1}
+    right_of = {id(cell): by_left.get(cell.right_nodes) for cell in ordinary}
+    has_left = {id(other) for other in right_of.values() if other is not None}
+    found = []
+    for cell in ordinary:
+        if id(cell) in has_left:
+            continue
+        row: list[Cell] = [cell]
+        while (beside := right_of[id(row[-1])]) is not None and not any(beside is known for known in row):
+            row.append(beside)
+        found.append(Slice(row))
+    return found
+
+
+def mark_junctions(slices: list[Slice], lanes: Lanes) -> None:
+    """Tell every slice at which of its ends ways through a junction lie beside it: they begin or end there, on its side."""
+    for one in slices:
+        for at_end in (False, True):
+            touching = [other for cell in one.cells for other in (cell.after if at_end else cell.before)]
+            # a connector that this slice touches lies beyond its end: beside the slice beyond
+            if any(is_connector(other, lanes) for other in touching):
+                _mark_through(slices, one, at_end)
+
+
+def _mark_through(slices, one, at_end):
+    """The slices that follow any lane of a slice at the end where a junction begins."""
+    touching = [other for cell in one.cells for other in (cell.after if at_end else cell.before)]
+    for beyond in slices:
+        if any(other is known for other in touching for known in beyond.cells):
+            if at_end:
+                beyond.at_start = True
+            else:
+                beyond.at_end = True
+
+
+def strips_of(slices: list[Slice], breaks: set[tuple[int, int]]) -> list[list[Slice]]:
+    """Slices end to end, each with one before and one after.
+
+    Parameters
+    ----------
+    slices : list of Slice
+    breaks : (id of a slice, id of the next) between which a strip ends
+
+    Returns
+    -------
+    list of lists of Slice, in order along the road
+    """
+    owner = {id(cell): k for k, one in enumerate(slices) for cell in one.cells}
+    after, before = defaultdict(set), defaultdict(set)
+    for k, one in enumerate(slices):
+        for cell in one.cells:
+            for other in cell.after:
+                j = owner.get(id(other))
+                if j is not None and other.direction * cell.direction >= 0:
+                    after[k].add(j)
+                    before[j].add(k)
+    follows = {k: next(iter(after[k])) for k in range(len(slices))
+               if len(after[k]) == 1 and len(before[next(iter(after[k]))]) == 1 and (id(slices[k]), id(slices[next(iter(after[k]))])) not in breaks}
+    leads = set(follows.values())
+    found, used = [], set()
+    for k in [k for k in range(len(slices)) if k not in leads] + list(range(len(slices))):
+        strip = []
+        here: int | None = k
+        while here is not None and here not in used:
+            used.add(here)
+            strip.append(slices[here])
+            here = follows.get(here)
+        if strip:
+            found.append(strip)
+    return found

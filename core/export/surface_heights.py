@@ -1,0 +1,59 @@
+"""Heights of the lanes' borders from the points of the road's surface."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..driving.lanes_layer import Lanes
+
+if TYPE_CHECKING:
+    from ..survey.store.road_points import RoadPoints
+
+SURFACE_REACH = 0.3          # m about a vertex within which the surface is flat enough for a median
+FEWEST_POINTS = 5    # about a vertex
+MOST_CHANGE = 0.5    # m: a surface farther above or below is another one, such as a bridge's
+
+
+def with_surface_heights(lanes: Lanes, road_points: RoadPoints) -> tuple[Lanes, float]:
+    """Lanes in map coordinates with borders at the median height of the road points about each vertex.
+
+    Parameters
+    ----------
+    lanes : Lanes in map coordinates
+    road_points : RoadPoints of the same survey
+
+    Returns
+    -------
+    lanes : Lanes; vertices without points keep their heights
+    share : 0 to 1, of the vertices that have points
+    """
+    from scipy.spatial import cKDTree
+
+    vertices = np.concatenate([lanes.left, lanes.right])
+    origin = road_points.origin
+    tree = cKDTree(vertices[:, :2] - origin[:2])
+    owners, heights = [], []
+    for key in road_points.all_sections():
+        points = road_points.section(*key)
+        _, nearest = tree.query(np.c_[points.x, points.y], distance_upper_bound=SURFACE_REACH)
+        near = nearest < len(vertices)
+        owners.append(nearest[near])
+        heights.append(np.asarray(points.z, float)[near])
+    owner, height = np.concatenate([np.empty(0, int), *owners]), np.concatenate([np.empty(0), *heights]) + origin[2]
+    # vertices of neighbours lie at one place, of which the tree gives the points to one
+    same, which = np.unique(np.round(vertices[:, :2], 3), axis=0, return_inverse=True)
+    which = which.ravel()
+    place = which[owner]
+    order = np.lexsort((height, place))
+    place, height = place[order], height[order]
+    counts = np.bincount(place, minlength=len(same))
+    first = np.append(0, np.cumsum(counts))[:-1]
+    enough = counts >= FEWEST_POINTS
+    median = np.full(len(same), np.nan)
+    median[enough] = height[(first + counts // 2)[enough]]
+    z = np.where(np.abs(median[which] - vertices[:, 2]) < MOST_CHANGE, median[which], vertices[:, 2])
+    found = np.c_[vertices[:, :2], z]
+    return replace(lanes, left=found[:len(lanes.left)], right=found[len(lanes.left):]), float(enough[which].mean())
