@@ -48,8 +48,8 @@ def main():
     default = SampleSettings()
     parser.add_argument("--scene", choices=SCENES, default=default.scene)
     parser.add_argument("--seed", type=int, default=default.seed)
-    for name, unit in (("length", "m"), ("speed_kmh", "km/h"), ("pulse_rate", "Hz, each scanner"), ("gutter", "m")):
-        parser.add_argument("--" + name.replace("_", "-"), type=float, default=getattr(default, name),
+    for name, unit in (("length", "m, 0 as usual for the scene"), ("speed_kmh", "km/h"), ("pulse_rate", "Hz, each scanner"), ("gutter", "m")):
+        parser.add_argument("--" + name.replace("_", "-"), type=float, default=SampleSettings.__dataclass_fields__[name].default,
                             help=f"{unit}, default %(default)s")
     arguments = vars(parser.parse_args())
     folder = arguments.pop("folder")

@@ -208,6 +208,7 @@ def test_the_trajectory_rides_at_sensor_height_and_looks_ahead(plan):
     assert np.abs(off[steps < 1.0]).max() < 1.0
 
 
+@pytest.mark.slow
 def test_the_same_seed_makes_the_same_survey():
     one, same, other = (make_sample_survey(SampleSettings(scene="roundabout", seed=seed, pulse_rate=20_000.0, rotation_rate=50.0)).points()
                         for seed in (5, 5, 6))
@@ -215,6 +216,7 @@ def test_the_same_seed_makes_the_same_survey():
     assert len(other) != len(one) or not np.array_equal(other["x"], one["x"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", ["motorway", "serpentine"])
 def test_where_there_is_no_curb_the_truth_is_edges_of_the_pavement(scene):
     plan = Surveyed.of(scene)
@@ -222,6 +224,7 @@ def test_where_there_is_no_curb_the_truth_is_edges_of_the_pavement(scene):
     assert len(labelled(plan.true, "curb face", "curb stone", "sidewalk")) == 0
 
 
+@pytest.mark.slow
 def test_a_motorway_has_broad_edge_lines_a_median_rails_and_a_hatched_gore():
     plan = Surveyed.of("motorway")
     lines = [row for _, row in plan.sample.truth_markings if row["class"] == "edge line"]
@@ -244,7 +247,7 @@ def test_the_exit_leaves_the_motorway_on_the_right_and_nobody_drives_in_the_gore
 
 
 def test_hairpins_have_a_radius_of_12_m_are_wider_and_lean_inward():
-    scene = make_sample_survey(SampleSettings(scene="serpentine")).scene
+    scene = Surveyed.of("serpentine").sample.scene
     axis = scene.lanes[0].path
     s = np.arange(0.0, 200.0, 0.5)
     bend = axis.curvature(s)
@@ -260,7 +263,7 @@ def test_hairpins_have_a_radius_of_12_m_are_wider_and_lean_inward():
 
 @pytest.mark.parametrize("scene", ["motorway", "serpentine"])
 def test_no_rail_stands_on_the_carriageway(scene):
-    scene = make_sample_survey(SampleSettings(scene=scene)).scene
+    scene = Surveyed.of(scene).sample.scene
     rails = [thing for thing in scene.obstacles if isinstance(thing, Rail)]
     assert len(rails) > 20
     for rail in rails:
@@ -277,7 +280,7 @@ def test_curbs_are_dropped_at_the_zebra_crossings_and_the_truth_says_so(curbed):
 
 
 def test_corners_bend_between_the_curbs_of_neighbouring_arms():
-    sample = make_sample_survey(SampleSettings(scene="crossing"))
+    sample = Surveyed.of("crossing").sample
     corners = [g for g, row in sample.truth_boundaries if row["kind"] == "corner" and row["part"] == "bottom" and row["edge"] == "curb"]
     assert len(corners) >= 3
     longest = shapely.get_coordinates(max(corners, key=lambda line: line.length))
@@ -290,7 +293,7 @@ def test_corners_bend_between_the_curbs_of_neighbouring_arms():
 
 
 def test_a_roundabout_is_a_ring_about_an_island_with_two_splitter_islands_in_each_driven_arm():
-    sample = make_sample_survey(SampleSettings(scene="roundabout"))
+    sample = Surveyed.of("roundabout").sample
     surface = shapely.force_2d(max(sample.truth_surface.geometries, key=lambda part: part.area))
     areas = sorted(shapely.Polygon(ring).area for ring in surface.interiors)
     assert areas[-1] == pytest.approx(np.pi * 7.5**2, rel=0.01)
@@ -299,6 +302,7 @@ def test_a_roundabout_is_a_ring_about_an_island_with_two_splitter_islands_in_eac
     assert len(blocks) >= 12 and all(g.area == pytest.approx(0.25, abs=0.01) for g in blocks)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", PLANS)
 @pytest.mark.parametrize("length", [90.0, 300.0])
 def test_a_plan_of_another_length_has_truth_too(scene, length):
@@ -317,12 +321,12 @@ def test_a_scene_that_cannot_be_so_long_is_refused_with_what_can_be():
 
 def test_a_plan_has_no_uav_image_and_says_so():
     with pytest.raises(RoadExtractionError, match="no UAV image of the scene crossing"):
-        uav_control_points(make_sample_survey(SampleSettings(scene="crossing")))
+        uav_control_points(Surveyed.of("crossing").sample)
 
 
 @pytest.mark.parametrize("scene", PLANS)
 def test_a_true_lane_lies_about_its_driving_line_between_its_borders_left_one_first(scene):
-    sample = make_sample_survey(SampleSettings(scene=scene))
+    sample = Surveyed.of(scene).sample
     assert len(sample.truth_lanes) == len(sample.truth_driving_lines)
     for (lane, row), (line, same) in zip(sample.truth_lanes, sample.truth_driving_lines):
         assert (row["lane"], row["direction"], row["station_m"]) == (same["lane"], same["direction"], same["station_m"])
