@@ -8,13 +8,15 @@ from qgis.PyQt.QtGui import QAction, QDesktopServices, QIcon
 from qgis.PyQt.QtWidgets import QMenu
 
 from ..processing_provider.reports import last_report
-from ..processing_provider.results.layer_tree import replaces_last_run, set_replaces_last_run
+from ..processing_provider.results.layer_tree import replaces_last_run, road_maps, set_replaces_last_run
 from ..processing_provider.results.run_table import run_table
 from ..processing_provider.texts import tr
+from .doubt_tour import DoubtTour
 from .layout_dialog import LayoutDialog, road_map_groups, shown_layers
 from .manual import ManualWindow
 from .map_layout import road_map_layout
 from .sample_run import SampleRun
+from .section_dock import SectionDock
 
 PROVIDER = "lanewright"
 ICON = Path(__file__).resolve().parents[1] / "resources" / "icon.svg"
@@ -28,6 +30,8 @@ class Menu(QObject):
         self.iface = iface
         self.actions = []
         self.dialog = self.layout_dialog = self.designer = None  # kept, or Python would collect the open windows
+        self.section = None
+        self.tour = DoubtTour(iface)
         self.sample = SampleRun(iface)
         self.manual = ManualWindow(iface.mainWindow())
         theme = QgsApplication.getThemeIcon
@@ -36,6 +40,10 @@ class Menu(QObject):
                   theme("/mActionStart.svg"))
         self._add(tr("Print layout of the road map"), self.open_layout, tr("A map of the layers that Lanewright made"),
                   theme("/mActionNewLayout.svg"))
+        self._add(tr("Next doubtful place"), self.next_doubt, tr("Goes along the road map through pieces that were not measured, that are uncertain, "
+                  "or where the boundary methods differ"), theme("/mActionZoomNext.svg"))
+        self._add(tr("Cross-section"), self.open_section, tr("Points and lines of the road where you click in the map"),
+                  theme("/mActionElevationProfile.svg"))
         self._add(tr("Open the last report"), self.open_report, tr("The report of the run that ended last"), theme("/mIconHtml.svg"))
         self._add(tr("Table of the runs"), self.open_table, tr("Lengths, shares measured, warnings, seconds and failures of all runs since QGIS "
                   "was started"), theme("/mActionOpenTable.svg"))
@@ -85,6 +93,27 @@ class Menu(QObject):
         self.designer = ModelerDialog.create(QgsApplication.processingRegistry().createAlgorithmById(name))
         self.designer.show()
 
+    def open_section(self):
+        """The cross-section window, with the map waiting for a click."""
+        self._section_dock().show()
+        self.section.pick.click()
+
+    def _section_dock(self):
+        if self.section is None:
+            self.section = SectionDock(self.iface)
+        return self.section
+
+    def next_doubt(self):
+        """Pan to the next doubtful place of the newest road map, and say what is doubtful there."""
+        groups = road_maps(QgsProject.instance().layerTreeRoot())
+        if not groups:
+            self.iface.messageBar().pushMessage(
+                "Lanewright", tr("There is no road map in this project yet: run Road map first."), level=Qgis.MessageLevel.Info)
+            return
+        self.tour.go_on(groups[0])
+        if self.section is not None and self.section.isVisible() and self.tour.place is not None:
+            self.section.show_at(self.tour.place.middle, self.tour.place.crs)
+
     def open_report(self):
         """The report written last, in the user's web browser."""
         path = last_report()
@@ -109,6 +138,9 @@ class Menu(QObject):
         for action in self.actions:
             self.iface.removePluginMenu("Lanewright", action)
         self.actions = []
+        if self.section is not None:
+            self.section.remove()
+            self.section = None
         self.manual.forget()
 
     def open_road_map(self):

@@ -15,7 +15,10 @@ class TrajectoryWrapper(DialogWrapper):
     def createWidget(self, **more):
         # only a parameter that may stay empty is shown empty
         shown = self.parameterDefinition().clone()
-        self.needed = not shown.flags() & Qgis.ProcessingParameterFlag.Optional
+        owner = self.parameterDefinition().algorithm()
+        # with point clouds it is that of the survey, although some algorithms can do without
+        self.offered = not shown.flags() & Qgis.ProcessingParameterFlag.Optional or \
+            owner is not None and owner.parameterDefinition("POINT_CLOUDS") is not None
         shown.setFlags(shown.flags() | Qgis.ProcessingParameterFlag.Optional)
         widget = QgsProcessingMapLayerComboBox(shown, self.dialogType)
         widget.valueChanged.connect(lambda: self.widgetValueHasChanged.emit(self))
@@ -24,7 +27,7 @@ class TrajectoryWrapper(DialogWrapper):
     def setWidgetContext(self, context):
         self.widget.setWidgetContext(context)
         super().setWidgetContext(context)
-        if self.needed and self.widget.value() is None:
+        if self.offered and self.widget.value() is None:
             likely = trajectory_of(QgsProject.instance(), context.activeLayer())
             if likely is not None:
                 self.widget.setLayer(likely)

@@ -5,6 +5,7 @@ import traceback
 from pathlib import Path
 
 from lanewright.processing_provider.reports import last_report
+from lanewright.processing_provider.texts import tr
 from qgis.core import QgsProject
 from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, Qt, QTimer
 from qgis.PyQt.QtGui import QAction, QGuiApplication, QImage
@@ -12,7 +13,7 @@ from qgis.PyQt.QtWidgets import QDockWidget
 from qgis.utils import iface, plugins
 
 PICTURES = Path(os.environ["LANEWRIGHT_PICTURES"])
-MAPS = ("window_result", "window_layout", "window_model")
+MAPS = ("window_result", "window_section", "window_layout", "window_model")
 SAID = Path(os.environ["LANEWRIGHT_SAID"])
 
 
@@ -125,6 +126,26 @@ def sample():
     keep(iface.mainWindow(), "window_result")
 
 
+def doubts():
+    """The next doubtful place, with the section of the road there."""
+    ours = plugins["lanewright"].menu
+    window = iface.mainWindow()
+    action_of(tr("Cross-section")).trigger()
+    action_of(tr("Next doubtful place")).trigger()
+    needed(ours.tour.place is not None, "no place of the sample is doubtful")
+    dock = ours.section
+    window.resizeDocks([dock], [330], Qt.Orientation.Vertical)
+    needed(wait(60, lambda: dock.task is None and len(dock.view.points)), f"no points in the section: {dock.view.message}")
+    wait(2)
+    keep(window, "window_section")
+    iface.messageBar().clearWidgets()
+    dock.hide()
+
+
+def action_of(title):
+    return next(action for action in plugins["lanewright"].menu.actions if action.text() == title)
+
+
 def layout():
     ours = plugins["lanewright"].menu
     ours.actions[2].trigger()
@@ -169,7 +190,7 @@ def drive():
     try:
         iface.mainWindow().resize(1380, 860)
         wait(2)
-        for step in (menu, toolbox, dialog, sample, layout, manual, designer):
+        for step in (menu, toolbox, dialog, sample, doubts, layout, manual, designer):
             step()
         say("finished")
     except BaseException:

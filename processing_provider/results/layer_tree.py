@@ -7,6 +7,7 @@ from qgis.core import QgsCoordinateTransform, QgsCsException, QgsLayerTree, QgsL
 from .runs import Run
 
 SURVEY, ALGORITHM, OUTPUT = "lanewright/survey", "lanewright/algorithm", "lanewright/output"  # custom properties of our groups and layers
+CLOUDS = "lanewright/clouds"  # paths, one a line
 REPLACE = "lanewright/replace_last_run"  # setting of the user
 IMAGES = ("ORTHOIMAGE", "UAV_IMAGE")
 BELOW_IMAGES = ("INTENSITY_IMAGE", "DENSITY")
@@ -40,6 +41,8 @@ def place_layer(layer: QgsMapLayer, project: QgsProject, output: str, run: Run) 
         return
     group.setCustomProperty(SURVEY, run.survey)
     group.setCustomProperty(ALGORITHM, run.algorithm)
+    if run.clouds:
+        group.setCustomProperty(CLOUDS, "\n".join(run.clouds))
     if replaces_last_run():
         _remove_former(layer, output, group, project)
     if output in IMAGES:

@@ -20,11 +20,13 @@ class Run:
     algorithm : its id
     survey : name of the survey, "" where none is known
     group : name of the layer group
+    clouds : absolute paths of the point clouds
     """
 
     algorithm: str
     survey: str
     group: str
+    clouds: tuple[str, ...] = ()
 
 
 def run_of(algorithm: str, clouds: list[str], whole: bool, context: QgsProcessingContext) -> Run:
@@ -42,7 +44,8 @@ def run_of(algorithm: str, clouds: list[str], whole: bool, context: QgsProcessin
     survey = survey_name(clouds) or str(store.property(SURVEY_OF_RUN) or "")
     store.setProperty(SURVEY_OF_RUN, survey)
     name = survey or GROUP
-    return Run(algorithm, survey, f"{name}, {datetime.now():%Y-%m-%d %H:%M:%S}" if whole else name)
+    return Run(algorithm, survey, f"{name}, {datetime.now():%Y-%m-%d %H:%M:%S}" if whole else name,
+               tuple(str(Path(path).absolute()) for path in clouds))
 
 
 def survey_name(clouds: list[str]) -> str:

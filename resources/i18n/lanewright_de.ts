@@ -3579,6 +3579,36 @@
             <translation>Die Datei {name} gibt es nicht.</translation>
         </message>
         <message>
+            <location filename="../../desktop/doubt_tour.py" />
+            <source>Nothing in this road map is doubtful: all of it was measured.</source>
+            <translation>Nichts an dieser Straßenkarte ist zweifelhaft: Alles wurde gemessen.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_tour.py" />
+            <source>Place {at} of {count}, road {road}, station {station:.0f} m. {said}</source>
+            <translation>Stelle {at} von {count}, Straße {road}, Station {station:.0f} m. {said}</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_tour.py" />
+            <source>; and {number} more</source>
+            <translation>; und {number} weitere</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubtful.py" />
+            <source>not measured</source>
+            <translation>nicht gemessen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubtful.py" />
+            <source>the two boundary methods lie {apart:.0f} cm apart</source>
+            <translation>die beiden Verfahren für die Ränder liegen {apart:.0f} cm auseinander</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubtful.py" />
+            <source>confidence {sure:.2f}</source>
+            <translation>Vertrauen {sure:.2f}</translation>
+        </message>
+        <message>
             <location filename="../../desktop/layout_dialog.py" />
             <source>Print layout of the road map</source>
             <translation>Drucklayout der Straßenkarte</translation>
@@ -3665,6 +3695,26 @@
         </message>
         <message>
             <location filename="../../desktop/menu.py" />
+            <source>Next doubtful place</source>
+            <translation>Nächste zweifelhafte Stelle</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/menu.py" />
+            <source>Goes along the road map through pieces that were not measured, that are uncertain, or where the boundary methods differ</source>
+            <translation>Geht die Straßenkarte entlang durch Stücke, die nicht gemessen wurden, die unsicher sind oder an denen die Verfahren für die Ränder sich unterscheiden</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/menu.py" />
+            <source>Cross-section</source>
+            <translation>Querschnitt</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/menu.py" />
+            <source>Points and lines of the road where you click in the map</source>
+            <translation>Punkte und Linien der Straße, wo Sie in die Karte klicken</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/menu.py" />
             <source>Open the last report</source>
             <translation>Letzten Bericht öffnen</translation>
         </message>
@@ -3710,6 +3760,11 @@
         </message>
         <message>
             <location filename="../../desktop/menu.py" />
+            <source>There is no road map in this project yet: run Road map first.</source>
+            <translation>In diesem Projekt gibt es noch keine Straßenkarte: zuerst „Straßenkarte“ ausführen.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/menu.py" />
             <source>No report has been written since QGIS was started.</source>
             <translation>Seit dem Start von QGIS wurde noch kein Bericht geschrieben.</translation>
         </message>
@@ -3717,11 +3772,6 @@
             <location filename="../../desktop/menu.py" />
             <source>Nothing has been run since QGIS was started.</source>
             <translation>Seit dem Start von QGIS ist nichts gelaufen.</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/menu.py" />
-            <source>There is no road map in this project yet: run Road map first.</source>
-            <translation>In diesem Projekt gibt es noch keine Straßenkarte: zuerst „Straßenkarte“ ausführen.</translation>
         </message>
         <message>
             <location filename="../../desktop/sample_run.py" />
@@ -3747,6 +3797,71 @@
             <location filename="../../desktop/sample_run.py" />
             <source>cancelled</source>
             <translation>abgebrochen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/section_dock.py" />
+            <source>Click in the map</source>
+            <translation>In die Karte klicken</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/section_dock.py" />
+            <source>Length of road from which points are shown</source>
+            <translation>Länge der Straße, von der Punkte gezeigt werden</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/section_dock.py" />
+            <source>No line of a road map lies near: click on a road that Lanewright mapped.</source>
+            <translation>Keine Linie einer Straßenkarte liegt in der Nähe: Klicken Sie auf eine Straße, die Lanewright kartiert hat.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/section_dock.py" />
+            <source>Reading points…</source>
+            <translation>Punkte werden gelesen…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/section_dock.py" />
+            <source>Points of a cross-section</source>
+            <translation>Punkte eines Querschnitts</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/section_dock.py" />
+            <source>A metre back along the road</source>
+            <translation>Einen Meter zurück entlang der Straße</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/section_dock.py" />
+            <source>A metre ahead along the road</source>
+            <translation>Einen Meter weiter entlang der Straße</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/section_dock.py" />
+            <source>Thickness</source>
+            <translation>Dicke</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/section_dock.py" />
+            <source>The point clouds of this road map are not known: it was not made by Road map in this project.</source>
+            <translation>Die Punktwolken dieser Straßenkarte sind nicht bekannt: Sie wurde nicht in diesem Projekt mit Straßenkarte gemacht.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/section_dock.py" />
+            <source>No points lie here.</source>
+            <translation>Hier liegen keine Punkte.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/section_dock.py" />
+            <source>No points were read.</source>
+            <translation>Es wurden keine Punkte gelesen.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/section_view.py" />
+            <source>Click on the road in the map.</source>
+            <translation>Klicken Sie in der Karte auf die Straße.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/section_view.py" />
+            <source>left ← offset from the place that was clicked (m) → right; heights in m</source>
+            <translation>links ← Abstand von der angeklickten Stelle (m) → rechts; Höhen in m</translation>
         </message>
         <message>
             <location filename="../../processing_provider/algorithm.py" />

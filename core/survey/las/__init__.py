@@ -7,6 +7,7 @@ from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
     "guard": ("find_damage",),
+    "near": ("points_near",),
     "parallel_reader": ("ParallelCloudReader",),
     "reader": ("CloudHeader", "open_cloud", "read_blocks", "read_header", "read_headers"),
     "writer": ("new_laz", "scale_for"),

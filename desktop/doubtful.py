@@ -1,0 +1,87 @@
+"""Places of a road map that want a look: pieces that were not measured, that are uncertain, or where the two boundary methods differ."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from qgis.core import Qgis, QgsLayerTreeGroup, QgsPointXY, QgsRectangle
+
+from ..processing_provider.results.layer_tree import OUTPUT
+from ..processing_provider.texts import tr
+from .section import layers_of, title_of
+
+OUTPUTS = ("ROAD_EDGES", "MARKING_LINES", "DRIVING_LINES", "LANES")
+GUESSED = ("bridged", "inferred")
+UNSURE = 0.5        # confidence below which a piece is doubtful
+APART = 5.0         # cm between the two boundary methods, as in the report
+SHORTEST = 2.0      # m: shorter pieces are not worth a stop
+SAME_PLACE = 10.0   # m of station within which doubts are looked at together
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """One place: what is doubtful there (one line for each), where along the road, and its extent and middle in the CRS of the layers."""
+
+    reasons: tuple[str, ...]
+    road: int
+    station: float
+    extent: QgsRectangle
+    middle: QgsPointXY
+    crs: object
+
+
+def doubts_of(group: QgsLayerTreeGroup) -> list[Doubt]:
+    """The doubtful places of a road map along its roads; doubts that lie together are one place."""
+    found = []
+    for layer in layers_of(group):
+        names = [field.name() for field in layer.fields()]
+        if layer.customProperty(OUTPUT) not in OUTPUTS or "station_m" not in names or "road" not in names:
+            continue
+        for feature in layer.getFeatures():
+            row = dict(zip(names, feature.attributes()))
+            why = reason(row)
+            if why and not feature.geometry().isEmpty():
+                found.append(_doubt(f"{title_of(layer, feature)}: {why}", row, feature.geometry(), layer))
+    return _gathered(sorted(found, key=lambda doubt: (doubt.road, doubt.station)))
+
+
+def reason(row: dict) -> str:
+    """Why a feature is doubtful, "" where it is not.
+
+    row : {field: value}; what a layer does not have says nothing
+    """
+    if (_number(row.get("length_m")) or 0.0) < SHORTEST:
+        return ""
+    apart, sure = _number(row.get("agree_cm")), _number(row.get("confidence"))
+    if apart is not None and apart > APART:
+        return tr("the two boundary methods lie {apart:.0f} cm apart").format(apart=apart)
+    if sure is not None and sure < UNSURE:
+        return tr("confidence {sure:.2f}").format(sure=sure)
+    return tr("not measured") if row.get("status") in GUESSED else ""
+
+
+def _number(value):
+    try:
+        return float(value)
+    except (TypeError, ValueError):  # NULL too
+        return None
+
+
+def _doubt(text, row, geometry, layer):
+    middle = geometry.interpolate(geometry.length() / 2).asPoint() if layer.geometryType() == Qgis.GeometryType.Line else \
+        geometry.pointOnSurface().asPoint()
+    return Doubt((text,), int(_number(row.get("road")) or 0), _number(row.get("station_m")) or 0.0, geometry.boundingBox(), middle, layer.crs())
+
+
+def _gathered(doubts):
+    """Doubts that begin within SAME_PLACE of the first of them are one."""
+    places: list[Doubt] = []
+    for doubt in doubts:
+        last = places[-1] if places else None
+        if last is not None and last.road == doubt.road and doubt.station - last.station <= SAME_PLACE:
+            extent = QgsRectangle(last.extent)
+            extent.combineExtentWith(doubt.extent)
+            places[-1] = Doubt(last.reasons + doubt.reasons, last.road, last.station, extent, last.middle, last.crs)
+        else:
+            places.append(doubt)
+    return places

@@ -1,0 +1,144 @@
+"""A section across the road: where it lies, and what the layers of a road map have on it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from qgis.core import (
+    Qgis,
+    QgsExpression,
+    QgsExpressionContext,
+    QgsExpressionContextUtils,
+    QgsFeature,
+    QgsGeometry,
+    QgsLayerTreeGroup,
+    QgsPoint,
+    QgsPointXY,
+    QgsRectangle,
+    QgsVectorLayer,
+)
+
+from ..processing_provider.results.layer_tree import CLOUDS, OUTPUT
+
+HALF_WIDTH = 20.0     # m of the section either side
+REACH = 60.0          # m about a place within which the road's direction is sought
+LEADING = ("DRIVING_LINES", "ROAD_EDGES", "BOUNDARIES", "MARKING_LINES", "TRAJECTORY")  # lines that run along the road, best first
+DRAWN = {"ROAD_EDGES": "#e31a1c", "BOUNDARIES": "#e31a1c", "MARKING_LINES": "#2166ff", "DRIVING_LINES": "#00a651"}
+
+
+@dataclass(frozen=True)
+class Section:
+    """A vertical plane across the road.
+
+    x, y : map coordinates of its middle
+    azimuth : direction of the road, degrees clockwise from grid north
+    """
+
+    x: float
+    y: float
+    azimuth: float
+
+    @property
+    def left(self) -> tuple[float, float]:
+        """Unit vector to the left of the road."""
+        angle = math.radians(self.azimuth)
+        return -math.cos(angle), math.sin(angle)
+
+    @property
+    def ahead(self) -> tuple[float, float]:
+        """Unit vector along the road."""
+        angle = math.radians(self.azimuth)
+        return math.sin(angle), math.cos(angle)
+
+    def line(self) -> QgsGeometry:
+        """From left to right on the map."""
+        (lx, ly), w = self.left, HALF_WIDTH
+        return QgsGeometry.fromPolylineXY([QgsPointXY(self.x + w * lx, self.y + w * ly), QgsPointXY(self.x - w * lx, self.y - w * ly)])
+
+    def offset(self, x: float, y: float) -> float:
+        """m left of the middle of a place on the section."""
+        return (x - self.x) * self.left[0] + (y - self.y) * self.left[1]
+
+    def moved(self, metres: float) -> tuple[float, float]:
+        """The place so many metres farther along the road."""
+        return self.x + metres * self.ahead[0], self.y + metres * self.ahead[1]
+
+    def cut(self, points: np.ndarray, thickness: float) -> np.ndarray:
+        """(K, 3) offset (left positive), z and intensity of those of (N, 4) points that lie within `thickness` m along the road."""
+        dx, dy = points[:, 0] - self.x, points[:, 1] - self.y
+        along = dx * self.ahead[0] + dy * self.ahead[1]
+        across = dx * self.left[0] + dy * self.left[1]
+        rows = (np.abs(along) <= thickness / 2) & (np.abs(across) <= HALF_WIDTH)
+        return np.c_[across[rows], points[rows, 2:]]
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """Where a line crosses the section: m left of its middle, height, what it is, colour."""
+
+    offset: float
+    z: float
+    title: str
+    colour: str
+
+
+def clouds_of(group: QgsLayerTreeGroup) -> list[str]:
+    """The point clouds that a road map was made from, as noted when its layers came."""
+    return [path for path in str(group.customProperty(CLOUDS) or "").split("\n") if path]
+
+
+def layers_of(group: QgsLayerTreeGroup) -> list[QgsVectorLayer]:
+    """The vector layers of a road map."""
+    return [node.layer() for node in group.findLayers() if node.layer() and node.layer().type() == Qgis.LayerType.Vector and node.layer().isSpatial()]
+
+
+def section_at(x: float, y: float, layers: Iterable[QgsVectorLayer]) -> Section | None:
+    """The section through a place, across the nearest line of the best kind there is; None where there is no line near."""
+    here = QgsGeometry.fromPointXY(QgsPointXY(x, y))
+    for output in LEADING:
+        nearest, azimuth = REACH, None
+        for layer in layers:
+            if layer.customProperty(OUTPUT) != output or layer.geometryType() != Qgis.GeometryType.Line:
+                continue
+            for feature in layer.getFeatures(QgsRectangle(x - REACH, y - REACH, x + REACH, y + REACH)):
+                geometry = feature.geometry()
+                distance = geometry.distance(here)
+                if distance < nearest:
+                    at = geometry.lineLocatePoint(here)
+                    nearest, azimuth = distance, math.degrees(geometry.interpolateAngle(at))
+        if azimuth is not None:
+            return Section(x, y, azimuth % 360.0)
+    return None
+
+
+def crossings(section: Section, layers: Iterable[QgsVectorLayer]) -> list[Crossing]:
+    """Lines that cross the section, from left to right."""
+    line, found = section.line(), []
+    for layer in layers:
+        colour = DRAWN.get(layer.customProperty(OUTPUT))
+        if colour is None or layer.geometryType() != Qgis.GeometryType.Line:
+            continue
+        for feature in layer.getFeatures(line.boundingBox()):
+            met = feature.geometry().intersection(line)
+            for vertex in met.vertices() if not met.isEmpty() else ():
+                found.append(Crossing(section.offset(vertex.x(), vertex.y()), _height(feature.geometry(), vertex), title_of(layer, feature), colour))
+    return sorted(found, key=lambda crossing: -crossing.offset)
+
+
+def _height(geometry, vertex):
+    """z of a line at a place on it; NaN where it has none."""
+    at = geometry.lineLocatePoint(QgsGeometry(QgsPoint(vertex.x(), vertex.y())))
+    place = geometry.interpolate(at)  # its point lives no longer than it
+    point = place.constGet()
+    return point.z() if point is not None and point.is3D() else math.nan
+
+
+def title_of(layer: QgsVectorLayer, feature: QgsFeature) -> str:
+    """What a feature is, by the display expression of its layer."""
+    context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(layer))
+    context.setFeature(feature)
+    said = QgsExpression(layer.displayExpression()).evaluate(context)
+    return str(said) if said else layer.name()

@@ -1,0 +1,186 @@
+"""A window that shows the points and lines of a section across the road, where the map was clicked or a doubt lies."""
+
+from __future__ import annotations
+
+import numpy as np
+from qgis.core import (
+    Qgis,
+    QgsApplication,
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsCsException,
+    QgsLayerTreeGroup,
+    QgsPointXY,
+    QgsProject,
+    QgsTask,
+)
+from qgis.gui import QgsMapToolEmitPoint, QgsRubberBand
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtGui import QColor
+from qgis.PyQt.QtWidgets import QDockWidget, QDoubleSpinBox, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+
+from ..core.common.errors import Cancelled, RoadExtractionError
+from ..core.common.parallel import cancellation_scope
+from ..core.common.progress import Progress
+from ..core.survey.las.near import points_near
+from ..processing_provider.results.layer_tree import road_maps
+from ..processing_provider.texts import tr
+from .section import HALF_WIDTH, Section, clouds_of, crossings, layers_of, section_at
+from .section_view import SectionView
+
+AROUND = 40.0    # m of road kept in memory either side of a place, so that stepping along it needs no new reading
+STEP = 1.0       # m of a step along the road
+THICKNESS = 0.3  # m along the road that a section takes points from
+
+
+class SectionDock(QDockWidget):
+    """The window; `show_at` shows a place."""
+
+    def __init__(self, iface):
+        super().__init__(tr("Cross-section"), iface.mainWindow())
+        self.setObjectName("LanewrightCrossSection")
+        self.iface = iface
+        self.view = SectionView()
+        self.tool = QgsMapToolEmitPoint(iface.mapCanvas())
+        self.tool.canvasClicked.connect(lambda point, button: self.show_at(point, iface.mapCanvas().mapSettings().destinationCrs()))
+        self.band = None
+        self.section = self.group = self.task = None
+        self._kept, self._kept_at = np.empty((0, 4)), None  # points about a place: (clouds, x, y)
+        self.pick = QPushButton(tr("Click in the map"))
+        self.pick.clicked.connect(lambda checked=False: iface.mapCanvas().setMapTool(self.tool))
+        back, ahead = QPushButton("◀"), QPushButton("▶")
+        for button, metres, tip in ((back, -STEP, tr("A metre back along the road")), (ahead, STEP, tr("A metre ahead along the road"))):
+            button.setToolTip(tip)
+            button.setFixedWidth(34)
+            button.clicked.connect(lambda checked=False, metres=metres: self.step(metres))
+        self.thickness = QDoubleSpinBox()
+        self.thickness.setRange(0.02, 5.0)
+        self.thickness.setSingleStep(0.05)
+        self.thickness.setValue(THICKNESS)
+        self.thickness.setSuffix(" m")
+        self.thickness.setToolTip(tr("Length of road from which points are shown"))
+        self.thickness.valueChanged.connect(lambda value: self._draw())
+        row = QHBoxLayout()
+        for widget in (self.pick, back, ahead, QLabel(tr("Thickness")), self.thickness):
+            row.addWidget(widget)
+        row.addStretch()
+        body = QWidget()
+        column = QVBoxLayout(body)
+        column.setContentsMargins(4, 4, 4, 4)
+        column.addLayout(row)
+        column.addWidget(self.view, 1)
+        self.setWidget(body)
+        iface.addDockWidget(Qt.DockWidgetArea.BottomDockWidgetArea, self)
+        self.visibilityChanged.connect(self._hide_line)
+
+    def remove(self) -> None:
+        """Take the window and its line out of QGIS."""
+        if self.iface.mapCanvas().mapTool() is self.tool:
+            self.iface.mapCanvas().unsetMapTool(self.tool)
+        self._hide_line(False)
+        self.iface.removeDockWidget(self)
+
+    # -- where ------------------------------------------------------------------------------------
+
+    def show_at(self, point: QgsPointXY, crs: QgsCoordinateReferenceSystem) -> None:
+        """The section through a place of the map."""
+        for group in road_maps(QgsProject.instance().layerTreeRoot()):
+            layers = layers_of(group)
+            if not layers:
+                continue
+            try:
+                here = QgsCoordinateTransform(crs, layers[0].crs(), QgsProject.instance()).transform(point)
+            except QgsCsException:
+                continue
+            section = section_at(here.x(), here.y(), layers)
+            if section is not None:
+                self._show(section, group)
+                return
+        self.view.show_section(np.empty((0, 3)), [], tr("No line of a road map lies near: click on a road that Lanewright mapped."))
+
+    def step(self, metres: float) -> None:
+        """Go on along the road."""
+        if self.section is None:
+            return
+        x, y = self.section.moved(metres)
+        turned = section_at(x, y, layers_of(self.group))
+        self._show(turned or Section(x, y, self.section.azimuth), self.group)
+
+    def _show(self, section: Section, group: QgsLayerTreeGroup) -> None:
+        self.section, self.group = section, group
+        self.show()
+        self._draw_line()
+        clouds = clouds_of(group)
+        if not clouds:
+            self._draw(tr("The point clouds of this road map are not known: it was not made by Road map in this project."))
+        elif self._kept_at is None or self._kept_at[0] != clouds or \
+                max(abs(section.x - self._kept_at[1]), abs(section.y - self._kept_at[2])) > AROUND - HALF_WIDTH:
+            self._read(clouds)
+        else:
+            self._draw()
+
+    # -- points -------------------------------------------------------------------------------------
+
+    def _read(self, clouds):
+        """Read the points about the section in the background; a newer wish cancels an older one."""
+        if self.task is not None:
+            self.task.cancel()
+        self.view.show_section(np.empty((0, 3)), [], tr("Reading points…"))
+        place = (clouds, self.section.x, self.section.y)
+        task = QgsTask.fromFunction(tr("Points of a cross-section"), _points, clouds, place[1], place[2],
+                                    on_finished=lambda error, found=None: self._ready(task, place, error, found))
+        self.task = task  # QGIS keeps no reference
+        QgsApplication.taskManager().addTask(task)
+
+    def _ready(self, task, place, error, found):
+        if task is not self.task:
+            return
+        self.task = None
+        if error is not None or found is None:
+            self.view.show_section(np.empty((0, 3)), [], str(error) if isinstance(error, RoadExtractionError) else tr("No points were read."))
+            return
+        self._kept, self._kept_at = found["points"], place
+        self._draw()
+
+    def _draw(self, message=""):
+        if self.section is None:
+            return
+        points = self.section.cut(self._kept, self.thickness.value()) if self._kept_at is not None and not message else np.empty((0, 3))
+        self.view.show_section(points, crossings(self.section, layers_of(self.group)), message or tr("No points lie here."))
+
+    # -- the line on the map --------------------------------------------------------------------------
+
+    def _draw_line(self):
+        if self.band is None:
+            self.band = QgsRubberBand(self.iface.mapCanvas(), Qgis.GeometryType.Line)
+            self.band.setColor(QColor("#ff00c8"))
+            self.band.setWidth(2)
+        self.band.setToGeometry(self.section.line(), layers_of(self.group)[0].crs())
+        self.band.show()
+
+    def _hide_line(self, visible):
+        if self.band is not None:
+            self.band.setVisible(bool(visible))
+
+
+class _TaskProgress(Progress):
+    def __init__(self, task):
+        self.task = task
+
+    def report(self, fraction):
+        self.check_cancelled()
+        self.task.setProgress(100.0 * fraction)
+
+    def check_cancelled(self):
+        if self.task.isCanceled():
+            raise Cancelled
+
+
+def _points(task, clouds, x, y):
+    """What the background does: the points, None where they are no longer wanted."""
+    progress = _TaskProgress(task)
+    try:
+        with cancellation_scope(progress):
+            return {"points": points_near(clouds, x, y, AROUND, progress)}  # QGIS asks whether it is empty, which an array refuses to say
+    except Cancelled:
+        return None

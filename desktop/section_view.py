@@ -1,0 +1,169 @@
+"""The picture of a section: points, and the lines that cross it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from qgis.PyQt.QtCore import QPointF, QRectF, Qt
+from qgis.PyQt.QtGui import QColor, QCursor, QFont, QImage, QMouseEvent, QPainter, QPen, QWheelEvent
+from qgis.PyQt.QtWidgets import QToolTip, QWidget
+
+from ..processing_provider.texts import tr
+from .section import HALF_WIDTH, Crossing
+
+LEFT, RIGHT, TOP, BOTTOM = 46, 10, 16, 34  # pixels about the picture
+LEAST_HEIGHT = 0.6       # m that the picture shows at least
+HEIGHT_ABOVE, HEIGHT_BELOW = 0.8, 0.5  # m shown above and below the lines on the road
+ZOOM = 1.25              # of a turn of the wheel
+NEAREST = 1.0            # m of width that zooming ends at
+GROUND, PAPER, INK = QColor("#444444"), QColor("#ffffff"), QColor("#222222")
+
+
+class SectionView(QWidget):
+    """Points of a section by offset and height; the wheel zooms, dragging moves, pointing reads offset and height."""
+
+    def __init__(self, parent: QWidget | None = None):
+        super().__init__(parent)
+        self.setMinimumSize(320, 180)
+        self.setMouseTracking(True)
+        self.points, self.crossings = np.empty((0, 3)), []
+        self.message = tr("Click on the road in the map.")
+        self.centre, self.half = 0.0, 8.0   # m: middle and half of what is shown across
+        self.low, self.high = 0.0, 1.0
+        self._dragged = None
+
+    def show_section(self, points: np.ndarray, crossings: list[Crossing], message: str = "") -> None:
+        """Show (N, 3) offset, z and intensity and the crossings; `message` where there is nothing to show."""
+        self.points, self.crossings, self.message = points, crossings, message
+        self._fit_heights()
+        self.update()
+
+    # -- metres and pixels --------------------------------------------------------------------------
+
+    def _frame(self):
+        return QRectF(LEFT, TOP, max(self.width() - LEFT - RIGHT, 10), max(self.height() - TOP - BOTTOM, 10))
+
+    def _at(self, offset, z):
+        """Pixels of metres; left of the road is on the left."""
+        frame = self._frame()
+        return (frame.left() + (self.centre + self.half - offset) / (2 * self.half) * frame.width(),
+                frame.bottom() - (z - self.low) / (self.high - self.low) * frame.height())
+
+    def _metres(self, x, y):
+        frame = self._frame()
+        return (self.centre + self.half - (x - frame.left()) / frame.width() * 2 * self.half,
+                self.low + (frame.bottom() - y) / frame.height() * (self.high - self.low))
+
+    def _fit_heights(self):
+        """The heights of the road: of the lines on it where there are any, else of the lowest points."""
+        inside = np.abs(self.points[:, 0] - self.centre) <= self.half if len(self.points) else np.empty(0, bool)
+        known = [crossing.z for crossing in self.crossings if math.isfinite(crossing.z) and abs(crossing.offset - self.centre) <= self.half]
+        if known:
+            self.low, self.high = min(known) - HEIGHT_BELOW, max(known) + HEIGHT_ABOVE
+        elif inside.any():
+            low = float(np.percentile(self.points[inside, 1], 2))
+            self.low, self.high = low - HEIGHT_BELOW, low + HEIGHT_ABOVE + LEAST_HEIGHT
+
+    # -- drawing ----------------------------------------------------------------------------------------
+
+    def paintEvent(self, event) -> None:
+        painter = QPainter(self)
+        painter.fillRect(self.rect(), PAPER)
+        frame = self._frame()
+        if self.message and not len(self.points):
+            painter.setPen(INK)
+            painter.drawText(frame, int(Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap), self.message)
+        if not len(self.points) and not self.crossings:
+            return
+        self._draw_axes(painter, frame)
+        painter.setClipRect(frame)
+        self._draw_points(painter, frame)
+        self._draw_crossings(painter, frame)
+
+    def _draw_axes(self, painter, frame):
+        painter.setFont(QFont(self.font().family(), 8))
+        for value in _ticks(self.centre - self.half, self.centre + self.half, frame.width() / 60):
+            x, _ = self._at(value, self.low)
+            painter.setPen(QPen(QColor("#e2e2e2")))
+            painter.drawLine(QPointF(x, frame.top()), QPointF(x, frame.bottom()))
+            painter.setPen(INK)
+            painter.drawText(QRectF(x - 30, frame.bottom() + 2, 60, 14), int(Qt.AlignmentFlag.AlignHCenter), f"{value:g}")
+        for value in _ticks(self.low, self.high, frame.height() / 30):
+            _, y = self._at(self.centre, value)
+            painter.setPen(QPen(QColor("#e2e2e2")))
+            painter.drawLine(QPointF(frame.left(), y), QPointF(frame.right(), y))
+            painter.setPen(INK)
+            painter.drawText(QRectF(0, y - 7, LEFT - 4, 14), int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter), f"{value:.2f}")
+        painter.drawText(QRectF(frame.left(), frame.bottom() + 16, frame.width(), 16), int(Qt.AlignmentFlag.AlignHCenter),
+                         tr("left ← offset from the place that was clicked (m) → right; heights in m"))
+        painter.drawRect(frame)
+
+    def _draw_points(self, painter, frame):
+        """The points as an image, the brighter the lighter; drawn one by one a hundred thousand would take seconds."""
+        width, height = int(frame.width()), int(frame.height())
+        if not len(self.points) or width < 2 or height < 2:
+            return
+        x, y = self._at(self.points[:, 0], self.points[:, 1])
+        column, row = (x - frame.left()).astype(int), (y - frame.top()).astype(int)
+        inside = (column >= 0) & (column < width - 1) & (row >= 0) & (row < height - 1)
+        low, high = np.percentile(self.points[:, 2], (2, 98)) if inside.any() else (0.0, 1.0)
+        grey = (190 * np.clip((self.points[:, 2] - low) / max(high - low, 1e-9), 0, 1)).astype(np.uint32)
+        pixels = np.zeros((height, width), np.uint32)
+        order = np.flatnonzero(inside)[np.argsort(grey[inside], kind="stable")[::-1]]
+        colour = 0xFF000000 | grey[order] << 16 | grey[order] << 8 | grey[order]
+        for down in (0, 1):
+            for right in (0, 1):
+                pixels[row[order] + down, column[order] + right] = colour
+        data = pixels.tobytes()  # the image keeps no copy
+        image = QImage(data, width, height, 4 * width, QImage.Format.Format_ARGB32)
+        painter.drawImage(frame.topLeft(), image)
+
+    def _draw_crossings(self, painter, frame):
+        painter.setFont(QFont(self.font().family(), 8))
+        for number, crossing in enumerate(self.crossings):
+            x, y = self._at(crossing.offset, crossing.z if math.isfinite(crossing.z) else self.low)
+            colour = QColor(crossing.colour)
+            painter.setPen(QPen(colour, 1.2, Qt.PenStyle.DashLine))
+            painter.drawLine(QPointF(x, frame.top()), QPointF(x, frame.bottom()))
+            painter.setPen(QPen(colour, 1.6))
+            painter.setBrush(PAPER)
+            if math.isfinite(crossing.z):
+                painter.drawEllipse(QPointF(x, y), 4, 4)
+            painter.drawText(QPointF(x + 4, frame.top() + 12 + 12 * (number % 6)), crossing.title)
+
+    # -- the mouse ----------------------------------------------------------------------------------------
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        factor = 1 / ZOOM if event.angleDelta().y() > 0 else ZOOM
+        offset, _ = self._metres(event.position().x(), event.position().y())
+        half = min(max(self.half * factor, NEAREST / 2), HALF_WIDTH)
+        self.centre = offset + (self.centre - offset) * half / self.half
+        self.half = half
+        self._fit_heights()
+        self.update()
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        self._dragged = event.pos()
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        self._dragged = None
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        frame = self._frame()
+        if self._dragged is not None:
+            self.centre += (event.pos().x() - self._dragged.x()) / frame.width() * 2 * self.half
+            move = (event.pos().y() - self._dragged.y()) / frame.height() * (self.high - self.low)
+            self.low, self.high, self._dragged = self.low + move, self.high + move, event.pos()
+            self.update()
+        elif frame.contains(event.pos()) and len(self.points):
+            offset, z = self._metres(event.pos().x(), event.pos().y())
+            QToolTip.showText(QCursor.pos(), f"{offset:+.2f} m, {z:.3f} m", self)
+
+
+def _ticks(low, high, most):
+    """Round numbers between two limits, about so many at most."""
+    step = (high - low) / max(most, 1.0)
+    unit = 10.0 ** math.floor(math.log10(step))
+    step = next(unit * times for times in (1, 2, 5, 10) if unit * times >= step)
+    return np.arange(math.ceil(low / step), math.floor(high / step) + 1) * step

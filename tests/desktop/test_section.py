@@ -1,0 +1,116 @@
+"""The cross-section of a road, and the doubtful places along it."""
+
+import numpy as np
+import pytest
+from lanewright.core.common.schemas import DRIVING_LINES, ROAD_EDGES
+from lanewright.desktop.doubtful import doubts_of, reason
+from lanewright.desktop.section import Section, clouds_of, crossings, section_at
+from lanewright.desktop.section_view import SectionView
+from lanewright.processing_provider.layers import qgis_fields
+from lanewright.processing_provider.results.attributes import explain_attributes
+from lanewright.processing_provider.results.layer_tree import place_layer
+from lanewright.processing_provider.results.runs import Run
+from qgis.core import QgsFeature, QgsGeometry, QgsProject, QgsVectorLayer
+
+EAST, NORTH = 500_000.0, 5_400_000.0
+
+
+@pytest.fixture
+def project(qgis_app):
+    project = QgsProject()
+    yield project
+    project.clear()
+
+
+def added(project, output, schema, *rows):
+    """A layer of a road map; rows of (WKT about EAST, NORTH, fields)."""
+    layer = QgsVectorLayer("LineStringZ?crs=EPSG:32650", output, "memory")
+    layer.dataProvider().addAttributes(list(qgis_fields(schema, with_aliases=False)))
+    layer.updateFields()
+    for wkt, row in rows:
+        feature = QgsFeature(layer.fields())
+        geometry = QgsGeometry.fromWkt(wkt)
+        geometry.translate(EAST, NORTH)
+        feature.setGeometry(geometry)
+        for name, value in row.items():
+            feature[name] = value
+        layer.dataProvider().addFeature(feature)
+    layer.updateExtents()
+    explain_attributes(layer, output, schema)
+    run = Run("roadmap", "B12", "B12, 8:00", ("/data/B12/a.laz", "/data/B12/b.laz"))
+    project.addMapLayer(layer, False)
+    root = project.layerTreeRoot()
+    (root.findGroup(run.group) or root.insertGroup(0, run.group)).insertLayer(0, layer)
+    place_layer(layer, project, output, run)
+    return layer
+
+
+def road(project):
+    """A road to the north-east: a lane in its middle, an edge 4 m to the left, at a height of 100 m."""
+    lane = added(project, "DRIVING_LINES", DRIVING_LINES, ("LINESTRING Z (0 0 100, 70.7107 70.7107 100)", dict(lane=1, direction=1, length_m=100.0)))
+    edge = added(project, "ROAD_EDGES", ROAD_EDGES,
+                 ("LINESTRING Z (-2.8284 2.8284 100.12, 67.8823 73.5391 100.12)", dict(road=0, side="left", length_m=100.0, status="measured")))
+    return [lane, edge]
+
+
+def test_the_section_lies_across_the_road_and_left_is_positive(project):
+    section = section_at(EAST + 30, NORTH + 30, road(project))
+    assert section.azimuth == pytest.approx(45.0, abs=0.1)
+    west, east = section.line().asPolyline()
+    assert west.x() < east.x() and west.y() > east.y()
+    assert section.offset(west.x(), west.y()) == pytest.approx(20.0)
+    assert section.moved(10.0) == pytest.approx((EAST + 30 + 7.071, NORTH + 30 + 7.071), abs=0.02)
+
+
+def test_lines_cross_it_at_their_offset_and_height_and_say_what_they_are(project):
+    layers = road(project)
+    left, middle = crossings(section_at(EAST + 30, NORTH + 30, layers), layers)
+    assert (left.offset, left.z) == pytest.approx((4.0, 100.12), abs=0.01) and left.title.startswith("Road edge, left")
+    assert (middle.offset, middle.z) == pytest.approx((0.0, 100.0), abs=0.01) and middle.title.startswith("Lane 1")
+
+
+def test_far_from_any_road_there_is_no_section(project):
+    assert section_at(EAST + 900, NORTH, road(project)) is None
+
+
+def test_only_points_of_the_slice_are_shown(qgis_app):
+    section = Section(EAST, NORTH, 0.0)
+    points = np.array([[EAST - 3, NORTH, 100.0, 7], [EAST - 3, NORTH + 0.4, 100.0, 7], [EAST + 50, NORTH, 100.0, 7]])
+    np.testing.assert_allclose(section.cut(points, 0.3), [[3.0, 100.0, 7.0]])
+    assert len(section.cut(points, 1.0)) == 2
+
+
+def test_the_road_map_knows_its_point_clouds(project):
+    road(project)
+    assert clouds_of(project.layerTreeRoot().findGroup("B12, 8:00")) == ["/data/B12/a.laz", "/data/B12/b.laz"]
+
+
+def test_the_picture_shows_points_on_their_side(qgis_app):
+    """Points 3 m to the left, and none to the right."""
+    view = SectionView()
+    view.resize(600, 300)
+    z = np.linspace(100.0, 100.5, 400)
+    view.show_section(np.c_[np.full(400, 3.0), z, np.zeros(400)], [])
+    image = view.grab().toImage()
+    dark = [x for x in range(60, 580) for y in range(25, 250, 3) if image.pixelColor(x, y).lightness() < 100]
+    assert dark and max(dark) < 300
+
+
+@pytest.mark.parametrize("row, why", [
+    (dict(length_m=12.0, status="bridged"), "not measured"), (dict(length_m=12.0, status="inferred"), "not measured"),
+    (dict(length_m=12.0, status="measured"), ""), (dict(length_m=1.0, status="bridged"), ""),
+    (dict(length_m=12.0, status="measured", agree_cm=8.2), "the two boundary methods lie 8 cm apart"),
+    (dict(length_m=12.0, status="measured", confidence=0.31), "confidence 0.31"),
+])
+def test_what_was_not_measured_disagrees_or_is_unsure_is_doubtful(qgis_app, row, why):
+    assert reason(row) == why
+
+
+def test_doubts_come_along_the_road_and_those_of_one_place_together(project):
+    piece = lambda at, **row: (f"LINESTRING Z ({at} 0 100, {at + 8} 0 100)", dict(road=0, station_m=float(at), length_m=8.0, **row))  # noqa: E731
+    added(project, "ROAD_EDGES", ROAD_EDGES, piece(80, side="left", status="bridged"), piece(10, side="left", status="bridged"),
+          piece(40, side="left", status="measured"))
+    added(project, "DRIVING_LINES", DRIVING_LINES, piece(14, lane=1, direction=1, status="inferred"))
+    places = doubts_of(project.layerTreeRoot().findGroup("B12, 8:00"))
+    assert [place.station for place in places] == [10.0, 80.0]
+    assert len(places[0].reasons) == 2 and "Lane 1" in "".join(places[0].reasons) and places[0].extent.width() == pytest.approx(12.0)
