@@ -17,8 +17,8 @@ test: setup ## tests of core and library without QGIS, then the plugin in QGIS, 
 bench: setup ## time and memory of every stage beside PCL, Open3D, GDAL and laspy's read, into docs/benchmarks.md
 	@tools/bench.sh
 
-accuracy: setup ## every method over surveys with truth (SURVEYS=folder; default: the sample scenes), into docs/accuracy.md
-	@tools/accuracy.sh $(if $(SURVEYS),--surveys "$(SURVEYS)")
+accuracy: setup ## every method over surveys with truth (SURVEYS=folder; default: the sample scenes; ONLY=name,name), into docs/accuracy.md
+	@tools/accuracy.sh $(if $(SURVEYS),--surveys "$(SURVEYS)") $(if $(ONLY),--only "$(ONLY)")
 
 package: ## the zip for QGIS's plugin manager, into dist/ (for plugins.qgis.org: REPOSITORY=https://… EMAIL=…)
 	@REPOSITORY="$(REPOSITORY)" EMAIL="$(EMAIL)" HOMEPAGE="$(HOMEPAGE)" TRACKER="$(TRACKER)" tools/package.sh

@@ -1,5 +1,7 @@
 """The parts of `make accuracy` that judge streets of every kind by length, and surveys made otherwise."""
 
+import json
+from pathlib import Path
 from types import SimpleNamespace
 
 import laspy
@@ -150,3 +152,31 @@ def test_the_page_says_how_much_each_variant_changes():
 def test_variants_are_those_that_the_page_tells_of():
     assert [variant.name for variant in VARIANTS] == ["mirrored", "turned by 37°", "driven the other way", "thinned by half"]
     assert Variant("as surveyed").places(TRACK, CENTRE) == pytest.approx(TRACK)
+
+
+def test_only_some_surveys_are_measured_anew_and_the_page_keeps_the_figures_of_the_others(tmp_path, monkeypatch):
+    from accuracy import __main__ as command
+
+    for name in ("one", "two"):
+        (tmp_path / name).mkdir()
+        for file in ("cloud.laz", "trajectory.csv", "truth.gpkg"):
+            (tmp_path / name / file).touch()
+    measured = []
+
+    def run(arguments, check):
+        survey, into = arguments[arguments.index("--one") + 1], arguments[arguments.index("--into") + 1]
+        measured.append(Path(survey).name)
+        right = float(len(measured))
+        Path(into).write_text(json.dumps({"name": Path(survey).name, "kind": "real", "text": "", "points": 1, "steps": False,
+                                          "streets": {"as surveyed": {"curbs": (right, 10.0)}}}))
+
+    monkeypatch.setattr(command.subprocess, "run", run)
+    for arguments in ([], ["--only", "two"]):
+        monkeypatch.setattr("sys.argv", ["accuracy", "--surveys", str(tmp_path), *arguments])
+        command.main()
+    assert measured == ["one", "two", "two"]
+    page = (tmp_path / "accuracy.md").read_text()
+    assert "| one (real) | 10.0 |" in page and "| two (real) | 30.0 |" in page
+    monkeypatch.setattr("sys.argv", ["accuracy", "--surveys", str(tmp_path), "--only", "three"])
+    with pytest.raises(SystemExit, match="There is no survey three; there are one, two."):
+        command.main()

@@ -1,4 +1,4 @@
-"""python -m accuracy [--surveys FOLDER] [--page FILE] [--quick]: see the package."""
+"""python -m accuracy [--surveys FOLDER] [--page FILE] [--quick] [--only NAME,NAME]: see the package."""
 
 import argparse
 import json
@@ -11,7 +11,7 @@ from pathlib import Path
 from . import ROOT
 from .figures import figures_of
 from .page import page
-from .surveys import OTHERS, SAMPLES, make_samples, surveys_in
+from .surveys import make_samples, surveys_in
 
 BUILD = ROOT / "build" / "accuracy"
 
@@ -22,6 +22,7 @@ def main():
     parser.add_argument("--page", type=Path, help="where the page is written (default: docs/accuracy.md for the sample scenes, "
                                                   "accuracy.md in the folder of surveys otherwise)")
     parser.add_argument("--quick", action="store_true", help="without the ablation, the image resolutions and the streets surveyed otherwise")
+    parser.add_argument("--only", default="", metavar="NAME,NAME", help="measure these surveys alone; the page has the last figures of the others")
     parser.add_argument("--one", type=Path, help=argparse.SUPPRESS)
     parser.add_argument("--into", type=Path, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
@@ -30,26 +31,34 @@ def main():
         arguments.into.write_text(json.dumps(figures_of(arguments.one, arguments.quick)))
         return
     began = time.monotonic()
-    folder = arguments.surveys
+    only = [name for name in arguments.only.split(",") if name]
+    folder, saved = arguments.surveys, BUILD / "figures.json"
     if folder is None:
         folder = BUILD / "surveys"
-        print(f"Making {len(SAMPLES) + len(OTHERS)} sample surveys …", flush=True)
-        make_samples(folder)
+        print("Making sample surveys …", flush=True)
+        make_samples(folder, only)
+    else:
+        saved = folder / "figures.json"
     found = surveys_in(folder)
     if not found:
         sys.exit(f"{folder} holds no survey: a folder with cloud.laz, trajectory.csv and truth.gpkg (or truth/truth.gpkg).")
-    figures = []
+    unknown = sorted(set(only) - {survey.name for survey in found})
+    if unknown:
+        sys.exit(f"There is no survey {', '.join(unknown)}; there are {', '.join(survey.name for survey in found)}.")
+    figures = {one["name"]: one for one in json.loads(saved.read_text())} if only and saved.exists() else {}
+    saved.parent.mkdir(parents=True, exist_ok=True)
     for survey in found:
+        if only and survey.name not in only:
+            continue
         print(f"{survey.name}: {time.monotonic() - began:.0f} s", flush=True)
         with tempfile.TemporaryDirectory() as scratch:
             into = Path(scratch) / "figures.json"
             command = [sys.executable, "-m", "accuracy", "--one", str(survey), "--into", str(into)]
             subprocess.run(command + ["--quick"] * arguments.quick, check=True)
-            figures.append(json.loads(into.read_text()))
-    BUILD.mkdir(parents=True, exist_ok=True)
-    (BUILD / "figures.json").write_text(json.dumps(figures, indent=1))
+            figures[survey.name] = json.loads(into.read_text())
+        saved.write_text(json.dumps(list(figures.values()), indent=1))
     where = arguments.page or (ROOT / "docs" / "accuracy.md" if arguments.surveys is None else folder / "accuracy.md")
-    where.write_text(page(figures, arguments.surveys is None), encoding="utf-8")
+    where.write_text(page([figures[survey.name] for survey in found if survey.name in figures], arguments.surveys is None), encoding="utf-8")
     print(f"{where} written after {time.monotonic() - began:.0f} s.")
 
 

@@ -146,9 +146,11 @@ def _features(layer):
             yield shapely.from_wkb(bytes(geometry.ExportToIsoWkb())), feature.items()
 
 
-def make_samples(folder):
+def make_samples(folder, only=()):
+    """The sample surveys, or some of them, in a folder each."""
     for name, (settings, text) in {**SAMPLES, **OTHERS}.items():
-        _make_sample(folder / name, settings, text, name in SAMPLES)
+        if not only or name in only:
+            _make_sample(folder / name, settings, text, name in SAMPLES)
 
 
 def _make_sample(folder, settings, text, steps=True):
