@@ -7,6 +7,7 @@ from .assess.assess_markings import AssessMarkings
 from .driving.driving_lines import DrivingLines
 from .driving.road_map import RoadMap
 from .export.check_map import CheckMap
+from .export.export_cad import ExportCad
 from .export.export_lanelet2 import ExportLanelet2
 from .export.export_opendrive import ExportOpenDrive
 from .export.import_lanelet2 import ImportLanelet2
@@ -51,6 +52,7 @@ ALGORITHMS = (
     RoadMap,
     ExportOpenDrive,
     ExportLanelet2,
+    ExportCad,
     ImportOpenDrive,
     ImportLanelet2,
     CheckMap,

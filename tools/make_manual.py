@@ -30,7 +30,7 @@ FILES = {
     "removeoutliers.OUTPUT": "marking_points_clean.laz", "clustermarkings.MARKING_POINTS": "marking_points_clean.laz",
     "georeferenceimage.IMAGE": "uav_image.tif", "georeferenceimage.GCPS": "uav_gcps.gpkg",
     "georeferenceimage.OUTPUT": "orthoimage.tif",
-    "exportlanelet2.OUTPUT": "map.osm", "exportopendrive.OUTPUT": "map.xodr",
+    "exportlanelet2.OUTPUT": "map.osm", "exportopendrive.OUTPUT": "map.xodr", "exportcad.OUTPUT": "map.dxf",
     "checkhdmap.INPUT": "map.xodr", "checkhdmap.OUTPUT": "map_findings.gpkg",
     "importopendrive.INPUT": "map.xodr", "importlanelet2.INPUT": "map.osm",
     **{f"{name}.{layer}": f"{name.removeprefix('import')}_{layer.lower()}.gpkg" for name in ("importopendrive", "importlanelet2")

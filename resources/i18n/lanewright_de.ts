@@ -1094,6 +1094,116 @@
             <translation>{fault}: {count}</translation>
         </message>
         <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>Export CAD</source>
+            <translation>CAD exportieren</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>Writes the road map for the design office: 3D polylines as DXF, or alignments of lines, curves and spirals with profile as LandXML.</source>
+            <translation>Schreibt die Straßenkarte fürs Planungsbüro: 3D-Polylinien als DXF oder Achsen aus Geraden, Bögen und Klothoiden mit Gradiente als LandXML.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>DXF: lane borders, driving lines, marking lines, road edges and outlines of markings as 3D polylines, each class in a layer of its own with a colour. LandXML 1.2: the axis of every road and every driving line as an alignment of the fitted lines, curves and spirals, with a profile of tangents; a line that no elements follow within the tolerance is an irregular line.</source>
+            <translation>DXF: Ränder der Fahrstreifen, Fahrlinien, Markierungslinien, Fahrbahnränder und Umrisse der Markierungen als 3D-Polylinien, jede Klasse in einem eigenen Layer mit einer Farbe. LandXML 1.2: die Achse jeder Straße und jede Fahrlinie als Achse aus den angepassten Geraden, Bögen und Klothoiden, mit einer Gradiente aus Tangenten; eine Linie, der keine Elemente innerhalb der Toleranz folgen, ist eine unregelmäßige Linie.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>DXF has no place for the CRS; LandXML names it. Cross-sections, surfaces and texts are not there.</source>
+            <translation>DXF hat keinen Platz für das KBS; LandXML nennt es. Querprofile, Flächen und Texte sind nicht darin.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>DXF</source>
+            <translation>DXF</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>LandXML</source>
+            <translation>LandXML</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>CAD</source>
+            <translation>CAD</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>alignment</source>
+            <translation>Achse</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>profile</source>
+            <translation>Profil</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>Tolerance (m)</source>
+            <translation>Toleranz (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>LandXML: how far a line may be missed by its elements, in plan and in height. DXF has every vertex.</source>
+            <translation>LandXML: wie weit eine Linie von ihren Elementen verfehlt werden darf, in Lage und Höhe. DXF hat jeden Stützpunkt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>Lines</source>
+            <translation>Linien</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>Alignments</source>
+            <translation>Achsen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>Largest distance of a line from its elements (m)</source>
+            <translation>Größter Abstand einer Linie von ihren Elementen (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>CAD file</source>
+            <translation>CAD-Datei</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>With the ending .dxf, or .xml for LandXML.</source>
+            <translation>Mit der Endung .dxf oder, für LandXML, .xml.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>Format</source>
+            <translation>Format</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>dxf is drawn by every CAD program, landxml is taken over by programs for road design.</source>
+            <translation>dxf zeichnet jedes CAD-Programm, landxml übernehmen Programme für den Straßenentwurf.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>{count} polylines in {layers} layers.</source>
+            <translation>{count} Polylinien in {layers} Layern.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>{count} alignments, {length:.0f} m; elements within {missed:.3f} m of their lines.</source>
+            <translation>{count} Achsen, {length:.0f} m; Elemente innerhalb {missed:.3f} m von ihren Linien.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>{count} lines are followed by no elements within the tolerance and are irregular lines.</source>
+            <translation>{count} Linien folgen keine Elemente innerhalb der Toleranz; sie sind unregelmäßige Linien.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>{path} has the ending of {named}, but FORMAT is {kind}. Change one of them.</source>
+            <translation>{path} hat die Endung von {named}, aber FORMAT ist {kind}. Ändern Sie eines davon.</translation>
+        </message>
+        <message>
             <location filename="../../algorithms/export/export_lanelet2.py" />
             <source>Export Lanelet2</source>
             <translation>Lanelet2 exportieren</translation>
@@ -1237,11 +1347,6 @@
             <location filename="../../algorithms/export/export_opendrive.py" />
             <source>esmini</source>
             <translation>esmini</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/export/export_opendrive.py" />
-            <source>Tolerance (m)</source>
-            <translation>Toleranz (m)</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/export_opendrive.py" />
@@ -1457,11 +1562,6 @@
             <location filename="../../algorithms/inventory/cross_sections.py" />
             <source>Lanes are those of the layer Lanes, else of the driving lines between the marking lines, else of the marking lines alone; the carriageway ends at the road edges, else at the outermost line. Rut depths are measured under a straight edge of 2 m laid over profiles averaged over 1 m of road (over more where points are few), less what noise adds. Something that stands on the road does not count as hanging above it.</source>
             <translation>Fahrstreifen sind die des Layers Fahrstreifen, sonst die der Fahrlinien zwischen den Markierungslinien, sonst die der Markierungslinien allein; die Fahrbahn endet an den Fahrbahnrändern, sonst an der äußersten Linie. Spurrinnentiefen werden unter einer Latte von 2 m auf Profilen gemessen, die über 1 m Straße gemittelt sind (über mehr, wo Punkte rar sind), abzüglich dessen, was das Rauschen hinzufügt. Was auf der Straße steht, gilt nicht als darüber hängend.</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/inventory/cross_sections.py" />
-            <source>profile</source>
-            <translation>Profil</translation>
         </message>
         <message>
             <location filename="../../algorithms/inventory/cross_sections.py" />

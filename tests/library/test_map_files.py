@@ -97,3 +97,15 @@ def test_a_tolerance_that_is_none_is_refused(tmp_path, tolerance):
     with pytest.raises(RoadExtractionError, match="Tolerance"):
         run("exportopendrive", LANES=lane_layer(tmp_path, made_lanes.street()), OUTPUT=tmp_path / "map.xodr", TOLERANCE=tolerance)
     assert not (tmp_path / "map.xodr").exists()
+
+
+@pytest.mark.parametrize("kind, name", [("dxf", "map.dxf"), ("landxml", "map.xml")])
+def test_lanes_are_written_for_cad(tmp_path, kind, name):
+    pytest.importorskip("osgeo.gdal")
+    results = run("exportcad", LANES=lane_layer(tmp_path, made_lanes.street()), FORMAT=kind, OUTPUT=tmp_path / name, REPORT=tmp_path / "report.html")
+    assert results["LINES"] == 3 and (tmp_path / name).stat().st_size > 1000
+
+
+def test_a_name_that_belongs_to_another_format_is_refused(tmp_path):
+    with pytest.raises(RoadExtractionError, match="FORMAT is landxml"):
+        run("exportcad", LANES=lane_layer(tmp_path, made_lanes.street()), FORMAT="landxml", OUTPUT=tmp_path / "map.dxf")

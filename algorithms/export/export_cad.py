@@ -1,0 +1,94 @@
+"""Lanes and lines written for the design office."""
+
+from ...core.common.errors import RoadExtractionError
+from ..algorithm import Algorithm
+from ..parameters import ChoiceSpec, SettingSpec
+from ..texts import tr
+from .inputs import add_road_map_layers, road_map_source
+
+ROADS = "export.opendrive.exporter:OpenDriveSettings"
+FORMATS = ("dxf", "landxml")
+SUFFIXES = {"dxf": (".dxf",), "landxml": (".xml", ".landxml")}
+CAD_SETTINGS = (
+    SettingSpec("TOLERANCE", ROADS, "tolerance", tr("Tolerance (m)"),
+                tr("LandXML: how far a line may be missed by its elements, in plan and in height. DXF has every vertex.")),
+)
+NUMBERS = (("LINES", tr("Lines")), ("ALIGNMENTS", tr("Alignments")), ("MISSED", tr("Largest distance of a line from its elements (m)")))
+
+
+class ExportCad(Algorithm):
+    ID, TITLE, GROUP = "exportcad", "Export CAD", "Export"
+    SUMMARY = "Writes the road map for the design office: 3D polylines as DXF, or alignments of lines, curves and spirals with profile as LandXML."
+    HELP = ("DXF: lane borders, driving lines, marking lines, road edges and outlines of markings as 3D polylines, each class in a layer of its own "
+            "with a colour. LandXML 1.2: the axis of every road and every driving line as an alignment of the fitted lines, curves and spirals, "
+            "with a profile of tangents; a line that no elements follow within the tolerance is an irregular line.\n\n"
+            "DXF has no place for the CRS; LandXML names it. Cross-sections, surfaces and texts are not there.")
+    TAGS = ("DXF", "LandXML", "CAD", "alignment", "profile")
+
+    def declare(self):
+        add_road_map_layers(self)
+        self.add(ChoiceSpec("FORMAT", tr("Format"), tr("dxf is drawn by every CAD program, landxml is taken over by programs for road design."),
+                            value=FORMATS[0], choices=FORMATS))
+        self.add_settings(CAD_SETTINGS)
+        self.add_file("OUTPUT", tr("CAD file"), tr("With the ending .dxf, or .xml for LandXML."), (".dxf", ".xml", ".landxml"),
+                      "DXF (*.dxf);;LandXML (*.xml *.landxml)")
+        self.add_report()
+        for name, label in NUMBERS:
+            self.add_number(name, label)
+
+    def work(self, call, progress):
+        from ...core.report.map_export import map_export_report
+
+        kind = call.choice("FORMAT")
+        self._check_name(call, kind)
+        source = road_map_source(call, progress.part(0.0, 0.2))
+        for note in source.notes:
+            progress.warn(note)
+        numbers, tables = (_dxf if kind == "dxf" else _landxml)(call, source, progress)
+        if call.wants("REPORT"):
+            facts = [("Format", {"dxf": "DXF", "landxml": "LandXML 1.2"}[kind]), ("Lines", int(numbers["LINES"]))]
+            call.text("REPORT", map_export_report("Road map for CAD", call.layer_name("LANES"), facts, tables, source.notes))
+        return numbers
+
+    def _check_name(self, call, kind):
+        path = call.destination("OUTPUT") or ""
+        named = next((name for name, suffixes in SUFFIXES.items() if path.lower().endswith(suffixes)), kind)
+        if named != kind and path != "TEMPORARY_OUTPUT":
+            raise RoadExtractionError(tr("{path} has the ending of {named}, but FORMAT is {kind}. Change one of them.").format(
+                path=path, named=named, kind=kind))
+
+
+def _dxf(call, source, progress):
+    from collections import Counter
+
+    from ...core.export.cad.dxf import dxf_lines, write_dxf
+
+    lines = dxf_lines(source)
+    write_dxf(lines, call.new_file("OUTPUT"))
+    counts = Counter(line.layer for line in lines)
+    progress.info(tr("{count} polylines in {layers} layers.").format(count=len(lines), layers=len(counts)))
+    return {"LINES": float(len(lines)), "ALIGNMENTS": 0.0, "MISSED": 0.0}, [("Layers", ("Layer", "Polylines"), sorted(counts.items()))]
+
+
+def _landxml(call, source, progress):
+    from datetime import datetime
+    from pathlib import Path
+
+    from ...core.export.cad.alignments import alignments_of
+    from ...core.export.cad.landxml import landxml_text
+
+    tolerance = call.setting(CAD_SETTINGS[0])
+    found = alignments_of(source, tolerance)
+    now = datetime.now()
+    text = landxml_text(found, source.lanes.crs, call.layer_name("LANES"), now.strftime("%Y-%m-%d"), now.strftime("%H:%M:%S"))
+    Path(call.new_file("OUTPUT")).write_text(text, encoding="utf-8")
+    irregular = sum(one.plan is None for one in found)
+    if irregular:
+        progress.warn(tr("{count} lines are followed by no elements within the tolerance and are irregular lines.").format(count=irregular))
+    missed = max((one.missed for one in found), default=0.0)
+    progress.info(tr("{count} alignments, {length:.0f} m; elements within {missed:.3f} m of their lines.").format(
+        count=len(found), length=sum(one.length for one in found), missed=missed))
+    rows = [(one.name, one.description, round(one.length, 2), len(one.plan.elements) if one.plan is not None else None, len(one.profile))
+            for one in found]
+    tables = [("Alignments", ("Name", "What it is", "Length (m)", "Elements", "Points of the profile"), rows)]
+    return {"LINES": float(len(found)), "ALIGNMENTS": float(len(found)), "MISSED": missed}, tables

@@ -1,0 +1,12 @@
+"""For the design office: 3D polylines as DXF, alignments of fitted elements as LandXML.
+
+In: `RoadMapSource`. Out: a file.
+"""
+
+from ...lazy import public
+
+__getattr__, __all__ = public(__name__, {
+    "alignments": ("Alignment", "alignments_of"),
+    "dxf": ("dxf_lines", "write_dxf"),
+    "landxml": ("landxml_text",),
+})
