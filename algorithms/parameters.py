@@ -145,6 +145,11 @@ class FileSpec(ParameterSpec):
 
 
 @dataclass(frozen=True)
+class FolderSpec(ParameterSpec):
+    """A folder; it need not be there."""
+
+
+@dataclass(frozen=True)
 class LayerSpec(ParameterSpec):
     """A vector layer. `geometry`: as in Features, or "any"."""
 

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from ..core.common.errors import RoadExtractionError
-from .parameters import SettingSpec
+from .parameters import FolderSpec, SettingSpec
 from .texts import tr
 
 SURVEY = "survey.open_survey:SurveySettings"
@@ -64,6 +64,24 @@ def estimated_trajectory(call, progress):
     return found
 
 
+def add_execution(algorithm):
+    """Who does the work, and where finished work is kept."""
+    algorithm.add_settings(EXECUTION_SETTINGS)
+    algorithm.add(FolderSpec(
+        "WORK_FOLDER", tr("Work folder"),
+        tr("A folder for finished work, about 20 bytes for every point near the road. A run that ended early, or that is repeated with "
+           "other settings of later stages, does not read the points and find the curbs again. What was made from other files, settings "
+           "or another version of Lanewright is not used. Nothing in it is ever removed; delete it when the map is done."),
+        optional=True, advanced=True,
+    ))
+
+
+def execution_of(call):
+    """The ExecutionSettings of a call."""
+    folder = call.file("WORK_FOLDER") if call.algorithm.parameter("WORK_FOLDER") is not None else ""
+    return call.settings(EXECUTION_SETTINGS, work_folder=folder)
+
+
 def survey_inputs(call, progress):
     """Paths of POINT_CLOUDS, and TRAJECTORY brought to the clouds' CRS."""
     from ..core.survey.las.reader import read_headers
@@ -79,7 +97,7 @@ def open_survey_of(call, progress):
     from ..core.survey.open_survey import open_survey
 
     paths, trajectory = survey_inputs(call, progress)
-    survey = open_survey(paths, trajectory, call.settings(SURVEY_SETTINGS, crs=call.crs()), progress, call.settings(EXECUTION_SETTINGS))
+    survey = open_survey(paths, trajectory, call.settings(SURVEY_SETTINGS, crs=call.crs()), progress, execution_of(call))
     call.at_end(survey.store.close)
     return survey
 

@@ -22,7 +22,8 @@ from .run import algorithms
 # What a value looks like in the help
 METAVARS = (
     (specs.TrajectorySpec, "FILE"), (specs.LayerSpec, "LAYER"), (specs.LayerOutput, "LAYER"), (specs.PointCloudsSpec, "FILE"),
-    (specs.CloudSpec, "FILE"), (specs.FileSpec, "FILE"), (specs.RasterSpec, "FILE"), (specs.PaintedSpec, "FILE"), (specs.OutputSpec, "FILE"),
+    (specs.CloudSpec, "FILE"), (specs.FileSpec, "FILE"), (specs.FolderSpec, "FOLDER"),
+    (specs.RasterSpec, "FILE"), (specs.PaintedSpec, "FILE"), (specs.OutputSpec, "FILE"),
     (specs.CrsSpec, "EPSG:NUMBER"), (specs.FlagSpec, "true|false"), (specs.ExpressionSpec, "CONDITION"), (specs.TextSpec, "TEXT"),
 )
 JSON = "--json"

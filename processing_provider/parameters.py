@@ -126,6 +126,11 @@ def _(spec: specs.FileSpec):
 
 
 @_parameter.register
+def _(spec: specs.FolderSpec):
+    return QgsProcessingParameterFile(spec.name, spec.label, Qgis.ProcessingFileParameterBehavior.Folder, optional=spec.optional)
+
+
+@_parameter.register
 def _(spec: specs.TrajectorySpec):
     parameter = QgsProcessingParameterFeatureSource(spec.name, spec.label, [_source_type(spec.geometry)], optional=spec.optional)
     parameter.setMetadata(TRAJECTORY_WIDGET)

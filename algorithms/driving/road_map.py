@@ -16,7 +16,7 @@ from ..road.detect_boundaries import METHOD_SETTING, PLANE_SETTINGS
 from ..road.detect_curbs import CURB_SETTINGS
 from ..road.extract_road_surface import SURFACE_SETTINGS
 from ..road.fit_road_edges import EDGE_SETTINGS
-from ..survey_input import EXECUTION_SETTINGS, SURVEY_SETTINGS, WITHOUT_TRAJECTORY, estimated_trajectory, survey_inputs
+from ..survey_input import SURVEY_SETTINGS, WITHOUT_TRAJECTORY, add_execution, estimated_trajectory, execution_of, survey_inputs
 from ..texts import tr
 from .driving_lines import DRIVING_SETTINGS
 from .road_map_numbers import NUMBERS, road_map_numbers
@@ -78,7 +78,7 @@ class RoadMap(Algorithm):
         for specs in STAGES.values():
             self.add_settings(specs, only=ADVANCED, advanced=True)
         self.add_settings(SURVEY_SETTINGS)
-        self.add_settings(EXECUTION_SETTINGS)
+        add_execution(self)
         for name, _, geometry, fields, label in LAYERS:
             self.add_sink(name, label, fields=fields, geometry=geometry, optional=True)
         self.add_sink("CURB_POINTS", tr("Curb points"), fields=CURB_POINTS, geometry="PointZ", optional=True, by_default=False)
@@ -98,7 +98,7 @@ class RoadMap(Algorithm):
             correct=call.flag("CORRECT_INTENSITY"),
             boundary_method=call.setting(METHOD_SETTING),
             survey=call.settings(SURVEY_SETTINGS, crs=call.crs()),
-            execution=call.settings(EXECUTION_SETTINGS),
+            execution=execution_of(call),
             **{field: call.settings(specs) for field, specs in STAGES.items()},
         )
         if not any(call.wants(one.name) for one in self.outputs()):

@@ -5,7 +5,7 @@ from dataclasses import replace
 from ...core.common.schemas import ROAD_EDGES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
-from ..survey_input import EXECUTION_SETTINGS, SURVEY_SETTINGS, open_survey_of
+from ..survey_input import SURVEY_SETTINGS, add_execution, open_survey_of
 from ..texts import tr
 from .boundaries_from_scanlines import SCANLINE_METHOD_SETTINGS
 from .detect_curbs import CURB_SETTINGS
@@ -36,7 +36,7 @@ class DetectBoundaries(Algorithm):
         self.add_settings(PLANE_SETTINGS)
         self.add_settings(SCANLINE_METHOD_SETTINGS)
         self.add_settings(SURVEY_SETTINGS)
-        self.add_settings(EXECUTION_SETTINGS)
+        add_execution(self)
         self.add_sink("ROAD_EDGES", tr("Road edges"), fields=ROAD_EDGES, geometry="LineStringZ")
 
     def work(self, call, progress):

@@ -5,7 +5,7 @@ from contextlib import nullcontext
 from ...core.common.schemas import SCANLINES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
-from ..survey_input import EXECUTION_SETTINGS, SURVEY_SETTINGS, open_survey_of
+from ..survey_input import SURVEY_SETTINGS, add_execution, open_survey_of
 from ..texts import tr
 
 PLANES = "road.scanlines.section_planes:ScanlineSettings"
@@ -55,7 +55,7 @@ class NormalizedScanlines(Algorithm):
         self.add_settings(LAYER_SETTINGS)
         self.add_settings(POINT_SETTINGS)
         self.add_settings(SURVEY_SETTINGS, only=("SCANNER_FIELD", "TIME", "FIT_PASSES"))
-        self.add_settings(EXECUTION_SETTINGS)
+        add_execution(self)
         self.add_sink("SCANLINES", tr("Normalized scanlines"),
                       tr("Lines with height (Z) and intensity (M)."), fields=SCANLINES, geometry="LineStringZM", optional=True)
         self.add_laz("RESAMPLED_POINTS", tr("Resampled points"), tr("Points at equal steps along the scanlines, with intensity, station and "

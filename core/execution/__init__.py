@@ -9,7 +9,8 @@ from ..lazy import public
 __getattr__, __all__ = public(__name__, {
     "choice": ("ExecutionSettings", "executor_for"),
     "phase": ("Executor", "Phase", "Recipe"),
-    "plain": ("read_plain", "write_plain"),
+    "plain": ("digest", "read_plain", "write_plain"),
     "processes": ("WorkerProcesses",),
     "threads": ("THREADS", "Threads"),
+    "work_folder": ("KeptResults", "WorkFolder"),
 })

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,8 +15,9 @@ from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from ..execution.choice import ExecutionSettings, executor_for
 from ..execution.phase import Executor, Recipe
-from ..execution.plain import read_plain, write_plain
+from ..execution.plain import digest, read_plain, write_plain
 from ..execution.threads import THREADS
+from ..execution.work_folder import Heard, WorkFolder, code_digest
 from ..io.crs import check_projected, crs_note, parse_crs
 from .adjustment.adjust import adjust_passes
 from .clock_check import check_clock
@@ -88,6 +90,7 @@ class Survey:
     moves : PassCorrections by which points and tracks were moved, None where they are as measured
     above_road : metres above the road up to which points are returned
     executor : Executor of the phases that read from this survey
+    folder : where the points lie for other processes, None where they are this one's alone
     """
 
     files: list[CloudHeader]
@@ -103,18 +106,24 @@ class Survey:
     moves: PassCorrections | None = None
     above_road: float = KEPT_ABOVE_ROAD
     executor: Executor = THREADS
+    folder: Path | None = None
 
     def __post_init__(self) -> None:
         self.store.finish = self._finished
 
     def recipe(self, folder: Path) -> Recipe:
         """Move the points to a folder, unless they are there, and say how other processes open the survey."""
-        own = folder / SURVEY_FOLDER
-        if not own.exists():
+        if self.folder is None:
+            own = folder / SURVEY_FOLDER
             own.mkdir()
-            self.store.move_to(own)
-            write_plain(own / SURVEY_FILE, {name: getattr(self, name) for name in SHIPPED})
-        return Recipe("survey.open_survey:survey_in_folder", dict(folder=str(own)))
+            self.move_to(own)
+        return Recipe("survey.open_survey:survey_in_folder", dict(folder=str(self.folder)))
+
+    def move_to(self, folder: Path) -> None:
+        """Keep the points in an empty folder from now on, from where `survey_in_folder` opens the survey, here and elsewhere."""
+        self.store.move_to(folder)
+        write_plain(folder / SURVEY_FILE, {name: getattr(self, name) for name in SHIPPED})
+        self.folder = folder
 
     def stretch(self, road: int, start: float, end: float) -> str:
         """What messages call the road between two stations (m), with the files whose points may lie there."""
@@ -163,11 +172,63 @@ class Survey:
 
 def survey_in_folder(folder: str) -> Survey:
     """The survey that `Survey.recipe` put into a folder, without the files that it was read from."""
-    return Survey(files=[], store=SectionStore.opened(Path(folder)), **read_plain(Path(folder) / SURVEY_FILE))
+    return Survey(files=[], store=SectionStore.opened(Path(folder)), folder=Path(folder), **read_plain(Path(folder) / SURVEY_FILE))
 
 
 def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
                 progress: Progress = Progress(), execution: ExecutionSettings = ExecutionSettings()) -> Survey:
+    """Read a survey, or take what an earlier run read from the work folder.
+
+    Parameters
+    ----------
+    paths, trajectory, settings, progress : as in `read_survey`
+    execution : who runs the phases that read from the survey, and the work folder
+
+    Returns
+    -------
+    Survey; closing its store ends everything that was started for it
+
+    Raises
+    ------
+    RoadExtractionError
+        As `read_survey`, and if the work folder cannot be used.
+    """
+    if execution.work_folder:
+        survey = _kept_survey(WorkFolder(execution.work_folder), paths, trajectory, settings, progress)
+    else:
+        survey = read_survey(paths, trajectory, settings, progress)
+    survey.executor = executor_for(survey.store.count, execution, progress)
+    survey.store.at_close = survey.executor.close
+    return survey
+
+
+def _kept_survey(work, paths, trajectory, settings, progress):
+    """The survey of a work folder; it is read into it where it is not there."""
+    files = read_headers(paths)
+    states = [(os.path.abspath(file.path), os.path.getsize(file.path), os.stat(file.path).st_mtime_ns) for file in files]
+    name = f"survey-{digest((code_digest(), states, trajectory, settings))}"
+    try:
+        found = work.finished(name)
+        if found is not None:
+            folder, messages = found
+            survey = survey_in_folder(str(folder))
+            survey.files = files
+            progress.info("The points were read by an earlier run and are taken from the work folder. It said:")
+            for kind, text in messages:
+                (progress.warn if kind == "warn" else progress.info)(text)
+            progress.report(1.0)
+            return survey
+        heard = Heard(progress)
+        survey = read_survey(paths, trajectory, settings, heard)
+        survey.move_to(work.begin(name))
+        work.finish(name, survey.folder, heard.messages)
+        return survey
+    except OSError as error:
+        raise work.error(error) from error
+
+
+def read_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
+                progress: Progress = Progress()) -> Survey:
     """Read point clouds once and project every point into the road frame.
 
     Parameters
@@ -176,11 +237,10 @@ def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: S
     trajectory : Trajectory in any CRS and time system
     settings : SurveySettings
     progress : Progress
-    execution : who runs the phases that read from the survey
 
     Returns
     -------
-    Survey; closing its store ends everything that was started for it
+    Survey
 
     Raises
     ------
@@ -241,8 +301,6 @@ def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: S
         check_clock(survey, progress)
     if again:
         adjust_passes(survey, progress.part(INGEST_PROGRESS, 1.0))
-    survey.executor = executor_for(survey.store.count, execution, progress)
-    survey.store.at_close = survey.executor.close
     return survey
 
 

@@ -3540,6 +3540,16 @@
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />
+            <source>Work folder</source>
+            <translation>Arbeitsordner</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
+            <source>A folder for finished work, about 20 bytes for every point near the road. A run that ended early, or that is repeated with other settings of later stages, does not read the points and find the curbs again. What was made from other files, settings or another version of Lanewright is not used. Nothing in it is ever removed; delete it when the map is done.</source>
+            <translation>Ein Ordner für fertige Arbeit, etwa 20 Byte je Punkt nahe der Straße. Ein Lauf, der vorzeitig endete oder mit anderen Einstellungen späterer Stufen wiederholt wird, liest die Punkte nicht noch einmal und sucht die Bordsteine nicht noch einmal. Was aus anderen Dateien, Einstellungen oder mit einer anderen Version von Lanewright entstand, wird nicht verwendet. Nichts darin wird je gelöscht; löschen Sie ihn, wenn die Karte fertig ist.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
             <source>The points</source>
             <translation>Die Punkte</translation>
         </message>

@@ -14,7 +14,7 @@ import numpy as np
 import shapely
 
 from ...common.features import Features
-from ...common.schemas import CURB_POINTS
+from ...common.schemas import CURB_POINTS, NEAREST_PASS
 from ...survey.frame.placement import COORDINATE_DECIMALS, as_written, known
 
 if TYPE_CHECKING:
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 UNKNOWN_OF_CURB = dict(road=-1, nearest_pass=-1, side="", status="", part="bottom", kind="main", station=np.nan, offset=np.nan, height=np.nan,
                chain=-1, along=np.nan, residual=np.nan, support=-1)
-CURB_POINT_FIELDS = dict(road="road", nearest_pass="pass", side="side", status="status", station="station_m", offset="offset_m", height="height_m",
-             part="part", kind="kind", chain="chain", along="along_m", residual="residual_m", support="support")
+CURB_POINT_FIELDS = dict(road="road", nearest_pass=NEAREST_PASS.name, side="side", status="status", station="station_m", offset="offset_m",
+                         height="height_m", part="part", kind="kind", chain="chain", along="along_m", residual="residual_m", support="support")
 
 
 @dataclass(frozen=True)

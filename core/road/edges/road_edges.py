@@ -14,15 +14,15 @@ import numpy as np
 import shapely
 
 from ...common.features import Features
-from ...common.schemas import ROAD_EDGES
+from ...common.schemas import NEAREST_PASS, ROAD_EDGES
 from ...survey.frame.frame_lines import FrameLines, line_parts, lines_in_frame
 from ...survey.frame.placement import COORDINATE_DECIMALS, as_written, known
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
 
-EDGE_FIELDS = dict(nearest_pass="pass", side="side", status="status", part="part", kind="kind", chain="chain", station="station_m", end="end_m",
-             height="height_m", length="length_m", rmse="rmse_m", agree="agree_cm")
+EDGE_FIELDS = dict(nearest_pass=NEAREST_PASS.name, side="side", status="status", part="part", kind="kind", chain="chain", station="station_m",
+                   end="end_m", height="height_m", length="length_m", rmse="rmse_m", agree="agree_cm")
 
 EDGE_DECIMALS = dict(station=3, end=3, height=3, length=3, rmse=4, agree=1)   # of numbers in the layer
 

@@ -1,0 +1,162 @@
+"""What is finished, kept in a folder of the user's, so that a run that ended early goes on where it was.
+
+Everything in the folder is named by a digest of what it was made from: files, trajectory, settings and the code itself. What was made
+from anything else has another name and is never used.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Iterator, Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+from uuid import uuid4
+
+from ..common.errors import RoadExtractionError
+from ..common.progress import Progress
+from .phase import Executor, Phase, name_of
+from .plain import digest, read_plain, write_plain
+
+
+class WorkFolder:
+    """A folder for finished work.
+
+    Parameters
+    ----------
+    path : of the folder, which is made where it is missing
+
+    Raises
+    ------
+    RoadExtractionError
+        If nothing can be written there.
+    """
+
+    def __init__(self, path: str):
+        self.path = Path(path)
+        try:
+            self.path.mkdir(exist_ok=True)
+            trial = self.path / f"{uuid4().hex}.part"
+            trial.touch()
+            trial.unlink()
+        except OSError as error:
+            raise self.error(error) from error
+
+    def error(self, error: OSError) -> RoadExtractionError:
+        """One sentence about a folder that cannot be used."""
+        return RoadExtractionError(f"The work folder {self.path} cannot be used: {error.strerror or error}. Choose a folder that can be "
+                                   "written to, with room for about 20 bytes for every point near the road, or none.")
+
+    def begin(self, name: str) -> Path:
+        """A new folder for something that will be known as `name` when it is finished."""
+        folder = self.path / f"{name}-{uuid4().hex[:8]}"
+        folder.mkdir()
+        return folder
+
+    def finish(self, name: str, folder: Path, messages: Sequence[tuple[str, str]]) -> None:
+        """Keep a folder of `begin`, and what was said while it was made: ("info" or "warn", text)."""
+        unfinished = self.path / f"{name}.{uuid4().hex}.part"
+        unfinished.write_text(json.dumps(dict(folder=folder.name, messages=list(messages))), encoding="utf-8")
+        os.replace(unfinished, self.path / f"{name}.json")
+
+    def finished(self, name: str) -> tuple[Path, list[tuple[str, str]]] | None:
+        """The folder and the messages that were kept under a name; None where there are none."""
+        try:
+            found = json.loads((self.path / f"{name}.json").read_text(encoding="utf-8"))
+        except FileNotFoundError:
+            return None
+        folder = self.path / found["folder"]
+        return (folder, [(kind, text) for kind, text in found["messages"]]) if folder.is_dir() else None
+
+
+class Heard(Progress):
+    """Passes everything on, and remembers the messages.
+
+    Parameters
+    ----------
+    progress : Progress that listens
+
+    Attributes
+    ----------
+    messages : list of ("info" or "warn", text)
+    """
+
+    def __init__(self, progress: Progress):
+        self.progress = progress
+        self.messages: list[tuple[str, str]] = []
+
+    def report(self, fraction: float) -> None:
+        """Pass on."""
+        self.progress.report(fraction)
+
+    def check_cancelled(self) -> None:
+        """Pass on."""
+        self.progress.check_cancelled()
+
+    def info(self, text: str) -> None:
+        """Pass on and remember."""
+        self.messages.append(("info", text))
+        self.progress.info(text)
+
+    def warn(self, text: str) -> None:
+        """Pass on and remember."""
+        self.messages.append(("warn", text))
+        self.progress.warn(text)
+
+
+class KeptResults:
+    """Executor that keeps every result in a work folder and has done only what is not there.
+
+    Parameters
+    ----------
+    executor : Executor that does the rest
+    work : WorkFolder
+    """
+
+    def __init__(self, executor: Executor, work: WorkFolder):
+        self.executor, self.work = executor, work
+
+    def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress()) -> Iterator[Any]:
+        """Yield the results of all items in their order; see `Executor`."""
+        items = list(items)
+        # a recipe names the folder, which may be moved
+        key = digest((code_digest(), name_of(phase.function), phase.source.recipe(self.work.path), phase.arguments), str(self.work.path))
+        folder = self.work.path / f"phase-{key}"
+        files = [folder / f"{digest(item)}.npz" for item in items]
+        missing = [k for k, file in enumerate(files) if not file.exists()]
+        if len(missing) < len(items):
+            progress.info(f"{len(items) - len(missing)} of {len(items)} stretches of road were finished by an earlier run.")
+        made = self.executor.run(phase, [items[k] for k in missing], progress)
+        left = set(missing)
+        try:
+            folder.mkdir(exist_ok=True)
+            for k, file in enumerate(files):
+                if k not in left:
+                    yield read_plain(file)
+                    continue
+                result = next(made)
+                write_plain(file, result)
+                yield result
+        except OSError as error:
+            raise self.work.error(error) from error
+        progress.report(1.0)
+
+    def release(self) -> None:
+        """Free memory that is of use in further phases alone."""
+        self.executor.release()
+
+    def close(self) -> None:
+        """End what was started; what is finished stays."""
+        self.executor.close()
+
+
+@lru_cache(maxsize=1)
+def code_digest() -> str:
+    """A digest of the code of core: other code may give other results."""
+    core = Path(__file__).resolve().parents[1]
+    found = hashlib.sha256()
+    for path in sorted(core.rglob("*.py")):
+        found.update(path.relative_to(core).as_posix().encode() + path.read_bytes())
+    return found.hexdigest()

@@ -1,0 +1,134 @@
+"""Finished work in a folder: taken from there by the next run, never where anything it was made from has changed."""
+
+import os
+import shutil
+
+import pytest
+from lanewright.core.common.errors import Cancelled, RoadExtractionError
+from lanewright.core.common.progress import Progress
+from lanewright.core.execution import work_folder
+from lanewright.core.execution.choice import ExecutionSettings
+from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
+from lanewright.core.road.profiles.detect import CurbSettings
+from lanewright.core.survey import open_survey as opening
+from lanewright.core.survey.open_survey import SurveySettings, open_survey
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def sample(made_survey):
+    return made_survey(length=40.0, pulse_rate=40_000.0)
+
+
+class Heard(Progress):
+    def __init__(self):
+        self.lines = []
+
+    def info(self, text):
+        self.lines.append(text)
+
+    warn = info
+
+    def says(self, text):
+        return any(text in line for line in self.lines)
+
+
+def boundaries(sample, folder, curbs=CurbSettings(), progress=None, cloud=None, workers=0, settings=SurveySettings()):
+    made, path = sample
+    execution = ExecutionSettings(workers, str(folder) if folder else "")
+    survey = open_survey([cloud or path], made.trajectory, settings, progress or Progress(), execution)
+    try:
+        return draw_boundaries(find_curb_points(survey, BoundarySettings("both", curbs), progress or Progress()), survey.frame)
+    finally:
+        survey.store.close()
+
+
+def numbers_of(found):
+    course, points = found.edges.course, found.curb_points
+    return [values.tobytes() for values in (course.x, course.y, course.z, course.d, found.edges.agree, points.station, points.height, points.along)]
+
+
+@pytest.fixture(scope="module")
+def without(sample):
+    return numbers_of(boundaries(sample, ""))
+
+
+@pytest.fixture
+def work(sample, tmp_path, without):
+    """A work folder after a run."""
+    assert numbers_of(boundaries(sample, tmp_path / "work")) == without
+    return tmp_path / "work"
+
+
+def never(*_, **__):
+    raise AssertionError("This was done before.")
+
+
+@pytest.mark.parametrize("workers", [0, 2])
+def test_a_second_run_reads_nothing_again_and_gives_the_same(sample, work, without, monkeypatch, workers):
+    monkeypatch.setattr(opening, "read_survey", never)
+    before, heard = sorted(os.listdir(work)), Heard()
+    assert numbers_of(boundaries(sample, work, progress=heard, workers=workers)) == without
+    assert heard.says("read by an earlier run") and heard.says("Points read:") and heard.says("finished by an earlier run")
+    assert sorted(os.listdir(work)) == before
+
+
+def test_the_folder_may_be_moved(sample, work, without, monkeypatch, tmp_path):
+    shutil.move(work, tmp_path / "elsewhere")
+    monkeypatch.setattr(opening, "read_survey", never)
+    heard = Heard()
+    assert numbers_of(boundaries(sample, tmp_path / "elsewhere", progress=heard)) == without
+    assert heard.says("finished by an earlier run")
+
+
+def test_a_cancelled_run_goes_on_where_it_was(sample, tmp_path, without):
+    class Stop(Heard):
+        def report(self, fraction):
+            if list(tmp_path.glob("work/phase-*/*.npz")):
+                raise Cancelled
+
+    with pytest.raises(Cancelled):
+        boundaries(sample, tmp_path / "work", progress=Stop())
+    done = len(list(tmp_path.glob("work/phase-*/*.npz")))
+    heard = Heard()
+    assert numbers_of(boundaries(sample, tmp_path / "work", progress=heard)) == without
+    assert done >= 1 and heard.says(f"{done} of ")
+
+
+def test_other_curb_settings_find_curbs_anew_from_points_that_were_read(sample, work, monkeypatch):
+    curbs = CurbSettings(min_height=0.03)
+    expected = numbers_of(boundaries(sample, "", curbs))
+    monkeypatch.setattr(opening, "read_survey", never)
+    assert numbers_of(boundaries(sample, work, curbs)) == expected
+
+
+def test_another_file_of_the_same_name_other_settings_and_other_code_are_read_anew(sample, work, tmp_path, monkeypatch):
+    made, path = sample
+    cloud = tmp_path / "survey.laz"
+    for change in ("file", "file again", "settings", "code"):
+        settings, heard = SurveySettings(corridor=20.0) if change == "settings" else SurveySettings(), Heard()
+        if "file" in change:
+            shutil.copyfile(path, cloud)
+        if change == "code":
+            monkeypatch.setattr(opening, "code_digest", lambda: "another")
+        boundaries(sample, work, progress=heard, cloud=cloud, settings=settings)
+        assert not heard.says("read by an earlier run"), change
+
+
+@pytest.mark.skipif(os.name == "nt", reason="a full disk is made of /dev/full")
+def test_a_folder_that_cannot_be_used_is_named_before_anything_is_read(sample, tmp_path, monkeypatch):
+    (tmp_path / "file").touch()
+    monkeypatch.setattr(opening, "read_survey", never)
+    for folder in (tmp_path / "file", tmp_path / "no" / "such", "/dev/full"):
+        with pytest.raises(RoadExtractionError, match="work folder .* cannot be used"):
+            boundaries(sample, folder)
+
+
+def test_a_disk_that_fills_up_is_named(sample, tmp_path, monkeypatch):
+    def full(path, value):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(work_folder, "write_plain", full)
+    with pytest.raises(RoadExtractionError, match="work folder .*No space left on device"):
+        boundaries(sample, tmp_path / "work")
