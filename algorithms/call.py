@@ -16,6 +16,7 @@ from .cloud_files import cloud_files
 from .destinations import UnfinishedFiles, check_suffix, check_writable, destination_path
 from .parameters import settings_class
 from .progress import CountedWarnings
+from .provenance import provenance_now, sign_file
 from .texts import tr
 from .trajectory_source import read_trajectory_source, trajectory_path
 from .vector_source import read_features
@@ -241,6 +242,18 @@ class Call:
         """Remember a vector result; it is written in `finish`, when nothing can fail any more."""
         if self.wants(name):
             self._layers.append((name, features))
+
+    def values(self):
+        """What the user gave or left at its default for every input, in types that JSON has."""
+        raise NotImplementedError
+
+    def commit_files(self):
+        """Give the files their names, each with a note of where it comes from; that note, for the layers."""
+        provenance = provenance_now(self.algorithm.ID, self.values())
+        for path in self._files.unfinished():
+            sign_file(path, provenance)
+        self._files.commit()
+        return provenance
 
     def in_users_names(self, text):
         """A message with the names of unfinished files replaced by those the user gave."""

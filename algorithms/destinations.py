@@ -114,6 +114,10 @@ class UnfinishedFiles:
         self._waiting.append((Path(name), destination))
         return name
 
+    def unfinished(self):
+        """The temporary paths that were begun."""
+        return [temporary for temporary, _ in self._waiting]
+
     def commit(self):
         """Give every file its name."""
         for temporary, destination in self._waiting:

@@ -120,7 +120,7 @@ class FileCall(Call):
             write_layer(str(self._unfinished(path, table)), table, features, self._progress.check_cancelled)
             self._results[name] = f"{destination_path(value)}|layername={table}" if table else value
         self._progress.check_cancelled()
-        self._files.commit()
+        self.commit_files()
         for path, folder in self._folders.items():
             replaced = set(files_of(path))
             for file in sorted(Path(folder.name).iterdir()):
@@ -129,6 +129,9 @@ class FileCall(Call):
             for file in replaced:  # the index or journal of a file that is gone
                 file.unlink(missing_ok=True)
         return {**self._results, **numbers}
+
+    def values(self):
+        return {spec.name: self._value(spec.name) for spec in self.algorithm.inputs()}
 
     def _unfinished(self, path, table):
         """Where a vector file is written at first: under its own name in a folder beside it, with the other tables where it has some."""

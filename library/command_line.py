@@ -7,13 +7,12 @@ import json
 import os
 import signal
 import sys
-from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
-from pathlib import Path
 
 from ..algorithms import parameters as specs
 from ..algorithms.algorithm import GROUPS
 from ..algorithms.call import run
+from ..algorithms.provenance import own_version
 from ..core.common.errors import Cancelled, RoadExtractionError
 from .call import FileCall
 from .progress import TextProgress, cancelled_by_signals
@@ -133,15 +132,6 @@ def explained(spec):
     elif not spec.optional:
         notes.append("necessary")
     return f"{spec.label}. {spec.help}" + (f" [{', '.join(notes)}]" if notes else "")
-
-
-def own_version():
-    """The version of the installed package, or of the checkout that this file lies in."""
-    try:
-        return version("lanewright")
-    except PackageNotFoundError:
-        text = (Path(__file__).resolve().parents[1] / "metadata.txt").read_text(encoding="utf-8")
-        return next(line.partition("=")[2] for line in text.splitlines() if line.startswith("version="))
 
 
 if __name__ == "__main__":

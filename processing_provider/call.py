@@ -163,15 +163,19 @@ class QgisCall(Call):
             replaced.put_back()
             raise
         replaced.forget()
-        self._files.commit()
+        provenance = self.commit_files()
         schemas = {name: features.schema for name, features in self._layers}
         run = run_of(self.algorithm.ID, self.surveyed(), self.algorithm.WHOLE_MAP, self.context)
         for name, dest in self._results.items():
             note_report(dest)
             look = self.algorithm.LOOKS.get(name, name)
-            embed_style(look, dest, self.label(name), schemas.get(name, ()))
-            style_on_load(look, dest, self.label(name), self.context, schemas.get(name, ()), run)
+            embed_style(look, dest, self.label(name), schemas.get(name, ()), provenance)
+            style_on_load(look, dest, self.label(name), self.context, schemas.get(name, ()), run, provenance)
         return {**self._results, **numbers}
+
+    def values(self):
+        return {definition.name(): definition.valueAsJsonObject(self.parameters.get(definition.name(), definition.defaultValue()), self.context)
+                for definition in self.processing.parameterDefinitions() if not definition.isDestination()}
 
     def _write(self, name, features):
         fields = qgis_fields(features.schema, with_aliases=keeps_aliases(destination_path(self.destination(name))))

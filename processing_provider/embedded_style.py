@@ -5,13 +5,14 @@ from pathlib import Path
 from qgis.core import QgsDataSourceUri, QgsRasterLayer, QgsVectorLayer
 
 from ..algorithms.destinations import destination_path
+from .results.origin import describe_origin
 from .styling import LOOKS, STYLES, apply_style
 
 NAME = "default"
 
 
-def embed_style(name, dest, title, schema=()):
-    """Give the result `dest` of the output `name` its style: in the GeoPackage, or beside the raster.
+def embed_style(name, dest, title, schema=(), provenance=None):
+    """Give the result `dest` of the output `name` its style, and the note of where it comes from: in the GeoPackage, or beside the raster.
 
     Other formats have no room for one. A style that cannot be kept costs a look, not the result, so
     nothing is raised.
@@ -24,7 +25,7 @@ def embed_style(name, dest, title, schema=()):
     if path.suffix.lower() in (".tif", ".tiff"):
         _beside_the_raster(path, qml)
     elif path.suffix.lower() == ".gpkg":
-        _in_the_package(_layer_uri(dest, path), title, qml, schema, name)
+        _in_the_package(_layer_uri(dest, path), title, qml, schema, name, provenance)
 
 
 def _beside_the_raster(path, qml):
@@ -34,10 +35,13 @@ def _beside_the_raster(path, qml):
         layer.saveNamedStyle(str(path.with_suffix(".qml")))  # QGIS looks for it under this name
 
 
-def _in_the_package(uri, title, qml, schema, output):
+def _in_the_package(uri, title, qml, schema, output, provenance):
     layer = QgsVectorLayer(uri, title, "ogr")
     if not layer.isValid():
         return
+    if provenance is not None:
+        describe_origin(layer, provenance)
+        layer.saveDefaultMetadata()  # into the package
     apply_style(layer, qml, schema, output)
     # The style of an earlier run into the same table would win
     count, ids, names, _, _ = layer.listStylesInDatabase()

@@ -1,0 +1,109 @@
+"""Where a result comes from: program, version, algorithm, parameters and time, written into the result itself."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime, timezone
+from pathlib import Path
+from typing import Any
+
+PROGRAM = "Lanewright"
+SYSTEM_AT, SOFTWARE_AT, NAME_BYTES = 26, 58, 32  # places of the two names in the header of a LAS file, and their length
+UNNAMED = ("", "OTHER", "laspy")                 # what writers put there when they have nothing to say
+SECRET = re.compile(r"(password|passwd|pwd|authcfg)\s*=\s*('[^']*'|\"[^\"]*\"|[^\s&;]+)", re.IGNORECASE)
+CREDENTIALS = re.compile(r"(://[^/\s:@]+):[^@/\s]+@")
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """One run: its algorithm, the program's version, its inputs and settings by name, when it ended (UTC)."""
+
+    algorithm: str
+    version: str
+    values: Mapping[str, Any]
+    ended: datetime
+
+    @property
+    def program(self) -> str:
+        return f"{PROGRAM} {self.version}"
+
+    @property
+    def parameters(self) -> str:
+        """Inputs and settings as JSON, without passwords."""
+        text = json.dumps({name: value for name, value in self.values.items() if value not in (None, "", [])}, ensure_ascii=False, default=str)
+        return CREDENTIALS.sub(r"\1:…@", SECRET.sub(lambda found: f"{found[1]}=…", text.replace('\\"', "'")))
+
+    @property
+    def time(self) -> str:
+        return self.ended.strftime("%Y-%m-%dT%H:%M:%SZ")
+
+    def sentence(self) -> str:
+        """Program, algorithm, time and parameters in one line."""
+        return f"{self.time}: {self.program}, {self.algorithm}, {self.parameters}"
+
+    def tags(self) -> dict[str, str]:
+        """The same by name, for formats that keep pairs of names and texts."""
+        return {"LANEWRIGHT_VERSION": self.version, "LANEWRIGHT_ALGORITHM": self.algorithm, "LANEWRIGHT_PARAMETERS": self.parameters,
+                "LANEWRIGHT_TIME": self.time}
+
+
+def provenance_now(algorithm: str, values: Mapping[str, Any]) -> Provenance:
+    """The provenance of a run that has just ended."""
+    return Provenance(algorithm, own_version(), values, datetime.now(timezone.utc))
+
+
+def own_version() -> str:
+    """The version of the checkout or plugin that this file lies in, otherwise of the installed package."""
+    described = Path(__file__).resolve().parents[1] / "metadata.txt"
+    if described.is_file():
+        return next(line.partition("=")[2] for line in described.read_text(encoding="utf-8").splitlines() if line.startswith("version="))
+    from importlib.metadata import version
+
+    return version("lanewright")
+
+
+def sign_file(path: str | os.PathLike[str], provenance: Provenance) -> None:
+    """Write the provenance into a GeoTIFF or a LAS or LAZ file that is complete; files of other kinds stay as they are.
+
+    A LAS header has room for two names of 32 letters: the program with its version, and the algorithm where nothing
+    else is named as the system that made the points.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix in (".tif", ".tiff"):
+        _sign_raster(path, provenance)
+    elif suffix in (".las", ".laz"):
+        _sign_cloud(path, provenance)
+
+
+def _sign_raster(path, provenance):
+    from osgeo import gdal
+
+    from ..core.io.gdal_errors import gdal_exceptions
+
+    with gdal_exceptions():
+        raster = gdal.Open(str(path), gdal.GA_Update)
+        for name, text in {"TIFFTAG_SOFTWARE": provenance.program, "TIFFTAG_DATETIME": provenance.ended.strftime("%Y:%m:%d %H:%M:%S"),
+                           **provenance.tags()}.items():
+            raster.SetMetadataItem(name, text)
+        raster = None  # GDAL writes when it lets go
+
+
+def _sign_cloud(path, provenance):
+    with open(path, "r+b") as file:
+        if file.read(4) != b"LASF":
+            return
+        file.seek(SYSTEM_AT)
+        system = file.read(NAME_BYTES).rstrip(b"\0").decode("ascii", "replace").strip()
+        if system in UNNAMED:
+            file.seek(SYSTEM_AT)
+            file.write(_las_name(f"{PROGRAM} {provenance.algorithm}"))
+        file.seek(SOFTWARE_AT)
+        file.write(_las_name(provenance.program))
+
+
+def _las_name(text):
+    return text.encode("ascii", "replace")[:NAME_BYTES].ljust(NAME_BYTES, b"\0")
