@@ -1735,6 +1735,11 @@
         </message>
         <message>
             <location filename="../../algorithms/markings/cluster_markings.py" />
+            <source>The field class is edge, lane or centre for lines, and zebra, stop, give_way (a row of equal blocks across a lane), arrow, hatch or symbol for what is no line. Far from the vehicle, points join over the distance between the tracks of the scan.</source>
+            <translation>Das Feld class ist edge, lane oder centre bei Linien und zebra, stop, give_way (eine Reihe gleicher Blöcke quer über einen Fahrstreifen), arrow, hatch oder symbol bei dem, was keine Linie ist. Fern vom Fahrzeug verbinden sich Punkte über den Abstand der Spuren des Scans.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/cluster_markings.py" />
             <source>lane marking</source>
             <translation>Fahrbahnmarkierung</translation>
         </message>
@@ -1742,6 +1747,11 @@
             <location filename="../../algorithms/markings/cluster_markings.py" />
             <source>cluster</source>
             <translation>Gruppe</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/cluster_markings.py" />
+            <source>give-way line</source>
+            <translation>Wartelinie</translation>
         </message>
         <message>
             <location filename="../../algorithms/markings/cluster_markings.py" />
@@ -4962,6 +4972,11 @@
             <location filename="../../resources/styles/markings.qml" />
             <source>Stop line</source>
             <translation>Haltlinie</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/markings.qml" />
+            <source>Give-way line</source>
+            <translation>Wartelinie</translation>
         </message>
         <message>
             <location filename="../../resources/styles/markings.qml" />

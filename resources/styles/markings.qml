@@ -7,6 +7,7 @@
       <category uuid="{2581eea4-4c94-437e-9f62-183f7aa08e38}" value="centre" symbol="2" render="true" type="string" label="Centre line"/>
       <category uuid="{a6d02a2f-a684-402a-8a87-aa56f51152f7}" value="zebra" symbol="3" render="true" type="string" label="Zebra crossing"/>
       <category uuid="{26b80e9d-6f14-433e-b893-94e711f02f85}" value="stop" symbol="4" render="true" type="string" label="Stop line"/>
+      <category uuid="{d76d4330-f144-4bea-b0c1-1fdecb91ce37}" value="give_way" symbol="9" render="true" type="string" label="Give-way line"/>
       <category uuid="{b8453c76-28df-48fb-b2a7-d22b0547278a}" value="arrow" symbol="5" render="true" type="string" label="Arrow"/>
       <category uuid="{960d7e53-c4f6-4f74-93b7-363e4f95d0ba}" value="symbol" symbol="6" render="true" type="string" label="Symbol"/>
       <category uuid="{497e8c9d-72b6-44f2-9c7b-a81cc9ec8b1f}" value="hatch" symbol="7" render="true" type="string" label="Hatching"/>
@@ -278,6 +279,37 @@
             <Option value="3x:0,0,0,0,0,0" type="QString" name="offset_map_unit_scale"/>
             <Option value="MM" type="QString" name="offset_unit"/>
             <Option value="84,110,122,255,rgb:0.32941176470588235,0.43137254901960786,0.47843137254901963,1" type="QString" name="outline_color"/>
+            <Option value="solid" type="QString" name="outline_style"/>
+            <Option value="0.1" type="QString" name="outline_width"/>
+            <Option value="MM" type="QString" name="outline_width_unit"/>
+            <Option value="solid" type="QString" name="style"/>
+          </Option>
+          <data_defined_properties>
+            <Option type="Map">
+              <Option value="" type="QString" name="name"/>
+              <Option name="properties"/>
+              <Option value="collection" type="QString" name="type"/>
+            </Option>
+          </data_defined_properties>
+        </layer>
+      </symbol>
+      <symbol is_animated="0" type="fill" force_rhr="0" name="9" frame_rate="10" clip_to_extent="1" alpha="1">
+        <data_defined_properties>
+          <Option type="Map">
+            <Option value="" type="QString" name="name"/>
+            <Option name="properties"/>
+            <Option value="collection" type="QString" name="type"/>
+          </Option>
+        </data_defined_properties>
+        <layer class="SimpleFill" id="{5bc8fbbc-bde5-4099-8164-d8399f767c45}" pass="0" enabled="1" locked="0">
+          <Option type="Map">
+            <Option value="3x:0,0,0,0,0,0" type="QString" name="border_width_map_unit_scale"/>
+            <Option value="0,150,136,190,rgb:0,0.5882353,0.5333333,0.7450980" type="QString" name="color"/>
+            <Option value="bevel" type="QString" name="joinstyle"/>
+            <Option value="0,0" type="QString" name="offset"/>
+            <Option value="3x:0,0,0,0,0,0" type="QString" name="offset_map_unit_scale"/>
+            <Option value="MM" type="QString" name="offset_unit"/>
+            <Option value="0,96,88,255,rgb:0,0.3764706,0.3450980,1" type="QString" name="outline_color"/>
             <Option value="solid" type="QString" name="outline_style"/>
             <Option value="0.1" type="QString" name="outline_width"/>
             <Option value="MM" type="QString" name="outline_width_unit"/>

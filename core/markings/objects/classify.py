@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ...common.errors import RoadExtractionError
 from ...survey.store.records import COORDINATE_SCALE
-from .dash_rows import rows_of_dashes
+from .dash_rows import rows_of_blocks, rows_of_dashes
 from .near_pairs import overlapping_pairs
 from .shape import MAX_ANGLE_ALONG
 
@@ -57,6 +57,7 @@ MIN_ARROW_SHAFT, MAX_ARROW_TIP = 0.20, 0.25  # of an arrow's length: its shaft a
 # What is no paint
 COVER_DIAMETER = (0.30, 1.15)   # m, manhole covers
 MAX_COVER_ELONGATION = 1.7
+MIN_COVER_FILL = 0.5            # of the square about it
 MAX_SPECK_SIZE = 0.30                # m
 MAX_SPECK_AREA = 0.03                # m2
 MIN_COVERED_SHARE = 0.8              # of a marking's points beneath or beside something that stands on the road,
@@ -150,12 +151,15 @@ def classify_markings(shapes: list[Shape], half_widths: Sequence[float], setting
     outside = _beyond_the_edge_line(column, line, clearance)
     found = []
     doubles = _has_partner(column, line)
+    blocks = _give_way_blocks(shapes, column)
     covered_feet = (np.broadcast_to(covered, len(shapes)) > MIN_COVERED_SHARE) & ~(line & (column["length"] > MAX_CAR_LENGTH))
     for k, shape in enumerate(shapes):
         no_paint = _speck(shape) and not (line[k] and shape.length >= MIN_ROW_OF_POINTS) or outside[k] or covered_feet[k] \
-            or curb[k] or _round_cover(shape)
+            or curb[k] or _round_cover(shape) and not blocks[k]
         if clearance[k] < -settings.margin or no_paint or _gutter(shape, clearance[k], line[k], zebra[k]):
             kind = NOT_PAINT
+        elif blocks[k]:
+            kind = "give_way"
         elif zebra[k]:
             kind = "zebra"
         elif line[k]:
@@ -296,8 +300,19 @@ def _round_cover(shape):
     along, across = shape.s1 - shape.s0, shape.d1 - shape.d0
     longer, shorter = max(along, across), min(along, across)
     # a dash askew fills a square, too
-    return COVER_DIAMETER[0] <= longer <= COVER_DIAMETER[1] and shorter > 0.7 * longer and shape.closed_area > 0.5 * along * across \
+    return COVER_DIAMETER[0] <= longer <= COVER_DIAMETER[1] and shorter > 0.7 * longer and shape.closed_area > MIN_COVER_FILL * along * across \
         and shape.elongation < MAX_COVER_ELONGATION
+
+
+def _give_way_blocks(shapes, column):
+    """Filled squares in rows."""
+    sides = np.column_stack([column["s1"] - column["s0"], column["d1"] - column["d0"]])
+    filled = np.flatnonzero(np.array([shape.closed_area for shape in shapes]) > MIN_COVER_FILL * sides.prod(axis=1))
+    result = np.zeros(len(shapes), bool)
+    middle = np.column_stack([column["s0"] + column["s1"], column["d0"] + column["d1"]]) / 2
+    for row in rows_of_blocks(sides[filled], middle[filled]):
+        result[filled[row]] = True
+    return result
 
 
 def _curb(shape, clearance):

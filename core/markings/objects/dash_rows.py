@@ -26,6 +26,14 @@ MAX_STEP_RATIO = 2.5                        # times: how much one step of a row 
 MIN_STEP_COSINE = np.cos(np.radians(12.0))  # by which a row may turn from dash to dash
 MIN_DASHES_IN_ROW = 4
 
+# Blocks of give-way lines
+MIN_BLOCKS_IN_ROW = 3
+BLOCK_SIZE = 0.30, 0.80        # m, either way
+MAX_BLOCK_RATIO = 1.35         # times: the longer side of a block to the shorter, and the size of one to the next
+BLOCK_SPACING = 1.4, 3.2       # block sizes from middle to middle
+MAX_BLOCK_STEP_RATIO = 1.25    # times: one step of a row to the next
+MAX_BLOCK_OFFSET = 0.15        # m off the line through its neighbours
+
 
 def rows_of_dashes(shapes: Sequence[Shape]) -> list[np.ndarray]:
     """Pieces that stand in rows.
@@ -53,6 +61,36 @@ def rows_of_dashes(shapes: Sequence[Shape]) -> list[np.ndarray]:
     return _chains(pairs[links], apart[links], ways[links])
 
 
+def rows_of_blocks(sides: np.ndarray, middle: np.ndarray) -> list[np.ndarray]:
+    """Filled squares that stand in rows: the blocks of give-way lines.
+
+    A single square may be a manhole cover. Three of one size at an even pitch in a line were painted.
+
+    Parameters
+    ----------
+    sides : (N, 2) m along the road and across it of filled pieces
+    middle : (N, 2) m, their middles
+
+    Returns
+    -------
+    list of ascending int arrays, the pieces of each row
+    """
+    size = sides.mean(axis=1)
+    square = np.flatnonzero((sides.min(axis=1) >= BLOCK_SIZE[0]) & (sides.max(axis=1) <= BLOCK_SIZE[1])
+                            & (sides.max(axis=1) <= MAX_BLOCK_RATIO * np.maximum(sides.min(axis=1), 1e-3)))
+    if len(square) < MIN_BLOCKS_IN_ROW:
+        return []
+    pairs = square[cKDTree(middle[square]).query_pairs(BLOCK_SPACING[1] * BLOCK_SIZE[1], output_type="ndarray")].reshape(-1, 2)
+    pairs = np.concatenate([pairs, pairs[:, ::-1]])
+    pairs = pairs[np.lexsort(pairs.T[::-1])]
+    step = middle[pairs[:, 1]] - middle[pairs[:, 0]]
+    apart, of_pair = np.hypot(*step.T), size[pairs]
+    links = (of_pair.max(axis=1) <= MAX_BLOCK_RATIO * of_pair.min(axis=1)) \
+        & (apart >= BLOCK_SPACING[0] * of_pair.mean(axis=1)) & (apart <= BLOCK_SPACING[1] * of_pair.mean(axis=1))
+    ways = step / np.maximum(apart, 1e-9)[:, None]
+    return _chains(pairs[links], apart[links], ways[links], MIN_BLOCKS_IN_ROW, MAX_BLOCK_STEP_RATIO, MAX_BLOCK_OFFSET)
+
+
 def _narrow(length, width, turn, pairs, ways):
     """(P,) whether both pieces of each pair are narrow across the way from one to the other."""
     heading = np.arctan2(ways[:, 1], ways[:, 0])
@@ -63,7 +101,7 @@ def _narrow(length, width, turn, pairs, ways):
     return narrow
 
 
-def _chains(pairs, apart, ways):
+def _chains(pairs, apart, ways, fewest=MIN_DASHES_IN_ROW, max_step_ratio=MAX_STEP_RATIO, max_offset=MAX_DASH_OFFSET):
     """Arrays of the pieces of each row, from steps between neighbours."""
     # a step from i to j goes on in one from j to k
     order = np.argsort(pairs[:, 0], kind="stable")
@@ -71,13 +109,13 @@ def _chains(pairs, apart, ways):
     count = last - first
     before = np.repeat(np.arange(len(pairs)), count)
     after = order[np.arange(len(before)) - np.repeat(np.cumsum(count) - count - first, count)]
-    even = np.maximum(apart[before], apart[after]) <= MAX_STEP_RATIO * np.minimum(apart[before], apart[after])
+    even = np.maximum(apart[before], apart[after]) <= max_step_ratio * np.minimum(apart[before], apart[after])
     straight = (ways[before] * ways[after]).sum(axis=1) >= MIN_STEP_COSINE
     off = apart[after] * np.abs(ways[before, 0] * ways[after, 1] - ways[before, 1] * ways[after, 0])
-    joined = even & straight & (off <= MAX_DASH_OFFSET)
+    joined = even & straight & (off <= max_offset)
     graph = coo_matrix((np.ones(joined.sum(), bool), (before[joined], after[joined])), shape=(len(pairs),) * 2)
     number, row = connected_components(graph, directed=False)
     # a row is found twice, forwards and backwards
     found = {tuple(np.unique(pairs[row == k]).tolist())
-             for k in np.flatnonzero(np.bincount(row, minlength=number) >= MIN_DASHES_IN_ROW - 1)}
-    return [np.array(members) for members in sorted(found) if len(members) >= MIN_DASHES_IN_ROW]
+             for k in np.flatnonzero(np.bincount(row, minlength=number) >= fewest - 1)}
+    return [np.array(members) for members in sorted(found) if len(members) >= fewest]

@@ -27,6 +27,7 @@ from ...survey.store.road_points import RoadPoints
 from ...survey.store.section_store import SectionStore
 from ..objects.road_grid import CELL_UNITS, PieceOfRoad, RoadCells, RoadGrid, cell_numbers, cells_of_road
 from .asphalt_level import AsphaltLevels, asphalt_profile, flatten
+from .fading import without_fading_rims
 from .gutters import edge_distance, rim_distance
 from .mask import Burn, burn_points, marking_mask, painted_pixels
 from .morphology import morphology
@@ -314,6 +315,7 @@ class WindowExtractor:
         z, gutter = flatten(brightness, median, spread, view.rims)
         with np.errstate(invalid="ignore"):
             mask = morphology((z > threshold * scale) & ~gutter, self.settings)
+        mask = without_fading_rims(z, mask, view.occupied & ~gutter)
         # the background that was subtracted from the cell is subtracted from the point as well
         least = (brightness - z * spread) + (threshold - 0.5) * (spread * scale)
         return self._paint_in(parts, grid, view.occupied, mask, least)

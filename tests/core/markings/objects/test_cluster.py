@@ -418,3 +418,25 @@ def test_points_as_far_apart_that_were_scanned_densely_are_not_joined():
     records["spacing"] = 0
     markings, _ = layer_of(road_points(records, FRAME), FRAME)
     assert "hatch" not in classes(markings)
+
+
+def blocks(count, pitch=1.0, side=0.5, s0=30.0, d0=-3.0):
+    """Squares in a row across the road, as before a roundabout."""
+    return [strip(s0, s0 + side, d0 + k * pitch, d0 + k * pitch + side) for k in range(count)]
+
+
+@pytest.mark.parametrize("count", [3, 5])
+def test_a_row_of_equal_squares_across_the_road_is_a_give_way_line(count):
+    assert classes(markings_of(blocks(count), density=2500)) == ["give_way"] * count
+
+
+@pytest.mark.parametrize("marks", [
+    blocks(1), blocks(2), [*blocks(2), *blocks(1, d0=1.5)], [*blocks(1), *blocks(1, side=0.8, d0=-2.0), *blocks(1, side=0.35, d0=-1.0)],
+], ids=["one", "two", "uneven pitch", "uneven size"])
+def test_squares_that_make_no_row_are_covers(marks):
+    assert len(markings_of(marks, density=2500)) == 0
+
+
+def test_a_give_way_line_beside_a_manhole_cover_does_not_make_it_paint():
+    markings = markings_of([*blocks(4), disc(36, 0.0, 0.6)], density=2500)
+    assert classes(markings) == ["give_way"] * 4

@@ -1,0 +1,65 @@
+"""Rims beside the road that are bright like paint, and fade out on one side."""
+
+import numpy as np
+import pytest
+from lanewright.core.markings.paint.fading import side_fading, without_fading_rims
+
+SHAPE = 500, 200     # cells of 4 cm: 20 m along the road, 8 m across it
+EVERYWHERE = np.ones(SHAPE, bool)
+
+
+def road(*profiles, noise=0.6, seed=1):
+    """Brightness above asphalt in spreads: each profile is a function of the column."""
+    z = np.random.default_rng(seed).normal(0.0, noise, SHAPE)
+    for profile in profiles:
+        z += np.broadcast_to(profile(np.arange(SHAPE[1])), SHAPE)
+    return z
+
+
+def line(first, last, height=14.0):
+    return lambda column: np.where((column >= first) & (column < last), height, 0.0)
+
+
+def rim(joint, height=7.0, fade=15.0, side=1):
+    """Bright at the joint with the asphalt, fading over 60 cm into the ground behind it."""
+    behind = (lambda column: side * (column - joint))
+    return lambda column: np.where(behind(column) >= 0, height * np.clip(1 - behind(column) / fade, 0, 1), 0.0)
+
+
+def kept(z, threshold=3.0):
+    mask = z > threshold
+    return without_fading_rims(z, mask, EVERYWHERE).sum() / max(mask.sum(), 1)
+
+
+@pytest.mark.parametrize("width", [3, 8], ids=["12 cm", "30 cm"])
+def test_an_edge_line_ends_sharply_and_stays(width):
+    assert kept(road(line(100, 100 + width))) > 0.99
+
+
+@pytest.mark.parametrize("side", [1, -1], ids=["left", "right"])
+def test_a_granite_rim_that_fades_into_the_ground_behind_it_is_no_paint(side):
+    assert kept(road(rim(100, side=side))) < 0.05
+
+
+def test_an_edge_line_a_metre_from_such_a_rim_stays_while_the_rim_goes():
+    z = road(rim(150), line(120, 124))
+    left = without_fading_rims(z, z > 3.0, EVERYWHERE)
+    assert left[:, 115:130].sum() > 0.99 * (z > 3.0)[:, 115:130].sum()
+    assert left[:, 145:].sum() < 0.05 * (z > 3.0)[:, 145:].sum()
+
+
+def test_the_two_lines_of_a_double_line_do_not_make_each_other_fade():
+    assert kept(road(line(100, 103), line(106, 109))) > 0.99
+
+
+def test_the_side_that_fades_is_known():
+    z = road(rim(100), noise=0.1)
+    mask = z > 3.0
+    below, above = side_fading(z, mask, EVERYWHERE)
+    assert np.nanmedian(below) < 0.05 and np.nanmedian(above) > 0.2
+
+
+def test_beside_what_was_not_scanned_nothing_is_known():
+    mask = np.zeros(SHAPE, bool)
+    mask[:, 100:104] = True
+    assert np.isnan(side_fading(np.where(mask, 10.0, 0.0), mask, mask)[0]).all()
