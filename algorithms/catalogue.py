@@ -13,6 +13,7 @@ from .export.export_opendrive import ExportOpenDrive
 from .export.import_lanelet2 import ImportLanelet2
 from .export.import_opendrive import ImportOpenDrive
 from .inventory.cross_sections import CrossSections
+from .inventory.roadside import Roadside
 from .markings.cluster_markings import ClusterMarkings
 from .markings.correct_intensity import CorrectIntensity
 from .markings.extract_markings import ExtractMarkings
@@ -57,6 +58,7 @@ ALGORITHMS = (
     ImportLanelet2,
     CheckMap,
     CrossSections,
+    Roadside,
     AssessBoundaries,
     AssessMarkings,
     AssessDrivingLines,

@@ -33,6 +33,8 @@ LOOKS = {
     "TRUTH_MARKINGS": ("truth_markings", 31),
     "MARKING_LINES": ("marking_lines", 40),
     "CROSS_SECTIONS": ("cross_sections", 45),
+    "ROADSIDE": ("roadside", 55),
+    "ROADSIDE_OBJECTS": ("roadside_objects", 61),
     "ROAD_EDGES": ("road_edges", 50),
     "BOUNDARIES": ("boundaries", 52),
     "TRUTH_BOUNDARIES": ("truth_boundaries", 51),

@@ -35,6 +35,7 @@ FILES = {
     "importopendrive.INPUT": "map.xodr", "importlanelet2.INPUT": "map.osm",
     **{f"{name}.{layer}": f"{name.removeprefix('import')}_{layer.lower()}.gpkg" for name in ("importopendrive", "importlanelet2")
        for layer in ("LANES", "DRIVING_LINES", "MARKING_LINES", "ROAD_EDGES")},
+    "roadside.OUTPUT": "roadside.gpkg", "roadside.OBJECTS": "roadside_objects.gpkg",
     "crosssections.OUTPUT": "cross_sections.gpkg", "crosssections.TABLE": "cross_sections_table.gpkg",
     "assessboundaries.INPUT": "road_edges.gpkg", "assessboundaries.REFERENCE": "truth_boundaries.gpkg",
     "assessboundaries.OUTPUT": "boundaries_by_outcome.gpkg",
@@ -49,6 +50,7 @@ NAMED = {
     "drivinglines": ("MARKINGS", "ROAD_EDGES", "ROAD_POINTS"), "georeferenceimage": ("GCPS",),
     "crosssections": ("ROAD_EDGES", "MARKING_LINES", "DRIVING_LINES"),
     "roadmap": ("TRAJECTORY",),
+    "roadside": ("ROAD_EDGES",),
 }
 
 

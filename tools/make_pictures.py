@@ -64,6 +64,7 @@ def stages(folder):
                            MARKINGS=clusters["MARKINGS"])
     made["crosssections"] = run("crosssections", **survey, ROAD_EDGES=edges, MARKING_LINES=lines["MARKING_LINES"], INTERVAL=5, MAX_CROSSFALL=2.6,
                                 DRIVING_LINES=driving["DRIVING_LINES"], OUTPUT=at("sections.gpkg"))
+    made["roadside"] = run("roadside", **survey, ROAD_EDGES=edges, OUTPUT=at("roadside.gpkg"), OBJECTS=at("objects.gpkg"))
     made["assessboundaries"] = run("assessboundaries", INPUT=edges, REFERENCE=sample["TRUTH_BOUNDARIES"], **drive, OUTPUT=at("a_b.gpkg"))
     made["assessmarkings"] = run("assessmarkings", INPUT=clusters["MARKINGS"], REFERENCE=sample["TRUTH_MARKINGS"], **drive,
                                  OUTPUT=at("a_m.gpkg"))
@@ -101,6 +102,7 @@ DRAWN = {
     "drivinglines": (["DRIVING_LINES"], True, False),
     "roadmap": (["DRIVING_LINES", "ROAD_EDGES", "MARKING_LINES", "MARKINGS"], True, False),
     "crosssections": ([("OUTPUT", "CROSS_SECTIONS")], True, False),
+    "roadside": ([("OBJECTS", "ROADSIDE_OBJECTS"), ("OUTPUT", "ROADSIDE")], True, False),
     "assessboundaries": ([("OUTPUT", "ASSESSED_LINES")], True, False),
     "assessmarkings": ([("OUTPUT", "ASSESSED_POLYGONS")], True, True),
     "assessdrivinglines": ([("OUTPUT", "ASSESSED_LINES")], True, False),

@@ -85,10 +85,27 @@ class RoadBorders:
         self.driving = _pieces(layers.driving_lines, frame)
         self.lane_borders = None if layers.lanes is None else _lane_borders(layers.lanes, frame)
 
+    @property
+    def given(self) -> bool:
+        """Whether any layer was given."""
+        return any(layer is not None for layer in (self.edges, self.lines, self.driving, self.lane_borders))
+
+    def outer(self, road: int, s: float) -> tuple[float, float]:
+        """(right, left) offsets of the carriageway's edges, else of its outermost lanes or lines; NaN where there are none."""
+        found = self.at(road, s) if self.given else None
+        if found is not None:
+            return found[0].right, found[0].left
+        track = self._track(road, s)
+        return _nearest_outside(np.sort(np.array([d for d, _ in _crossings(self.edges, road, s)])), float(track.min()), float(track.max()))
+
+    def _track(self, road, s):
+        """Offsets of the passes that drove a station; 0 where none did."""
+        passes = [p for p in self.frame.passes_of(road) if p.span[0] - 1.0 <= s <= p.span[1] + 1.0]
+        return np.array([p.at_station(np.array([s]))[0][0] for p in passes] or [0.0])
+
     def at(self, road: int, s: float) -> tuple[Strip, list[Strip]] | None:
         """The carriageway and its lanes, from right to left, at a station of a road; None where the layers know no carriageway."""
-        track = np.array([p.at_station(np.array([s]))[0][0] for p in self.frame.passes_of(road) if p.span[0] - 1.0 <= s <= p.span[1] + 1.0]
-                         or [0.0])
+        track = self._track(road, s)
         lines = np.sort(np.array([d for d, _ in _crossings(self.lines, road, s)]))
         lanes = self._lanes(road, s, lines)
         edges = np.sort(np.array([d for d, _ in _crossings(self.edges, road, s)]))
@@ -98,7 +115,7 @@ class RoadBorders:
             lanes = self._between(lines, right, left)
         outer = [strip.right for strip in lanes], [strip.left for strip in lanes]
         if not lanes and not (np.isfinite(right) and np.isfinite(left)):
-            if any(layer is not None for layer in (self.edges, self.lines, self.driving, self.lane_borders)):
+            if self.given:
                 return None
             lanes = self._driven(track)
             outer = [strip.right for strip in lanes], [strip.left for strip in lanes]

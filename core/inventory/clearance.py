@@ -16,7 +16,7 @@ STANDING_REACH = 4        # columns about a standing one that belong to the same
 MIN_OVERHEAD_POINTS = 4   # of a column within OVERHEAD_DEPTH of its lowest point, so that ghosts and birds do not count
 OVERHEAD_DEPTH = 0.15     # m
 MIN_OVERHEAD_COLUMNS = 2  # that must agree
-INSIDE = 0.15             # m by which the strip is narrowed: a pole beside the road is not above it
+OVERHEAD_INSIDE = 0.15             # m by which the strip is narrowed: a pole beside the road is not above it
 
 
 def clear_height(points: Points, h: np.ndarray, right: float, left: float) -> float | None:
@@ -33,7 +33,7 @@ def clear_height(points: Points, h: np.ndarray, right: float, left: float) -> fl
     m; None where nothing was seen above it
     """
     d = points.d
-    near = np.flatnonzero((d > right + INSIDE) & (d < left - INSIDE) & (h > STANDS_FROM))
+    near = np.flatnonzero((d > right + OVERHEAD_INSIDE) & (d < left - OVERHEAD_INSIDE) & (h > STANDS_FROM))
     if not len(near):
         return None
     s, d, h = points.s[near], d[near], h[near]

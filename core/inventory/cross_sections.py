@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ..survey.open_survey import Survey
 
 STRETCH = 10.0               # m of road about a section from which grade and ruts are measured; shorter where the interval is
-BESIDE = 1.0                 # m beyond the borders that are read too, for the curbs' tops
+READ_BESIDE = 1.0                 # m beyond the borders that are read too, for the curbs' tops
 BORDER_MARGIN = 0.15         # m inside a border that belong to paint's edge, gutter or curb face
 MIN_SURFACE_SEEN = 0.5       # share of a strip's cells that must be seen for its crossfall
 MAX_FROM_SURFACE = 0.08      # m from the plane through a lane beyond which a cell is no road: more than any rut
@@ -153,7 +153,7 @@ def _stations(survey, road, interval):
 
 def _reach(strips):
     """(right, left) offsets within which the surface of a section is read."""
-    return min(strip.right for strip in strips) - BESIDE, max(strip.left for strip in strips) + BESIDE
+    return min(strip.right for strip in strips) - READ_BESIDE, max(strip.left for strip in strips) + READ_BESIDE
 
 
 def _grid(survey, road, s, borders, stretch):
@@ -223,7 +223,7 @@ def _section(survey, road, s, borders, errors, interval, stretch):
             strip, *((plane.across, float(np.hypot(plane.sigma, rolled)), plane.along + grid.slope) if plane is not None and seen >= MIN_SURFACE_SEEN
                      else (np.nan,) * 3), ruts,
             _curbs(grid.d, level, strip) if not strip.lane else (np.nan, np.nan), clearance, seen))
-    inside = (grid.d > carriageway.right - BESIDE) & (grid.d < carriageway.left + BESIDE)
+    inside = (grid.d > carriageway.right - READ_BESIDE) & (grid.d < carriageway.left + READ_BESIDE)
     z = level[inside] + grid.line(np.array([s]))[0]
     return RoadSection(road, s, heading, grid.d[inside], z, parts), noisy
 

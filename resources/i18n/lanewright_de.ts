@@ -1724,6 +1724,161 @@
             <translation>Kleinste lichte Höhe (m)</translation>
         </message>
         <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>Roadside</source>
+            <translation>Straßenrand</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>Finds guard rails, concrete barriers, walls, fences, hedges and gutters as lines, and poles, signs and tree trunks as points.</source>
+            <translation>Findet Leitplanken, Betonschutzwände, Mauern, Zäune, Hecken und Rinnen als Linien sowie Masten, Schilder und Baumstämme als Punkte.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>What repeats along the road at a steady offset and height is a line; its kind follows from its section: a beam with free height below, a face that leans back, an upright plane, something that is seen through, something rough. Buildings and rows of parked cars are none.</source>
+            <translation>Was sich längs der Straße in gleichem Abstand und gleicher Höhe wiederholt, ist eine Linie; ihre Art folgt aus ihrem Querschnitt: ein Holm mit freiem Raum darunter, eine zurückgeneigte Fläche, eine senkrechte Ebene, etwas Durchsichtiges, etwas Raues. Gebäude und Reihen geparkter Autos sind keine.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>Only what stands outside the carriageway counts: give the road edges, or the layers of lines or lanes. Gutters are the lowest points along an edge that the road falls to; the higher side of a road has none.</source>
+            <translation>Nur was außerhalb der Fahrbahn steht, zählt: Geben Sie die Fahrbahnränder an oder die Layer der Linien oder Fahrstreifen. Rinnen sind die tiefsten Punkte längs eines Randes, zu dem die Straße fällt; die höhere Seite einer Straße hat keine.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>guard rail</source>
+            <translation>Leitplanke</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>barrier</source>
+            <translation>Schutzwand</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>noise wall</source>
+            <translation>Lärmschutzwand</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>fence</source>
+            <translation>Zaun</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>hedge</source>
+            <translation>Hecke</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>pole</source>
+            <translation>Mast</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>sign</source>
+            <translation>Schild</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>tree</source>
+            <translation>Baum</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>asset</source>
+            <translation>Straßenausstattung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>street furniture</source>
+            <translation>Straßenmöbel</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>Reach beyond the carriageway's edge (m)</source>
+            <translation>Reichweite jenseits des Fahrbahnrands (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>Farther finds what stands behind verge and sidewalk, but also what belongs to the land beside the road.</source>
+            <translation>Weiter findet, was hinter Bankett und Gehweg steht, aber auch, was zu den Grundstücken neben der Straße gehört.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>Shortest line (m)</source>
+            <translation>Kürzeste Linie (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>Shorter finds short pieces of rail and wall, but also cars and bins that stand in a row.</source>
+            <translation>Kürzer findet kurze Stücke von Leitplanken und Mauern, aber auch Autos und Tonnen, die in einer Reihe stehen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>Lowest line (m)</source>
+            <translation>Niedrigste Linie (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>Lower finds low walls, but also high grass and steps.</source>
+            <translation>Niedriger findet niedrige Mauern, aber auch hohes Gras und Stufen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>Longest gap bridged (m)</source>
+            <translation>Längste überbrückte Lücke (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>Longer joins lines that something hides for a while; shorter cuts them at every gate.</source>
+            <translation>Länger verbindet Linien, die etwas ein Stück weit verdeckt; kürzer trennt sie an jedem Tor.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>Lowest pole, sign or trunk (m)</source>
+            <translation>Niedrigster Mast, Schild oder Stamm (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>Lower finds bollards and delineator posts, but also people.</source>
+            <translation>Niedriger findet Poller und Leitpfosten, aber auch Menschen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>With it things are looked for from the edges outward, and gutters along them.</source>
+            <translation>Damit wird von den Rändern nach außen gesucht, und Rinnen längs der Ränder.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>With it the carriageway without edges ends at the outermost line.</source>
+            <translation>Damit endet die Fahrbahn ohne Ränder an der äußersten Linie.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>With it the carriageway without edges holds every lane.</source>
+            <translation>Damit umfasst die Fahrbahn ohne Ränder jeden Fahrstreifen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>The same, with shoulders and parking strips.</source>
+            <translation>Dasselbe, mit Seiten- und Parkstreifen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>Lines along the foot, on the ground.</source>
+            <translation>Linien längs des Fußes, auf dem Boden.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>Poles, signs and trunks</source>
+            <translation>Masten, Schilder und Stämme</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>Length of all lines but gutters (m)</source>
+            <translation>Länge aller Linien außer Rinnen (m)</translation>
+        </message>
+        <message>
             <location filename="../../algorithms/markings/cluster_markings.py" />
             <source>Cluster markings</source>
             <translation>Markierungen zusammenfassen</translation>
@@ -2922,11 +3077,6 @@
             <location filename="../../algorithms/road/fit_road_edges.py" />
             <source>Draws the road edges through curb points as smoothing splines, bridging short gaps and saying so.</source>
             <translation>Zeichnet die Straßenränder als glättende Splines durch Bordsteinpunkte, überbrückt kurze Lücken und sagt es.</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/road/fit_road_edges.py" />
-            <source>Longest gap bridged (m)</source>
-            <translation>Längste überbrückte Lücke (m)</translation>
         </message>
         <message>
             <location filename="../../algorithms/road/fit_road_edges.py" />
@@ -4310,6 +4460,11 @@
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
+            <source>Distance from the carriageway's edge (m)</source>
+            <translation>Abstand vom Fahrbahnrand (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
             <source>Outcome (correct/missed/false/excluded)</source>
             <translation>Ergebnis (correct/missed/false/excluded)</translation>
         </message>
@@ -4700,6 +4855,36 @@
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
+            <source>Kind (guard_rail/barrier/wall/fence/hedge/gutter)</source>
+            <translation>Art (guard_rail/barrier/wall/fence/hedge/gutter)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Height of its top above the ground; of a gutter, its depth (m)</source>
+            <translation>Höhe der Oberkante über dem Boden; einer Rinne ihre Tiefe (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Height of its lower edge above the ground (m)</source>
+            <translation>Höhe der Unterkante über dem Boden (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Kind (pole/sign/trunk)</source>
+            <translation>Art (pole/sign/trunk)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Height of its top above the ground (m)</source>
+            <translation>Höhe der Spitze über dem Boden (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Diameter of its shaft (m)</source>
+            <translation>Durchmesser des Schafts (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
             <source>Point</source>
             <translation>Punkt</translation>
         </message>
@@ -5022,6 +5207,51 @@
             <location filename="../../resources/styles/road_surface.qml" />
             <source>Grown, no edge</source>
             <translation>Gewachsen, ohne Rand</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/roadside.qml" />
+            <source>Guard rail</source>
+            <translation>Leitplanke</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/roadside.qml" />
+            <source>Concrete barrier</source>
+            <translation>Betonschutzwand</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/roadside.qml" />
+            <source>Wall</source>
+            <translation>Mauer</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/roadside.qml" />
+            <source>Fence</source>
+            <translation>Zaun</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/roadside.qml" />
+            <source>Hedge</source>
+            <translation>Hecke</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/roadside.qml" />
+            <source>Gutter</source>
+            <translation>Rinne</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/roadside_objects.qml" />
+            <source>Pole</source>
+            <translation>Mast</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/roadside_objects.qml" />
+            <source>Sign</source>
+            <translation>Schild</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/roadside_objects.qml" />
+            <source>Tree trunk</source>
+            <translation>Baumstamm</translation>
         </message>
     </context>
 </TS>

@@ -33,6 +33,18 @@ def test_cross_sections_of_a_mapped_street(street, tmp_path):
     assert "Cross-sections" in open(report, encoding="utf-8").read()
 
 
+def test_the_roadside_of_a_mapped_street(street, tmp_path):
+    import processing
+
+    survey = {"POINT_CLOUDS": [street["POINT_CLOUD"]], "TRAJECTORY": street["TRAJECTORY"]}
+    edges, lines, objects, report = (str(tmp_path / name) for name in ("edges.gpkg", "lines.gpkg", "objects.gpkg", "report.html"))
+    processing.run("lanewright:detectboundaries", {**survey, "BOUNDARY_METHOD": "profiles", "ROAD_EDGES": edges})
+    found = processing.run("lanewright:roadside", {**survey, "ROAD_EDGES": edges, "OUTPUT": lines, "OBJECTS": objects, "REPORT": report})
+    assert {row["kind"] for row in rows_of(lines)} <= {"guard_rail", "barrier", "wall", "fence", "hedge", "gutter"}
+    assert found["POLES"] == len(rows_of(objects))
+    assert "Roadside" in open(report, encoding="utf-8").read()
+
+
 def test_layers_of_another_drive_are_refused(street, tmp_path):
     import processing
     from qgis.core import QgsProcessingException

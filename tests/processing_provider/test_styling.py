@@ -2,7 +2,17 @@
 
 import numpy as np
 import pytest
-from lanewright.core.common.schemas import CONTROL_POINTS, DRIVING_LINES, MARKING_LINES, MARKINGS, RESIDUALS, ROAD_EDGES
+from lanewright.core.common.schemas import (
+    CONTROL_POINTS,
+    CROSS_SECTIONS,
+    DRIVING_LINES,
+    MARKING_LINES,
+    MARKINGS,
+    RESIDUALS,
+    ROAD_EDGES,
+    ROADSIDE,
+    ROADSIDE_OBJECTS,
+)
 from lanewright.processing_provider.embedded_style import embed_style
 from lanewright.processing_provider.layers import qgis_fields
 from lanewright.processing_provider.results.runs import Run
@@ -18,6 +28,9 @@ KINDS = {
     "DRIVING_LINES": ("LineStringZ", DRIVING_LINES),
     "RESIDUALS": ("LineStringZ", RESIDUALS),
     "UAV_GCPS": ("PointZ", CONTROL_POINTS),
+    "CROSS_SECTIONS": ("LineStringZ", CROSS_SECTIONS),
+    "ROADSIDE": ("LineStringZ", ROADSIDE),
+    "ROADSIDE_OBJECTS": ("PointZ", ROADSIDE_OBJECTS),
 }
 
 

@@ -39,12 +39,13 @@ def surface(d, crossfall=0.025, crown=True, rut=0.0, lanes=(-1.75, 1.75), curb=0
 
 
 def measured_road(drives=(Drive(),), scanners=((0.0, 0.0),), length=60.0, density=1500.0, noise=0.004, grade=0.03, reach=6.0, seed=11,
-                  above=None, north=False, **road):
+                  above=None, hides=None, north=False, **road):
     """A Survey of a straight road.
 
     scanners : (step in m, tilt in m/m) of each on its vehicle, the tilt positive where it measures its left side too high
     density : points per m² of one drive beneath the vehicle; it falls off to either side as a rotating mirror's does
-    above : function of x, y that gives further points (x, y, z) above z = 0
+    above : function of a random generator that gives further points (x, y, z) above z = 0
+    hides : function of the drive's offset and points x, y, z; which of them something hides
     """
     rng = np.random.default_rng(seed)
     step = np.arange(0.0, length + 1e-9, 0.25)
@@ -63,6 +64,9 @@ def measured_road(drives=(Drive(),), scanners=((0.0, 0.0),), length=60.0, densit
             if above is not None and number == 0 and scanner == 0:
                 ax, ay, az = above(rng)
                 px, py, pz, across = np.r_[px, ax], np.r_[py, ay], np.r_[pz, az + grade * ax], np.r_[across, ay - drive.offset]
+            if hides is not None:
+                seen = ~hides(drive.offset, px, py, pz - grade * px)
+                px, py, pz, across = px[seen], py[seen], pz[seen], across[seen]
             pz = pz + drive.up + up + (drive.roll + tilt) * drive.direction * across + rng.normal(0, noise, len(px))
             parts.append((number, scanner, np.interp(px, x[:: drive.direction], time[:: drive.direction]), px, py, pz + GROUND))
 

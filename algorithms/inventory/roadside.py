@@ -1,0 +1,82 @@
+"""What stands beside the road."""
+
+from dataclasses import replace
+
+from ...core.common.schemas import DRIVING_LINES, LANES, MARKING_LINES, ROAD_EDGES, ROADSIDE, ROADSIDE_OBJECTS
+from ..algorithm import Algorithm
+from ..parameters import SettingSpec
+from ..survey_input import SURVEY_SETTINGS, survey_inputs
+from ..texts import tr
+
+ROADSIDE_OF = "inventory.roadside.settings:RoadsideSettings"
+ABOVE_ROAD = 8.0  # m of height above the road that are read: buildings reach higher than anything that is looked for
+
+ROADSIDE_SETTINGS = (
+    SettingSpec("REACH", ROADSIDE_OF, "reach", tr("Reach beyond the carriageway's edge (m)"),
+                tr("Farther finds what stands behind verge and sidewalk, but also what belongs to the land beside the road.")),
+    SettingSpec("MIN_LENGTH", ROADSIDE_OF, "min_length", tr("Shortest line (m)"),
+                tr("Shorter finds short pieces of rail and wall, but also cars and bins that stand in a row.")),
+    SettingSpec("MIN_HEIGHT", ROADSIDE_OF, "min_height", tr("Lowest line (m)"),
+                tr("Lower finds low walls, but also high grass and steps."), advanced=True),
+    SettingSpec("MAX_GAP", ROADSIDE_OF, "max_gap", tr("Longest gap bridged (m)"),
+                tr("Longer joins lines that something hides for a while; shorter cuts them at every gate."), advanced=True),
+    SettingSpec("MIN_POLE_HEIGHT", ROADSIDE_OF, "min_pole_height", tr("Lowest pole, sign or trunk (m)"),
+                tr("Lower finds bollards and delineator posts, but also people."), advanced=True),
+)
+
+
+class Roadside(Algorithm):
+    ID, TITLE, GROUP = "roadside", "Roadside", "Inventory"
+    SUMMARY = "Finds guard rails, concrete barriers, walls, fences, hedges and gutters as lines, and poles, signs and tree trunks as points."
+    HELP = ("What repeats along the road at a steady offset and height is a line; its kind follows from its section: a beam with free height "
+            "below, a face that leans back, an upright plane, something that is seen through, something rough. "
+            "Buildings and rows of parked cars are none.\n\n"
+            "Only what stands outside the carriageway counts: give the road edges, or the layers of lines or lanes. Gutters are the lowest points "
+            "along an edge that the road falls to; the higher side of a road has none.")
+    TAGS = ("guard rail", "barrier", "noise wall", "fence", "hedge", "pole", "sign", "tree", "asset", "street furniture")
+    LOOKS = {"OUTPUT": "ROADSIDE", "OBJECTS": "ROADSIDE_OBJECTS"}
+
+    def declare(self):
+        self.add_survey()
+        self.add_layer("ROAD_EDGES", tr("Road edges"), tr("With it things are looked for from the edges outward, and gutters along them."),
+                       "LineStringZ", optional=True)
+        self.add_layer("MARKING_LINES", tr("Marking lines"), tr("With it the carriageway without edges ends at the outermost line."), "LineStringZ",
+                       optional=True)
+        self.add_layer("DRIVING_LINES", tr("Driving lines"), tr("With it the carriageway without edges holds every lane."), "LineStringZ",
+                       optional=True)
+        self.add_layer("LANES", tr("Lanes"), tr("The same, with shoulders and parking strips."), "PolygonZ", optional=True)
+        self.add_settings(ROADSIDE_SETTINGS)
+        self.add_settings(SURVEY_SETTINGS)
+        self.add_sink("OUTPUT", tr("Roadside"), tr("Lines along the foot, on the ground."), fields=ROADSIDE, geometry="LineStringZ")
+        self.add_sink("OBJECTS", tr("Poles, signs and trunks"), fields=ROADSIDE_OBJECTS, geometry="PointZ", optional=True)
+        self.add_report()
+        self.add_number("LENGTH", tr("Length of all lines but gutters (m)"))
+        self.add_number("POLES", tr("Poles, signs and trunks"))
+
+    def work(self, call, progress):
+        from ...core.inventory.borders import BorderLayers
+        from ...core.inventory.roadside.find import find_roadside
+        from ...core.inventory.roadside.layers import roadside_to_features
+        from ...core.report.roadside import roadside_report
+        from ...core.survey.consistency import check_features_on_roads
+        from ...core.survey.open_survey import open_survey
+
+        settings = call.settings(ROADSIDE_SETTINGS)
+        layers = BorderLayers(call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ"), call.features("MARKING_LINES", MARKING_LINES, "LineStringZ"),
+                              call.features("DRIVING_LINES", DRIVING_LINES, "LineStringZ"), call.features("LANES", LANES, "PolygonZ"))
+        paths, trajectory = survey_inputs(call, progress)
+        reading = replace(call.settings(SURVEY_SETTINGS, crs=call.crs()), above_road=ABOVE_ROAD)
+        survey = open_survey(paths, trajectory, reading, progress.part(0.0, 0.6))
+        try:
+            for name, features in (("ROAD_EDGES", layers.edges), ("MARKING_LINES", layers.marking_lines), ("DRIVING_LINES", layers.driving_lines),
+                                   ("LANES", layers.lanes)):
+                if features is not None:
+                    check_features_on_roads(features, survey.frame, call.label(name))
+            found = find_roadside(survey, layers, settings, progress.part(0.6, 1.0))
+        finally:
+            survey.store.close()
+        lines, points = roadside_to_features(found)
+        call.layer("OUTPUT", lines)
+        call.layer("OBJECTS", points)
+        call.text("REPORT", roadside_report(found, lines, points))
+        return {"LENGTH": sum(row["length_m"] for row in lines.rows if row["kind"] != "gutter"), "POLES": float(len(points))}

@@ -1,0 +1,200 @@
+"""Find what stands beside the road."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...common.parallel import ordered_map
+from ...common.progress import Progress
+from ...countries.neutral import NEUTRAL
+from ...survey.sensor_height import DEFAULT_SENSOR_HEIGHT
+from ..borders import BorderLayers, RoadBorders
+from ..surface_grid import SLICE_LENGTH
+from .chains import Chain, find_chains
+from .ground import GROUND_CELL, local_ground
+from .gutters import find_gutters
+from .kinds import kind_of
+from .poles import Pole, find_poles
+from .settings import RoadsideSettings
+from .uprights import UPRIGHT_SLICE, Uprights, find_uprights
+
+if TYPE_CHECKING:
+    from ...survey.frame.road_frame import RoadFrame
+    from ...survey.open_survey import Survey
+
+ROADSIDE_WINDOW = 20.0            # m of road looked at at a time; results do not depend on it
+ROADSIDE_MARGIN = 4.0      # m before and after it, for the ground
+FURTHER = 2.0            # m beyond the reach that are read, for the ground
+INSIDE_EDGE = 0.20       # m inside the carriageway's edge from which things count as beside it
+BEYOND_TRACK = 2.0       # m from the track that count as carriageway where no layer says where it ends
+MAX_EDGE_GAP = 30.0      # m along the road over which an edge is taken to go on
+EDGE_LOOK_UP = 5.0          # m along the road between the places where the edge is looked up
+
+
+@dataclass(frozen=True)
+class SideLine:
+    """A line beside the road.
+
+    kind : guard_rail, barrier, wall, fence, hedge or gutter
+    chain : Chain
+    foot : m, lower end of what is seen of it above the ground
+    from_edge : m from the carriageway's edge, outward positive; NaN where no layer says where it is
+    """
+
+    kind: str
+    chain: Chain
+    foot: float
+    from_edge: float
+
+
+@dataclass(frozen=True)
+class SideEdges:
+    """Offsets of the carriageway's edges along a road, interpolated between places EDGE_LOOK_UP apart."""
+
+    s: np.ndarray
+    right: np.ndarray
+    left: np.ndarray
+    known: bool
+
+    def of(self, side: int, s: np.ndarray) -> np.ndarray:
+        """(N,) m, offset of the edge of a side."""
+        return np.interp(s, self.s, self.left if side > 0 else self.right)
+
+    def middle(self, s: np.ndarray) -> np.ndarray:
+        """(N,) m, offset of the middle between the edges."""
+        return 0.5 * (self.of(1, s) + self.of(-1, s))
+
+    def beyond(self, side: int, s: np.ndarray, d: np.ndarray) -> float:
+        """m, median distance of (N,) places beyond the edge of a side; NaN where no layer says where it is."""
+        return float(np.median(side * (d - self.of(side, s)))) if self.known else np.nan
+
+
+@dataclass
+class Roadside:
+    """What was found beside the roads of a survey.
+
+    lines : in order of road, side and station
+    poles : {road: list of Pole}
+    edges : {road: SideEdges}
+    """
+
+    lines: list[SideLine]
+    poles: dict[int, list[Pole]]
+    edges: dict[int, SideEdges]
+    frame: RoadFrame
+    crs: str
+    settings: RoadsideSettings
+    notes: list[str] = field(default_factory=list)
+
+
+def find_roadside(survey: Survey, layers: BorderLayers = BorderLayers(), settings: RoadsideSettings = RoadsideSettings(),
+                  progress: Progress = Progress()) -> Roadside:
+    """Lines of rails, barriers, walls, fences and hedges beside every road.
+
+    Parameters
+    ----------
+    survey : Survey
+    layers : BorderLayers; without them what is more than 2 m from a track counts as beside the road
+    settings : RoadsideSettings
+    progress : Progress
+
+    Returns
+    -------
+    Roadside
+    """
+    borders = RoadBorders(layers, survey.frame, NEUTRAL)
+    found = Roadside([], {}, {}, survey.frame, survey.crs, settings)
+    roads = survey.store.roads()
+    for k, road in enumerate(roads):
+        edges = found.edges[road] = _edges_of(survey, road, borders)
+        found.poles[road] = []
+        parts: dict[tuple[str, int], list[Uprights]] = {}
+        first, last = survey.store.span(road)
+        windows = np.arange(np.floor(first / ROADSIDE_WINDOW), np.ceil(last / ROADSIDE_WINDOW))
+
+        def look(window, road=road, edges=edges):
+            return _look(survey, road, window * ROADSIDE_WINDOW, edges, settings)
+
+        for uprights, poles in ordered_map(look, windows.tolist(), progress.part(k / len(roads), (k + 1) / len(roads))):
+            found.poles[road] += poles
+            for key, some in uprights.items():
+                parts.setdefault(key, []).append(some)
+        for (what, side), some in sorted(parts.items()):
+            for chain in find_chains(Uprights.joined(some), road, side, settings.max_gap, settings.min_length):
+                kind = "gutter" if what == "gutter" else kind_of(chain)
+                if kind is not None:
+                    found.lines.append(SideLine(kind, chain, float(np.median(chain.members.foot)), edges.beyond(side, chain.s, chain.d)))
+    found.lines.sort(key=lambda line: (line.chain.road, -line.chain.side, float(line.chain.s[0])))
+    _report(found, progress)
+    return found
+
+
+def _report(found: Roadside, progress: Progress) -> None:
+    """Log what was found, and what was missing for it."""
+    lengths: dict[str, float] = {}
+    for line in found.lines:
+        lengths[line.kind] = lengths.get(line.kind, 0.0) + line.chain.length
+    told = ", ".join(f"{length:.0f} m of {kind.replace('_', ' ')}" for kind, length in sorted(lengths.items())) or "no lines"
+    progress.info(f"Beside the road: {told}; {sum(map(len, found.poles.values()))} poles, signs and trunks.")
+    if not any(edges.known for edges in found.edges.values()):
+        found.notes.append("Without road edges, marking lines, driving lines or lanes everything more than "
+                           f"{BEYOND_TRACK:.0f} m from the track counts as beside the road, parked cars "
+                           "too, and gutters are not looked for. Give the road edges.")
+    for note in found.notes:
+        progress.warn(note)
+
+
+def _edges_of(survey, road, borders):
+    first, last = survey.store.span(road)
+    s = np.arange(first, last + EDGE_LOOK_UP, EDGE_LOOK_UP)
+    track = [p.at_station(s)[0] for p in survey.frame.passes_of(road)]
+    widest = np.min(track, axis=0) - BEYOND_TRACK, np.max(track, axis=0) + BEYOND_TRACK
+    sides = []
+    for seen, beyond in zip(np.array([borders.outer(road, float(at)) for at in s]).T, widest):
+        known = np.isfinite(seen)
+        if known.any():
+            # an edge goes on where it is not drawn for a while
+            away = np.abs(s[:, None] - s[known]).min(axis=1)
+            sides.append(np.where(away < MAX_EDGE_GAP, np.interp(s, s[known], seen[known]), beyond))
+        else:
+            sides.append(beyond)
+    return SideEdges(s, *sides, borders.given)
+
+
+def _down(d):
+    """The next border of a cell of the ground, so that cells are the same in every window."""
+    return float(np.floor(d / GROUND_CELL) * GROUND_CELL)
+
+
+def _look(survey, road, start, edges, settings):
+    """({(what, side): Uprights}, list of Pole) of one window."""
+    wide = start - ROADSIDE_MARGIN, start + ROADSIDE_WINDOW + ROADSIDE_MARGIN
+    points = survey.window(road, *wide)
+    s, d, z = points.s, points.d, points.z
+    near = np.flatnonzero((d > edges.of(-1, s) - settings.reach - FURTHER) & (d < edges.of(1, s) + settings.reach + FURTHER))
+    if not len(near):
+        return {}, []
+    s, d, z, number = s[near], d[near], z[near], points.pass_number[near]
+    h = z - survey.road_height(road, s)
+    ground = local_ground(s, d, h, wide[0], int(round(wide[1] - wide[0])), (_down(d.min()), float(d.max()) + 1e-3))
+    above = h - ground.at(s, d)
+    middle = np.array([start + 0.5 * ROADSIDE_WINDOW])
+    found, poles = {}, []
+    slices = int(round(start / UPRIGHT_SLICE)), int(round((start + ROADSIDE_WINDOW) / UPRIGHT_SLICE))
+    for side in (1, -1):
+        beyond = side * (d - edges.of(side, s))
+        beside = np.flatnonzero((beyond > -INSIDE_EDGE) & (beyond < settings.reach) & np.isfinite(above))
+        poles += find_poles(s[beside], d[beside], above[beside], (z - above)[beside], (start, start + ROADSIDE_WINDOW), settings.min_pole_height)
+        own = beside[(s[beside] >= start) & (s[beside] < start + ROADSIDE_WINDOW)]
+        nearest = int(survey.frame.nearest_pass(road, middle, edges.of(side, middle))[0])
+        track = float(survey.frame.passes[nearest].at_station(middle)[0][0])
+        seen = own[number[own] == nearest] if (number[own] == nearest).any() else own
+        found["line", side] = find_uprights(s[seen], d[seen], above[seen], (z - above)[seen], slices, side,
+                                            (track, survey.sensor_height.get(nearest, DEFAULT_SENSOR_HEIGHT)), settings.min_height)
+        if edges.known:
+            found["gutter", side] = find_gutters(survey, road, start, int(round(ROADSIDE_WINDOW / SLICE_LENGTH)), side, partial(edges.of, side))
+    return found, sorted(poles, key=lambda pole: (pole.s, pole.d))

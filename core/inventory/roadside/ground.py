@@ -1,0 +1,82 @@
+"""The ground beside the road: what is left when everything that stands on it is taken away."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import grey_opening, median_filter
+
+from ...common.order_statistics import order_by
+from ...road.common.pseudo_scanlines import lowest_layers
+
+GROUND_SLICE, GROUND_CELL = 1.0, 0.20   # m along and across
+STANDING_WIDTH = 2.5      # m: narrower humps of the lowest layer stand on the ground (parked cars, hedges)
+GROUND_SHARE = 0.1        # quantile of the lowest layer: at the foot of a wall it reaches up the face
+GROUND_JUMP = 0.10        # m of height between two layers
+MIN_GROUND_POINTS = 3     # of a lowest layer
+UNSEEN_REACH = 1.0        # m across a gap in the ground that is bridged
+
+
+@dataclass(frozen=True)
+class LocalGround:
+    """Heights of the ground in cells of a stretch of road.
+
+    start, origin : m, station and offset of the corner
+    height : (I, J) m above the line that the points' heights count from; NaN where the ground is not known
+    """
+
+    start: float
+    origin: float
+    height: np.ndarray
+
+    def at(self, s: np.ndarray, d: np.ndarray) -> np.ndarray:
+        """(N,) heights of the ground at (N,) stations and offsets; NaN where it is not known."""
+        i = np.clip(np.floor((s - self.start) / GROUND_SLICE).astype(np.int64), 0, self.height.shape[0] - 1)
+        at = np.clip((d - self.origin) / GROUND_CELL - 0.5, 0.0, self.height.shape[1] - 1.0)
+        j = np.minimum(at.astype(np.int64), self.height.shape[1] - 2)
+        low, high = self.height[i, j], self.height[i, j + 1]
+        both = low + (at - j) * (high - low)
+        return np.where(np.isfinite(both), both, np.where(np.isfinite(low), low, high))
+
+
+def local_ground(s: np.ndarray, d: np.ndarray, h: np.ndarray, start: float, slices: int, offsets: tuple[float, float]) -> LocalGround:
+    """The ground under points.
+
+    Parameters
+    ----------
+    s, d, h : (N,) m, stations, offsets and heights above the expected road
+    start : m, station of the first slice
+    slices : number of slices along the road
+    offsets : (right, left) m
+    """
+    columns = max(int(np.ceil((offsets[1] - offsets[0]) / GROUND_CELL)), 2)
+    i, j = np.floor((s - start) / GROUND_SLICE).astype(np.int64), np.floor((d - offsets[0]) / GROUND_CELL).astype(np.int64)
+    inside = np.flatnonzero((i >= 0) & (i < slices) & (j >= 0) & (j < columns))
+    place, h = (i * columns + j)[inside], h[inside]
+    order = order_by(np.rint((h + 100.0) * 1e3).astype(np.int32), place)
+    place, h = place[order], h[order]
+    _, first, count = lowest_layers(place, h, GROUND_JUMP)
+    solid = count >= MIN_GROUND_POINTS
+    first, count = first[solid], count[solid]
+    low = np.full((slices, columns), np.nan)
+    low.flat[place[first]] = h[first + np.rint(GROUND_SHARE * (count - 1)).astype(np.int64)]
+    low = _filled(low)
+    known = np.isfinite(low)
+    if not known.any():
+        return LocalGround(start, offsets[0], low)
+    # beyond what is known the ground neither rises nor falls
+    level = np.where(known, low, np.inf)
+    cells = int(round(STANDING_WIDTH / GROUND_CELL)) | 1
+    smooth = median_filter(np.where(known, level, 1e3), size=(3, 1), mode="nearest")
+    opened = grey_opening(np.where(smooth > 500.0, level.clip(max=1e3), smooth), size=(1, cells), mode="nearest")
+    return LocalGround(start, offsets[0], np.where(known & (opened < 500.0), opened, np.nan))
+
+
+def _filled(low):
+    """Gaps across of up to UNSEEN_REACH to either side take the lower of their two ends."""
+    left, right = low.copy(), low.copy()
+    for _ in range(int(round(UNSEEN_REACH / GROUND_CELL))):
+        left[:, 1:] = np.where(np.isnan(left[:, 1:]), left[:, :-1], left[:, 1:])
+        right[:, :-1] = np.where(np.isnan(right[:, :-1]), right[:, 1:], right[:, :-1])
+    return np.where(np.isnan(low), np.fmin(left, right), low)

@@ -1,0 +1,46 @@
+"""The roadside as layers: lines along its foot, and points."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+
+from ...common.features import Features
+from ...common.schemas import ROADSIDE, ROADSIDE_OBJECTS
+from .uprights import FIRST_BIN, HEIGHT_BIN
+
+if TYPE_CHECKING:
+    from .find import Roadside
+
+DRAWN_TOLERANCE = 0.03   # m to which lines are simplified
+ON_GROUND = (FIRST_BIN + 1) * HEIGHT_BIN  # m: what is seen from here down stands on the ground, for grass hides the rest
+
+
+def roadside_to_features(found: Roadside) -> tuple[Features, Features]:
+    """The layers ROADSIDE (lines with Z along the foot, on the ground) and ROADSIDE_OBJECTS (points on the ground)."""
+    lines, points = Features("LineStringZ", ROADSIDE, crs=found.crs), Features("PointZ", ROADSIDE_OBJECTS, crs=found.crs)
+    for line in found.lines:
+        chain = line.chain
+        places = np.stack(found.frame.to_map(chain.road, chain.s, chain.d, chain.ground), axis=1)
+        shape = shapely.simplify(shapely.linestrings(places), DRAWN_TOLERANCE)
+        lines.add(shape, road=chain.road, side=_side(chain.side), kind=line.kind, station_m=float(chain.s[0]), end_m=float(chain.s[-1]),
+                  offset_m=float(np.median(chain.d)), edge_m=_known(line.from_edge), height_m=float(np.median(chain.top)),
+                  foot_m=line.foot if line.foot > ON_GROUND else 0.0, length_m=float(shapely.length(shape)))
+    for road, poles in found.poles.items():
+        for pole in poles:
+            x, y, z = found.frame.to_map(road, np.array([pole.s]), np.array([pole.d]), np.array([pole.z]))
+            side = 1 if pole.d > float(found.edges[road].middle(np.array([pole.s]))[0]) else -1
+            points.add(shapely.Point(float(x[0]), float(y[0]), float(z[0])), road=road, side=_side(side), kind=pole.kind, station_m=pole.s,
+                       offset_m=pole.d, edge_m=_known(found.edges[road].beyond(side, np.array([pole.s]), np.array([pole.d]))),
+                       height_m=pole.height, diam_m=pole.diameter)
+    return lines, points
+
+
+def _side(side):
+    return "left" if side > 0 else "right"
+
+
+def _known(value):
+    return float(value) if np.isfinite(value) else None

@@ -1,0 +1,195 @@
+"""Upright things in slices across the road: where points stand above each other within a hand's breadth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+UPRIGHT_SLICE = 0.5              # m along the road
+UPRIGHT_CELL = 0.10              # m across
+HEIGHT_BIN = 0.10        # m
+LOW_BINS = 25            # height bins that tell the kind of a line: up to 2.5 m
+FIRST_BIN = 2            # bins below it (0.2 m) hold grass and curbs
+REACH_CELLS = 1          # cells on either side that belong to the same upright
+BODY_CELLS = 3           # cells on either side whose points describe it
+MIN_BINS = 2             # occupied height bins of an upright
+TOP_SHARE = 0.97         # quantile of heights that is its top: ghosts lie higher
+TALL = 2.3               # m: what reaches higher is measured up to the height that was read
+TALL_BIN = 0.25          # m, bins of tall things
+MAX_LOW_GAP, MAX_TALL_GAP = 2, 5  # unoccupied bins of TALL_BIN, below and above TALL, beyond which something else begins
+SIGHT_MARGIN = 0.10      # m below the line of sight over the top, from which a point was seen through the thing
+TOP_DEPTH = 0.30         # m below the top that a thing's own upper side may lie behind its face
+BEHIND = 0.30, 3.0       # m behind it where points seen through it are counted
+
+
+@dataclass
+class Uprights:
+    """N uprights.
+
+    slice : (N,) int, number of the slice, counted from station 0
+    d, ground : (N,) m, offset of the face, and local z of the ground at its foot
+    top, foot : (N,) m above the ground
+    bins : (N, LOW_BINS) bool, which height bins are occupied
+    thickness : (N,) m across between the 10 % and 90 % quantile of its points
+    batter : (N,) m across per m of height, positive where it leans away from the road
+    points, behind : (N,) number of points on it, and of those seen through it
+    """
+
+    slice: np.ndarray
+    d: np.ndarray
+    ground: np.ndarray
+    top: np.ndarray
+    foot: np.ndarray
+    bins: np.ndarray
+    thickness: np.ndarray
+    batter: np.ndarray
+    points: np.ndarray
+    behind: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.slice)
+
+    def __getitem__(self, which: np.ndarray) -> Uprights:
+        return Uprights(*(getattr(self, entry.name)[which] for entry in fields(self)))
+
+    @staticmethod
+    def joined(parts: list[Uprights]) -> Uprights:
+        """All uprights of several parts, sorted by slice and offset."""
+        whole = Uprights(*(np.concatenate([getattr(part, entry.name) for part in parts]) for entry in fields(Uprights)))
+        return whole[np.lexsort((whole.d, whole.slice))]
+
+    @staticmethod
+    def none() -> Uprights:
+        """No uprights."""
+        empty = np.empty(0)
+        return Uprights(np.empty(0, np.int64), *(empty,) * 4, np.empty((0, LOW_BINS), bool), *(empty,) * 4)
+
+
+def find_uprights(s: np.ndarray, d: np.ndarray, above: np.ndarray, ground: np.ndarray, slices: tuple[int, int], side: int,
+                  eye: tuple[float, float], min_height: float) -> Uprights:
+    """Uprights of one side of a stretch of road.
+
+    Parameters
+    ----------
+    s, d : (N,) m, stations and offsets of points of that side beyond the carriageway's edge
+    above, ground : (N,) m, heights above the ground, and local z of it
+    slices : (first, last + 1) numbers of the slices
+    side : 1 left, -1 right
+    eye : (offset, height above the road) of the scanner, m
+    min_height : m of the top
+    """
+    if not len(s):
+        return Uprights.none()
+    i = np.floor(s / UPRIGHT_SLICE).astype(np.int64) - slices[0]
+    u = side * d
+    origin = np.floor(u.min() / UPRIGHT_CELL) * UPRIGHT_CELL
+    j = np.floor((u - origin) / UPRIGHT_CELL).astype(np.int64)
+    above = np.where(np.isfinite(above), above, -1.0)  # where no ground is known nothing stands on it
+    k = np.floor(above / HEIGHT_BIN).astype(np.int64)
+    rows, columns = slices[1] - slices[0], int(j.max()) + 1
+    inside = (i >= 0) & (i < rows)
+    low = inside & (k >= FIRST_BIN) & (k < LOW_BINS)
+    occupied = np.zeros((rows, columns + 2 * REACH_CELLS, LOW_BINS), bool)
+    occupied[i[low], j[low] + REACH_CELLS, k[low]] = True
+    near = np.any([occupied[:, lag:lag + columns] for lag in range(2 * REACH_CELLS + 1)], axis=0)
+    count, highest = near.sum(axis=2), LOW_BINS - np.argmax(near[:, :, ::-1], axis=2)
+    score = np.where((count >= MIN_BINS) & (highest * HEIGHT_BIN > min_height), count, 0)
+    # the densest of neighbours stands for all; of equals the nearest to the road
+    order = score * 1000.0 - np.arange(columns)
+    peak = score > 0
+    for lag in range(1, BODY_CELLS + 1):
+        peak[:, lag:] &= order[:, lag:] > order[:, :-lag]
+        peak[:, :-lag] &= order[:, :-lag] > order[:, lag:]
+    at = np.argwhere(peak)
+    if not len(at):
+        return Uprights.none()
+    owner = np.full((rows, columns), -1)
+    for lag in sorted(range(-BODY_CELLS, BODY_CELLS + 1), key=abs, reverse=True):
+        beside = at[:, 1] + lag
+        fits = (beside >= 0) & (beside < columns)
+        owner[at[fits, 0], beside[fits]] = np.flatnonzero(fits)
+    body = np.flatnonzero(inside & (above >= FIRST_BIN * HEIGHT_BIN))
+    own = owner[i[body], j[body]]
+    body, own = body[own >= 0], own[own >= 0]
+    if not len(body):
+        return Uprights.none()
+    return _described(at, own, u[body], above[body], (i[inside], u[inside], above[inside], ground[inside]), slices[0], side, eye)
+
+
+def _described(at, own, u, above, everything, first, side, eye):
+    """Uprights at (slice, cell), with `own` the upright that every point of a body belongs to."""
+    n = len(at)
+    order = np.lexsort((above, own))
+    own, u, above = own[order], u[order], above[order]
+    tops = _contiguous_top(own, above, n)
+    # what hangs over it is no part of it
+    part = above <= tops[own] + 1e-6
+    own, u, above = own[part], u[part], above[part]
+    count = np.bincount(own, minlength=n)
+    has = count > 0
+    at, tops, count = at[has], tops[has], count[has]
+    own, n = (np.cumsum(has) - 1)[own], len(at)
+    start = np.cumsum(count) - count
+    low = above < TALL
+    bins = np.zeros((n, LOW_BINS), bool)
+    bins[own[low], np.minimum((above[low] / HEIGHT_BIN).astype(np.int64), LOW_BINS - 1)] = True
+    foot = above[start]
+    by_u = np.lexsort((u, own))
+    ordered = u[by_u]
+    nearest, middle, farthest = (ordered[start + np.rint(share * (count - 1)).astype(np.int64)] for share in (0.1, 0.5, 0.9))
+    mean_u, mean_h = (np.bincount(own, values, n) / count for values in (u, above))
+    du, dh = u - mean_u[own], above - mean_h[own]
+    batter = np.bincount(own, du * dh, n) / np.maximum(np.bincount(own, dh * dh, n), 1e-6)
+    i, all_u, all_above, all_ground = everything
+    ground = _ground_at(at, middle, i, all_u, all_ground)
+    behind = _behind(at, middle, tops, i, all_u, all_above, side * eye[0], eye[1])
+    return Uprights(at[:, 0] + first, side * middle, ground, tops, foot, bins, farthest - nearest, batter, count.astype(float), behind)
+
+
+def _contiguous_top(own, above, n):
+    """(N,) m: the top of what rises from the ground without a gap: of windows in what is tall, of a beam's height in what is not."""
+    levels = int(np.floor(above.max() / TALL_BIN)) + 2 + MAX_TALL_GAP
+    filled = np.zeros((n, levels), bool)
+    filled[own, np.floor(above / TALL_BIN).astype(np.int64)] = True
+    filled[:, :1 + MAX_LOW_GAP] = True
+    low_end, end = (_first_gap(filled, gap) for gap in (MAX_LOW_GAP, MAX_TALL_GAP))
+    end = np.where(low_end * TALL_BIN < TALL, low_end, end) * TALL_BIN
+    part = above < end[own]
+    own, above = own[part], above[part]
+    count = np.bincount(own, minlength=n)
+    start = np.cumsum(count) - count
+    return np.where(count > 0, above[np.minimum(start + np.floor(TOP_SHARE * np.maximum(count - 1, 0)).astype(np.int64), len(above) - 1)],
+                    FIRST_BIN * HEIGHT_BIN)
+
+
+def _first_gap(filled, gap):
+    """(N,) the first level from which more than `gap` levels are empty."""
+    levels = filled.shape[1]
+    empty = np.stack([~filled[:, lag:levels - gap + lag] for lag in range(gap + 1)]).all(axis=0)
+    return np.where(empty.any(axis=1), np.argmax(empty, axis=1), levels)
+
+
+def _ground_at(at, middle, i, u, ground):
+    """(N,) median local z of the ground at the uprights."""
+    key = i * 1e4 + u
+    order = np.argsort(key, kind="stable")
+    place = np.clip(np.searchsorted(key[order], at[:, 0] * 1e4 + middle), 0, len(key) - 1)
+    return ground[order[place]]
+
+
+def _behind(at, middle, tops, i, u, above, eye_u, eye_height):
+    """(N,) points seen behind uprights, below the line of sight over their tops."""
+    order = np.lexsort((u, i))
+    i, u, above = i[order], u[order], above[order]
+    key = i * 1e4 + u
+    first = np.searchsorted(key, at[:, 0] * 1e4 + middle + BEHIND[0])
+    last = np.searchsorted(key, at[:, 0] * 1e4 + middle + BEHIND[1])
+    count = np.maximum(last - first, 0)
+    owner = np.repeat(np.arange(len(at)), count)
+    index = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count) + np.repeat(first, count)
+    beyond = u[index] - middle[owner]
+    distance = np.maximum(middle - eye_u, 0.5)[owner]
+    sight = tops[owner] - (eye_height - tops[owner]) * beyond / distance
+    through = above[index] < np.minimum(sight - SIGHT_MARGIN, tops[owner] - TOP_DEPTH)
+    return np.bincount(owner[through], minlength=len(at)).astype(float)

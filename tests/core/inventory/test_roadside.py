@@ -1,0 +1,133 @@
+"""What stands beside streets whose roadside is known."""
+
+import numpy as np
+import pytest
+import shapely
+from lanewright.core.common.features import Features
+from lanewright.core.inventory.borders import BorderLayers
+from lanewright.core.inventory.roadside import find as finding
+from lanewright.core.inventory.roadside.find import find_roadside
+from lanewright.core.inventory.roadside.layers import roadside_to_features
+from lanewright.core.inventory.roadside.settings import RoadsideSettings
+from lanewright.core.report.roadside import roadside_report
+from measured_streets import GROUND, Drive
+from roadside_streets import BESIDE, HEIGHTS, LENGTH, Thing, road_with
+
+KINDS = ("guard_rail", "barrier", "wall", "fence", "hedge")
+# rails and barriers at the edge, walls, fences and hedges behind verge or sidewalk, with gaps between them
+SCENES = {
+    "town": (Thing("wall", 6.0, 5, 50), Thing("hedge", 6.2, 60, 115), Thing("fence", -5.8, 5, 70), Thing("wall", -6.0, 80, 115, 1.1),
+             Thing("building", 9.5), Thing("building", -10.0)),
+    "country": (Thing("guard_rail", 4.5, 5, 60), Thing("barrier", 4.4, 70, 115), Thing("guard_rail", -4.6, 20, 115), Thing("fence", -8.0, 10, 110)),
+    "parking": (Thing("cars", 4.2, 60, 120), Thing("fence", 6.0, 5, 55), Thing("hedge", -6.5, 30, 90), Thing("cars", -4.3, 92, 118)),
+}
+
+
+def found_in(survey, edges, **settings):
+    return find_roadside(survey, BorderLayers(edges=edges), RoadsideSettings(**settings))
+
+
+def metres(things_or_lines):
+    """{(kind, side, metre)} that things or lines cover."""
+    covered = set()
+    for one in things_or_lines:
+        start, end, side = (one.start, one.end, one.side) if isinstance(one, Thing) else (one.chain.s[0], one.chain.s[-1], one.chain.side)
+        covered |= {(one.kind, side, metre) for metre in range(int(np.ceil(start)), int(np.floor(end)))}
+    return covered
+
+
+@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("face, density, noise", [(500.0, 800.0, 0.005), (120.0, 250.0, 0.005), (500.0, 800.0, 0.015)])
+def test_by_length_95_percent_are_right_and_90_percent_found(scene, face, density, noise):
+    survey, edges = road_with(SCENES[scene], face=face, density=density, noise=noise)
+    lines = [line for line in found_in(survey, edges).lines if line.kind != "gutter"]
+    true, found = metres([thing for thing in SCENES[scene] if thing.kind in KINDS]), metres(lines)
+    assert len(true & found) >= 0.95 * len(found)
+    assert len(true & found) >= 0.90 * len(true)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_offset_height_and_foot_of_a_line(kind):
+    survey, edges = road_with((Thing(kind, 4.7, 10, 100),))
+    rows = [row for row in roadside_to_features(found_in(survey, edges))[0].rows if row["kind"] != "gutter"]
+    assert [row["kind"] for row in rows] == [kind] and rows[0]["side"] == "left"
+    # the middle of its face, which of a barrier leans back by 0.23 m
+    assert rows[0]["edge_m"] == pytest.approx(1.2 + 0.2 * (kind == "barrier"), abs=0.1)
+    assert rows[0]["height_m"] == pytest.approx(HEIGHTS[kind], abs=0.12)
+    assert rows[0]["foot_m"] == pytest.approx(0.44 if kind == "guard_rail" else 0.0, abs=0.06)
+    assert rows[0]["station_m"] == pytest.approx(10.0, abs=1.0) and rows[0]["end_m"] == pytest.approx(100.0, abs=1.0)
+
+
+def test_lines_run_along_the_foot_on_the_ground():
+    survey, edges = road_with((Thing("wall", 5.0, 10, 100),), grade=0.05)
+    line = next(g for g, row in roadside_to_features(found_in(survey, edges))[0] if row["kind"] == "wall")
+    x, z = np.array(line.coords)[:, 0] - 500_000.0, np.array(line.coords)[:, 2]
+    assert np.abs(z - (GROUND + BESIDE + 0.05 * x)).max() < 0.1
+
+
+def test_nothing_is_invented_on_an_empty_road_or_among_cars_and_buildings():
+    for things in ((), (Thing("cars", 4.2), Thing("cars", -5.5), Thing("building", 9.0))):
+        survey, edges = road_with(things)
+        found = found_in(survey, edges)
+        assert not [line.kind for line in found.lines if line.kind != "gutter"] and not sum(map(len, found.poles.values()))
+
+
+def test_a_gutter_lies_where_the_road_falls_to_and_not_on_its_higher_side():
+    survey, edges = road_with((), crown=False, crossfall=0.03)
+    gutters = [line for line in found_in(survey, edges).lines if line.kind == "gutter"]
+    assert {line.chain.side for line in gutters} == {-1}
+    assert sum(line.chain.length for line in gutters) > 0.9 * LENGTH
+    assert abs(gutters[0].from_edge) < 0.1 and np.median(gutters[0].chain.ground) + 100 - GROUND < 5
+
+
+def test_a_crowned_road_has_a_gutter_on_both_sides():
+    survey, edges = road_with((), crown=True)
+    assert {line.chain.side for line in found_in(survey, edges).lines} == {1, -1}
+
+
+def test_poles_signs_and_trunks_with_diameter_and_height():
+    poles = ((20.0, 5.0, 0.16, 6.0), (40.0, -5.0, 0.06, 3.0, 0.6), (60.0, 5.5, 0.35, 4.0, 0.0, 1.2), (80.0, -4.6, 0.11, 2.2))
+    survey, edges = road_with((Thing("fence", 7.5, 5, 100),), poles)
+    found = sorted(found_in(survey, edges).poles[0], key=lambda pole: pole.s)
+    assert [pole.kind for pole in found] == ["pole", "sign", "trunk", "pole"]
+    frame = survey.frame
+    for pole, (x, y, diameter, height, *_) in zip(found, poles):
+        east, north = frame.to_map(0, np.array([pole.s]), np.array([pole.d]))
+        assert np.hypot(east[0] - 500_000.0 - x, north[0] - 5_400_000.0 - y) < 0.1
+        assert pole.diameter == pytest.approx(diameter, abs=0.05)
+        assert pole.kind == "trunk" or pole.height == pytest.approx(height, abs=0.15)
+
+
+def test_windows_of_another_length_give_the_same(monkeypatch):
+    survey, edges = road_with(SCENES["country"], poles=((39.9, 5.5, 0.2, 4.0),))
+    one = roadside_to_features(found_in(survey, edges))
+    monkeypatch.setattr(finding, "ROADSIDE_WINDOW", 60.0)
+    other = roadside_to_features(found_in(survey, edges))
+    for layer, again in zip(one, other):
+        assert [row["kind"] for row in layer.rows] == [row["kind"] for row in again.rows]
+        assert all(shapely.hausdorff_distance(a, b) < 0.01 for a, b in zip(layer.geometries, again.geometries))
+
+
+def test_driven_the_other_way_the_sides_are_swapped():
+    things = (Thing("guard_rail", 4.5, 10, 100), Thing("wall", -6.0, 30, 110))
+    kinds = []
+    for direction in (1, -1):
+        survey, edges = road_with(things, drives=(Drive(direction, -1.75),))
+        kinds.append({(line.kind, line.chain.side * direction) for line in found_in(survey, edges).lines if line.kind != "gutter"})
+    assert kinds[0] == kinds[1] == {("guard_rail", 1), ("wall", -1)}
+
+
+def test_without_layers_it_says_that_parked_cars_are_not_known():
+    survey, _ = road_with((Thing("wall", 5.0),))
+    found = find_roadside(survey)
+    assert any("parked cars too" in note for note in found.notes)
+    assert {line.kind for line in found.lines} == {"wall"} and np.isnan(found.lines[0].from_edge)
+    assert roadside_to_features(found)[0].rows[0]["edge_m"] is None
+
+
+def test_the_report_lists_every_line_and_is_no_higher_for_a_long_road():
+    survey, edges = road_with(SCENES["country"], poles=((20.0, 5.5, 0.2, 4.0),))
+    found = found_in(survey, edges)
+    page = roadside_report(found, *roadside_to_features(found))
+    assert page.count("guard rail") > 2 and "barrier" in page and page.count("<svg") == 1
+    assert isinstance(roadside_to_features(found)[1], Features)
