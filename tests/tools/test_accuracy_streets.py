@@ -147,6 +147,7 @@ def test_the_page_says_how_much_each_variant_changes():
     text = otherwise_section(given)
     assert "mirrored (no map of 1) | -2.0 | – | – | – | · | – | +1.0 | · |" in text
     assert otherwise_section([{"streets": {"as surveyed": whole}}]) == ""
+    assert "Measured so far: one." in otherwise_section([given[0], {"name": "three", "streets": {"as surveyed": whole}}])
 
 
 def test_variants_are_those_that_the_page_tells_of():

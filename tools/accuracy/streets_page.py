@@ -39,9 +39,12 @@ def streets_section(figures):
 
 def otherwise_section(figures):
     """The change of each figure when a street is surveyed otherwise, pooled over the surveys by length."""
-    names = [name for name in figures[0]["streets"] if name != "as surveyed"] if figures else []
-    if not names:
+    names = list(dict.fromkeys(name for f in figures for name in f["streets"] if name != "as surveyed"))
+    given = [f for f in figures if all(name in f["streets"] for name in names)]
+    if not names or not given:
         return ""
+    some = f" Measured so far: {', '.join(f['name'] for f in given)}." if len(given) < len(figures) else ""
+    figures = given
     rows = []
     for name in names:
         pairs = [(f["streets"]["as surveyed"], f["streets"][name]) for f in figures if name in f["streets"]]
@@ -56,7 +59,7 @@ def otherwise_section(figures):
     return ("## The same streets surveyed otherwise\n\nEach survey is also mirrored, which makes left-hand traffic of right-hand traffic, "
             "turned, driven the other way and thinned to every second point; the maps are changed back and judged by the same truth. The "
             "first row is pooled over all surveys by length, the others are the change in points. Driven the other way, arrows point "
-            "against the traffic, so directions are not compared.\n\n"
+            f"against the traffic, so directions are not compared.{some}\n\n"
             + table(["", "curbs", "pavement edges", "drawn edges right", "markings F1", "driving lines 15 cm", "driven lanes 15 cm", "miscoding",
                      "directions right"], [["**as surveyed**", *(number(value) for value in whole)], *rows]))
 
