@@ -20,12 +20,18 @@ def _translate(text):
 set_translation(_translate)
 
 
+def chosen_language():
+    """The language of QGIS: that of its command line (--lang), else that of its settings or of the system."""
+    application = QgsApplication.instance()
+    return (application.translation() if isinstance(application, QgsApplication) else "") or QgsApplication.locale()
+
+
 def install_translator(locale=""):
     """Speak the language of QGIS where there is a translation; the translator, for its owner to keep.
 
     Labels stand in classes and tables, so this comes before those are imported.
     """
-    language = (locale or QgsApplication.locale())[:2]
+    language = (locale or chosen_language())[:2]
     translator = QTranslator()
     if not translator.load(str(TRANSLATIONS / f"lanewright_{language}.qm")):
         return None

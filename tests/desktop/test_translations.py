@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import pytest
-from lanewright.processing_provider.texts import TRANSLATIONS, install_translator, remove_translator, tr
+from lanewright.processing_provider.texts import TRANSLATIONS, chosen_language, install_translator, remove_translator, tr
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
@@ -48,6 +48,16 @@ def test_labels_keep_their_units():
     wrong = [source for source, target in messages("de").items()
              if units.search(source) and not (target.text or "").endswith(units.search(source).group())]
     assert not wrong
+
+
+def test_the_language_of_the_command_line_comes_before_that_of_the_system(qgis_app):
+    system = chosen_language()
+    try:
+        qgis_app.setTranslation("de")
+        assert chosen_language() == "de"
+    finally:
+        qgis_app.setTranslation("")
+    assert chosen_language() == system
 
 
 def test_a_german_qgis_shows_german_and_an_unknown_language_english(qgis_app):
