@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from ...core.common.schemas import DRIVING_LINES, LANES, MARKING_LINES, ROAD_EDGES, ROADSIDE, ROADSIDE_OBJECTS
+from ...core.countries.catalogue import COUNTRIES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
 from ..survey_input import SURVEY_SETTINGS, survey_inputs
@@ -12,6 +13,11 @@ ROADSIDE_OF = "inventory.roadside.settings:RoadsideSettings"
 ABOVE_ROAD = 8.0  # m of height above the road that are read: buildings reach higher than anything that is looked for
 
 ROADSIDE_SETTINGS = (
+    SettingSpec("INTERVAL", ROADSIDE_OF, "interval", tr("Longest interval between vertices (m)"),
+                tr("Lines have a vertex wherever they bend, and at least one every so many metres. Smaller gives more of them."), advanced=True),
+    SettingSpec("COUNTRY", ROADSIDE_OF, "country", tr("Country"),
+                tr("Whose lane widths tell two marking lines that bound a lane, where there are no road edges. It is never guessed."),
+                choices=tuple(COUNTRIES), advanced=True),
     SettingSpec("REACH", ROADSIDE_OF, "reach", tr("Reach beyond the carriageway's edge (m)"),
                 tr("Farther finds what stands behind verge and sidewalk, but also what belongs to the land beside the road.")),
     SettingSpec("MIN_LENGTH", ROADSIDE_OF, "min_length", tr("Shortest line (m)"),

@@ -1795,6 +1795,21 @@
         </message>
         <message>
             <location filename="../../algorithms/inventory/roadside.py" />
+            <source>Longest interval between vertices (m)</source>
+            <translation>Größter Abstand der Stützpunkte (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>Lines have a vertex wherever they bend, and at least one every so many metres. Smaller gives more of them.</source>
+            <translation>Linien haben einen Stützpunkt, wo sie abknicken, und mindestens einen je so viele Meter. Kleiner gibt mehr davon.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
+            <source>Whose lane widths tell two marking lines that bound a lane, where there are no road edges. It is never guessed.</source>
+            <translation>Dessen Fahrstreifenbreiten zeigen, welche zwei Markierungslinien einen Fahrstreifen begrenzen, wo es keine Fahrbahnränder gibt. Es wird nie geraten.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/inventory/roadside.py" />
             <source>Reach beyond the carriageway's edge (m)</source>
             <translation>Reichweite jenseits des Fahrbahnrands (m)</translation>
         </message>

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import MARKING_LINES, ROAD_EDGES
+from lanewright.core.common.schemas import LANES, MARKING_LINES, ROAD_EDGES
 from lanewright.core.survey.frame.road_frame import build_frame
 from lanewright.core.survey.open_survey import Survey
 from lanewright.core.survey.store.records import SURVEY_POINT, to_units
@@ -99,6 +99,18 @@ def edges_of(length=60.0, half=HALF, north=False):
 def markings_of(length=60.0, offsets=(-3.25, 0.0, 3.25), north=False):
     """MARKING_LINES of the road."""
     return _lines(MARKING_LINES, [(d, dict(line=k, kind="lane", status="measured")) for k, d in enumerate(offsets)], length, north)
+
+
+def lanes_of(length=60.0, strips=((-3.5, -3.0, "shoulder", 0), (-3.0, 0.0, "driving", 1), (0.0, 3.4, "driving", -1))):
+    """LANES of the road: (right, left, type, direction) of every strip, in pieces of 20 m."""
+    found = Features("PolygonZ", LANES)
+    for number, (right, left, kind, direction) in enumerate(strips, 1):
+        for piece, start in enumerate(np.arange(0.0, length, 20.0)):
+            s = np.linspace(start, min(start + 20.0, length), 5)[:: direction or 1]
+            borders = (left, right) if direction >= 0 else (right, left)
+            ring = [(EAST + x, NORTH + borders[0], GROUND) for x in s] + [(EAST + x, NORTH + borders[1], GROUND) for x in s[::-1]]
+            found.add(shapely.Polygon(ring), road=0, lane=number, lane_id=f"0.{number}.{piece}", type=kind, direction=direction)
+    return found
 
 
 def _lines(schema, lines, length, north):

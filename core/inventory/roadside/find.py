@@ -10,7 +10,7 @@ import numpy as np
 
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from ...countries.neutral import NEUTRAL
+from ...countries.catalogue import country
 from ...survey.sensor_height import DEFAULT_SENSOR_HEIGHT
 from ..borders import BorderLayers, RoadBorders
 from ..surface_grid import SLICE_LENGTH
@@ -106,7 +106,7 @@ def find_roadside(survey: Survey, layers: BorderLayers = BorderLayers(), setting
     -------
     Roadside
     """
-    borders = RoadBorders(layers, survey.frame, NEUTRAL)
+    borders = RoadBorders(layers, survey.frame, country(settings.country))
     found = Roadside([], {}, {}, survey.frame, survey.crs, settings)
     roads = survey.store.roads()
     for k, road in enumerate(roads):

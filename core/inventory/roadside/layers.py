@@ -24,7 +24,7 @@ def roadside_to_features(found: Roadside) -> tuple[Features, Features]:
     for line in found.lines:
         chain = line.chain
         places = np.stack(found.frame.to_map(chain.road, chain.s, chain.d, chain.ground), axis=1)
-        shape = shapely.simplify(shapely.linestrings(places), DRAWN_TOLERANCE)
+        shape = shapely.linestrings(places[_vertices(chain.s, places, found.settings.interval)])
         lines.add(shape, road=chain.road, side=_side(chain.side), kind=line.kind, station_m=float(chain.s[0]), end_m=float(chain.s[-1]),
                   offset_m=float(np.median(chain.d)), edge_m=_known(line.from_edge), height_m=float(np.median(chain.top)),
                   foot_m=line.foot if line.foot > ON_GROUND else 0.0, length_m=float(shapely.length(shape)))
@@ -36,6 +36,15 @@ def roadside_to_features(found: Roadside) -> tuple[Features, Features]:
                        offset_m=pole.d, edge_m=_known(found.edges[road].beyond(side, np.array([pole.s]), np.array([pole.d]))),
                        height_m=pole.height, diam_m=pole.diameter)
     return lines, points
+
+
+def _vertices(s, places, interval):
+    """Indices of the vertices that a line needs in plan and in height, and of one every interval."""
+    needed = np.zeros(len(s), bool)
+    for across in (places[:, :2], np.c_[s, places[:, 2]]):
+        kept = shapely.get_coordinates(shapely.simplify(shapely.linestrings(across), DRAWN_TOLERANCE))
+        needed |= np.isin(across[:, 0] + 1j * across[:, 1], kept[:, 0] + 1j * kept[:, 1])
+    return np.flatnonzero(needed | np.r_[True, np.diff(np.floor(s / interval)) > 0])
 
 
 def _side(side):

@@ -10,7 +10,7 @@ from lanewright.core.inventory.cross_sections import measure_cross_sections
 from lanewright.core.inventory.section_layer import sections_to_features
 from lanewright.core.inventory.settings import CrossSectionSettings
 from lanewright.core.report.cross_sections import cross_section_report
-from measured_streets import GROUND, HALF, Drive, edges_of, markings_of, measured_road
+from measured_streets import GROUND, HALF, Drive, edges_of, lanes_of, markings_of, measured_road
 
 BOTH_WAYS = (Drive(1, -1.75), Drive(-1, 1.75))
 
@@ -81,6 +81,16 @@ def test_widths_grades_and_curbs_whatever_way_the_road_runs(north):
     off = np.abs(column(whole, "width_m", "grade_pct", "curb_l_m", "curb_r_m") - [2 * HALF, 4.5, 0.14, 0.14])
     assert (off < [0.02, 0.05, 0.01, 0.01]).all()
     np.testing.assert_allclose(column(rows_of(survey, "lane", layers), "width_m"), 3.25, atol=0.02)
+
+
+def test_lanes_of_the_layer_are_measured_with_their_types_and_directions():
+    rows = rows_of(measured_road(rut=0.01, lanes=(-1.5, 1.7)), layers=BorderLayers(edges_of(), lanes=lanes_of()))
+    first = [row for row in rows if row["section"] == 2]
+    assert [(row["type"], row["direction"], row["borders"]) for row in first] == [("shoulder", 0, "lanes"), ("driving", 1, "lanes"),
+                                                                                ("driving", -1, "lanes")]
+    np.testing.assert_allclose([row["width_m"] for row in first], [0.5, 3.0, 3.4], atol=0.02)
+    driven = column([row for row in rows if row["type"] == "driving"], "rut_l_mm", "rut_r_mm")
+    assert np.sqrt(np.mean((driven - 10.0) ** 2)) < 3.0
 
 
 def test_a_bridge_is_the_clearance_and_a_lorry_is_not():

@@ -65,6 +65,13 @@ def test_lines_run_along_the_foot_on_the_ground():
     assert np.abs(z - (GROUND + BESIDE + 0.05 * x)).max() < 0.1
 
 
+def test_a_line_has_a_vertex_in_every_interval():
+    survey, edges = road_with((Thing("wall", 5.0, 10, 100),))
+    for interval in (5.0, 20.0):
+        line = next(g for g, row in roadside_to_features(found_in(survey, edges, interval=interval))[0] if row["kind"] == "wall")
+        assert np.diff(np.array(line.coords)[:, 0]).max() < interval + 1.0
+
+
 def test_nothing_is_invented_on_an_empty_road_or_among_cars_and_buildings():
     for things in ((), (Thing("cars", 4.2), Thing("cars", -5.5), Thing("building", 9.0))):
         survey, edges = road_with(things)
