@@ -116,7 +116,7 @@ def accuracy():
 def _curbs():
     """True curb bottoms, without the dropped ones that are level with the road."""
     found, rows = geometries(TRUTH, "boundaries")
-    return [g for g, row in zip(found, rows) if row.get("part") != "top" and row.get("kind") != "dropped"]
+    return [g for g, row in zip(found, rows) if row.get("part") != "top" and row.get("edge") == "curb"]
 
 
 def over_the_uav_image():

@@ -90,11 +90,14 @@ def test_a_tighter_tolerance_is_another_outcome(provider, tmp_path):
     assert ">2</td>" in report and ">5</td>" in report and ">20</td>" not in report
 
 
-@pytest.mark.parametrize("expression", ["", "\"kind\" = 'dropped'"])
-def test_dropped_curbs_are_left_out(provider, tmp_path, expression):
+@pytest.mark.parametrize("expression, fields, rows", [
+    ("", "kind:string", [["curb"], ["curb"], ["dropped"]]),
+    ("\"kind\" = 'dropped'", "kind:string", [["curb"], ["curb"], ["dropped"]]),
+    ("", "kind:string&field=edge:string", [["main", "curb"], ["main", "curb"], ["main", "dropped"]])])
+def test_dropped_curbs_are_left_out(provider, tmp_path, expression, fields, rows):
     reference = layer(
         "LineStringZ", ["LineStringZ (0 3.5 10, 100 3.5 10)", "LineStringZ (0 -3.5 10, 80 -3.5 10)", "LineStringZ (80 -3.5 10, 100 -3.5 10)"],
-        fields="&field=kind:string", rows=[["curb"], ["curb"], ["dropped"]])
+        fields=f"&field={fields}", rows=rows)
     results, _ = run("assessboundaries", tmp_path, INPUT=found(), REFERENCE=reference, TRAJECTORY=drive(), EXCLUDED=expression)
     assert (results["CORRECT"], results["MISSED"], results["EXCLUDED_INTERVALS"]) == (90, 0, 10)
 
