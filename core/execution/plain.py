@@ -1,6 +1,6 @@
 """Plain values in a file: numbers, texts, arrays, their lists and dictionaries, and objects of core that consist of these.
 
-Reading such a file runs no code but that of core, unlike a pickle: it names classes of core and the values of their attributes.
+Reading such a file runs nothing that it holds: it names classes of core and the values of their attributes.
 """
 
 from __future__ import annotations

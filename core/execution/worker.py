@@ -11,6 +11,7 @@ result; the answer is one line: {} or what went wrong. FOLDER is removed where t
 
 from __future__ import annotations
 
+import importlib
 import importlib.util
 import json
 import os
@@ -45,7 +46,7 @@ def main() -> None:
         from lanewright.core.execution.interpreter import NEEDED, versions
 
         for name in NEEDED:
-            __import__(name)
+            importlib.import_module(name)
         answers.write(json.dumps(versions()))
         answers.close()
         return
