@@ -11,6 +11,7 @@ from ..common.features import Features
 from ..driving.lanes_layer import Lanes
 
 NEAR_BORDER = 1.0     # m from a line within which a place is held against it
+SAME_BORDER = 0.05    # m across within which heights are compared
 
 
 class Misses(NamedTuple):
@@ -47,17 +48,16 @@ def driving_line_misses(driving_lines: Features | None, exported: Lanes, measure
 def _misses(places, segments):
     """(across, in height) of (N, 3) places against (M, 6) segments from end to end."""
     lines = shapely.linestrings(segments.reshape(-1, 2, 3)[:, :, :2])
-    which, nearest = shapely.STRtree(lines).query_nearest(shapely.points(places[:, :2]), max_distance=NEAR_BORDER, all_matches=True)
-    first, last = segments[nearest, :3], segments[nearest, 3:]
+    points, tree = shapely.points(places[:, :2]), shapely.STRtree(lines)
+    _, across = tree.query_nearest(points, max_distance=NEAR_BORDER, return_distance=True, all_matches=False)
+    which, near = tree.query(points, predicate="dwithin", distance=SAME_BORDER)
+    first, last = segments[near, :3], segments[near, 3:]
     run = (last - first)[:, :2]
     share = np.clip(((places[which, :2] - first[:, :2]) * run).sum(1) / np.maximum((run**2).sum(1), 1e-12), 0.0, 1.0)
-    foot = first + share[:, None] * (last - first)
-    across = np.hypot(*(places[which, :2] - foot[:, :2]).T)
-    # where borders of neighbours lie on each other, the one at the place's own height counts
+    # where borders of several roads lie on each other, the one at the place's own height is its own
     rise = np.full(len(places), np.inf)
-    np.minimum.at(rise, which, np.abs(places[which, 2] - foot[:, 2]))
-    found = np.unique(which, return_index=True)[1]
-    return _summary(across[found]), _summary(rise[np.isfinite(rise)])
+    np.minimum.at(rise, which, np.abs(places[which, 2] - first[:, 2] - share * (last - first)[:, 2]))
+    return _summary(across), _summary(rise[np.isfinite(rise)])
 
 
 def _summary(values):

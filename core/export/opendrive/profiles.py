@@ -10,6 +10,7 @@ from .geometry import Cubics
 
 STIFFNESS = 1e-3      # weight of the bending against the deviations: it decides only where there are too few places
 MOST_PIECES = 400     # of one section
+SHORTEST_CUBIC = 0.1  # m of a piece
 
 
 def fit_cubics(s: Sequence[np.ndarray], values: Sequence[np.ndarray], start: float, end: float, tolerance: float) -> list[Cubics]:
@@ -34,7 +35,8 @@ def fit_cubics(s: Sequence[np.ndarray], values: Sequence[np.ndarray], start: flo
             missed = np.abs(_evaluated(one, knots, levels, slopes) - value)
             np.maximum.at(worst, np.clip(np.searchsorted(knots, one, side="right") - 1, 0, len(worst) - 1), missed)
         bad = np.flatnonzero(worst > tolerance)
-        inner = [(knots[k] + knots[k + 1]) / 2 for k in bad if _places_within(s, knots[k], knots[k + 1]) > 1]
+        inner = [(knots[k] + knots[k + 1]) / 2 for k in bad
+                 if _places_within(s, knots[k], knots[k + 1]) and knots[k + 1] - knots[k] > 2 * SHORTEST_CUBIC]
         if not inner or len(knots) > MOST_PIECES:
             return [_pieces(knots, levels, slopes) for levels, slopes in fitted]
         knots = np.sort(np.append(knots, inner))

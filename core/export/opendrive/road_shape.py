@@ -15,9 +15,11 @@ from .strips import Slice
 NEAREST_POINTS = 0.005   # m between points of a guide line
 FLAT = 0.001             # m of height that a cross-section may miss without a crossfall of its own
 ROLLED = 0.001           # m by which a superelevation may move a border in plan: readers differ on whether it does
-SHAPE_STEP = 5.0         # m between cross-sections
+SAME_PLACE_ALONG = 0.05  # m between cross-sections at which lanes are cut
+MOST_SECTIONS = 40       # between two cross-sections that are written
 LEAST_END = 0.5          # m of width from which the end of a road has a direction
 MOST_ASKEW = 0.2         # rad between the end of a road and a square cut: more is askew on purpose
+LOOSER = (1.0, 5.0, 25.0)   # times the tolerance that the reference line may lie beside a border with corners
 FOOT_ROUNDS = 8
 LEAST_STEP = 0.001       # m along the road between places that count
 
@@ -59,8 +61,7 @@ def shape_of(strip: list[Slice], centres: list[int], tolerance: float) -> RoadSh
     guide, index = _guide(strip, centres)
     keep = np.append(True, np.hypot(*np.diff(guide, axis=0).T) > NEAREST_POINTS)
     ends, widest = _end_headings(strip, guide)
-    plan = fit_reference(guide[keep], tolerance, ends, tolerance / max(widest, 1.0)) or fit_reference(guide[keep], tolerance) \
-        or polynomial_reference(guide[keep])
+    plan = _reference(guide[keep], tolerance, ends, tolerance / max(widest, 1.0))
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(guide, axis=0).T)))
     along *= plan.length / along[-1]
     s_all, t_all, z_all = [], [], []
@@ -88,6 +89,17 @@ def _guide(strip, centres):
         rows.append(np.arange(at, at + len(lines[k])))
         at += len(lines[k]) - 1
     return np.concatenate([placed[0], *(placed[k][1:] for k in range(1, len(strip)))]), rows
+
+
+def _reference(points, tolerance, ends, turn_tolerance):
+    """The reference line; a border with a corner is cut short by it, and the lane offset has the rest."""
+    # to meet other roads squarely matters more than to lie on the border
+    for headings in (ends, (None, None)):
+        for loose in LOOSER:
+            plan = fit_reference(points, loose * tolerance, headings, turn_tolerance)
+            if plan is not None:
+                return plan
+    return polynomial_reference(points)
 
 
 def _end_headings(strip, guide):
@@ -202,15 +214,47 @@ def add_heights(road: MapRoad, shape: RoadShape, tolerance: float) -> None:
         widest = max(float(np.abs(t).max()) for _, t, _ in sections)
         road.superelevation = simplified(fit_cubics([at], [roll], 0.0, road.length, tolerance / 2 / widest)[0])
         return
-    rows, last = [], -np.inf
-    for k, (place, offsets, heights) in enumerate(sections):
-        if place - last < SHAPE_STEP and k != len(sections) - 1:
-            continue
-        last, inside = place, float(np.clip(place, 0.0, road.length))
+    rows = []
+    sections = _one_each(sections)
+    for k in _telling(sections, tolerance / 2):
+        place, offsets, heights = sections[k]
         t, rise = _rising(offsets, heights)
         slope = np.diff(rise) / np.diff(t) if len(t) > 1 else np.zeros(1)
-        rows += [[inside, a, b, c, 0.0, 0.0] for a, b, c in zip(t, rise, [*slope, 0.0])]
+        rows += [[float(np.clip(place, 0.0, road.length)), a, b, c, 0.0, 0.0] for a, b, c in zip(t, rise, [*slope, 0.0])]
     road.shape = np.array(rows)
+
+
+def _one_each(sections):
+    """One cross-section a place: where two slices meet the wider one."""
+    found = [sections[0]]
+    for section in sections[1:]:
+        if section[0] - found[-1][0] > SAME_PLACE_ALONG:
+            found.append(section)
+        elif np.ptp(section[1]) > np.ptp(found[-1][1]):
+            found[-1] = found[-1][0], section[1], section[2]
+    return found
+
+
+def _telling(sections, tolerance):
+    """Numbers of the cross-sections between which all others are interpolated within a tolerance."""
+    kept, last = [0], len(sections) - 1
+    while kept[-1] < last:
+        first = kept[-1]
+        reach = first + 1
+        for k in range(first + 2, min(first + MOST_SECTIONS, last) + 1):
+            if any(not _between(sections[first], sections[j], sections[k], tolerance) for j in range(first + 1, k)):
+                break
+            reach = k
+        kept.append(reach)
+    return kept
+
+
+def _between(first, middle, last, tolerance):
+    """Whether a cross-section is that between two others; where lanes begin or end it is not."""
+    if not len(first[1]) == len(middle[1]) == len(last[1]) or last[0] - first[0] < LEAST_STEP:
+        return False
+    share = (middle[0] - first[0]) / (last[0] - first[0])
+    return bool(np.abs(first[2] + share * (last[2] - first[2]) - middle[2]).max() <= tolerance)
 
 
 def _extended(at, x, y):

@@ -188,3 +188,32 @@ def test_moving_the_survey_moves_the_map_and_changes_nothing_else(tmp_path):
     first, second = (exported(tmp_path, one)[1].roads[0] for one in (lanes, replace(lanes, left=lanes.left + away, right=lanes.right + away)))
     assert [element.kind for element in first.plan.elements] == [element.kind for element in second.plan.elements]
     np.testing.assert_allclose([element.length for element in first.plan.elements], [element.length for element in second.plan.elements], atol=1e-4)
+
+
+def test_a_border_with_a_corner_is_kept_beside_a_smooth_reference_line(tmp_path):
+    scene, line = LaneScene(), Axis(((60.0, 0.0, 0.0),))
+
+    def left(s):
+        return np.where(s < 1.0, 0.15 * (1.0 - s), 0.0)   # the first metre leads aside by 9 degrees
+    scene.add(line, left, -3.5, step=0.5)
+    scene.add(line, 3.5, left, lane=2, direction=-1, step=0.5)
+    lanes = scene.lanes()
+    _, whole = exported(tmp_path, lanes)
+    assert len(whole.roads[0].plan.elements) < 10 and not check_opendrive(whole).found
+    across, _ = border_misses(lanes, layers_of_opendrive(whole).lanes)
+    assert across.largest <= 0.02
+
+
+def test_an_uneven_cross_section_comes_back_within_the_tolerance_in_height(tmp_path):
+    scene, line = LaneScene(), Axis(((60.0, 0.0, 0.0),))
+    scene.add(line, 0.0, -3.5)
+    scene.add(line, 3.5, 0.0, lane=2, direction=-1)
+    lanes = scene.lanes()
+    x = np.concatenate([lanes.left, lanes.right])[:, :2] @ np.array([1.0, 0.0])
+    bumps = 0.05 * np.sin(x / 4) * np.linspace(-1, 1, len(x)).round()
+    lanes = replace(lanes, left=lanes.left + np.c_[0 * x, 0 * x, bumps][:len(lanes.left)])
+    lanes = replace(lanes, left=np.c_[lanes.left[:, :2], lanes.left[:, 2].round(4)])
+    lanes.left[61:, 2] = lanes.left[60::-1, 2]   # the middle is shared by both lanes
+    _, whole = exported(tmp_path, lanes)
+    _, rise = border_misses(lanes, layers_of_opendrive(whole).lanes)
+    assert len(whole.roads[0].shape) and rise.largest <= 0.02
