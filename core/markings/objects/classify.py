@@ -318,7 +318,9 @@ def _give_way_blocks(shapes, column):
 def _curb(shape, clearance):
     """A hair of brightness along the very edge of the road."""
     on_edge = clearance < shape.width / 2 + EDGE_CONTACT / 2
-    return shape.along and clearance < ROAD_EDGE_CLEARANCE and shape.width < (MIN_STRIP_WIDTH_ON_EDGE if on_edge else MIN_STRIP_WIDTH_AT_RIM)
+    # seen on two tracks of the scan it looks as broad as they lie apart
+    narrowest = (MIN_STRIP_WIDTH_ON_EDGE if on_edge else MIN_STRIP_WIDTH_AT_RIM) + shape.spacing
+    return shape.along and clearance < ROAD_EDGE_CLEARANCE and shape.width < narrowest
 
 
 def _gutter(shape, clearance, line, zebra):

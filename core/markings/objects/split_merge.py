@@ -39,6 +39,7 @@ MAX_BORDER_SLOPE = 0.20                       # to the road: the borders of hatc
 MAX_BORDER_DRIFT = 0.16                       # m that a line may leave the nearest slope that is tried, over the window
 COMPOUND_LENGTH, COMPOUND_BREADTH = 9.0, 0.5  # m: no arrow or letter is so long; a line that is broader somewhere has something beside it
 WIDTH_STEP, WIDTH_TOLERANCE = 12, 2           # cells along a line whose width is taken together, and across by which it may be uneven
+MAX_WIDTH_ALONE = 0.34                        # m of an even strip with nothing beside it; a double line is broader
 MIN_RUN_ACROSS = 2.0                          # m across the road that a bar does not break off; no arrow or letter is as broad
 MIN_LENGTH_BESIDE_BAR = 1.0                   # m along the road: what is shorter is nothing but a bar
 MAX_PAINT_GAP = 0.24                          # m across the road, closed; the stripes of a zebra crossing leave more
@@ -103,6 +104,9 @@ def _parts(cells, spacing):
 
 def _parts_of_filled(cells):
     size = CELL_UNITS * COORDINATE_SCALE
+    even, width = _even_strip(cells)
+    if even.all() and width * size <= MAX_WIDTH_ALONE:
+        return np.zeros(len(cells), np.int64), 1
     parts, count = np.full(len(cells), -1), 0
     for window, least in STRIP_WINDOWS:
         rest = np.flatnonzero(parts < 0)
@@ -110,7 +114,7 @@ def _parts_of_filled(cells):
         before, count = count, _number_strips(parts, count, cells, strip, MAX_SCAN_GAP, size, least)
         for number in range(before, count):
             inside = np.flatnonzero(parts == number)
-            parts[inside[~_in_even_strip(cells[inside])]] = -1
+            parts[inside[~_even_strip(cells[inside])[0]]] = -1
     rest, turned = np.flatnonzero(parts < 0), cells[:, ::-1]
     # scan lines lie apart within a bar
     bars = rest[_in_runs(turned[rest], MAX_PAINT_GAP, MIN_RUN_ACROSS)]
@@ -153,8 +157,8 @@ def _in_lines(cells, longest_gap, window):
     return result
 
 
-def _in_even_strip(cells):
-    """(K,) whether the cells of a strip lie in a strip of its usual width about its middle; what touches it in places does not."""
+def _even_strip(cells):
+    """(K,) whether the cells of a strip lie within its usual width about its middle, as what touches it does not; and that width in cells."""
     step = (cells[:, 0] - cells[:, 0].min()) // WIDTH_STEP
     count = int(step.max()) + 1
     low, high = np.full(count, np.inf), np.full(count, -np.inf)
@@ -164,7 +168,7 @@ def _in_even_strip(cells):
     usual = np.median((high - low)[seen])
     even = np.flatnonzero(seen & (high - low <= usual + WIDTH_TOLERANCE))
     middle = np.interp(step, even, ((low + high) / 2)[even])
-    return np.abs(cells[:, 1] - middle) <= (usual + WIDTH_TOLERANCE) / 2
+    return np.abs(cells[:, 1] - middle) <= (usual + WIDTH_TOLERANCE) / 2, usual
 
 
 def _painted_share(column, across, slope, gap, length):

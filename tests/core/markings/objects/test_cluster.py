@@ -440,3 +440,13 @@ def test_squares_that_make_no_row_are_covers(marks):
 def test_a_give_way_line_beside_a_manhole_cover_does_not_make_it_paint():
     markings = markings_of([*blocks(4), disc(36, 0.0, 0.6)], density=2500)
     assert classes(markings) == ["give_way"] * 4
+
+
+def test_the_bright_face_of_a_curb_far_off_is_no_edge_line():
+    face = paint(FRAME, [strip(10, 70, 5.93, 6.0)], density=20000, reach=6.0)
+    face = face[face["s"] * 1e-4 / 0.13 % 1.0 < 0.15]
+    # two tracks of the scan meet it in turns
+    face["d"] -= np.where(face["s"] * 1e-4 % 8.0 < 4.0, 0, 800).astype(np.int32)
+    face["spacing"] = 200
+    markings, _ = layer_of(road_points(face, FRAME), FRAME)
+    assert len(markings) == 0
