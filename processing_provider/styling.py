@@ -42,6 +42,7 @@ LOOKS = {
     "DRIVING_LINES": ("driving_lines", 70),
     "TRUTH_DRIVING_LINES": ("truth_driving_lines", 71),
     "TRUTH_SURFACE": ("truth_surface", 21),
+    "LANES": ("lanes", 23),
     "TRUTH_LANES": ("truth_lanes", 22),
     "TRAJECTORY": ("trajectory", 80),
     "ASSESSED_CELLS": ("assessed_cells", 15),

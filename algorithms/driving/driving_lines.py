@@ -1,6 +1,6 @@
 """Driving lines and their curve elements."""
 
-from ...core.common.schemas import CURVE_ELEMENTS, DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES
+from ...core.common.schemas import CURVE_ELEMENTS, DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES
 from ...core.countries.catalogue import COUNTRIES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
@@ -18,8 +18,8 @@ DRIVING_SETTINGS = (
     ),
     SettingSpec(
         "LANE_WIDTH", DRIVING, "lane_width", tr("Lane width, 0 = as seen on the road (m)"),
-        tr("Where only the outer lines are painted, the number of lanes follows from their distance and this width. "
-           "Wider makes fewer lanes."),
+        tr("0 takes the width that is seen between lines. A width named here is held to: where only the outer lines are painted, their "
+           "distance and this width give the number of lanes. Wider makes fewer lanes."),
     ),
     SettingSpec(
         "LINE_DISTANCE", DRIVING, "line_distance", tr("Distance from a line without partner, 0 = half a lane (m)"),
@@ -28,8 +28,8 @@ DRIVING_SETTINGS = (
     ),
     SettingSpec(
         "TRAFFIC_SIDE", DRIVING, "traffic_side", tr("Side of traffic"),
-        tr("The side one drives on; it gives the driving lines their direction. Automatic goes by the lane the "
-           "vehicle itself used."),
+        tr("The side one drives on; it gives the driving lines their direction. Automatic goes by where and which way the vehicle "
+           "drove, and by lines that part the directions. A side named here counts more than the drive."),
         choices=("automatic", "right", "left"),
     ),
     SettingSpec(
@@ -67,11 +67,14 @@ class DrivingLines(Algorithm):
         self.add_cloud("ROAD_POINTS", tr("Road points"), tr("With it heights are the road's own."), optional=True)
         self.add_settings(DRIVING_SETTINGS)
         self.add_sink("DRIVING_LINES", tr("Driving lines"), fields=DRIVING_LINES, geometry="LineStringZ")
+        self.add_sink("LANES", tr("Lanes"), fields=LANES, geometry="PolygonZ", optional=True,
+                      text=tr("The area of each lane between its borders, with what follows it. Exports to HD maps are made from this layer."))
         self.add_sink("CURVE_ELEMENTS", tr("Curve elements"), fields=CURVE_ELEMENTS, geometry="None", optional=True)
 
     def work(self, call, progress):
         from ...core.driving.driving_layers import curve_elements_to_features, driving_lines_to_features
         from ...core.driving.driving_lines import make_driving_lines
+        from ...core.driving.lanes_layer import lanes_to_features
         from ...core.markings.lines.painted_lines import lines_from_features
         from ...core.markings.objects.marking_objects import markings_from_features
         from ...core.road.edges.road_edges import edges_from_features
@@ -82,10 +85,11 @@ class DrivingLines(Algorithm):
         road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.0, 0.3)) if call.cloud("ROAD_POINTS") else None
         layers = {"MARKING_LINES": marking_lines, "MARKINGS": markings, "ROAD_EDGES": edges}
         frame = frame_of(call, marking_lines.crs, progress, road_points, layers)
-        lines, elements = make_driving_lines(
+        lines, elements, lanes = make_driving_lines(
             lines_from_features(marking_lines, frame), frame, call.settings(DRIVING_SETTINGS), progress.part(0.3, 1.0),
             markings=None if markings is None else markings_from_features(markings, frame),
             edges=None if edges is None else edges_from_features(edges, frame).densified(frame), road_points=road_points,
         )
         call.layer("DRIVING_LINES", driving_lines_to_features(lines, frame))
+        call.layer("LANES", lanes_to_features(lanes, frame.origin))
         call.layer("CURVE_ELEMENTS", curve_elements_to_features(elements, frame))

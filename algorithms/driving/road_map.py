@@ -2,7 +2,7 @@
 
 from ...core.common.errors import RoadExtractionError
 from ...core.common.features import Features
-from ...core.common.schemas import CURB_POINTS, CURVE_ELEMENTS, DRIVING_LINES, MARKING_LINES, MARKINGS, ROAD_EDGES, ROAD_SURFACE
+from ...core.common.schemas import CURB_POINTS, CURVE_ELEMENTS, DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES, ROAD_SURFACE
 from ..algorithm import Algorithm
 from ..markings.cluster_markings import CLUSTER_SETTINGS
 from ..markings.correct_intensity import INTENSITY_SETTINGS
@@ -48,6 +48,7 @@ LAYERS = (
     ("MARKINGS", "markings", "PolygonZ", MARKINGS, tr("Markings")),
     ("MARKING_LINES", "marking_lines", "LineStringZ", MARKING_LINES, tr("Marking lines")),
     ("DRIVING_LINES", "driving_lines", "LineStringZ", DRIVING_LINES, tr("Driving lines")),
+    ("LANES", "lanes", "PolygonZ", LANES, tr("Lanes")),
     ("CURVE_ELEMENTS", "curve_elements", "None", CURVE_ELEMENTS, tr("Curve elements")),
 )
 

@@ -11,13 +11,13 @@ from ..curves.base import Arc
 from ..curves.clothoid import fit_clothoids
 from ..curves.model_selection import MAX_MISFIT, select_each
 from ..curves.segmentation import element_ranges
-from .cross_section import STATION_STEP
-from .lane_tracking import BRIDGED
+from ..markings.cross_section.sections import STATION_STEP
+from .lane_track import BRIDGED
 from .settings import MIN_PLACES_PER_FIT
 
 if TYPE_CHECKING:
     from ..survey.frame.road_frame import Road
-    from .lane_tracking import LaneTrack
+    from .lane_track import LaneTrack
 
 MAX_PARALLEL_DEVIATION = 0.06  # m: 95 % of a lane's places are nearer than this to a parallel of the others
 MIN_SHARED_LANE_LENGTH = 10.0       # m that a lane must share with others to be compared

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..curves.model_selection import fit_curves
-from .cross_section import STATION_STEP
-from .lane_tracking import BRIDGED
+from ..markings.cross_section.sections import STATION_STEP
+from .lane_track import BRIDGED
 from .settings import MIN_PLACES_PER_FIT
 
 if TYPE_CHECKING:
     from ..survey.frame.road_frame import Road
     from .alignment import Element
-    from .lane_tracking import LaneTrack
+    from .lane_track import LaneTrack
 
 MIN_STATUS_LENGTH = 5.0     # m: a shorter change of status is not worth a piece
 MIN_ELEMENT_SHARE = 0.9     # share of a piece that one element must cover to give it its name

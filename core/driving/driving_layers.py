@@ -31,6 +31,7 @@ class DrivingLines:
     direction : (P,) int, 1 along the road's reference line, -1 against it
     source : (P,) str objects, pair or offset: between two lines or beside one
     status : (P,) str objects, measured, inferred, bridged
+    confidence : (P,) 0 to 1
     curve : P Curve in local coordinates, along the road: the arc or straight that the piece is on, else the curve of the whole lane
     rmse : (P,) metres, of the lane's places from its curve
     station, end : (P,) metres along the road
@@ -46,6 +47,7 @@ class DrivingLines:
     direction: np.ndarray
     source: np.ndarray
     status: np.ndarray
+    confidence: np.ndarray
     curve: list[Curve]
     rmse: np.ndarray
     station: np.ndarray
@@ -111,7 +113,8 @@ def driving_lines_to_features(lines: DrivingLines, frame: RoadFrame) -> Features
             functions[id(curve)] = _function(curve.moved(*frame.origin[:2]))
         places = lines.vertices[lines.start[k]:lines.start[k + 1]] + frame.origin
         layer.add(shapely.linestrings(places), road=int(lines.road[k]), lane=int(lines.lane[k]), kind="lane", pattern=lines.pattern[k],
-                  direction=int(lines.direction[k]), source=lines.source[k], status=lines.status[k], curve=curve.kind,
+                  direction=int(lines.direction[k]), source=lines.source[k], status=lines.status[k], confidence=float(lines.confidence[k]),
+                  curve=curve.kind,
                   radius_m=float(curve.radius) if np.isfinite(curve.radius) else None, rmse_m=float(lines.rmse[k]),
                   station_m=float(lines.station[k]), end_m=float(lines.end[k]), offset_m=float(lines.offset[k]), length_m=_length(places),
                   width_m=float(lines.width[k]), params=functions[id(curve)])

@@ -9,19 +9,20 @@ import numpy as np
 
 from ..common.progress import Progress
 from ..countries.catalogue import country
+from ..markings.cross_section.roads import EstimatedRoad, estimate_roads
+from ..markings.cross_section.sections import STATION_STEP, CrossSections, sections_of_edges, sections_of_lines
 from ..markings.lines.painted_lines import PaintedLines
 from ..markings.objects.marking_objects import MarkingObjects
 from ..road.edges.road_edges import RoadEdges
 from .alignment import Element, lane_elements
 from .centreline import Course, element_of, lane_courses, status_pieces, without_short_status
-from .cross_section import STATION_STEP, CrossSections, sections_of_edges, sections_of_lines
 from .curve_elements import is_curve
-from .direction import divide, driven_offsets, lane_directions, side_votes
-from .drivable_area import DrivableArea
 from .driving_layers import CurveElements, DrivingLines
 from .heights import lane_heights
-from .lane_tracking import LANE_STATUS, LaneTrack, connect, extend
-from .lanes import divided_strips, lane_strips, paired_lanes, select_lane_lines, single_line_lanes, typical_lane_width
+from .lane_areas import lane_areas, make_lanes
+from .lane_track import LANE_STATUS, LaneTrack, connect
+from .lanes import estimated_lanes
+from .lanes_layer import Lanes
 from .settings import DrivingSettings
 
 if TYPE_CHECKING:
@@ -33,13 +34,11 @@ __all__ = ["DrivingSettings", "make_driving_lines"]
 
 def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: DrivingSettings = DrivingSettings(),
                        progress: Progress = Progress(), markings: MarkingObjects | None = None, edges: RoadEdges | None = None,
-                       road_points: RoadPoints | None = None) -> tuple[DrivingLines, CurveElements]:
+                       road_points: RoadPoints | None = None) -> tuple[DrivingLines, CurveElements, Lanes]:
     """Lines to drive on.
 
-    Neighbouring marking lines as far apart as a lane is wide make a lane; its middle
-    is driven. Where a line is missing the lane goes on beside the other one; where
-    only outer lines are painted they are divided by the lane width (both `inferred`);
-    gaps of all lines are bridged one to one.
+    Lanes are those of the most probable cross-sections of each road (`estimate_roads`); their middle is driven. Gaps of all lines are
+    bridged one to one.
 
     Parameters
     ----------
@@ -56,80 +55,50 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     lines : DrivingLines. Lanes are numbered from 1 on every road by where they begin, from right to left. A lane is cut
         into pieces by `status`; pieces of one lane touch
     elements : CurveElements of every lane
+    lanes : Lanes, the areas of the same pieces, and connectors between them where the vehicle drove on without lines
     """
     rows: list[dict[str, Any]] = []
     arcs: list[dict[str, Any]] = []
-    curbs = sections_of_edges(edges) if edges is not None else {}
-    found = {}
-    sections = sections_of_lines(marking_lines)
-    for count, (number, road_lines) in enumerate(sections.items()):
-        driven, directions = driven_offsets(frame, number, road_lines.s)
-        area = DrivableArea(road_lines, frame, number, curbs.get(number), markings)
-        tracks = road_lanes(road_lines, driven, settings, area)
-        found[number] = road_lines, tracks, driven, directions, divide(road_lines, tracks, driven, directions)
-        progress.report(0.4 * (count + 1) / len(sections))
-    side = _traffic_side(found, settings, progress)
-    for count, (number, (road_lines, tracks, driven, directions, middle)) in enumerate(found.items()):
-        ways = lane_directions(tracks, middle, driven, directions, side, settings.traffic_side != "automatic")
-        alignment = lane_elements(tracks, road_lines.s, frame.roads[number])
-        heights = lane_heights(road_lines, road_points, number, tracks)
+    areas: list[dict[str, Any]] = []
+    curbs = sections_of_edges(edges) if edges is not None else None
+    estimates = estimate_roads(sections_of_lines(marking_lines), frame, settings.lane_width or country(settings.country).usual_lane,
+                               settings.traffic_side, curbs, markings, road_points, width_asked=bool(settings.lane_width))
+    progress.report(0.4)
+    if estimates.roads and not estimates.sure:
+        progress.warn(f"The survey hardly shows on which side traffic drives; the {estimates.side} was taken. Set Side of traffic if that is wrong.")
+    for count, (number, one) in enumerate(estimates.roads.items()):
+        tracks = road_lanes(one, settings, estimates.lane_width)
+        s = one.lines.s
+        alignment = lane_elements(tracks, s, frame.roads[number])
+        heights = lane_heights(one.lines, road_points, number, tracks)
         if any(np.isnan(z).any() for z in heights):
             progress.warn("Neither the marking lines nor road points have heights; the trajectory's are used.")
-            heights = [frame.track_height(number, road_lines.s[t.first:t.last + 1]) for t in tracks]
-        courses = lane_courses(tracks, road_lines.s, frame.roads[number], alignment)
-        for lane, (track, way, course, elements, z) in enumerate(zip(tracks, ways, courses, alignment, heights), start=1):
-            rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(track, way, course, elements, road_lines, z)]
-            arcs += [dict(row, road=number, lane=lane) for row in _lane_curves(way, elements)]
-        progress.report(0.4 + 0.6 * (count + 1) / len(found))
+            heights = [frame.track_height(number, s[t.first:t.last + 1]) for t in tracks]
+        courses = lane_courses(tracks, s, frame.roads[number], alignment)
+        for lane, (track, course, elements, z) in enumerate(zip(tracks, courses, alignment, heights), start=1):
+            rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(track, track.direction, course, elements, one.lines, z)]
+            arcs += [dict(row, road=number, lane=lane) for row in _lane_curves(track.direction, elements)]
+        areas += lane_areas(one, curbs.get(number) if curbs else None, tracks, heights, frame, number)
+        progress.report(0.4 + 0.6 * (count + 1) / len(estimates.roads))
     lines = _driving_lines(rows, marking_lines.crs)
-    _report_lengths(lines, side, progress)
-    return lines, _curve_elements(arcs, marking_lines.crs, settings.country)
+    _report_lengths(lines, estimates.side, progress)
+    return lines, _curve_elements(arcs, marking_lines.crs, settings.country), make_lanes(areas, marking_lines.crs)
 
 
-def road_lanes(lines: CrossSections, driven: np.ndarray, settings: DrivingSettings, area: DrivableArea) -> list[LaneTrack]:
+def road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: float) -> list[LaneTrack]:
     """The lanes of one road as a list of LaneTrack, by first station, then from right to left.
 
     Parameters
     ----------
-    lines : CrossSections
-    driven : (P, K) metres, offsets of the passes at the stations of `lines`, NaN where they were not
+    road : EstimatedRoad
     settings : DrivingSettings
-    area : DrivableArea
+    lane_width : metres, of lanes beside which only one line is painted
     """
-    clear = area.clear
-    usual_width = country(settings.country).usual_lane
-    bounding = select_lane_lines(lines, driven, usual_width)
-    all_strips = lane_strips(lines, bounding)
-    tracks = paired_lanes(lines, all_strips, driven, clear)
-    lane_width = settings.lane_width or typical_lane_width(tracks, usual_width=usual_width)
-    gaps = settings.max_bridge, settings.max_inferred
-    tracks = connect(tracks, lines, 0.0, 0.0)
-    tracks = [track for track in tracks if len(track) * STATION_STEP >= settings.shortest]
-    tracks = connect(tracks, lines, 0.0, settings.max_inferred)
-    tracks = connect(extend(tracks, lines, bounding, clear, settings.max_bridge), lines, *gaps)
-    tracks += divided_strips(lines, all_strips, tracks, driven, lane_width, clear)
-    tracks = connect(tracks, lines, *gaps)
-    tracks = connect(extend(tracks, lines, bounding, clear, settings.max_bridge), lines, *gaps)
-    half = (typical_lane_width(tracks, painted=False) if tracks else lane_width) / 2
-
-    def half_lane(d, side):
-        return np.full(len(d), settings.line_distance) if settings.line_distance else area.half_lane(d, side, half)
-
-    tracks = connect(tracks + single_line_lanes(lines, bounding, tracks, driven, half_lane, settings.max_bridge, clear), lines, *gaps)
+    tracks = estimated_lanes(road.boundaries, road.estimate, lane_width, settings.line_distance)
+    tracks = connect(tracks, road.lines, settings.max_bridge, settings.max_inferred, road.boundaries.seen[road.boundaries.painted].any(0))
     known = [track.without_bridged_ends() for track in tracks]
     tracks = [track for track in known if track is not None and len(track) * STATION_STEP >= settings.shortest]
     return sorted(tracks, key=lambda track: (track.first, float(track.d[0])))
-
-
-def _traffic_side(found, settings, progress):
-    if settings.traffic_side != "automatic":
-        return settings.traffic_side
-    right, left = sum((side_votes(middle, driven, directions) for _, _, driven, directions, middle in found.values()),
-                      np.zeros(2))
-    if found and not right + left:
-        progress.warn("The trajectory does not tell the side of traffic; the right was assumed. Set Side of traffic "
-                      "where it is the left.")
-    return "left" if left > right else "right"
 
 
 def _lane_pieces(track: LaneTrack, way: int, course: Course, elements: list[Element], road_lines: CrossSections,
@@ -147,7 +116,8 @@ def _lane_pieces(track: LaneTrack, way: int, course: Course, elements: list[Elem
         element = element_of(elements, start, end)
         yield dict(
             pattern=_patterns(track, rows, way, road_lines), direction=way, source="offset" if track.offset[rows].mean() > 0.5 else "pair",
-            status=LANE_STATUS[code], curve=element.arc if element is not None else course.curve, rmse=course.rmse, station=start, end=end,
+            status=LANE_STATUS[code], confidence=float(track.confidence[rows].mean()),
+            curve=element.arc if element is not None else course.curve, rmse=course.rmse, station=start, end=end,
             offset=np.median(track.d[rows]), width=np.median(track.width[rows]), places=places[::-1] if way < 0 else places)
 
 
@@ -191,7 +161,7 @@ def _driving_lines(rows: list[dict[str, Any]], crs: str) -> DrivingLines:
     places = [row["places"] for row in rows]
     return DrivingLines(
         _column(rows, "road", int), _column(rows, "lane", int), _column(rows, "pattern", object), _column(rows, "direction", int),
-        _column(rows, "source", object), _column(rows, "status", object), [row["curve"] for row in rows],
+        _column(rows, "source", object), _column(rows, "status", object), _column(rows, "confidence", float), [row["curve"] for row in rows],
         _column(rows, "rmse", float), _column(rows, "station", float), _column(rows, "end", float), _column(rows, "offset", float),
         _column(rows, "width", float), np.concatenate([*places, np.empty((0, 3))]),
         np.append(0, np.cumsum([len(some) for some in places], dtype=int)), crs)

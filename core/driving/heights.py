@@ -9,13 +9,13 @@ from scipy.ndimage import gaussian_filter1d, median_filter
 
 from ..common.order_statistics import order_by
 from ..common.parallel import ordered_map
+from ..markings.cross_section.sections import STATION_STEP
 from ..survey.store.records import COORDINATE_SCALE
-from .cross_section import STATION_STEP
 
 if TYPE_CHECKING:
+    from ..markings.cross_section.sections import CrossSections
     from ..survey.store.road_points import RoadPoints
-    from .cross_section import CrossSections
-    from .lane_tracking import LaneTrack
+    from .lane_track import LaneTrack
 
 HEIGHT_REACH = 0.3        # m either side of the driving line
 MIN_POINTS_PER_HEIGHT = 3

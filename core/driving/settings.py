@@ -16,8 +16,7 @@ TRAFFIC_SIDES = ("automatic", "right", "left")
 class DrivingSettings:
     """Lengths in metres.
 
-    lane_width : how wide a lane is where only outer lines are painted, or only one line;
-        0 takes the width seen elsewhere on the road, the usual one of the country where there is none
+    lane_width : how wide lanes are; 0 takes the width seen between lines, the usual one of the country where there is none
     line_distance : driving line to a line without partner; 0 is half a lane
     traffic_side : the side of the road that is driven on; automatic asks the trajectory
     max_bridge : gaps of all lines (crossings, stop lines) longer than this stay open
@@ -26,7 +25,7 @@ class DrivingSettings:
     country : whose design code curves are checked against; one of core.countries.COUNTRIES
     """
 
-    lane_width: float = setting(3.5, MIN_LANE_WIDTH, MAX_LANE_WIDTH, "The lane width", "m", "to take the width from the lines themselves")
+    lane_width: float = setting(0.0, MIN_LANE_WIDTH, MAX_LANE_WIDTH, "The lane width", "m", "to take the width from the lines themselves")
     line_distance: float = setting(0.0, 0.3, MAX_LANE_WIDTH, "The distance from a line", "m", "for half a lane")
     traffic_side: str = "automatic"
     max_bridge: float = setting(20.0, 0.0, 200.0, "The longest gap of all lines that is bridged", "m")

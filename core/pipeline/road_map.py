@@ -18,6 +18,7 @@ from ..common.features import Features
 from ..common.progress import Progress
 from ..driving.driving_layers import curve_elements_to_features, driving_lines_to_features
 from ..driving.driving_lines import DrivingSettings, make_driving_lines
+from ..driving.lanes_layer import lanes_to_features
 from ..execution.choice import ExecutionSettings
 from ..intensity.correction import IntensitySettings, correct_intensity
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image
@@ -84,7 +85,7 @@ class RoadMap:
     curb_points : CurbPoints
     edges : RoadEdges
     surface : SurfaceOutlines
-    markings, marking_lines, driving_lines, curve_elements : layers; None where not made
+    markings, marking_lines, driving_lines, lanes, curve_elements : layers; None where not made
     road_points : RoadPoints; `road_points.close()` frees the disk space of the store
     boundary_differences : RoadEdges, where the two boundary methods disagree; None if one method was used
     length_by_method : {method: metres of measured edges}
@@ -112,6 +113,7 @@ class RoadMap:
     markings: Features | None = None
     marking_lines: Features | None = None
     driving_lines: Features | None = None
+    lanes: Features | None = None
     curve_elements: Features | None = None
     without_paint: str = ""
     seconds: dict = field(default_factory=dict)
@@ -229,14 +231,17 @@ def _paint(result, image_path, settings, stages):
         points = stages.run("outliers", "Removing outliers …", remove_outliers, points, settings.outliers)
     result.counts["marking_points_kept"] = len(points)
     markings, clustered = stages.run("clusters", "Clustering markings …", cluster_markings, points, frame, settings.clusters)
-    lines = stages.run("lines", "Fitting marking lines …", fit_marking_lines, clustered, markings, frame, settings.lines)
+    edges = result.edges.densified(frame)
+    lines = stages.run("lines", "Fitting marking lines …", fit_marking_lines, clustered, markings, frame, settings.lines,
+                       edges=edges, road_points=result.road_points)
     markings = named_by_lines(markings, lines)
     result.markings, result.marking_lines = markings_to_features(markings, frame), lines_to_features(lines, frame)
     result.marking_curvature = marking_curvature(_places(clustered), result.marking_lines.geometries, frame.origin)
-    driving, elements = stages.run(
+    driving, elements, lanes = stages.run(
         "driving", "Making driving lines …", make_driving_lines, lines, frame, settings.driving,
-        markings=markings, edges=result.edges.densified(frame), road_points=result.road_points)
+        markings=markings, edges=edges, road_points=result.road_points)
     result.driving_lines, result.curve_elements = driving_lines_to_features(driving, frame), curve_elements_to_features(elements, frame)
+    result.lanes = lanes_to_features(lanes, frame.origin)
     if not len(result.markings):
         result.without_paint = "No paint was found on this road, so there are no marking lines and no driving lines."
         stages.progress.warn(result.without_paint)

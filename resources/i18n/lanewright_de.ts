@@ -785,8 +785,8 @@
         </message>
         <message>
             <location filename="../../algorithms/driving/driving_lines.py" />
-            <source>Where only the outer lines are painted, the number of lanes follows from their distance and this width. Wider makes fewer lanes.</source>
-            <translation>Wo nur die äußeren Linien aufgemalt sind, folgt die Zahl der Fahrstreifen aus deren Abstand und dieser Breite. Breiter ergibt weniger Fahrstreifen.</translation>
+            <source>0 takes the width that is seen between lines. A width named here is held to: where only the outer lines are painted, their distance and this width give the number of lanes. Wider makes fewer lanes.</source>
+            <translation>0 nimmt die Breite, die zwischen Linien zu sehen ist. Eine hier genannte Breite gilt: Wo nur die äußeren Linien markiert sind, folgt die Zahl der Fahrstreifen aus deren Abstand und dieser Breite. Breiter ergibt weniger Fahrstreifen.</translation>
         </message>
         <message>
             <location filename="../../algorithms/driving/driving_lines.py" />
@@ -805,8 +805,8 @@
         </message>
         <message>
             <location filename="../../algorithms/driving/driving_lines.py" />
-            <source>The side one drives on; it gives the driving lines their direction. Automatic goes by the lane the vehicle itself used.</source>
-            <translation>Die Seite, auf der man fährt; sie gibt den Fahrlinien ihre Richtung. Automatisch richtet sich nach dem Fahrstreifen, den das Fahrzeug selbst benutzte.</translation>
+            <source>The side one drives on; it gives the driving lines their direction. Automatic goes by where and which way the vehicle drove, and by lines that part the directions. A side named here counts more than the drive.</source>
+            <translation>Die Seite, auf der man fährt; sie gibt den Fahrlinien ihre Richtung. Automatisch richtet sich danach, wo und wohin das Fahrzeug fuhr, und nach Linien, die die Richtungen trennen. Eine hier genannte Seite zählt mehr als die Fahrt.</translation>
         </message>
         <message>
             <location filename="../../algorithms/driving/driving_lines.py" />
@@ -875,8 +875,18 @@
         </message>
         <message>
             <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>Lanes</source>
+            <translation>Fahrstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
             <source>Curve elements</source>
             <translation>Bogenelemente</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/driving_lines.py" />
+            <source>The area of each lane between its borders, with what follows it. Exports to HD maps are made from this layer.</source>
+            <translation>Die Fläche jedes Fahrstreifens zwischen seinen Rändern, und was auf ihn folgt. Aus diesem Layer werden HD-Karten ausgegeben.</translation>
         </message>
         <message>
             <location filename="../../algorithms/driving/road_map.py" />
@@ -962,11 +972,6 @@
             <location filename="../../algorithms/driving/road_map_numbers.py" />
             <source>Of the marking lines measured (%)</source>
             <translation>Davon gemessen: Markierungslinien (%)</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/driving/road_map_numbers.py" />
-            <source>Lanes</source>
-            <translation>Fahrstreifen</translation>
         </message>
         <message>
             <location filename="../../algorithms/driving/road_map_numbers.py" />
@@ -4420,6 +4425,11 @@
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
+            <source>Confidence (0 to 1)</source>
+            <translation>Vertrauen (0 bis 1)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
             <source>Station (m)</source>
             <translation>Station (m)</translation>
         </message>
@@ -4642,11 +4652,6 @@
             <location filename="../../core/common/schemas.py" />
             <source>Lanes that follow, by lane_id</source>
             <translation>Folgende Fahrstreifen, nach lane_id</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
-            <source>Confidence (0 to 1)</source>
-            <translation>Vertrauen (0 bis 1)</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />

@@ -68,7 +68,7 @@ class Street:
 
 def driving_layers(lines, frame, settings=DrivingSettings(), markings=None, edges=None, road_points=None):
     """The layers of driving lines and curve elements made from layers."""
-    found, elements = make_driving_lines(
+    found, elements, _ = make_driving_lines(
         lines_from_features(lines, frame), frame, settings, markings=None if markings is None else markings_from_features(markings, frame),
         edges=None if edges is None else edges_from_features(edges, frame), road_points=road_points)
     return driving_lines_to_features(found, frame), curve_elements_to_features(elements, frame)

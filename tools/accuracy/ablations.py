@@ -51,7 +51,7 @@ def _keep_all(work, settings):
 
 
 def _driving_alone(work, settings):
-    lines, _ = make_driving_lines(work.lines, work.frame, settings.driving, road_points=work.bright)
+    lines, *_ = make_driving_lines(work.lines, work.frame, settings.driving, road_points=work.bright)
     work.driving = driving_lines_to_features(lines, work.frame)
 
 

@@ -75,7 +75,7 @@ def _lines(w, settings):
 
 
 def _driving(w, settings):
-    lines, _ = make_driving_lines(w.lines, w.frame, settings.driving, markings=w.marking_objects,
+    lines, *_ = make_driving_lines(w.lines, w.frame, settings.driving, markings=w.marking_objects,
                                   edges=w.edges.densified(w.frame), road_points=w.bright)
     w.driving = driving_lines_to_features(lines, w.frame)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -17,15 +17,19 @@ from ...countries.neutral import NEUTRAL
 from ...curves.model_selection import CURVES
 from ...survey.frame.frame_lines import lines_in_frame
 from ...survey.store.records import join_columns
+from ..cross_section.line_kinds import line_kinds
+from ..cross_section.roads import estimate_roads
+from ..cross_section.sections import sections_of_edges, sections_of_lines
 from ..objects.marking_objects import MarkingObjects
 from .dash_pattern import same_dash_pattern
 from .geometry import LineShape, fit_line_shapes
-from .labelling import SelectedLine, crossings, hatching_bars, hatching_borders, select_lines
 from .linking import CommonTrend, LinkedLine, link_lines, link_over_long_gaps, without_strays
 from .painted_lines import FittedPieces, PaintedLines
+from .selection import SelectedLine, crossings, hatching_bars, hatching_borders, select_lines
 from .strands import line_paint, trace_strands
 
 if TYPE_CHECKING:
+    from ...road.edges.road_edges import RoadEdges
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.store.road_points import RoadPoints
 
@@ -62,7 +66,8 @@ class MarkingLineSettings:
 
 
 def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, frame: RoadFrame,
-                      settings: MarkingLineSettings = MarkingLineSettings(), progress: Progress = Progress()) -> PaintedLines:
+                      settings: MarkingLineSettings = MarkingLineSettings(), progress: Progress = Progress(), edges: RoadEdges | None = None,
+                      road_points: RoadPoints | None = None) -> PaintedLines:
     """Trace, link and fit the painted lines of all roads.
 
     Parameters
@@ -70,6 +75,7 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     clustered_points : RoadPoints with `cluster`
     markings : MarkingObjects of the same clusters
     frame : RoadFrame
+    edges, road_points : RoadEdges and RoadPoints, or None: what the lines separate is told better with them
 
     Returns
     -------
@@ -101,8 +107,7 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
             strands = [strand for strand in strands if not any(strand is border for border in borders)]
             lines, trend = _linked(strands, settings)
         part.report(0.5)
-        selected = select_lines(lines, trend, crossings(markings, road), settings.min_paint,
-                                    hatched, frame.passes_of(road), country(settings.country).longest_dash)
+        selected = select_lines(lines, trend, crossings(markings, road), settings.min_paint, hatched, country(settings.country).longest_dash)
         dropped += len(lines) - len(selected)
         shapes, unwanted = fit_line_shapes([one.line for one in selected], [one.span for one in selected], frame.road(road), trend,
                                      partial(frame.track_height, road), settings)
@@ -116,7 +121,21 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     if replaced:
         progress.warn(f"{replaced} of {number} lines cannot take the curve “{settings.curve}”; "
                       "the automatic curve was used for them.")
-    return _painted_lines(rows, frame, clustered_points.crs)
+    return _named(_painted_lines(rows, frame, clustered_points.crs), frame, settings, markings, edges, road_points, clustered_points)
+
+
+def _named(lines, frame, settings, markings, edges, road_points, paint):
+    """The lines with the kinds that the estimate of their roads gives them; one that bounds no lane is called by how it is drawn."""
+    if not len(lines):
+        return lines
+    curbs = sections_of_edges(edges) if edges is not None else None
+    estimates = estimate_roads(sections_of_lines(lines), frame, country(settings.country).usual_lane, curbs=curbs, markings=markings,
+                               road_points=road_points, paint=paint)
+    found = line_kinds(estimates)
+    drawn = np.where([pattern.startswith("double") for pattern in lines.pattern], "centre",
+                     np.where(lines.pattern == "dashed", "lane", "edge")).astype(object)
+    kind = np.array([found.get(number, own) for number, own in zip(lines.line.tolist(), drawn)], object)
+    return replace(lines, kind=kind)
 
 
 def _linked(strands, settings):
@@ -144,7 +163,7 @@ def _drawn_pieces(one: SelectedLine, shape: LineShape, origin: np.ndarray) -> It
         measured = piece.status == "measured" and len(residuals)
         near = (s >= piece.first - PAINT_BESIDE_PIECE) & (s <= piece.last + PAINT_BESIDE_PIECE)
         yield dict(
-            kind=one.kind, pattern=f"double-{piece.pattern}" if one.double else piece.pattern, status=piece.status,
+            kind="", pattern=f"double-{piece.pattern}" if one.double else piece.pattern, status=piece.status,
             curve=shape.fit.curve, arc=shape.u(np.array([piece.first, piece.last])), places=places,
             station=piece.first, end=piece.last, offset=np.median(d[near]) if near.any() else np.nan, width=one.width,
             rmse=np.sqrt(np.mean(residuals**2)) if measured else np.nan)

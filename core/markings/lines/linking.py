@@ -28,7 +28,7 @@ MAX_STRAND_OVERLAP = 0.6                   # m that two strands of one line may 
 STRAY_WINDOW = 20.0                        # m before and after a strand that say where it should lie
 MAX_STRAY_LENGTH = 4.0                     # m: longer strands make their own case
 MAX_STRAY_OFFSET = 0.10                    # m across
-DOUBLE_LINE_SPACING = (0.15, 0.50)         # m between the middles of the two lines of a double line
+DOUBLE_LINE_SPACING = (0.19, 0.50)         # m between the middles of the two lines of a double line
 MIDDLE_SHARE = (0.25, 0.75)                # of the way from one line of a double to the other: its middle
 MAX_LINE_SLOPE = np.tan(np.radians(10.0))  # across per along by which two strands may differ
 

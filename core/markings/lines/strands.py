@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 RUN_BIN_UNITS = 5000  # units of 0.1 mm: 0.5 m of station in which runs of paint are separated
 PLACE_STEP_UNITS = 2500  # 0.25 m: one place of the line each, so that neighbouring places are nearly independent
 RUN_GAP_UNITS = 600  # 6 cm across without paint separate two runs ...
-MAX_WORN_LINE_WIDTH_UNITS = 2200  # ... unless together they are no wider than one worn line
+MAX_WORN_LINE_WIDTH_UNITS = 3300  # ... unless together they are no wider than one worn line
 MAX_LINE_WIDTH_UNITS = 3600  # 36 cm: wider is no line, or it is a double line whose middle is hazy
 MAX_MIXED_WIDTH_UNITS = 6000  # 60 cm: where a mixed marking reaches farther across, it is hatching or a stop line there
 MIN_MIXED_STRAND = 2.0  # m of paint in a strand of a mixed marking
@@ -40,7 +40,6 @@ class Strand:
     s, d, z : (K,) its places, one per 0.25 m of station; z local
     weight : (K,) points in each place
     width : metres
-    edge_clearance : metres between the line and the road edge on its side
     classes : dict, class of marking to painted length, metres
     """
 
@@ -51,7 +50,6 @@ class Strand:
     z: np.ndarray
     weight: np.ndarray
     width: float
-    edge_clearance: float
     classes: dict
 
     @property
@@ -145,7 +143,7 @@ def trace_strands(records: Columns, rank: np.ndarray) -> list[Strand]:
     of_point = np.repeat(label, np.diff(np.append(starts, len(run))))
     used = np.flatnonzero(of_point >= 0)
     order = order[used]
-    return _strands([rank[order], *(records[name][order] for name in ("s", "d", "z", "half_width"))], of_point[used])
+    return _strands([rank[order], *(records[name][order] for name in ("s", "d", "z"))], of_point[used])
 
 
 def _runs(bins, across):
@@ -244,7 +242,7 @@ def _mutual(node_bin, node_d, ends, starts, leap, span):
 
 
 def _strands(columns, label):
-    """Strands of points that lie by bin, then across: columns rank, s, d, z and half width, (N,) each, and the chain of each point."""
+    """Strands of points that lie by bin, then across: columns rank, s, d and z, (N,) each, and the chain of each point."""
     place = columns[1] // PLACE_STEP_UNITS
     # within a place points keep their order, which is across
     order = order_by(place, label)
@@ -259,7 +257,7 @@ def _strands(columns, label):
     return sorted(found, key=lambda strand: (strand.first, strand.d[0]))
 
 
-def _strand(place, rank, along, across, height, half_width):
+def _strand(place, rank, along, across, height):
     """A Strand of points sorted by place, then across; all columns (N,), lengths in units."""
     starts = np.flatnonzero(np.append(True, place[1:] != place[:-1]))
     count = np.diff(np.append(starts, len(place)))
@@ -268,13 +266,12 @@ def _strand(place, rank, along, across, height, half_width):
     own = outer <= 1.5 * median(outer) + 400
     if not own.all():
         inside = np.repeat(own, count)
-        return _strand(*(column[inside] for column in (place, rank, along, across, height, half_width)))
+        return _strand(*(column[inside] for column in (place, rank, along, across, height)))
     first, last = float(along.min() * COORDINATE_SCALE), float(along.max() * COORDINATE_SCALE)
     s, z = (np.add.reduceat(values, starts, dtype=np.int64) / count * COORDINATE_SCALE for values in (along, height))
     d = middle * COORDINATE_SCALE
     offset = across * COORDINATE_SCALE
     low, high = percentiles(offset - np.repeat(d, count), (2.5, 97.5))
-    edge_clearance = median(half_width * 1e-3 - np.abs(offset))
     share = np.bincount(rank, minlength=len(LINE_KINDS) + 1) / len(rank) * (last - first)
     classes = {name: float(share[k]) for k, name in enumerate(LINE_KINDS + ("mixed",)) if share[k] > 0}
-    return Strand(first, last, s, d, z, count.astype(float), (high - low) / 0.95, edge_clearance, classes)
+    return Strand(first, last, s, d, z, count.astype(float), (high - low) / 0.95, classes)

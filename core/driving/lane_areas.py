@@ -1,0 +1,161 @@
+"""The areas of lanes between their borders, and what follows each lane."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..markings.cross_section.evidence import driven_offsets
+from ..markings.cross_section.sections import STATION_STEP, CrossSections
+from ..markings.cross_section.weights import CENTRE_LINE, CURB, EDGE_LINE, LANE_LINE, OTHER_LINE, SURFACE
+from .centreline import status_pieces, without_short_status
+from .lane_track import LANE_STATUS, LaneTrack
+from .lanes_layer import Lanes
+
+if TYPE_CHECKING:
+    from ..markings.cross_section.roads import EstimatedRoad
+    from ..survey.frame.road_frame import RoadFrame
+
+KIND_OF_BORDER = {LANE_LINE: "lane", CENTRE_LINE: "centre", EDGE_LINE: "edge", OTHER_LINE: "edge"}
+NO_BORDER = "none", "none", ""        # line, kind and pattern
+NEXT_LANE_GAP = 3.0                   # m between the end of a lane and the beginning of what follows it
+LONGEST_CONNECTOR = 150.0             # m between the end of a lane and the beginning of the one that the vehicle drove on to
+CONNECTOR_CONFIDENCE = 0.5            # where the way is known from the drive alone
+
+
+def lane_areas(road: EstimatedRoad, curbs: CrossSections | None, tracks: list[LaneTrack], heights: list[np.ndarray], frame: RoadFrame,
+               number: int) -> list[dict[str, Any]]:
+    """The rows of Lanes of one road: its lanes by piece, and connectors along the drive where lanes end and begin again.
+
+    Parameters
+    ----------
+    road : EstimatedRoad
+    curbs : CrossSections of the road edges that were given to the estimate, or None
+    tracks : list of LaneTrack; lanes are numbered from 1 in their order
+    heights : local z along each track
+    frame : RoadFrame
+    number : of the road
+    """
+    rows = []
+    for lane, (track, z) in enumerate(zip(tracks, heights), start=1):
+        status = without_short_status(track.status)
+        for code, start, end in status_pieces(status, track.first, road.lines.s):
+            part = slice(*np.searchsorted(road.lines.s[track.first:track.last + 1], [start, end + STATION_STEP / 2]))
+            if part.stop - part.start >= 2:
+                rows.append(_area(road, curbs, track, part, z, frame, number) | dict(lane=lane, status=LANE_STATUS[code]))
+    rows += _connectors(road, tracks, heights, frame, number)
+    names: dict[int, int] = {}
+    for row in rows:
+        names[row["lane"]] = names.get(row["lane"], 0) + 1
+        row["lane_id"] = f"{number}.{row['lane']}.{names[row['lane']]}"
+    _follow(rows)
+    return rows
+
+
+def _area(road, curbs, track, part, z, frame, number):
+    """One piece of a lane: its borders as they are seen in the direction of travel."""
+    columns = np.arange(track.first, track.last + 1)[part]
+    s, d, half = road.lines.s[columns], track.d[part], track.width[part] / 2
+    sides = []
+    for side, row in ((1, track.borders[part, 0]), (-1, track.borders[part, 1])):
+        x, y = frame.roads[number].to_map(s, d + side * half)
+        painted = (row >= 0) & (row < len(road.lines.d))
+        own = np.where(painted, road.lines.z[np.where(painted, row, 0), columns], np.nan) if len(road.lines.d) else np.full(len(s), np.nan)
+        sides.append(np.c_[x, y, np.where(np.isfinite(own), own, z[part])])
+    about = [_border(road, curbs, track.borders[part, k], track.borders[part, k + 2], columns) for k in (0, 1)]
+    if track.direction < 0:
+        sides, about = [side[::-1] for side in sides[::-1]], about[::-1]
+    return dict(road=number, type="driving", direction=track.direction, left=sides[0], right=sides[1], about=about,
+                confidence=float(track.confidence[part].mean()), station=float(s[0]), end=float(s[-1]), first=float(d[0]), last=float(d[-1]),
+                width=float(np.median(2 * half)))
+
+
+def _border(road, curbs, rows, separates, columns):
+    """What a border of a piece is along most of it: line, kind and pattern."""
+    row = int(np.bincount(rows + 1).argmax()) - 1
+    if row < 0:
+        return NO_BORDER
+    made_of = road.boundaries.made_of[row]
+    if road.boundaries.painted[row]:
+        numbers = road.lines.number[row, columns]
+        drawn = road.lines.drawn[row, columns]
+        number = int(np.bincount(numbers[numbers >= 0]).argmax()) if (numbers >= 0).any() else 0
+        pattern = road.lines.names[int(np.bincount(drawn[drawn >= 0]).argmax())] if (drawn >= 0).any() else road.lines.patterns[row]
+        what = separates[rows == row]
+        return f"line {number}", KIND_OF_BORDER.get(int(np.bincount(what[what >= 0]).argmax()) if (what >= 0).any() else EDGE_LINE), pattern
+    if made_of == CURB and curbs is not None:
+        numbers = curbs.number[row - len(road.lines.d)]
+        return f"edge {int(numbers.max())}", "curb", ""
+    return ("none", "pavement", "") if made_of == SURFACE else NO_BORDER
+
+
+def _connectors(road, tracks, heights, frame, number):
+    """Areas along the drive from the end of a lane to the beginning of the next one of its direction."""
+    s = road.lines.s
+    driven, directions = driven_offsets(frame, number, s)
+    rows, lane = [], len(tracks)
+    for way in (1, -1):
+        ends = [(track, z, track.last if way > 0 else track.first) for track, z in zip(tracks, heights) if track.direction == way]
+        begins = [(track, z, track.first if way > 0 else track.last) for track, z in zip(tracks, heights) if track.direction == way]
+        for before, z_before, a in ends:
+            for p in np.flatnonzero(directions == way).tolist():
+                if not abs(driven[p, a] - before.at(a)[0]) < before.at(a)[1] / 2:
+                    continue
+                found = [(way * (b - a), after, z, b) for after, z, b in begins if NEXT_LANE_GAP < way * (b - a) * STATION_STEP < LONGEST_CONNECTOR
+                         and abs(driven[p, b] - after.at(b)[0]) < after.at(b)[1] / 2]
+                if not found:
+                    continue
+                _, after, z_after, b = min(found, key=lambda one: one[0])
+                low, high = sorted((a, b))
+                columns = np.arange(low, high + 1)
+                if not np.isfinite(driven[p, columns]).all():
+                    continue
+                lane += 1
+                area = _connector(before, after, a, b, columns, driven[p], s, (z_before, z_after), frame, number)
+                rows.append(area | dict(lane=lane, status="inferred"))
+                break
+    return rows
+
+
+def _connector(before, after, a, b, columns, driven, s, heights, frame, number):
+    share = (columns - a) / (b - a)
+    ends = [track.at(k) for track, k in ((before, a), (after, b))]
+    off = [place - driven[k] for (place, _), k in zip(ends, (a, b))]
+    # from the middle of the one lane to the middle of the other, along the drive between them
+    d = driven[columns] + off[0] * (1 - share) + off[1] * share
+    half = (ends[0][1] * (1 - share) + ends[1][1] * share) / 2
+    z = heights[0][a - before.first] * (1 - share) + heights[1][b - after.first] * share
+    sides = [np.column_stack([*frame.roads[number].to_map(s[columns], d + side * half), z]) for side in (1, -1)]
+    if before.direction < 0:
+        sides = [side[::-1] for side in sides[::-1]]
+    return dict(road=number, type="connector", direction=before.direction, left=sides[0], right=sides[1], about=[NO_BORDER, NO_BORDER],
+                confidence=CONNECTOR_CONFIDENCE * min(before.confidence.mean(), after.confidence.mean()), station=float(s[columns[0]]),
+                end=float(s[columns[-1]]), first=float(d[0]), last=float(d[-1]), width=float(np.median(2 * half)))
+
+
+def _follow(rows):
+    """Name in every row what follows it in the direction of travel."""
+    for row in rows:
+        way = row["direction"]
+        at, d = (row["end"], row["last"]) if way > 0 else (row["station"], row["first"])
+        row["successors"] = tuple(
+            other["lane_id"] for other in rows if other is not row and other["direction"] == way
+            and -STATION_STEP <= way * ((other["station"] if way > 0 else other["end"]) - at) <= NEXT_LANE_GAP
+            and abs((other["first"] if way > 0 else other["last"]) - d) < max(row["width"], other["width"]) / 2)
+
+
+def make_lanes(rows: list[dict[str, Any]], crs: str) -> Lanes:
+    """Lanes of the rows of all roads."""
+    def column(name: str, kind: Any) -> np.ndarray:
+        return np.array([row[name] for row in rows], kind)
+
+    def border(side: int, k: int) -> np.ndarray:
+        return np.array([row["about"][side][k] for row in rows], object)
+
+    return Lanes(
+        column("road", int), column("lane", int), column("lane_id", object), column("type", object), column("direction", int), border(0, 0),
+        border(1, 0), border(0, 1), border(1, 1), border(0, 2), border(1, 2), [row["successors"] for row in rows], column("status", object),
+        column("confidence", float), column("station", float), column("end", float),
+        np.concatenate([np.empty((0, 3)), *(row["left"] for row in rows)]), np.concatenate([np.empty((0, 3)), *(row["right"] for row in rows)]),
+        np.append(0, np.cumsum([len(row["left"]) for row in rows], dtype=int)), crs)

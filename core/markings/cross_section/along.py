@@ -1,0 +1,128 @@
+"""The most probable sequence of cross-sections along a road, and how sure each is."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .across import Sections
+from .candidates import FAR, Candidates, surface_lane_width
+from .strips import FIRST, SECOND, StripCosts
+from .weights import CURB, OPEN, SURFACE, EstimateWeights
+
+PLACE = 0.5      # m across at which cross-sections are compared
+SAME_DIVIDER = 1 # places by which the same border between lanes may lie elsewhere
+
+
+def occupancy(candidates: Candidates, costs: StripCosts, sections: Sections) -> tuple[np.ndarray, np.ndarray]:
+    """What lies where across the road.
+
+    Returns
+    -------
+    area : (2, I, K, B) whether lanes of the first and of the second direction lie at a place across
+    divider : (I, K, B) whether a border between two lanes lies there
+    """
+    count, kept, size = sections.strip.shape
+    bins = int(2 * FAR / PLACE)
+    area, divider = np.zeros((2, count, kept, bins + 1)), np.zeros((count, kept, bins), bool)
+    i, k, m = np.nonzero((sections.strip >= FIRST) & (sections.strip <= SECOND))
+    kind, end = sections.strip[i, k, m], sections.right[i, k, m]
+    number, first = costs.lanes[kind, i, m, end], costs.first_lanes[kind, i, m, end]
+    d_left, d_right = candidates.right[i, m], candidates.left[i, end]
+    # beside a curb or the end of the surface lanes need not reach there
+    loose = [np.isin(candidates.made_of[i, at], (CURB, SURFACE, OPEN)) for at in (m, end)]
+    widest = number * costs.lane_width
+    beside = number * surface_lane_width(d_left - d_right, number, costs.lane_width, candidates.bend[i])
+    hidden = [np.isin(candidates.made_of[i, at], (SURFACE, OPEN)) for at in (m, end)]
+    d_left, d_right = (np.where(loose[0] & ~loose[1], np.where(hidden[0], d_right + beside, np.minimum(d_left, d_right + widest)), d_left),
+                       np.where(loose[1] & ~loose[0], np.where(hidden[1], d_left - beside, np.maximum(d_right, d_left - widest)), d_right))
+    split = d_left - (d_left - d_right) * first / np.maximum(number, 1)
+    for which, (high, low) in enumerate(((d_left, split), (split, d_right))):
+        some = high - low > 1e-6
+        a, b = (np.clip(np.rint((v[some] + FAR) / PLACE).astype(int), 0, bins) for v in (low, high))
+        np.add.at(area[which], (i[some], k[some], a), 1.0)
+        np.add.at(area[which], (i[some], k[some], b), -1.0)
+    area = np.cumsum(area, axis=-1)[..., :-1]
+    for place in range(1, int(number.max(initial=1))):
+        some = number > place
+        d = d_left[some] - (d_left - d_right)[some] * place / number[some]
+        divider[i[some], k[some], np.clip(np.rint((d + FAR) / PLACE).astype(int), 0, bins - 1)] = True
+    # painted borders with a lane on both sides
+    lane = (sections.strip >= FIRST) & (sections.strip <= SECOND)
+    ends = np.zeros(sections.strip.shape, bool)
+    ends[i, k, end] = True
+    i, k, m = np.nonzero(lane & ends)
+    d = (candidates.left[i, m] + candidates.right[i, m]) / 2
+    divider[i, k, np.clip(np.rint((d + FAR) / PLACE).astype(int), 0, bins - 1)] = True
+    return area, divider
+
+
+def transition_costs(area: np.ndarray, divider: np.ndarray, weights: EstimateWeights) -> tuple[np.ndarray, np.ndarray]:
+    """Nats of going from a cross-section of one interval to one of the next.
+
+    Returns
+    -------
+    lanes : (I - 1, K, K) of lanes that begin, end or divide; turns : (I - 1, K, K) of lanes whose direction changes
+    """
+    count, kept, bins = divider.shape
+    first, second = area.astype(np.float32)
+    wide = np.zeros(divider.shape, np.float32)
+    for shift in range(-SAME_DIVIDER, SAME_DIVIDER + 1):
+        wide = np.maximum(wide, np.roll(divider, shift, axis=-1))
+    marks = divider.astype(np.float32)
+    change, turn = weights.change * PLACE, weights.turn * PLACE
+
+    def product(a, b):
+        return np.einsum("ikb,ilb->ikl", a[:-1], b[1:], optimize=True)
+
+    def core(values):
+        # borders that move by a place across are no change
+        return np.minimum(np.minimum(np.roll(values, 1, -1), np.roll(values, -1, -1)), values)
+
+    lane = first + second
+    inner, ahead, back = core(lane), core(first), core(second)
+    size = inner.sum(-1)
+    differs = size[:-1, :, None] + size[1:, None, :] - product(inner, lane) - product(lane, inner)
+    turned = product(ahead, second) + product(back, first)
+    number = marks.sum(-1)
+    lost = number[:-1, :, None] + number[1:, None, :] - product(marks, wide) - product(wide, marks)
+    return change * differs + weights.divider_change * np.clip(lost, 0, None), turn * turned
+
+
+def best_sequence(cost: np.ndarray, transition: np.ndarray) -> tuple[np.ndarray, float, np.ndarray]:
+    """Viterbi and forward-backward.
+
+    Parameters
+    ----------
+    cost : (I, K) nats, inf where there is no cross-section
+    transition : (I - 1, K, K) nats
+
+    Returns
+    -------
+    choice : (I,) the cross-section of each interval; total : nats of the whole; posterior : (I, K) probabilities
+    """
+    count, kept = cost.shape
+    best, came = cost[0].copy(), np.zeros((count, kept), int)
+    forward, backward = np.zeros((2, count, kept))
+    forward[0] = -cost[0]
+    for i in range(1, count):
+        step = best[:, None] + transition[i - 1]
+        came[i] = np.argmin(step, axis=0)
+        best = step[came[i], np.arange(kept)] + cost[i]
+        forward[i] = _log_sum(forward[i - 1][:, None] - transition[i - 1], 0) - cost[i]
+    choice = np.zeros(count, int)
+    choice[-1] = int(np.argmin(best))
+    for i in range(count - 1, 0, -1):
+        choice[i - 1] = came[i, choice[i]]
+        backward[i - 1] = _log_sum(backward[i][None, :] - transition[i - 1] - cost[i][None, :], 1)
+    log = forward + backward
+    log -= log.max(axis=1, keepdims=True)
+    posterior = np.exp(log)
+    return choice, float(best.min()), posterior / posterior.sum(axis=1, keepdims=True)
+
+
+def _log_sum(values, axis):
+    highest = values.max(axis=axis, keepdims=True)
+    highest = np.where(np.isfinite(highest), highest, 0.0)
+    with np.errstate(divide="ignore"):
+        return np.squeeze(highest, axis) + np.log(np.exp(values - highest).sum(axis=axis))
+

@@ -1,0 +1,133 @@
+"""One estimate of the lines and lanes of a road: the most probable sequence of cross-sections."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .across import SEPARATES, Sections, best_sections
+from .along import best_sequence, occupancy, transition_costs
+from .candidates import Candidates
+from .strips import FIRST, SECOND, Evidence, StripCosts, strip_costs
+from .weights import CENTRE_LINE, DASHED, DOUBLE, LANE_LINE, EstimateWeights
+
+
+@dataclass
+class RoadEstimate:
+    """The cross-sections of one road for one side of traffic.
+
+    candidates : Candidates
+    sections : Sections; choice : (I,) which of them; posterior : (I, K); total : nats
+    first_direction : of the lanes met first from the left
+    """
+
+    candidates: Candidates
+    costs: StripCosts
+    sections: Sections
+    choice: np.ndarray
+    posterior: np.ndarray
+    total: float
+    first_direction: int
+
+
+def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: int, lane_width: float,
+                  weights: EstimateWeights = EstimateWeights()) -> RoadEstimate:
+    """The most probable sequence of cross-sections of one road.
+
+    Parameters
+    ----------
+    candidates : Candidates
+    evidence : Evidence of their intervals
+    first_direction : 1 or -1, of the lanes that are met first from the left: -1 with traffic on the right
+    lane_width : metres, the usual width of a lane
+    weights : EstimateWeights
+    """
+    costs = strip_costs(candidates, evidence, weights, lane_width, first_direction)
+    sections = best_sections(candidates, costs, weights)
+    sections.cost += _roads_of_many_lanes(candidates, costs, sections, weights)
+    area, divider = occupancy(candidates, costs, sections)
+    # where no line is seen, as on a crossing, much may change; where no line is known nothing can be said
+    paint = (candidates.made_of <= DOUBLE) & candidates.valid
+    shown = (paint * candidates.seen).sum(1) / np.maximum(paint.sum(1), 1)
+    choice, posterior = np.argmin(sections.cost, axis=1), np.zeros(sections.cost.shape)
+    known, total = np.flatnonzero(paint.any(1)), 0.0
+    if len(known):
+        between = np.r_[0.0, np.cumsum(candidates.length)]
+        gap = between[known[1:]] - between[known[:-1] + 1]
+        lanes, turns = transition_costs(area[:, known], divider[known], weights)
+        both = np.minimum(shown[known[:-1]], shown[known[1:]])
+        transition = sum(cost * (both * np.exp(-gap / reach))[:, None, None]
+                         for cost, reach in ((lanes, weights.lanes_remembered), (turns, weights.directions_remembered)))
+        choice[known], total, posterior[known] = best_sequence(sections.cost[known], transition)
+    return RoadEstimate(candidates, costs, sections, choice, posterior, total, first_direction)
+
+
+def _roads_of_many_lanes(c, costs, sections, weights):
+    """(I, K) nats of how many lanes lead which way."""
+    i, k, m = np.nonzero((sections.strip >= FIRST) & (sections.strip <= SECOND))
+    kind, end = sections.strip[i, k, m], sections.right[i, k, m]
+    number, first = costs.lanes[kind, i, m, end], costs.first_lanes[kind, i, m, end]
+    total, ahead = np.zeros((2, *sections.cost.shape))
+    np.add.at(total, (i, k), number)
+    np.add.at(ahead, (i, k), first)
+    one_way = (total > 0) & ((ahead == 0) | (ahead == total))
+    cost = np.where(one_way, np.array(weights.one_way)[np.clip(total, 1, len(weights.one_way)).astype(int) - 1], 0.0)
+    cost = np.where(~one_way & (np.abs(2 * ahead - total) > 1), weights.uneven, cost)
+    # where there are more than two lanes, dashes do not part the directions
+    kind_right = np.where(sections.right >= 0, np.take_along_axis(sections.strip, np.maximum(sections.right, 0), axis=2), -1)
+    parts = (sections.strip == FIRST) & (kind_right == SECOND)
+    drawn = np.take_along_axis(np.broadcast_to(c.made_of[:, None, :], sections.strip.shape), np.maximum(sections.right, 0), axis=2)
+    cost = cost + np.where((total > 2) & (parts & (drawn == DASHED)).any(2), weights.dashed_between_many, 0.0)
+    return cost * (c.length / weights.correlation)[:, None]
+
+
+@dataclass
+class LaneSpan:
+    """One lane over one interval.
+
+    interval : number; left, right : rows of Boundaries, place : from the right, of `count` lanes between them; direction : 1 or -1
+    confidence : 0 to 1
+    left_border, right_border : what the two separate, LANE_LINE ... OTHER_LINE
+    """
+
+    interval: int
+    left: int
+    right: int
+    place: int
+    count: int
+    direction: int
+    confidence: float
+    left_border: int
+    right_border: int
+
+
+def lane_spans(estimate: RoadEstimate) -> list[LaneSpan]:
+    """The lanes of the best sequence, interval by interval, from left to right."""
+    found = []
+    c, sections = estimate.candidates, estimate.sections
+    borders = boundary_uses(estimate)
+    for i, k in enumerate(estimate.choice.tolist()):
+        for m in np.flatnonzero((sections.strip[i, k] >= FIRST) & (sections.strip[i, k] <= SECOND)).tolist():
+            kind, end = int(sections.strip[i, k, m]), int(sections.right[i, k, m])
+            number, first = int(estimate.costs.lanes[kind, i, m, end]), int(estimate.costs.first_lanes[kind, i, m, end])
+            same = (sections.strip[i, :, m] == kind) & (sections.right[i, :, m] == end)
+            sure = float(estimate.posterior[i, same].sum())
+            for place in range(number):
+                direction = estimate.first_direction if place < first else -estimate.first_direction
+                left, right = (CENTRE_LINE if place in (first, first - 1) and 0 < first < number and inner == first else LANE_LINE
+                               for inner in (place, place + 1))
+                found.append(LaneSpan(
+                    i, int(c.rows[i, m, 1]), int(c.rows[i, end, 0]), number - 1 - place, number, direction, sure,
+                    int(borders[i, m]) if place == 0 else left, int(borders[i, end]) if place == number - 1 else right))
+    return found
+
+
+def boundary_uses(estimate: RoadEstimate) -> np.ndarray:
+    """(I, M) what each boundary separates in the best sequence, LANE_LINE ... OTHER_LINE; -1 where it bounds nothing."""
+    rows = np.arange(len(estimate.choice))
+    strip, right = estimate.sections.strip[rows, estimate.choice], estimate.sections.right[rows, estimate.choice]
+    before = np.full(strip.shape, -1)
+    i, m = np.nonzero(strip >= 0)
+    before[i, right[i, m]] = strip[i, m]
+    return np.where((strip >= 0) & (before >= 0), SEPARATES[before, strip], -1)

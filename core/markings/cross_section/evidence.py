@@ -1,0 +1,170 @@
+"""What speaks for or against lanes beside lines and curbs: the drive, the road surface, hatching, arrows and stop lines."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+
+from .candidates import FAR, Candidates
+from .sections import STATION_STEP
+from .strips import BIN, Evidence
+
+if TYPE_CHECKING:
+    from ...survey.frame.road_frame import RoadFrame
+    from ...survey.store.road_points import RoadPoints
+    from ..objects.marking_objects import MarkingObjects
+
+BINS = int(round(2 * FAR / BIN))
+STOP_REACH = 5.0    # m before and after a stop line where its lanes are still its lanes
+
+
+def driven_offsets(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Where the vehicle drove.
+
+    Parameters
+    ----------
+    frame : RoadFrame
+    road : number of the road
+    s : (K,) metres, stations
+
+    Returns
+    -------
+    d : (P, K) metres, offset of every pass; NaN where it did not drive
+    direction : (P,) int, 1 along the road's reference line, -1 against it
+    """
+    passes = frame.passes_of(road)
+    d = np.full((len(passes), len(s)), np.nan)
+    for row, p in zip(d, passes):
+        first, last = p.span
+        there = (s >= first) & (s <= last)
+        row[there] = p.at_station(s[there])[0]
+    return d, np.array([p.direction for p in passes], int)
+
+
+def surface_coverage(points: RoadPoints, road: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Where the road surface was scanned, and where it ends.
+
+    Parameters
+    ----------
+    points : RoadPoints
+    road : number of the road
+    s : (K,) metres, stations of a grid with steps of STATION_STEP
+
+    Returns
+    -------
+    covered : (K, BINS) bool, whether there are road points in a cell of STATION_STEP by BIN metres
+    ends : (2, K) metres, offsets of the left and the right end of the surface, NaN where unknown
+    """
+    count, first = len(s), int(np.floor(s[0] / STATION_STEP + 0.5))
+    covered = np.zeros(count * BINS, bool)
+    total, number = np.zeros((2, 2 * count))
+    for section in points.sections(road):
+        records = points.section(road, section)
+        k = np.floor(records.s / STATION_STEP + 0.5).astype(np.int64) - first
+        d = records.d
+        inside = (k >= 0) & (k < count) & (np.abs(d) < FAR)
+        k, d = k[inside], d[inside]
+        covered[k * BINS + ((d + FAR) / BIN).astype(np.int64)] = True
+        side = 2 * k + (d < 0)
+        total += np.bincount(side, records.half_width[inside], minlength=2 * count)
+        number += np.bincount(side, minlength=2 * count)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        ends = (total / number).reshape(-1, 2).T * np.array([[1.0], [-1.0]])
+    return covered.reshape(count, BINS), ends
+
+
+def between_ends(ends: np.ndarray, likely: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The same where only paint tells how far the surface reaches: everything between the ends that neighbouring paint knows.
+
+    Parameters
+    ----------
+    ends : (2, K) metres, NaN where there is no paint
+    likely : (2, K) metres, where it may end on a side that has no paint at all
+
+    Returns
+    -------
+    covered : (K, BINS) bool; ends : (2, K) metres, filled along the road
+    """
+    rows = np.arange(ends.shape[1])
+    filled = np.full(ends.shape, np.nan)
+    for side, values in enumerate(ends):
+        known = np.flatnonzero(np.isfinite(values))
+        if len(known):
+            filled[side] = np.interp(rows, known, values[known])
+    left, right = np.where(np.isnan(filled), likely, filled)
+    offsets = (np.arange(BINS) + 0.5) * BIN - FAR
+    return (offsets < left[:, None]) & (offsets > right[:, None]), filled
+
+
+def hatched_places(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray | None:
+    """(K, BINS) bool, where bars of hatched areas are painted; None where there are none."""
+    rows = np.flatnonzero((markings.road == road) & (markings.kind == "hatch") & np.isfinite(markings.extent[:, 0]))
+    if not len(rows):
+        return None
+    shape = shapely.union_all(shapely.force_2d(markings.outlines.polygons()[rows]))
+    shapely.prepare(shape)
+    first, last, low, high = (markings.extent[rows, k] for k in range(4))
+    near = np.zeros(len(s), bool)
+    for a, b in zip(np.searchsorted(s, first), np.searchsorted(s, last, side="right")):
+        near[a:b] = True
+    offsets = (np.arange(BINS) + 0.5) * BIN - FAR
+    across = np.flatnonzero((offsets >= low.min() - BIN) & (offsets <= high.max() + BIN))
+    found, along = np.zeros((len(s), BINS), bool), np.flatnonzero(near)
+    if len(along) and len(across):
+        at_s, at_d = np.repeat(s[along], len(across)), np.tile(offsets[across], len(along))
+        inside = shapely.contains_xy(shape, *frame.road(road).to_map(at_s, at_d))
+        found[np.ix_(along, across)] = inside.reshape(len(along), len(across))
+    return found
+
+
+def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, directions: np.ndarray, covered: np.ndarray | None = None,
+                hatched: np.ndarray | None = None, markings: MarkingObjects | None = None, road: int = 0) -> Evidence:
+    """The Evidence of each interval, from what is known at each station.
+
+    Parameters
+    ----------
+    candidates : Candidates
+    s : (K,) metres
+    driven, directions : as `driven_offsets` gives them
+    covered, hatched : (K, BINS) bool, or None
+    markings : MarkingObjects, of which arrows and stop lines count; or None
+    road : number of the road
+    """
+    size = np.diff(np.r_[candidates.first, candidates.last[-1] + 1])
+
+    def share(values):
+        return None if values is None else np.add.reduceat(values.astype(np.float32), candidates.first, axis=0) / size[:, None]
+
+    known = np.isfinite(driven)
+    count = np.add.reduceat(known, candidates.first, axis=1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        where = np.where(2 * count >= size, np.add.reduceat(np.where(known, driven, 0.0), candidates.first, axis=1) / count, np.nan)
+    arrows, stops = np.empty((0, 2)), np.empty((0, 3))
+    if markings is not None:
+        arrows = _arrows(candidates, s, markings, road)
+        stops = _stop_lines(candidates, s, markings, road)
+    return Evidence(where, directions, share(covered), share(hatched), arrows, stops)
+
+
+def _extents(markings, road, kind):
+    found = markings.extent[(markings.road == road) & (markings.kind == kind)]
+    return found[np.isfinite(found[:, 0])]
+
+
+def _arrows(candidates, s, markings, road):
+    """(A, 2) interval and offset of the middle of each arrow."""
+    extent = _extents(markings, road, "arrow")
+    middle = extent[:, :2].mean(axis=1)
+    extent, middle = (values[(middle >= s[0]) & (middle <= s[-1])] for values in (extent, middle))
+    interval = np.searchsorted(s[candidates.first], middle, side="right") - 1
+    return np.c_[interval.clip(0), extent[:, 2:].mean(axis=1)]
+
+
+def _stop_lines(candidates, s, markings, road):
+    """(S, 3) interval, least and greatest offset of the stop lines on or near it."""
+    begin, end = s[candidates.first], s[candidates.last]
+    found = [(k, low, high) for first, last, low, high in _extents(markings, road, "stop")
+             for k in np.flatnonzero((begin <= last + STOP_REACH) & (end >= first - STOP_REACH)).tolist()]
+    return np.array(found).reshape(-1, 3)

@@ -1,0 +1,133 @@
+"""The estimate of lines and lanes for all roads of a survey: the side of traffic is one for all."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .candidates import Boundaries, boundary_candidates, gather_boundaries
+from .estimate import RoadEstimate, estimate_road, lane_spans
+from .evidence import between_ends, driven_offsets, evidence_of, hatched_places, surface_coverage
+from .sections import STATION_STEP, CrossSections
+from .weights import EstimateWeights
+
+if TYPE_CHECKING:
+    from ...survey.frame.road_frame import RoadFrame
+    from ...survey.store.road_points import RoadPoints
+    from ..objects.marking_objects import MarkingObjects
+
+LENGTH_OF_USUAL = 50.0    # m of lanes that weigh as much as what is usual in the country
+WIDENED_RADIUS = 60.0     # m: lanes are widened in tighter bends (most codes widen below 100 to 200 m; less than 0.3 m there)
+SURE_SIDE = 3.0           # nats by which one side of traffic must be more probable than the other to be sure
+
+
+@dataclass
+class EstimatedRoad:
+    """One road: its lines on a grid of stations, everything that may bound lanes, and the estimate."""
+
+    lines: CrossSections
+    boundaries: Boundaries
+    estimate: RoadEstimate
+
+
+@dataclass
+class RoadEstimates:
+    """All roads of a survey.
+
+    roads : {number: EstimatedRoad}
+    side : "right" or "left"; sure : whether the survey shows that
+    lane_width : metres, usual
+    """
+
+    roads: dict[int, EstimatedRoad]
+    side: str
+    sure: bool
+    lane_width: float
+
+
+def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_width: float, side: str = "automatic",
+                   curbs: dict[int, CrossSections] | None = None, markings: MarkingObjects | None = None,
+                   road_points: RoadPoints | None = None, paint: RoadPoints | None = None, width_asked: bool = False,
+                   weights: EstimateWeights = EstimateWeights()) -> RoadEstimates:
+    """Estimate lines and lanes.
+
+    Parameters
+    ----------
+    lines : {number of the road: CrossSections}
+    frame : RoadFrame
+    usual_width : metres, of lanes where the lines do not tell
+    side : "right", "left" or "automatic"
+    curbs : {number: CrossSections of road edges} or None
+    markings : MarkingObjects or None
+    road_points : RoadPoints or None; paint : points of markings, which serve where there are no road points, or None
+    width_asked : whether `usual_width` is the user's own
+    weights : EstimateWeights
+    """
+    known = {}
+    if width_asked:
+        weights = replace(weights, width_sigma=weights.width_sigma_asked, other_width=0.0, odd_width=weights.odd_width_asked)
+    if side != "automatic":
+        weights = replace(weights, driven_against=weights.driven_against_asked)
+    for number, of_road in lines.items():
+        driven = driven_offsets(frame, number, of_road.s)
+        likely = _likely_ends(of_road, usual_width)
+        covered, ends = _surface(road_points, paint, number, of_road.s, likely)
+        open_ends = likely if ends is None else np.where(np.isnan(ends).all(1, keepdims=True), likely, np.nan)
+        hatched = hatched_places(markings, frame, number, of_road.s) if markings is not None else None
+        boundaries = gather_boundaries(of_road, (curbs or {}).get(number), ends, open_ends,
+                                       np.abs(frame.road(number).curvature(of_road.s)) > 1 / WIDENED_RADIUS)
+        candidates = boundary_candidates(boundaries, weights)
+        known[number] = boundaries, candidates, evidence_of(candidates, of_road.s, *driven, covered, hatched, markings, number)
+    sides = {"right": (-1,), "left": (1,)}.get(side, (-1, 1))
+    found = {first: _estimates(known, first, usual_width, weights) for first in sides}
+    total = {first: sum(one.total for one in of_roads.values()) + (weights.left_hand if first > 0 else 0.0) for first, of_roads in found.items()}
+    best = min(total, key=lambda first: total[first])
+    width = usual_width if width_asked else _usual_width(known, found[best], usual_width)
+    # the road's own width tells lanes better than that of a country
+    if width != usual_width:
+        found[best] = _estimates(known, best, width, weights)
+    roads = {number: EstimatedRoad(lines[number], known[number][0], estimate) for number, estimate in found[best].items()}
+    sure = len(sides) == 1 or abs(total[-1] - total[1]) > SURE_SIDE
+    return RoadEstimates(roads, "right" if best < 0 else "left", sure, width)
+
+
+def _surface(road_points, paint, number, s, likely):
+    """What was scanned of the surface and where it ends, as far as any points tell."""
+    if road_points is not None:
+        return surface_coverage(road_points, number, s)
+    if paint is not None:
+        return between_ends(surface_coverage(paint, number, s)[1], likely)
+    return None, None
+
+
+def _likely_ends(lines, width):
+    """(2, K) metres, where the road would end beyond the outermost lines if it had one more lane there."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)
+        return np.stack([np.nanmax(lines.d, axis=0) + width, np.nanmin(lines.d, axis=0) - width])
+
+
+def _estimates(known, first_direction, width, weights):
+    return {number: estimate_road(candidates, evidence, first_direction, width, weights) for number, (_, candidates, evidence) in known.items()}
+
+
+def _usual_width(known, estimates, usual):
+    """Median width, metres, of lanes between painted lines."""
+    widths, lengths = [], []
+    for number, estimate in estimates.items():
+        boundaries, candidates, _ = known[number]
+        for span in lane_spans(estimate):
+            if span.place == 0 and boundaries.painted[span.left] and boundaries.painted[span.right]:
+                rows = slice(candidates.first[span.interval], candidates.last[span.interval] + 1)
+                widths.append(float(np.nanmedian(boundaries.d[span.left, rows] - boundaries.d[span.right, rows])) / span.count)
+                lengths.append(STATION_STEP * (rows.stop - rows.start))
+    if not lengths:
+        return usual
+    widths, lengths = np.append(widths, usual), np.append(lengths, LENGTH_OF_USUAL)
+    order = np.argsort(widths)
+    total = np.cumsum(lengths[order])
+    middle = float(widths[order[int(np.searchsorted(total, total[-1] / 2))]])
+    return (middle * sum(lengths[:-1]) + usual * LENGTH_OF_USUAL) / sum(lengths)

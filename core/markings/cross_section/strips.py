@@ -1,0 +1,202 @@
+"""What it costs to take the strip between two boundaries for a lane, for several lanes, or for what nobody drives on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...countries.neutral import NEUTRAL
+from .candidates import FAR, Candidates, surface_lane_width
+from .weights import CURB, DOUBLE, OPEN, OUTSIDE, SURFACE, EstimateWeights
+
+# Strips from left to right: what nobody drives on, lanes of the direction that is met first, lanes of both directions without
+# paint between them, lanes of the other direction, and again what nobody drives on
+REST_FIRST, FIRST, BOTH, SECOND, REST_SECOND = STRIPS = range(5)
+MAX_LANES = 4              # between two boundaries without paint between them
+HATCHED_SHARE = 0.12       # of a strip that is covered by hatching: its bars leave most of it free
+ASPHALT_OF_A_LANE = 2.2, 3.0   # m of asphalt that could be a lane: between two lines, and elsewhere
+ASPHALT_SOFTNESS = 0.2     # m by which that is uncertain
+OTHER_SIGMA = 0.8          # m, scatter of lane widths from road to road
+MIN_SCANNED_SHARE = 0.6    # of a lane's width that must be seen of a lane beside the end of the surface
+BIN = 0.2                  # m across, of what is seen of the surface and of hatching
+
+
+@dataclass
+class Evidence:
+    """What is seen beside boundaries, by interval.
+
+    driven : (P, I) m, offset of each pass, NaN where it was not; directions : (P,) 1 along, -1 against the road
+    asphalt, hatched : (I, B) share of each bin of BIN metres, from -FAR on, that is road surface or hatched; None where unknown
+    arrows : (A, 2) interval and offset; stops : (S, 3) interval, least and greatest offset
+    """
+
+    driven: np.ndarray
+    directions: np.ndarray
+    asphalt: np.ndarray | None
+    hatched: np.ndarray | None
+    arrows: np.ndarray
+    stops: np.ndarray
+
+
+@dataclass
+class StripCosts:
+    """Costs of all strips.
+
+    cost : (5, I, M, M) nats, of a strip of one kind between two boundaries; inf where it cannot be
+    lanes, first_lanes : (5, I, M, M) how many lanes it holds at that cost, and how many of them are of the direction that is met first
+    lane_width : metres, the usual width of a lane; beside a curb or the end of the surface no lane is wider
+    """
+
+    cost: np.ndarray
+    lanes: np.ndarray
+    first_lanes: np.ndarray
+    lane_width: float
+
+
+def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWeights, lane_width: float, first_direction: int) -> StripCosts:
+    """Costs of all strips, the lanes of `first_direction` (1 or -1) being met first from the left."""
+    c, w = candidates, weights
+    count, size = c.left.shape
+    scale = (c.length / w.correlation)[:, None, None]
+    d_left, d_right = c.right[:, :, None], c.left[:, None, :]
+    width = d_left - d_right
+    ordered = c.valid[:, :, None] & c.valid[:, None, :] & (np.arange(size)[:, None] < np.arange(size))
+    outside = (c.made_of == OUTSIDE)[:, :, None] | (c.made_of == OUTSIDE)[:, None, :]
+    through, rest = _passed_over(c, w)
+    hatched = _share_between(evidence.hatched, c, width) > HATCHED_SHARE if evidence.hatched is not None else np.zeros(width.shape, bool)
+    paint = c.made_of <= DOUBLE
+    both_paint, any_paint = paint[:, :, None] & paint[:, None, :], paint[:, :, None] | paint[:, None, :]
+    asphalt = width * _share_between(evidence.asphalt, c, width) if evidence.asphalt is not None else np.where(both_paint, width, 0.0)
+    arrows_in, arrows_off = _arrows(c, evidence.arrows, w)
+
+    cost = np.full((len(STRIPS), count, size, size), np.inf)
+    lanes, first_lanes = np.zeros((2, len(STRIPS), count, size, size), int)
+    between = np.where(width > NEUTRAL.widest_lane, w.unused_wide, w.unused_asphalt[0])
+    unused = np.where(both_paint, _unused(asphalt, between, ASPHALT_OF_A_LANE[0]), _unused(asphalt, w.unused_asphalt[1]))
+    inside = _inside(evidence.driven, c)
+    idle = scale * (np.where(hatched, 0.0, unused) + rest) + arrows_in * w.arrow_outside + scale * w.driven_rest * inside.sum(0)
+    cost[REST_FIRST] = cost[REST_SECOND] = np.where(ordered, idle, np.inf)
+
+    # beside a curb or the end of the surface a lane need not reach there
+    open_side = np.isin(c.made_of, (CURB, SURFACE, OPEN))
+    loose = open_side[:, :, None] ^ open_side[:, None, :]
+    by_surface = np.isin(c.made_of, (SURFACE, OPEN))
+    hidden = loose & (by_surface[:, :, None] | by_surface[:, None, :])
+    off = np.clip(1 - asphalt / np.maximum(width, 0.1), 0, 1) if evidence.asphalt is not None else 0.0
+    possible = ordered & ~outside & any_paint & (width < MAX_LANES * NEUTRAL.widest_lane)
+    base = scale * (through + hatched * w.hatched_lane + off * w.off_asphalt)
+    for number in range(1, MAX_LANES + 1):
+        each = np.where(loose, np.minimum(width / number, lane_width), width / number)
+        # the surface may end at what hides it, and reach into a side street: a lane is as wide as the others there
+        beside_end = surface_lane_width(width, number, lane_width, c.bend[:, None, None])
+        each = np.where(hidden & (number * lane_width * MIN_SCANNED_SHARE < width), beside_end, each)
+        begin = np.where(loose & open_side[:, :, None], d_right + number * each, d_left)
+        fits = _width_cost(each, lane_width, w) + _unused(asphalt - number * lane_width, w.unused_asphalt[1]) * loose
+        # what lies beyond the end of the surface
+        beyond = np.clip(1 - width / np.maximum(number * each, 0.1), 0, 1) * hidden
+        total = base + scale * (fits + beyond * w.off_asphalt) + _dividers(arrows_off, each, number, begin, w)
+        total = np.where(possible & (each >= NEUTRAL.narrowest_lane), total, np.inf)
+        for split in range(number + 1):
+            kind = SECOND if split == 0 else FIRST if split == number else BOTH
+            alike = max(split - 1, 0) + max(number - split - 1, 0)
+            unpainted = (0 < split < number) * w.unpainted_divider + alike * w.unpainted_lane_line
+            driven = total + scale * unpainted + scale * _driven_cost(evidence, inside, begin, each, number, split, first_direction, w)
+            better = driven < cost[kind]
+            cost[kind][better], lanes[kind][better], first_lanes[kind][better] = driven[better], number, split
+    _stop_lines(cost, evidence.stops, d_left, d_right, w)
+    return StripCosts(cost, lanes, first_lanes, lane_width)
+
+
+def _unused(asphalt, cost, enough=ASPHALT_OF_A_LANE[1]):
+    """Nats of some metres of asphalt where no lane is."""
+    return cost / (1 + np.exp(-(asphalt - enough) / ASPHALT_SOFTNESS))
+
+
+def _width_cost(width, usual, w):
+    """Nats of a lane of some width, against one of the usual width: most lanes of a road are alike, some as on other roads, few are odd."""
+    own = np.exp(-0.5 * ((width - usual) / w.width_sigma) ** 2)
+    other = np.exp(-0.5 * ((width - NEUTRAL.usual_lane) / OTHER_SIGMA) ** 2)
+    share = (1 - w.other_width - w.odd_width) * own + w.other_width * other + w.odd_width
+    return np.where((width >= NEUTRAL.narrowest_lane) & (width <= w.widest_odd), -np.log(share), np.inf)
+
+
+def _passed_over(c, w):
+    """(I, M, M) costs of the boundaries that lie between two others, inside a lane and where nobody drives; per observation."""
+    paint = c.made_of <= DOUBLE
+    there = c.valid & (c.made_of != OUTSIDE)
+    shown = 0.5 + 0.5 * c.seen
+    lane = np.where(paint, w.lane_through_paint * c.trust * shown,
+                    np.select([c.made_of == CURB, c.made_of == SURFACE], [w.lane_through_curb * c.seen, w.lane_through_surface], 0.0)) * there
+    rest = np.where(paint, w.paint_in_rest * c.trust * shown, 0.0) * there
+    found = []
+    for values in (lane, rest):
+        total = np.cumsum(values, axis=1)
+        found.append(np.maximum(total[:, None, :] - values[:, None, :] - total[:, :, None], 0.0))
+    return found
+
+
+def _share_between(shares, c, width):
+    """(I, M, M) share of the strip between two boundaries that is covered."""
+    total = np.concatenate([np.zeros((len(shares), 1)), np.cumsum(shares, axis=1)], axis=1) * BIN
+
+    def up_to(d):
+        at = np.clip((d + FAR) / BIN, 0, shares.shape[1] - 1e-6)
+        k = at.astype(int)
+        row = np.arange(len(shares))[:, None]
+        return total[row, k] + (at - k) * (total[row, k + 1] - total[row, k])
+
+    return np.clip(up_to(c.right)[:, :, None] - up_to(c.left)[:, None, :], 0, None) / np.maximum(width, 0.1)
+
+
+def _inside(driven, c):
+    """(P, I, M, M) whether a pass drove between two boundaries."""
+    d = driven[:, :, None, None]
+    with np.errstate(invalid="ignore"):
+        return (d < c.right[None, :, :, None]) & (d >= c.left[None, :, None, :])
+
+
+def _driven_cost(evidence, inside, d_left, each, number, split, first_direction, w):
+    """Nats per observation of where and which way the vehicle drove in strips of `number` lanes, of which `split` are of the first direction."""
+    cost = np.zeros(each.shape)
+    for p, direction in enumerate(evidence.directions.tolist()):
+        if not inside[p].any():
+            continue
+        with np.errstate(invalid="ignore", divide="ignore"):
+            place = (d_left - evidence.driven[p][:, None, None]) / np.maximum(each, 0.1)
+        lane = np.clip(np.floor(np.nan_to_num(place)), 0, number - 1)
+        off = (np.nan_to_num(place) - lane - 0.5) * each
+        way = np.where(lane < split, first_direction, -first_direction)
+        cost += inside[p] * (np.minimum(0.5 * (off / w.driven_sigma) ** 2, w.driven_astride) + np.where(way == direction, 0.0, w.driven_against))
+    return cost
+
+
+def _arrows(c, arrows, w):
+    """(I, M, M) number of arrows between two boundaries, and a list of (interval, offset)."""
+    number = np.zeros((*c.left.shape, c.left.shape[1]))
+    found = []
+    for interval, d in arrows:
+        k = int(interval)
+        inside = (d < c.right[k][:, None]) & (d > c.left[k][None, :])
+        number[k] += inside
+        found.append((k, float(d), inside))
+    return number, found
+
+
+def _dividers(arrows, each, count, d_left, w):
+    """(I, M, M) nats of arrows beside the middle of their lanes."""
+    cost = np.zeros(each.shape)
+    for k, d, inside in arrows:
+        place = (d_left[k] - d) / np.maximum(each[k], 0.1)
+        lane = np.clip(np.floor(place), 0, count - 1)
+        cost[k] += inside * np.minimum(0.5 * ((place - lane - 0.5) * each[k] / w.arrow_sigma) ** 2, w.arrow_outside)
+    return cost
+
+
+def _stop_lines(cost, stops, d_left, d_right, w):
+    """Lanes of both directions without paint between them where a stop line crosses both."""
+    for interval, low, high in stops:
+        k = int(interval)
+        middle = (d_left[k] + d_right[k]) / 2
+        cost[BOTH, k] += np.where((middle > low + 0.5) & (middle < high - 0.5), w.split_stop, 0.0)
+

@@ -1,0 +1,110 @@
+"""The weights of the evidence from which the cross-section of a road is estimated."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+# What a boundary is made of
+SOLID, DASHED, DOUBLE, CURB, SURFACE, OPEN, OUTSIDE = range(7)
+PAINTED = (SOLID, DASHED, DOUBLE)
+# What a boundary separates
+LANE_LINE, CENTRE_LINE, EDGE_LINE, OTHER_LINE = range(4)
+
+
+def _costs(*shares: float) -> tuple[float, ...]:
+    return tuple(float(-np.log(share)) for share in shares)
+
+
+@dataclass(frozen=True)
+class EstimateWeights:
+    """Costs in nats (-log of a probability); those of what goes on along the road are for `correlation` metres of it.
+
+    The probabilities are shares as road authorities paint and build (the dash and line rules of the catalogue of countries);
+    where those say nothing they are our own estimates, rounded.
+
+    correlation : metres of road that count as one observation: what neighbouring metres show is not independent
+    solid, dashed, double : share of lane lines, centre lines, edge lines and other lines that are drawn like that
+    curb, surface : the same of boundaries that are a curb, or where the road surface ends without one
+    open_end : the same where nothing is known beyond the outermost line
+    named : of a line that separates something else than its layer says
+    bridged : of a boundary that is not seen here, but before and behind
+    short : of a painted boundary by the metres that it lacks to `long_line`, at most
+    stroke, long_line : m of paint that strokes of symbols have too, and that make a line sure
+    lane_through_paint, lane_through_curb, lane_through_surface : of a seen line, curb or end of the surface inside a lane
+    paint_in_rest : of a seen line inside a strip where nobody drives
+    width_sigma, width_sigma_asked : m, scatter of lane widths on one road, and about the width that the user named
+    other_width : share of lanes as wide as lanes are elsewhere; odd_width, odd_width_asked : share of lanes of any other width up to `widest_odd`
+    unpainted_divider, unpainted_lane_line : of a border between the two directions, and between two lanes of one, where nothing is painted
+    unused_asphalt : of asphalt as wide as a lane where no lane is: between two lines, and beside a curb or the end of the surface
+    unused_wide : the same of asphalt between two lines that is too wide for a lane
+    off_asphalt : of a lane on what is no road surface
+    driven_rest : of a vehicle that drives where no lane is
+    driven_against : of a vehicle that drives against its lane
+    driven_against_asked : the same where the user named the side of traffic
+    driven_sigma : m, scatter of a vehicle about the middle of its lane; driven_astride : the most that this costs
+    hatched_lane : of a lane over a hatched area
+    arrow_outside, arrow_sigma : of an arrow where no lane is; m, scatter of arrows about the middle of their lane
+    wrong_side : of oncoming traffic on the near side
+    split_stop : of a stop line before lanes of both directions
+    change : of a metre across that becomes lane, or ceases to be one; turn : that changes its direction
+    divider_change : of a border between lanes that begins or ends
+    lanes_remembered, directions_remembered : m without any line, as over a junction, that leave a third of what was known before
+    one_way : of one, two, three, four lanes and more that all lead one way; uneven : of directions whose numbers of lanes differ by two and more
+    dashed_between_many : of dashes between the directions of a road of more than two lanes
+    left_hand : of traffic on the left, against traffic on the right
+    """
+
+    correlation: float = 20.0
+    solid: tuple[float, ...] = _costs(0.1, 0.3, 0.9, 0.15)
+    dashed: tuple[float, ...] = _costs(0.8, 0.4, 0.1, 0.3)
+    double: tuple[float, ...] = _costs(0.05, 0.9, 0.05, 0.05)
+    curb: tuple[float, ...] = _costs(0.001, 0.02, 0.9, 0.7)
+    surface: tuple[float, ...] = _costs(0.001, 0.001, 0.6, 0.8)
+    open_end: tuple[float, ...] = (np.inf, np.inf, 2.3, np.inf)
+    named: float = 3.0
+    bridged: float = 0.7
+    short: float = 0.3
+    stroke: float = 3.0
+    long_line: float = 25.0
+    lane_through_paint: float = 10.0
+    lane_through_curb: float = 12.0
+    lane_through_surface: float = 3.0
+    paint_in_rest: float = 6.0
+    width_sigma: float = 0.45
+    width_sigma_asked: float = 0.25
+    other_width: float = 0.25
+    odd_width: float = 0.05
+    odd_width_asked: float = 0.005
+    widest_odd: float = 8.0
+    unpainted_divider: float = 2.2
+    unpainted_lane_line: float = 3.2
+    unused_asphalt: tuple[float, float] = (4.5, 2.0)
+    unused_wide: float = 2.5
+    off_asphalt: float = 3.0
+    driven_rest: float = 8.0
+    driven_against: float = 12.0
+    driven_against_asked: float = 0.5
+    driven_sigma: float = 0.8
+    driven_astride: float = 3.0
+    hatched_lane: float = 8.0
+    arrow_outside: float = 4.0
+    arrow_sigma: float = 0.4
+    wrong_side: float = 8.0
+    split_stop: float = 3.0
+    change: float = 0.5
+    turn: float = 3.0
+    divider_change: float = 1.5
+    lanes_remembered: float = 10.0
+    directions_remembered: float = 40.0
+    one_way: tuple[float, ...] = (0.4, 1.2, 0.3, 1.2)
+    uneven: float = 1.2
+    dashed_between_many: float = 1.5
+    left_hand: float = 0.7
+
+    @property
+    def boundary(self) -> np.ndarray:
+        """(7, 4) costs by what a boundary is made of and what it separates."""
+        impossible = (np.inf,) * 4
+        return np.array([self.solid, self.dashed, self.double, self.curb, self.surface, self.open_end, impossible])
