@@ -90,18 +90,25 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
         missing = missing_packages()
         if missing:
             raise QgsProcessingException(missing)
+        results, failure = self._attempt(parameters, context, feedback)
+        if not failure:
+            return results
+        # QGIS never lets go of an exception: raised where the work was, it would keep all of the survey in memory
+        raise QgsProcessingException(failure)
+
+    def _attempt(self, parameters, context, feedback):
+        """(results, "") of a run, or (None, why there are none); either is noted in the table of runs."""
         began, call = datetime.now(), QgisCall(self, parameters, context, feedback)
         try:
             results = run(call, FeedbackProgress(feedback))
             note_run(self.declaration, call.survey, began, results)
-            return results
+            return results, ""
         except RoadExtractionError as error:
             failure = str(error)
         except Cancelled:
             failure = tr("Cancelled")
         note_run(self.declaration, call.survey, began, failure=failure)
-        # QGIS never lets go of an exception: raised where the work was, it would keep all of the survey in memory
-        raise QgsProcessingException(failure)
+        return None, failure
 
 
 def out_of_range(definitions, parameters):

@@ -172,6 +172,25 @@ def manual():
     window.close()
 
 
+def batch():
+    """Three surveys in one batch, filled by a list of their point clouds."""
+    from processing.gui.BatchAlgorithmDialog import BatchAlgorithmDialog
+    from qgis.core import QgsApplication, QgsProcessingContext
+
+    window = BatchAlgorithmDialog(QgsApplication.processingRegistry().createAlgorithmById("lanewright:roadmap"), iface.mainWindow())
+    panel = window.mainWidget()
+    for name, file in (("POINT_CLOUDS", "*.laz"), ("TRAJECTORY", "trajectory.csv")):
+        column = panel.parameter_to_column[name]
+        fill = panel.tblParameters.cellWidget(0, column)
+        for row, day in enumerate(("monday", "tuesday", "wednesday")):
+            fill.setRowValue(row, f"/data/B12/{day}/{file}", QgsProcessingContext())
+        panel.tblParameters.setColumnWidth(column, 330)
+    window.resize(1000, 380)  # the manual shows its upper part
+    window.show()
+    keep(window, "window_batch")
+    window.close()
+
+
 def designer():
     """The chain as a model, in the model designer."""
     ours = plugins["lanewright"].menu
@@ -190,7 +209,7 @@ def drive():
     try:
         iface.mainWindow().resize(1380, 860)
         wait(2)
-        for step in (menu, toolbox, dialog, sample, doubts, layout, manual, designer):
+        for step in (menu, toolbox, dialog, sample, doubts, layout, manual, batch, designer):
             step()
         say("finished")
     except BaseException:

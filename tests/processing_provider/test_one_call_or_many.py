@@ -147,7 +147,7 @@ def test_results_one_does_not_want_are_left_out(survey, tmp_path):
         "POINT_CLOUDS": [survey["POINT_CLOUD"]], "TRAJECTORY": survey["TRAJECTORY"],
         "DRIVING_LINES": str(tmp_path / "lines.gpkg"),
     })
-    assert set(results) == {"DRIVING_LINES"}
+    assert {name for name, value in results.items() if isinstance(value, str)} == {"DRIVING_LINES"}, "the rest are numbers"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["lines.gpkg"]
 
 
