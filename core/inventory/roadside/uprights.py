@@ -157,6 +157,8 @@ def _contiguous_top(own, above, n):
     end = np.where(low_end * TALL_BIN < TALL, low_end, end) * TALL_BIN
     part = above < end[own]
     own, above = own[part], above[part]
+    if not len(above):
+        return np.full(n, FIRST_BIN * HEIGHT_BIN)
     count = np.bincount(own, minlength=n)
     start = np.cumsum(count) - count
     return np.where(count > 0, above[np.minimum(start + np.floor(TOP_SHARE * np.maximum(count - 1, 0)).astype(np.int64), len(above) - 1)],

@@ -10,8 +10,8 @@ from lanewright.core.inventory.roadside.find import find_roadside
 from lanewright.core.inventory.roadside.layers import roadside_to_features
 from lanewright.core.inventory.roadside.settings import RoadsideSettings
 from lanewright.core.report.roadside import roadside_report
-from measured_streets import GROUND, Drive
-from roadside_streets import BESIDE, HEIGHTS, LENGTH, Thing, road_with
+from measured_streets import GROUND, Drive, edges_of, measured_road
+from roadside_streets import BESIDE, HEIGHTS, LENGTH, Thing, points_of, road_with
 
 KINDS = ("guard_rail", "barrier", "wall", "fence", "hedge")
 # rails and barriers at the edge, walls, fences and hedges behind verge or sidewalk, with gaps between them
@@ -77,6 +77,18 @@ def test_nothing_is_invented_on_an_empty_road_or_among_cars_and_buildings():
         survey, edges = road_with(things)
         found = found_in(survey, edges)
         assert not [line.kind for line in found.lines if line.kind != "gutter"] and not sum(map(len, found.poles.values()))
+
+
+def test_what_only_hangs_beside_the_road_is_no_line():
+    edges = edges_of(LENGTH)
+    hanging = Thing("wall", 6.0, 10, 100, 0.6)
+
+    def above(rng):
+        x, y, z = points_of(hanging, rng)
+        return x, y, z + 1.5
+
+    over = measured_road(length=LENGTH, reach=14.0, above=above)
+    assert {line.kind for line in found_in(over, edges).lines} <= {"gutter"}
 
 
 def test_a_gutter_lies_where_the_road_falls_to_and_not_on_its_higher_side():
