@@ -20,7 +20,8 @@ from ..common.progress import Progress
 from .frame.projection import POINTS_PER_PROJECTION, RoadProjection
 from .las.parallel_reader import ParallelCloudReader
 from .las.scale import LasAxis
-from .scanners import ScannerCensus, times_by_value
+from .las.scanners import ScannerCensus, times_by_value
+from .las.time_slots import TimeSlots
 from .sensor_height import DEFAULT_SENSOR_HEIGHT, HeightHistogram, VehicleTracks, estimate_sensor_height
 from .store.columns import Columns
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, fill_units, point_dtype, to_units
@@ -43,6 +44,7 @@ KEPT_ABOVE_ROAD, KEPT_BELOW_ROAD = 3.5, 4.0  # m: vehicles that hide a curb abov
 # so that the points returned do not depend on the order of the files
 INGEST_HEIGHT_MARGIN = 1.5
 HEIGHT_CELL_BITS = 12      # of a station in units of 0.1 mm: the height of the road is looked up every 0.41 m
+MAX_SPLIT_SAMPLES = 1_500_000   # points sampled, by which two scanners are told apart
 SCANNER_FIELDS = ("point_source_id", "scanner_channel")
 
 
@@ -288,6 +290,8 @@ class SurveyReader:
     unplaced_time : number of points at a time of no pass
     heights : {pass number: metres from the trajectory down to the road}
     uneven : see `HeightHistogram.uneven`
+    slots : TimeSlots of the points sampled, to tell scanners apart that no field distinguishes
+    sampled : their (N,) times and (N, 3) units of 0.1 mm, in no order; without times none
     """
 
     def __init__(self, frame: RoadFrame, store: SectionStore, corridor: float, has_time: bool, week_ends: bool = False,
@@ -295,6 +299,8 @@ class SurveyReader:
         self.frame, self.store, self.above_road = frame, store, above_road
         self.census, self.darkest, self.brightest, self.unplaced_time = ScannerCensus(), 65535, 0, 0
         self.tracks = VehicleTracks(frame)
+        self.slots = TimeSlots(1)
+        self.sampled: list[tuple[np.ndarray, np.ndarray]] = []
         self._blocks = BlockProjector(frame, corridor, has_time, week_ends)
         # created once the rough height of the road is known; until then parts of blocks wait
         self._ground: HeightFilter | None = None
@@ -305,6 +311,7 @@ class SurveyReader:
     def read(self, files: list[CloudHeader], block: int, progress: Progress) -> None:
         """Read all files, `block` points at a time."""
         total, done = sum(file.count for file in files), 0
+        self.slots = TimeSlots.for_points(total, MAX_SPLIT_SAMPLES)
         threads = min(MAX_INGEST_THREADS, os.cpu_count() or 1)
         with ParallelCloudReader(DECODED_LAYERS) as readers, ThreadPoolExecutor(threads) as pool:
             waiting: deque[Future] = deque()
@@ -341,7 +348,15 @@ class SurveyReader:
         """Points partitioned by section for the store; those on the track enter the height histogram."""
         for number, drops in self.tracks.drops(road, points, own):
             self._histogram.add(number, drops)
+        if self._blocks.has_time:
+            self._sample(points, own)
         return self.store.partition(road, points, own)
+
+    def _sample(self, points, own):
+        kept = self.slots.kept(points["time"]) & ((points["returns"] & 15) <= 1)
+        rows = np.flatnonzero(kept if own is None else kept & own)
+        if len(rows):
+            self.sampled.append((points["time"][rows], np.stack([points[name][rows] for name in "xyz"], axis=1)))
 
     def _take(self, found, parts, parted, count):
         """Take the result of a block, in the order of the files."""

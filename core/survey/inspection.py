@@ -15,8 +15,8 @@ from ..common.setting import check_limits, setting
 from ..io.crs import check_metric, horizontal_part, parse_crs
 from .frame.road_frame import build_frame
 from .las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
+from .las.scanners import ScannerCensus
 from .open_survey import SurveySettings, match_clocks
-from .scanners import ScannerCensus
 from .sensor_height import HEIGHT_PEAK_REACH, OWN_TRACK_HALF_WIDTH, sensor_height_of
 from .trajectory.reprojection import reproject_trajectory
 from .trajectory.trajectory import Trajectory, clean_trajectory

@@ -25,7 +25,7 @@ from .frame.road_frame import CORRIDOR, build_frame
 from .ingest import KEPT_ABOVE_ROAD, KEPT_BELOW_ROAD, SurveyReader, unwrap_week
 from .las.parallel_reader import ParallelCloudReader
 from .las.reader import POINTS_PER_BLOCK, CloudHeader, read_headers
-from .scanners import numbers_by_value
+from .las.scanners import numbers_by_value
 from .store.records import COORDINATE_SCALE, SURVEY_POINT, Points, point_dtype
 from .store.section_store import MEMORY_LIMIT, SECTION_LENGTH, SectionStore
 from .trajectory.reprojection import reproject_trajectory
@@ -33,6 +33,7 @@ from .trajectory.time_systems import align_time, wrapped_week
 
 if TYPE_CHECKING:
     from .adjustment.corrections import PassCorrections
+    from .estimation.interleaved import ScannerSplitter
     from .frame.road_frame import RoadFrame
     from .trajectory.trajectory import Trajectory
 
@@ -41,6 +42,7 @@ INGEST_PROGRESS = 0.7        # of the work, where the passes are adjusted afterw
 SURVEY_FOLDER, SURVEY_FILE = "survey", "survey.npz"   # of a survey that other processes open
 SHIPPED = ("frame", "crs", "sensor_height", "scanner_field", "scanners", "has_intensity", "has_time", "counts", "moves", "above_road")
 LOWEST_SENSOR = 0.5          # m above the road: no scanner rides lower, but lines and places drawn on the road lie within
+TOLD_APART = "The points are of two scanners that no field tells apart; they were told apart by where their scan lines lead."
 SUSPICIOUS_SENSOR_HEIGHT = 5.0, 15.0  # m: higher than any survey vehicle; 1.5 to 4.5 m expressed in feet
 
 
@@ -91,6 +93,7 @@ class Survey:
     above_road : metres above the road up to which points are returned
     executor : Executor of the phases that read from this survey
     folder : where the points lie for other processes, None where they are this one's alone
+    splitter : tells two scanners apart that no field distinguishes; None where there is no need
     """
 
     files: list[CloudHeader]
@@ -107,6 +110,7 @@ class Survey:
     above_road: float = KEPT_ABOVE_ROAD
     executor: Executor = THREADS
     folder: Path | None = None
+    splitter: ScannerSplitter | None = None
 
     def __post_init__(self) -> None:
         self.store.finish = self._finished
@@ -143,7 +147,9 @@ class Survey:
 
     def _finished(self, road, records):
         """Number the scanners of the records of a section from 0; (N,) bool of those near the height of the road, None for all."""
-        if self.scanner_field is None:
+        if self.splitter is not None:
+            records["scanner"] = self.splitter.numbers(records["time"], np.stack([records[name] for name in "xyz"], axis=1) * COORDINATE_SCALE)
+        elif self.scanner_field is None:
             records["scanner"] = 0
         else:
             numbers = records["source" if self.scanner_field == "point_source_id" else "scanner"]
@@ -297,11 +303,29 @@ def read_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: S
     progress.info(f"Points read: {total:,} from {len(files)} file(s), {store.count:,} near the road kept; "
                  f"{len(frame.roads)} road(s), {len(frame.passes)} pass(es), {len(scanners)} scanner(s); "
                  f"sensor {height:.2f} m above the road.")
+    if has_time and len(scanners) == 1:
+        at = INGEST_PROGRESS if again else 1.0
+        _tell_scanners_apart(survey, reader, progress.part(at, at))
     if has_time:
         check_clock(survey, progress)
     if again:
         adjust_passes(survey, progress.part(INGEST_PROGRESS, 1.0))
     return survey
+
+
+def _tell_scanners_apart(survey, reader, progress):
+    """Where the points of one scanner, as it seems, are those of two by their scan lines, let the survey tell them apart."""
+    from .estimation.estimate import splitter_of
+    from .estimation.samples import samples_of
+
+    time, place = (np.concatenate(column) for column in zip(*reader.sampled))
+    if time.min() == time.max():
+        return
+    samples = samples_of(time, place * COORDINATE_SCALE, np.zeros(len(time), np.uint8), np.zeros(3), reader.slots.stride)
+    survey.splitter = splitter_of(samples, progress)
+    if survey.splitter is not None:
+        survey.scanners = [0, 1]
+        progress.info(TOLD_APART)
 
 
 def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: SurveySettings,

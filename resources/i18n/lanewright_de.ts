@@ -3680,8 +3680,8 @@
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />
-            <source>Automatic takes scanner_channel where it is used and point_source_id where it interleaves in time. Name one when the report counts the wrong number of scanners.</source>
-            <translation>Automatisch nimmt scanner_channel, wo es benutzt ist, und point_source_id, wo es sich in der Zeit verschränkt. Eines nennen, wenn der Bericht eine falsche Zahl von Scannern zählt.</translation>
+            <source>Automatic takes scanner_channel where it is used and point_source_id where it interleaves in time; where no field tells them apart, two scanners are told apart by their scan lines. Name one when the report counts the wrong number of scanners.</source>
+            <translation>Automatisch nimmt scanner_channel, wo es benutzt wird, und point_source_id, wo es zeitlich verschränkt ist; wo kein Feld sie unterscheidet, werden zwei Scanner an ihren Scanzeilen unterschieden. Ein Feld angeben, wenn der Bericht die falsche Zahl von Scannern nennt.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />

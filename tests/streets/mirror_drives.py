@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from drives import EAST, NORTH, write_cloud
 from lanewright.core.survey.estimation.poses import vehicle_axes
+from lanewright.core.survey.trajectory.trajectory import Trajectory
 
 START = 5000.0   # s
 ROAD, CURB = 4.0, 0.12
@@ -39,11 +40,17 @@ class MirrorDrive:
     scanner: np.ndarray
     poses: object
 
-    def write(self, path, which=slice(None), with_time=True, **fields):
-        """The cloud as a file."""
+    def write(self, path, which=slice(None), with_time=True, merged=False, **fields):
+        """The cloud as a file; `merged` without a field that tells the scanners apart."""
         x, y, z = self.place[which].T + np.array([[EAST], [NORTH], [100.0]])
         time = self.time[which] if with_time else None
-        return write_cloud(path, x, y, z, time, source=1 + self.scanner[which], crs="EPSG:32632", **fields)
+        return write_cloud(path, x, y, z, time, source=1 if merged else 1 + self.scanner[which], crs="EPSG:32632", **fields)
+
+    def trajectory(self):
+        """The true Trajectory, 50 rows a second."""
+        time = np.arange(self.time.min() - 0.5, self.time.max() + 0.5, 0.02)
+        x, y, z, roll, pitch, yaw = self.poses(time)
+        return Trajectory(time, x + EAST, y + NORTH, z + 100.0, np.degrees(roll), np.degrees(pitch), (90.0 - np.degrees(yaw)) % 360.0)
 
     def errors(self, trajectory):
         """(N,) m ahead, left and up by which a trajectory lies off the truth."""

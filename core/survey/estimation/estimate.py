@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,12 +15,13 @@ from ..las.reader import read_headers
 from ..trajectory.trajectory import Trajectory
 from .adjustment import PER_INTERVAL, Adjusted, Returns
 from .first_poses import Spinning, first_poses, known_intervals, spinning_scanners
-from .first_track import first_track
-from .growth import grown_poses
+from .first_track import FirstTrack, first_track
+from .growth import MAX_RAY_MISFIT, grown_poses
+from .interleaved import ScannerSplitter, lines_of_two, steps_of, two_directions
 from .kinds import refuse_airborne, refuse_handheld, refuse_terrestrial
 from .poses import YAW, Poses
 from .ridge import FIRST_HEIGHT, ridge_of
-from .samples import MAX_GAP_IN_DRIVE, Samples, read_samples
+from .samples import MAX_GAP_IN_DRIVE, UNKNOWN_SCANNER, Samples, read_samples
 
 ROW_SPACING = 0.02         # s between the positions written: a third of a metre on a motorway
 MAX_SIGMA = 0.3            # m: a position that is known less well is not written
@@ -104,12 +105,71 @@ def estimate_trajectory(paths: Sequence[str | Path], crs: str = "", scanner_fiel
     refuse_airborne(tracks)
     scanners = spinning_scanners(samples, tracks)
     refuse_terrestrial(tracks, scanners)
+    found = None
+    if samples.scanners == 1 and (both := separated(samples, tracks, progress.part(TRACKED, 1.0))) is not None:
+        samples, scanners, found = both
     refuse_handheld(tracks, scanners)
     if not scanners:
         return _by_density(samples, tracks, wkt)
+    if found is None:
+        found = _adjusted(samples, tracks, scanners, progress.part(TRACKED, 1.0))
+        return _of_rays(samples, scanners, found, wkt)
+    result = _of_rays(samples, scanners, found, wkt)
+    result.notes.append("The points are of two scanners that no field tells apart; they were told apart by where their scan lines lead.")
+    return result
+
+
+def _adjusted(samples, tracks, scanners, progress):
     poses = first_poses(samples, tracks, scanners)
-    found = grown_poses(poses, known_intervals(poses, scanners), _returns(samples, poses, scanners), progress.part(TRACKED, 1.0))
-    return _of_rays(samples, scanners, found, wkt)
+    return grown_poses(poses, known_intervals(poses, scanners), _returns(samples, poses, scanners), progress)
+
+
+def separated(samples: Samples, tracks: list[FirstTrack], progress: Progress = Progress()) -> tuple[Samples, list[Spinning], Adjusted] | None:
+    """Two scanners that no field tells apart.
+
+    Parameters
+    ----------
+    samples : Samples of one scanner, as it seems
+    tracks : FirstTrack of each drive
+
+    Returns
+    -------
+    The samples with their scanners, these, and the poses; None where the points are of one scanner, or cannot be told apart
+    """
+    steps = [steps_of(samples.place[drive], track, samples.time[drive]) for drive, track in zip(samples.drives, tracks)]
+    both = two_directions(np.concatenate([direction for _, direction in steps]))
+    if both is None:
+        return None
+    scanner = np.full(len(samples), UNKNOWN_SCANNER, np.uint8)
+    for drive, (row, direction) in zip(samples.drives, steps):
+        number = lines_of_two(direction, row, drive.stop - drive.start, both)
+        scanner[drive] = np.where(number < 0, UNKNOWN_SCANNER, number)
+    two = replace(samples, scanner=scanner)
+    scanners = spinning_scanners(two, tracks)
+    if len(scanners) < 2:
+        return None
+    found = _adjusted(two, tracks, scanners, progress.part(0.0, 0.6))
+    if found.usual > MAX_RAY_MISFIT:
+        return None
+    # the rays tell the other points apart, too, and the few that were wrong
+    splitter = ScannerSplitter(found.poses, 0.0, np.zeros(3))
+    two = replace(samples, scanner=splitter.numbers(samples.time, samples.place))
+    found = grown_poses(found.poses, np.isfinite(found.misfit), _returns(two, found.poses, scanners), progress.part(0.6, 1.0))
+    return two, scanners, found
+
+
+def splitter_of(samples: Samples, progress: Progress = Progress()) -> ScannerSplitter | None:
+    """What tells two scanners apart whose points no field distinguishes; None where there is one, or they cannot be told apart.
+
+    Parameters
+    ----------
+    samples : Samples of one scanner, as it seems
+    """
+    if not samples.drives:
+        return None
+    tracks = [first_track(samples.time[drive], samples.place[drive]) for drive in samples.drives]
+    found = separated(samples, tracks, progress)
+    return None if found is None else ScannerSplitter(found[2].poses, samples.start, samples.origin)
 
 
 def _returns(samples: Samples, poses: Poses, scanners: list[Spinning]) -> Returns:

@@ -12,12 +12,14 @@ from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ..las.parallel_reader import ParallelCloudReader
 from ..las.reader import POINTS_PER_BLOCK, CloudHeader
-from ..scanners import ScannerCensus, numbers_by_value, times_by_value
+from ..las.scanners import ScannerCensus, numbers_by_value, times_by_value
+from ..las.time_slots import TimeSlots
 from ..trajectory.time_systems import SECONDS_PER_WEEK, wrapped_week
 
 SAMPLED_LAYERS = ("z", "point_source_id", "gps_time", "flags")  # LAZ layers that are decoded
 MAX_SAMPLES = 6_000_000   # points held in memory: 250 MB while they are sorted
 MAX_GAP_IN_DRIVE = 1.0    # s without points end a drive
+UNKNOWN_SCANNER = 255     # number of a point whose scanner is not known
 MIN_DRIVE_SAMPLES = 2000  # a drive with fewer is not estimated
 COLUMN_OF_FIELD = {"point_source_id": 0, "scanner_channel": 1}
 
@@ -53,11 +55,12 @@ class Samples:
     @property
     def scanners(self) -> int:
         """The number of scanners."""
-        return int(self.scanner.max()) + 1 if len(self) else 0
+        known = self.scanner[self.scanner != UNKNOWN_SCANNER]
+        return int(known.max()) + 1 if len(known) else 0
 
 
 def read_samples(files: Sequence[CloudHeader], scanner_field: str = "automatic", progress: Progress = Progress()) -> Samples:
-    """Every n-th first return of the files, n such that MAX_SAMPLES are read at most.
+    """First returns of the files in an even sample of at most MAX_SAMPLES.
 
     Parameters
     ----------
@@ -70,13 +73,12 @@ def read_samples(files: Sequence[CloudHeader], scanner_field: str = "automatic",
     RoadExtractionError
         If a file cannot be read, or too few points are left.
     """
-    stride = max(-(-sum(file.count for file in files) // MAX_SAMPLES), 1)
-    stride += stride > 1 and stride % 2 == 0   # an even one could follow the pattern of two scanners that take turns
+    slots = TimeSlots.for_points(sum(file.count for file in files), MAX_SAMPLES)
     origin = np.floor(np.min([file.minimum for file in files if file.count], axis=0))
     census, parts = ScannerCensus(), []
 
     with ParallelCloudReader(SAMPLED_LAYERS) as readers:
-        for found in ordered_map(lambda load: _sample(load(), stride, origin), readers.blocks(files, POINTS_PER_BLOCK), progress):
+        for found in ordered_map(lambda load: _sample(load(), slots, origin), readers.blocks(files, POINTS_PER_BLOCK), progress):
             time, place, numbers = found
             for name, column in COLUMN_OF_FIELD.items():
                 census.take(name, times_by_value(numbers[:, column], time))
@@ -96,6 +98,20 @@ def read_samples(files: Sequence[CloudHeader], scanner_field: str = "automatic",
         return Samples(np.zeros(len(time)), place, scanner, span[0], origin, False, [slice(0, len(time))])
     if wrapped_week(span):
         time = np.where(time < SECONDS_PER_WEEK / 2, time + SECONDS_PER_WEEK, time)
+    return samples_of(time, place, scanner, origin, slots.stride)
+
+
+def samples_of(time: np.ndarray, place: np.ndarray, scanner: np.ndarray, origin: np.ndarray, stride: int = 1) -> Samples:
+    """Points in any order as Samples.
+
+    Parameters
+    ----------
+    time : (N,) s, not all the same
+    place : (N, 3) m from the origin
+    scanner : (N,) uint8
+    origin : (3,) map coordinates
+    stride : every how many points of the survey are among them one is
+    """
     order = np.argsort(time, kind="stable")
     time, place, scanner = time[order], place[order], scanner[order]
     start = float(time[0])
@@ -107,15 +123,18 @@ def read_samples(files: Sequence[CloudHeader], scanner_field: str = "automatic",
     return Samples(time, place, scanner, start, origin, True, long, left_out * stride)
 
 
-def _sample(block, stride, origin):
-    """(N,) gps_time, (N, 3) local places and (N, 2) source and channel of every `stride`-th first return of a block."""
+def _sample(block, slots, origin):
+    """(N,) gps_time, (N, 3) local places and (N, 2) source and channel of the first returns of a block that are in the sample."""
     raw, names = block.array, set(block.point_format.dimension_names)
-    first = np.flatnonzero(np.asarray(block["return_number"]) <= 1)[stride // 2::stride]
+    time = raw["gps_time"].astype(float) if "gps_time" in raw.dtype.names else np.zeros(len(raw))
+    first = np.flatnonzero(np.asarray(block["return_number"]) <= 1)
+    # without times neighbours in the file stay together no better than others
+    first = first[slots.kept(time[first])] if len(time) and time.min() < time.max() else first[::slots.stride]
     if "withheld" in names:
         first = first[np.asarray(block["withheld"])[first] == 0]
     place = np.stack([raw[name][first] * scale + (offset - start)
                       for name, scale, offset, start in zip("XYZ", block.scales, block.offsets, origin)], axis=1)
-    time = raw["gps_time"][first].astype(float) if "gps_time" in raw.dtype.names else np.zeros(len(first))
+    time = time[first]
     channel = np.asarray(block["scanner_channel"])[first] if "scanner_channel" in names else np.zeros(len(first), np.int64)
     usable = np.isfinite(time)
     return time[usable], place[usable], np.stack([raw["point_source_id"][first], channel], axis=1).astype(np.int64)[usable]

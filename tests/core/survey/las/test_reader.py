@@ -6,7 +6,7 @@ from drives import EAST, NORTH, write_cloud
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.io.crs import check_projected
 from lanewright.core.survey.las.reader import read_blocks, read_header, read_headers
-from lanewright.core.survey.scanners import ScannerCensus, numbers_by_value
+from lanewright.core.survey.las.scanners import ScannerCensus, numbers_by_value
 
 
 def places(count=5000):

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..common.errors import RoadExtractionError
+from ...common.errors import RoadExtractionError
 
 MAX_SCANNERS = 8
 MIN_INTERLEAVED_SHARE = 0.8   # of the points: their values must overlap in time if the values identify scanners

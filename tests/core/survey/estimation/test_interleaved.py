@@ -1,0 +1,60 @@
+"""Two scanners in one stream of points, without a field that tells them apart."""
+
+import numpy as np
+import pytest
+from drives import write_cloud
+from lanewright.core.common.progress import Progress
+from lanewright.core.survey.estimation.estimate import estimate_trajectory
+from lanewright.core.survey.open_survey import TOLD_APART, open_survey
+from mirror_drives import Mirror, mirror_drive
+
+BUTTERFLY = (Mirror(-45.0, -20.0, (0.0, 0.32, 0.0)), Mirror(45.0, -20.0, (0.0, -0.32, 0.0), ahead=0.55))
+
+
+class Said(Progress):
+    def __init__(self):
+        self.lines = []
+
+    def info(self, text):
+        self.lines.append(text)
+
+
+@pytest.fixture(scope="module")
+def street():
+    return mirror_drive(BUTTERFLY)
+
+
+def test_their_trajectory_is_that_of_both(tmp_path, street):
+    found = estimate_trajectory([street.write(tmp_path / "cloud.laz", merged=True)])
+    assert len(found.scanners) == 2 and any("no field" in note for note in found.notes)
+    _, left, up = street.errors(found.trajectory)
+    assert np.sqrt(np.mean(left**2)) < 0.03 and np.sqrt(np.mean(up**2)) < 0.02
+    np.testing.assert_allclose(np.sort(np.degrees(found.adjusted.poses.turn)), [-45.0, 45.0], atol=0.3)
+
+
+@pytest.mark.parametrize("order", ["one scanner after the other", "by time"])
+def test_a_survey_tells_them_apart_and_says_so(tmp_path, street, order):
+    which = np.argsort(street.time, kind="stable") if order == "by time" else slice(None)
+    said = Said()
+    survey = open_survey([street.write(tmp_path / "cloud.laz", which, merged=True)], street.trajectory(), progress=said)
+    assert survey.scanners == [0, 1] and TOLD_APART in said.lines
+    rows = np.random.default_rng(1).choice(len(street.time), 5000, replace=False)
+    place = np.stack(survey.frame.to_local(*(street.place[rows] + [500_000.0, 5_400_000.0, 100.0]).T), axis=1)
+    same = np.mean(survey.splitter.numbers(street.time[rows], place) == street.scanner[rows])
+    assert max(same, 1 - same) > 0.999
+    numbers = [survey.section(0, number).scanner for number in survey.store.sections(0)]
+    assert 0.3 < np.mean(np.concatenate(numbers)) < 0.7
+
+
+def test_one_scanner_stays_one(tmp_path):
+    drive = mirror_drive([Mirror(-40.0, -12.0)])
+    survey = open_survey([drive.write(tmp_path / "cloud.laz")], drive.trajectory())
+    assert survey.splitter is None and len(survey.scanners) == 1
+
+
+def test_points_without_scan_lines_stay_one_scanner(tmp_path, street):
+    rng = np.random.default_rng(3)
+    x, y = rng.uniform(0, 60, 60_000), rng.uniform(-6, 4, 60_000)
+    time = np.sort(rng.uniform(5000.0, 5006.0, 60_000))
+    path = write_cloud(tmp_path / "cloud.laz", x + 500_000, y + 5_400_000, 100.0 + rng.normal(0, 0.01, len(x)), time, crs="EPSG:32632")
+    assert open_survey([path], street.trajectory()).splitter is None
