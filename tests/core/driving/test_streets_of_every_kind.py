@@ -1,0 +1,102 @@
+"""Which lanes streets of other kinds have, and which way they lead."""
+
+import numpy as np
+import pytest
+from lanewright.core.common.features import Features
+from lanewright.core.common.schemas import MARKINGS
+from lined_streets import HEIGHT, Street
+from shapely.geometry import Polygon
+
+
+def lanes_of(street, **inputs):
+    """{offset of the middle: direction} of the lanes, by most of their length."""
+    lines, _ = street.lanes(**inputs)
+    length, found = {}, {}
+    for line, row in lines:
+        length.setdefault(row["lane"], []).append((line.length, round(float(np.median(street.offsets(line))), 2), row["direction"]))
+    for parts in length.values():
+        if sum(part[0] for part in parts) > 30.0:
+            _, offset, direction = max(parts)
+            found[offset] = direction
+    return found
+
+
+def area(street, first, last, right, left, kind):
+    """A marking between stations and offsets, as a row of the layer."""
+    corners = street.places([first, last, last, first], [right, right, left, left])
+    return Polygon(np.c_[corners, np.full(4, HEIGHT)]), {"road": 0, "class": kind, "use": "other"}
+
+
+def painted(street, *areas):
+    layer = Features("PolygonZ", MARKINGS)
+    for one in areas:
+        shape, row = area(street, *one)
+        layer.add(shape, **row)
+    return layer
+
+
+@pytest.mark.parametrize("width", [5.8, 7.0])
+def test_a_broad_lane_driven_in_its_middle_with_arrows_there_is_one_lane(width):
+    street = Street(vehicle=0.0).paint(width / 2, kind="edge").paint(-width / 2, kind="edge")
+    arrows = painted(street, *((s, s + 5.0, -0.3, 0.3, "arrow") for s in (20.0, 50.0, 80.0)))
+    assert lanes_of(street, markings=arrows) == {0.0: 1}
+
+
+def test_the_same_seven_metres_driven_beside_the_middle_are_two_lanes_against_each_other():
+    assert lanes_of(Street(vehicle=-1.75).paint(3.5, kind="edge").paint(-3.5, kind="edge")) == {-1.75: 1, 1.75: -1}
+
+
+def test_a_centre_line_parts_the_directions_even_with_lanes_painted_on_one_side_only():
+    street = Street(vehicle=-1.75).paint(0.15, pattern="double-solid", kind="centre").paint(-0.15, pattern="double-solid", kind="centre")
+    street.paint(-3.65, pattern="dashed").paint(-7.15, kind="edge")
+    found = lanes_of(street)
+    assert sorted(offset for offset in found if offset < 0) == [pytest.approx(-5.4, abs=0.02), pytest.approx(-1.9, abs=0.02)]
+    assert all(way == (1 if offset < 0 else -1) for offset, way in found.items())
+
+
+def test_a_centre_line_worn_away_over_sixty_metres_still_parts_the_lanes():
+    street = Street(length=200.0, vehicle=-1.75).paint(3.5, kind="edge").paint(-3.5, kind="edge")
+    street.paint(0.0, 5.0, 70.0, kind="centre").paint(0.0, 130.0, 195.0, kind="centre")
+    lines, _ = street.lanes()
+    assert {row["direction"] for row in lines.rows} == {1, -1}
+    for line, row in lines:
+        np.testing.assert_allclose(street.offsets(line), -1.75 * row["direction"], atol=0.02)
+    assert sum(line.length for line, row in lines) == pytest.approx(2 * 190.0, abs=3.0)
+
+
+def test_no_lane_leads_over_the_hatched_island_between_two_directions():
+    street = Street(vehicle=-3.5)
+    for offset in (5.25, -5.25):
+        street.paint(offset, kind="edge")
+    for offset in (1.75, -1.75):
+        street.paint(offset)
+    bars = painted(street, *((s, s + 0.5, -1.6, 1.6, "hatch") for s in np.arange(6.0, 114.0, 2.0)))
+    assert lanes_of(street, markings=bars) == {-3.5: 1, 3.5: -1}
+
+
+def test_the_exit_lane_of_a_carriageway_goes_the_way_of_the_others():
+    street = Street(length=160.0, vehicle=-1.9).paint(3.75, kind="edge").paint(0.0, pattern="dashed")
+    street.paint(-3.75, 5.0, 60.0, kind="edge").paint(-3.75, 60.0, 155.0, pattern="dashed").paint(-7.4, 60.0, 155.0, kind="edge")
+    found = lanes_of(street)
+    assert {offset for offset in found if offset < -5.0} and all(found[offset] == 1 for offset in found if offset < 0)
+
+
+def test_traffic_is_never_on_the_side_that_the_drive_speaks_against():
+    """The vehicle drove east at first right and later, in another pass, west on the other side."""
+    for vehicle, ways in ((-1.75, {-1.75: 1, 1.75: -1}), (1.75, {-1.75: -1, 1.75: 1})):
+        street = Street(vehicle=vehicle, again=(-vehicle,)).paint(3.5, kind="edge").paint(0.0, pattern="dashed").paint(-3.5, kind="edge")
+        assert lanes_of(street) == ways
+
+
+def test_a_mirrored_street_has_its_lanes_mirrored():
+    def street(side):
+        made = Street(length=160.0, vehicle=-1.75 * side)
+        made.paint(3.5 * side, kind="edge").paint(0.0, pattern="dashed").paint(-3.5 * side, kind="edge")
+        return made.paint(-6.5 * side, 60.0, 120.0, kind="edge")
+
+    assert {-offset: -way for offset, way in lanes_of(street(1)).items()} == {offset: -way for offset, way in lanes_of(street(-1)).items()}
+
+
+def test_painted_lanes_are_sure():
+    street = Street(vehicle=-1.75).paint(3.5, kind="edge").paint(0.0, pattern="double-solid", kind="centre").paint(-3.5, kind="edge")
+    assert min(row["confidence"] for row in street.lanes()[0].rows) > 0.9
