@@ -40,8 +40,9 @@ SHARED_SETTINGS = (
         tr("Larger for noisy scanners; where points scatter more, 1.5 sigma of the plane is taken anyway."), True,
     ),
     setting_spec(
-        "VERTICAL_ANGLE", "vertical_angle", tr("Least angle of a curb face's normal from the vertical (°)"),
-        tr("90 is upright. Lower accepts bevelled and mountable curbs (40 for a slope of 45°), but also banks."), True,
+        "VERTICAL_ANGLE", "vertical_angle", tr("Least angle of a curb face's normal from the vertical, 0 = as the data allow (°)"),
+        tr("90 is upright. As the data allow, 60 counts, and less, down to 25, where the face keeps its line for 10 m. A number is your "
+           "own limit: lower accepts bevelled and mountable curbs (40 for a slope of 45°), but also banks."), True,
     ),
     setting_spec(
         "HORIZONTAL_ANGLE", "horizontal_angle", tr("Largest angle of road's and sidewalk's normal from the vertical (°)"),
@@ -51,8 +52,9 @@ SHARED_SETTINGS = (
 
 BOUNDARY_SETTINGS = (
     setting_spec(
-        "MIN_HEIGHT", "min_height", tr("Least height of a step (m)"),
-        tr("Lower finds dropped curbs, but also tar seams and the edges of manholes."),
+        "MIN_HEIGHT", "min_height", tr("Least height of a step, 0 = as the data allow (m)"),
+        tr("As the data allow, 3 cm count, and less, down to 2 cm, where a step stands out from the noise and continues for 5 m. A number "
+           "is your own limit: lower finds dropped curbs, but also tar seams and the edges of manholes."),
     ),
     *SHARED_SETTINGS,
     setting_spec(
@@ -64,7 +66,7 @@ BOUNDARY_SETTINGS = (
 # In the dialogs that offer both methods, MIN_HEIGHT is that of profiles
 SCANLINE_METHOD_SETTINGS = (
     setting_spec(
-        "SCANLINE_MIN_HEIGHT", "min_height", tr("Least height of a step on scanlines (m)"),
+        "SCANLINE_MIN_HEIGHT", "min_height", tr("Least height of a step on scanlines, 0 = as the data allow (m)"),
         tr("Lower finds dropped curbs, but also tar seams. Profiles have a minimum curb height of their own."), True,
     ),
     *SHARED_SETTINGS,

@@ -30,12 +30,14 @@ CURB_SETTINGS = (
         advanced=True,
     ),
     SettingSpec(
-        "SLOPE", CURBS, "slope", tr("Smallest slope of the curb face (°)"),
-        tr("Lower accepts bevelled and worn curbs, but also verges and ramps."),
+        "SLOPE", CURBS, "slope", tr("Smallest slope of the curb face, 0 = as the data allow (°)"),
+        tr("As the data allow, faces of 60° count, and less steep ones, down to 25°, where they keep their line for 10 m. A number is "
+           "your own limit: lower accepts short bevelled and worn curbs, but also verges and ramps."),
     ),
     SettingSpec(
-        "MIN_HEIGHT", CURBS, "min_height", tr("Minimum curb height (m)"),
-        tr("Lower finds dropped curbs at driveways, but also tar seams and gutters."),
+        "MIN_HEIGHT", CURBS, "min_height", tr("Minimum curb height, 0 = as the data allow (m)"),
+        tr("As the data allow, curbs of 5 cm count, and lower ones, down to 2 cm, where they stand out from the noise and continue for "
+           "5 m. A number is your own limit: lower finds dropped curbs at driveways, but also tar seams and gutters."),
     ),
     SettingSpec(
         "MAX_HEIGHT", CURBS, "max_height", tr("Maximum curb height (m)"),

@@ -87,7 +87,8 @@ def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettin
     curbs and "both" those of the two that measure better (`select_curb_points`). Corners, side streets
     and islands are found in plan, once, and belong to the curbs that are drawn.
     """
-    with closing(PointDecimation(survey, settings.curbs.profile_width, settings.curbs.point_spacing, settings.scanlines.min_height)) as decimation:
+    least = settings.scanlines.limits.least_height
+    with closing(PointDecimation(survey, settings.curbs.profile_width, settings.curbs.point_spacing, least)) as decimation:
         return _find_curb_points(decimation, settings, progress)
 
 

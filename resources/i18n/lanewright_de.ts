@@ -2840,13 +2840,13 @@
         </message>
         <message>
             <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
-            <source>Least angle of a curb face's normal from the vertical (°)</source>
-            <translation>Kleinster Winkel der Normalen einer Bordsteinfläche zur Senkrechten (°)</translation>
+            <source>Least angle of a curb face's normal from the vertical, 0 = as the data allow (°)</source>
+            <translation>Kleinster Winkel der Normalen der Bordfläche zur Senkrechten, 0 = wie es die Daten erlauben (°)</translation>
         </message>
         <message>
             <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
-            <source>90 is upright. Lower accepts bevelled and mountable curbs (40 for a slope of 45°), but also banks.</source>
-            <translation>90 ist aufrecht. Niedriger nimmt abgeschrägte und überfahrbare Bordsteine an (40 für eine Neigung von 45°), aber auch Böschungen.</translation>
+            <source>90 is upright. As the data allow, 60 counts, and less, down to 25, where the face keeps its line for 10 m. A number is your own limit: lower accepts bevelled and mountable curbs (40 for a slope of 45°), but also banks.</source>
+            <translation>90 ist aufrecht. Wie es die Daten erlauben zählen 60 und, wo die Fläche ihre Linie über 10 m hält, weniger bis 25. Eine Zahl ist die eigene Grenze: kleiner nimmt auch Schräg- und Flachborde (40 für eine Neigung von 45°), aber auch Böschungen.</translation>
         </message>
         <message>
             <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
@@ -2860,13 +2860,13 @@
         </message>
         <message>
             <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
-            <source>Least height of a step (m)</source>
-            <translation>Geringste Höhe einer Stufe (m)</translation>
+            <source>Least height of a step, 0 = as the data allow (m)</source>
+            <translation>Kleinste Höhe einer Stufe, 0 = wie es die Daten erlauben (m)</translation>
         </message>
         <message>
             <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
-            <source>Lower finds dropped curbs, but also tar seams and the edges of manholes.</source>
-            <translation>Niedriger findet abgesenkte Bordsteine, aber auch Teernähte und Schachtränder.</translation>
+            <source>As the data allow, 3 cm count, and less, down to 2 cm, where a step stands out from the noise and continues for 5 m. A number is your own limit: lower finds dropped curbs, but also tar seams and the edges of manholes.</source>
+            <translation>Wie es die Daten erlauben zählen 3 cm und, wo eine Stufe aus dem Rauschen ragt und sich über 5 m fortsetzt, weniger bis 2 cm. Eine Zahl ist die eigene Grenze: kleiner findet abgesenkte Borde, aber auch Teernähte und Schachtränder.</translation>
         </message>
         <message>
             <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
@@ -2880,8 +2880,8 @@
         </message>
         <message>
             <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
-            <source>Least height of a step on scanlines (m)</source>
-            <translation>Geringste Höhe einer Stufe auf Scanlinien (m)</translation>
+            <source>Least height of a step on scanlines, 0 = as the data allow (m)</source>
+            <translation>Kleinste Höhe einer Stufe auf Scanlinien, 0 = wie es die Daten erlauben (m)</translation>
         </message>
         <message>
             <location filename="../../algorithms/road/boundaries_from_scanlines.py" />
@@ -3000,23 +3000,23 @@
         </message>
         <message>
             <location filename="../../algorithms/road/detect_curbs.py" />
-            <source>Smallest slope of the curb face (°)</source>
-            <translation>Kleinste Neigung der Bordsteinfläche (°)</translation>
+            <source>Smallest slope of the curb face, 0 = as the data allow (°)</source>
+            <translation>Kleinste Neigung der Bordfläche, 0 = wie es die Daten erlauben (°)</translation>
         </message>
         <message>
             <location filename="../../algorithms/road/detect_curbs.py" />
-            <source>Lower accepts bevelled and worn curbs, but also verges and ramps.</source>
-            <translation>Niedriger nimmt abgeschrägte und abgenutzte Bordsteine an, aber auch Bankette und Rampen.</translation>
+            <source>As the data allow, faces of 60° count, and less steep ones, down to 25°, where they keep their line for 10 m. A number is your own limit: lower accepts short bevelled and worn curbs, but also verges and ramps.</source>
+            <translation>Wie es die Daten erlauben zählen Flächen von 60° und, wo sie ihre Linie über 10 m halten, flachere bis 25°. Eine Zahl ist die eigene Grenze: kleiner nimmt auch kurze Schrägborde und abgenutzte, aber auch Bankette und Rampen.</translation>
         </message>
         <message>
             <location filename="../../algorithms/road/detect_curbs.py" />
-            <source>Minimum curb height (m)</source>
-            <translation>Kleinste Bordsteinhöhe (m)</translation>
+            <source>Minimum curb height, 0 = as the data allow (m)</source>
+            <translation>Kleinste Bordhöhe, 0 = wie es die Daten erlauben (m)</translation>
         </message>
         <message>
             <location filename="../../algorithms/road/detect_curbs.py" />
-            <source>Lower finds dropped curbs at driveways, but also tar seams and gutters.</source>
-            <translation>Niedriger findet abgesenkte Bordsteine an Einfahrten, aber auch Teernähte und Rinnen.</translation>
+            <source>As the data allow, curbs of 5 cm count, and lower ones, down to 2 cm, where they stand out from the noise and continue for 5 m. A number is your own limit: lower finds dropped curbs at driveways, but also tar seams and gutters.</source>
+            <translation>Wie es die Daten erlauben zählen Borde von 5 cm und, wo sie aus dem Rauschen ragen und sich über 5 m fortsetzen, niedrigere bis 2 cm. Eine Zahl ist die eigene Grenze: kleiner findet abgesenkte Borde an Einfahrten, aber auch Teernähte und Rinnen.</translation>
         </message>
         <message>
             <location filename="../../algorithms/road/detect_curbs.py" />

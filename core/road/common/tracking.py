@@ -16,12 +16,18 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from .corners import CurbSteps
+from .curb_limits import MIN_FAINT_LENGTH, CurbLimits
+from .pseudo_scanlines import expand_ranges
 
 MAX_LINK_LENGTH = 1.0       # m along the road that a link may span
 LINK_DRIFT = 0.20           # m across per m along that a link may differ from the faces' own direction
 LINK_TOLERANCE = 0.05       # m across that two steps of one line may differ in any case
 HEIGHT_TOLERANCE = 0.03     # m that bottom heights of neighbours may differ
 MIN_CHAIN_LENGTH = 0.75     # m of a chain that is used
+LOW_CURB_SHARE = 0.5        # share of the least curb height from which a lower curb that continues a full one is used
+MIN_SLOPED_LENGTH = 10.0    # m of a sloped curb: the edge of worn cobbles or of a track is straight over a few metres
+MAX_WANDER = 0.008          # m of a sloped curb about its own straight line
+FAINT_GAIN = 0.7            # value of a metre of low or sloped curb, where another may be chosen
 MIN_CURB_LENGTH = 4.0       # m of chains in one line that make a curb
 MAX_CHAIN_GAP = 8.0         # m between chains of one line
 MAX_JOINED_GAP = 2.5        # m along a curb between points, chains or lines that are joined without a sign of something in between
@@ -47,11 +53,14 @@ class StepChain:
     ----------
     steps : (K,) indices into the CurbSteps, sorted by station
     start, end : m, first and last station
+    low, sloped : is it lower, or less steep, than what is taken for a curb wherever it is seen?
     """
 
     steps: np.ndarray
     start: float
     end: float
+    low: bool = False
+    sloped: bool = False
 
 
 def link_steps(steps: CurbSteps, profile_width: float) -> np.ndarray:
@@ -85,6 +94,14 @@ def link_steps(steps: CurbSteps, profile_width: float) -> np.ndarray:
     return found
 
 
+def link_apart(steps: CurbSteps, profile_width: float, first: np.ndarray) -> np.ndarray:
+    """`link_steps` of two kinds of steps that are not linked with each other; `first` : (M,) bool, those of the first kind."""
+    label = np.empty(len(steps), np.int64)
+    label[first] = link_steps(steps[first], profile_width)
+    label[~first] = link_steps(steps[~first], profile_width) + label[first].max(initial=-1) + 1
+    return label
+
+
 def _best_partner(steps, width, direction):
     """Index of the cheapest step in the following (or preceding) profiles, -1 where none fits.
 
@@ -112,7 +129,7 @@ def _best_partner(steps, width, direction):
     return best
 
 
-def curb_chains(steps: CurbSteps, label: np.ndarray, profile_width: float, min_height: float, slope: float) -> list[StepChain]:
+def curb_chains(steps: CurbSteps, label: np.ndarray, profile_width: float, limits: CurbLimits) -> list[StepChain]:
     """Chains that look like a curb: long, dense, smooth, steep, with raised ground behind.
 
     Parameters
@@ -120,13 +137,14 @@ def curb_chains(steps: CurbSteps, label: np.ndarray, profile_width: float, min_h
     steps : M CurbSteps of one side of one road
     label : (M,) chain of each step
     profile_width : m of road per profile
-    min_height : m, median height that a chain must have
-    slope : radians, least angle of the face
+    limits : CurbLimits
 
     Returns
     -------
     list of StepChain, sorted by start
     """
+    if not len(steps):
+        return []
     order = np.lexsort((steps.profile, label))
     cuts = np.flatnonzero(np.diff(label[order])) + 1
     chains = []
@@ -136,19 +154,30 @@ def curb_chains(steps: CurbSteps, label: np.ndarray, profile_width: float, min_h
         if length < MIN_CHAIN_LENGTH - 1e-9 or len(members) * profile_width < MIN_CHAIN_DENSITY * length:
             continue
         height, scanner_noise = np.median(steps.height[members]), np.median(steps.scanner_noise[members])
+        noise, scatter = np.median(steps.noise[members]), _chain_scatter(s, steps.u[members]) if len(members) > 2 else 0.0
         # blur widens a face and never narrows it, so the sharper profiles show its width
-        sharp = max(np.quantile(steps.run[members], 0.3) - 2 * scanner_noise, 0.0)
-        allowance = min(scanner_noise, MAX_NOISE_ALLOWANCE * min_height) if scanner_noise > NOISY_SHARE * min_height else 0.0
-        if height < min_height - allowance or np.arctan2(height, sharp) < slope:
+        slope = np.arctan2(height, max(np.quantile(steps.run[members], 0.3) - 2 * scanner_noise, 0.0))
+        least = limits.clear_height
+        allowance = min(scanner_noise, MAX_NOISE_ALLOWANCE * least) if scanner_noise > NOISY_SHARE * least else 0.0
+        low, sloped = height < least - allowance, slope < limits.clear_slope
+        if (low or sloped) and not (limits.automatic and limits.faint(height, slope, noise, len(members), scatter)) \
+                or sloped and (length < MIN_SLOPED_LENGTH or _wander(steps, members) > MAX_WANDER):
             continue
-        if np.median(steps.noise[members]) > max(MAX_ROAD_ROUGHNESS, 2 * scanner_noise):
+        if noise > max(MAX_ROAD_ROUGHNESS, 2 * scanner_noise) or np.mean(steps.behind[members] >= 2) < 0.5 \
+                or scatter > MAX_CHAIN_SCATTER + scanner_noise:
             continue
-        if np.mean(steps.behind[members] >= 2) < 0.5:
-            continue
-        if len(members) > 2 and _chain_scatter(s, steps.u[members]) > MAX_CHAIN_SCATTER + scanner_noise:
-            continue
-        chains.append(StepChain(members, float(s[0]), float(s[-1])))
+        chains.append(StepChain(members, float(s[0]), float(s[-1]), bool(low), bool(sloped)))
     return sorted(chains, key=lambda c: (c.start, c.end))
+
+
+def _wander(steps, members):
+    """m, deviation of a chain from its own straight line over MIN_FAINT_LENGTH metres: the slope of a bank or of wear changes its place."""
+    s, u = steps.s[members], steps.u[members]
+    owner, index = expand_ranges(np.searchsorted(s, s - 0.5 * MIN_FAINT_LENGTH), np.searchsorted(s, s + 0.5 * MIN_FAINT_LENGTH, side="right"))
+    ds, count = s[index] - s[owner], np.bincount(owner)
+    ms, mu, ss, su = (np.bincount(owner, v) / count for v in (ds, u[index], ds * ds, ds * u[index]))
+    slope = (su - ms * mu) / np.maximum(ss - ms * ms, 1e-6)
+    return float(np.std(u - (mu - slope * ms)))
 
 
 def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
@@ -183,7 +212,7 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
         middle, found = 0.5 * (a + b), []
         for c in active:
             farther = max(np.interp(middle, *places[c][:2]) - near(middle), 0.0)
-            gain = (b - a) * max(1.0 - DISTANCE_PENALTY * farther, 0.1)
+            gain = (b - a) * max(1.0 - DISTANCE_PENALTY * farther, 0.1) * (FAINT_GAIN if chains[c].low or chains[c].sloped else 1.0)
             u, h = (np.interp(a, places[c][0], v) for v in places[c][1:])
             gap = np.maximum(a - ends[known], 0.0)
             # a gap is crossed in the mean direction of the end before and the start after it
@@ -209,7 +238,7 @@ def select_along_road(chains: Sequence[StepChain], steps: CurbSteps,
 
 def drop_short_curbs(selected: Sequence[tuple[int, float, float]], chains: Sequence[StepChain],
                      steps: CurbSteps) -> list[tuple[int, float, float]]:
-    """Selected intervals that make a curb: intervals in line with each other cover MIN_CURB_LENGTH together.
+    """Selected intervals that make a curb: intervals in line with each other cover MIN_CURB_LENGTH together, faint ones MIN_FAINT_LENGTH.
 
     A curb between parked cars is seen in pieces; a piece with nothing in line with it may be anything.
 
@@ -223,19 +252,17 @@ def drop_short_curbs(selected: Sequence[tuple[int, float, float]], chains: Seque
     -------
     list like `selected`
     """
-    curbs: list[tuple[int, float, float]] = []
-    group: list[tuple[int, float, float]] = []
-    covered, last = 0.0, None
+    groups: list[list[tuple[int, float, float]]] = []
+    last = None
     for chain, a, b in selected:
         members = chains[chain].steps
         members = members[(steps.s[members] >= a) & (steps.s[members] <= b)]
-        if last is not None and not _in_line(steps, last, members):
-            curbs += group if covered >= MIN_CURB_LENGTH else []
-            group, covered = [], 0.0
-        group.append((chain, a, b))
-        covered += b - a
+        if last is None or not _in_line(steps, last, members):
+            groups.append([])
+        groups[-1].append((chain, a, b))
         last = members
-    return curbs + (group if covered >= MIN_CURB_LENGTH else [])
+    return [part for group in groups for part in group if sum(b - a for _, a, b in group) >= (
+        MIN_FAINT_LENGTH if all(chains[chain].low or chains[chain].sloped for chain, _, _ in group) else MIN_CURB_LENGTH)]
 
 
 def _in_line(steps, before, after):

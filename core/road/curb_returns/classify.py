@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ..common.curb_limits import MIN_FAINT_LENGTH
 from ..common.sides import SIDE_SIGNS
 from ..common.tracking import MAX_CHAIN_SCATTER, MAX_JOINED_GAP, MAX_ROAD_ROUGHNESS
 from .steps import PlanSteps
@@ -71,10 +72,11 @@ def is_curb_like(chain: PlanStepChain, steps: PlanSteps, scanner_noise: np.ndarr
         return False
     height, noise = np.median(own.height), np.median(scanner_noise[chain.steps])
     sharp = max(np.quantile(own.run, 0.3) - 2 * noise, 0.0)
-    if height < settings.min_height or np.degrees(np.arctan2(height, sharp)) < settings.slope:
+    limits, slope, rough, scatter = settings.limits, np.arctan2(height, sharp), np.median(own.noise), _chain_scatter(own)
+    if height < limits.clear_height or slope < limits.clear_slope \
+            and not (limits.automatic and length >= MIN_FAINT_LENGTH and limits.faint(height, slope, rough, len(own), scatter)):
         return False
-    return bool(np.median(own.noise) <= max(MAX_ROAD_ROUGHNESS, 2 * noise) and np.mean(own.behind >= 2) >= 0.5 \
-        and _chain_scatter(own) <= MAX_CHAIN_SCATTER + noise)
+    return bool(rough <= max(MAX_ROAD_ROUGHNESS, 2 * noise) and np.mean(own.behind >= 2) >= 0.5 and scatter <= MAX_CHAIN_SCATTER + noise)
 
 
 def _length(x, y):

@@ -242,26 +242,27 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
     if raster is None:
         return None
     dense = len(raster.x) >= MIN_AVERAGING_POINTS * np.isfinite(raster.low).sum()
-    noisy = dense and raster.noise > NOISY_RASTER_SHARE * settings.min_height
+    noisy = dense and raster.noise > NOISY_RASTER_SHARE * settings.limits.clear_height
     if noisy and limit is not None:
         # averages need every point
         return plan_steps_of_section(decimation, section, road, limits, known, barrier, settings, points_per_cell=None)
     line = survey.frame.road(road)
     slopes = ground_slopes(raster.low)
     track = _track(survey, road, first, last)
-    driven, stepped = driven_ground(raster, slopes, track[0], track[1], [v[inner] for v in place[:2]], barrier[0], barrier[1], settings.min_height)
+    clear = settings.limits.clear_height
+    driven, stepped = driven_ground(raster, slopes, track[0], track[1], [v[inner] for v in place[:2]], barrier[0], barrier[1], clear)
 
     def wanted(x, y):
         own, _ = line.locate(x, y)
         fresh = (own >= start) & (own < end)
         return fresh & ~known.within(x, y, MAIN_CURB_DISTANCE)
 
-    x, y, nx, ny = step_places(raster, slopes, driven, stepped, settings.min_height, settings.max_height, wanted)
+    x, y, nx, ny = step_places(raster, slopes, driven, stepped, clear, settings.max_height, wanted)
     fresh = wanted(x, y)
     if not fresh.any():
         return None
     views = _averaged_views(raster, place, along, settings.layer_jump) if noisy else [raster]
-    steps = measure_plan_steps(views, x[fresh], y[fresh], nx[fresh], ny[fresh], 0.5 * settings.min_height, settings.max_height)
+    steps = measure_plan_steps(views, x[fresh], y[fresh], nx[fresh], ny[fresh], 0.5 * clear, settings.max_height)
     # inside a tight bend a step may be measured outside the range of stations
     steps = steps[np.isfinite(line.locate(steps.x, steps.y)[0])]
     lean = [float(np.median(slope[driven])) for slope in slopes]

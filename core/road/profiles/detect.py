@@ -13,6 +13,7 @@ from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...execution.phase import Phase
 from ..common.corners import CurbSteps
+from ..common.curb_limits import CurbLimits
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.decimation import POINTS_PER_LEVEL_CELL, PointDecimation
 from ..common.occlusion import HIDDEN_POINT_SPACING, OcclusionGrid
@@ -26,7 +27,7 @@ from ..common.sides import (
     side_profiles,
     work_sections,
 )
-from ..common.tracking import NOISY_SHARE, curb_chains, drop_short_curbs, link_steps, select_along_road
+from ..common.tracking import LOW_CURB_SHARE, NOISY_SHARE, curb_chains, drop_short_curbs, link_steps, select_along_road
 from ..curb_returns.detect import with_curb_returns
 from .averaged_steps import AVERAGING_LENGTH, find_averaged_steps
 from .steps import find_steps
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
 MIN_TRACK_DISTANCE = 0.6      # m from the track: no curb is nearer
 PASS_MERGE_ACROSS = 0.12      # m across, and
 PASS_MERGE_HEIGHT = 0.10      # m of height between the same step seen in two passes
-LOW_CURB_SHARE = 0.5          # share of the least curb height from which a lower curb that continues a full one is used
+USUAL_HEIGHT, USUAL_SLOPE = 0.05, 60.0  # m and degrees: such a step is a curb wherever it is seen
 MAX_BLOCK_LENGTH = 2.0        # m, automatic blocks on straight road, and
 MIN_BLOCK_LENGTH = 0.5        # m, in sharp bends
 MAX_BLOCK_TURN = np.radians(1.0)   # turn of the road within a block
@@ -58,16 +59,16 @@ class CurbSettings:
     profile_width : m of road per profile
     point_spacing : m, width of the cells of the pseudo scan-lines
     layer_jump : m of height between ground and what is above it
-    slope : degrees, least slope of a curb face
-    min_height, max_height : m, road to top of curb
+    slope : degrees, least slope of a curb face; 0 = as the noise allows
+    min_height, max_height : m, road to top of curb; 0 for the least height = as the noise allows
     """
 
     block_length: float = setting(0.0, 0.25, 10.0, "The block length", "m", "for automatic")
     profile_width: float = setting(0.25, 0.05, 2.0, "The profile width", "m")
     point_spacing: float = setting(0.025, 0.01, 0.1, "The point spacing", "m")
     layer_jump: float = setting(0.05, 0.01, 0.5, "The layer jump", "m")
-    slope: float = setting(60.0, 10.0, 89.0, "The slope", "°")
-    min_height: float = setting(0.05, 0.01, 0.95, "The minimum curb height", "m")
+    slope: float = setting(0.0, 10.0, 89.0, "The slope", "°", "for automatic")
+    min_height: float = setting(0.0, 0.01, 0.95, "The minimum curb height", "m", "for automatic")
     max_height: float = setting(0.35, 0.02, 1.0, "The maximum curb height", "m")
 
     def __post_init__(self) -> None:
@@ -75,6 +76,11 @@ class CurbSettings:
         if not self.min_height < self.max_height:
             raise RoadExtractionError(f"Curbs from {self.min_height} m to {self.max_height} m were asked for; the maximum "
                                       "must be above the minimum.")
+
+    @property
+    def limits(self) -> CurbLimits:
+        """The least height and slope of curbs."""
+        return CurbLimits.of(self.min_height, self.slope, min(USUAL_HEIGHT, self.max_height), USUAL_SLOPE)
 
 
 def detect_curbs(survey: Survey, settings: CurbSettings = CurbSettings(), progress: Progress = Progress(),
@@ -153,7 +159,7 @@ def steps_of_section(decimation: PointDecimation, section: tuple[int, int], road
     limit = None if decimation.mostly_uneven(road, sum(section) // 2) else POINTS_PER_LEVEL_CELL
     seen: Any = list(side_profiles(decimation, road, wide, tracks, settings, limit))
     # averages need every point
-    if limit and any((lines.part(*section).spread > NOISY_SHARE * settings.min_height).any() for *_, lines in seen):
+    if limit and any((lines.part(*section).spread > NOISY_SHARE * settings.limits.clear_height).any() for *_, lines in seen):
         seen = side_profiles(decimation, road, wide, tracks, settings, points_per_cell=None)
     for side, _, (u, s, h), lines in seen:
         occlusion[side].add_points(u, s, h, section, lines.part(*section))
@@ -165,11 +171,12 @@ def steps_of_section(decimation: PointDecimation, section: tuple[int, int], road
 def _steps_by_noise(lines, section, settings):
     """Steps of a section's profiles: on each profile alone, or averaged with its neighbours where noise would hide a curb."""
     own = lines.part(*section)
-    min_height, noisy = LOW_CURB_SHARE * settings.min_height, own.spread > NOISY_SHARE * settings.min_height
-    single = find_steps(own, min_height, settings.max_height)
+    limits = settings.limits
+    noisy = own.spread > NOISY_SHARE * limits.clear_height
+    single = find_steps(own, LOW_CURB_SHARE * limits.least_height, settings.max_height)
     if not noisy.any():
         return single
-    averaged = find_averaged_steps(lines, min_height, settings.max_height, settings.layer_jump)
+    averaged = find_averaged_steps(lines, LOW_CURB_SHARE * limits.clear_height, settings.max_height, settings.layer_jump)
     averaged = averaged[(averaged.profile >= section[0]) & (averaged.profile < section[1])]
     return CurbSteps.join([single[~noisy[single.profile - own.first]], averaged[noisy[averaged.profile - own.first]]])
 
@@ -198,8 +205,7 @@ def _points_of_side(survey, road, side, steps, occlusion, settings):
         return CurbPoints.none()
     frame, sign = survey.frame, SIDE_SIGNS[side]
     track = OutermostTrack(frame, road, sign)
-    label = link_steps(steps, settings.profile_width)
-    chains = curb_chains(steps, label, settings.profile_width, settings.min_height, np.radians(settings.slope))
+    chains = curb_chains(steps, link_steps(steps, settings.profile_width), settings.profile_width, settings.limits)
     selected = drop_short_curbs(select_along_road(chains, steps, track), chains, steps)
     bounds = block_bounds(frame.road(road), *survey.store.span(road), settings.block_length)
     rows = []

@@ -83,13 +83,13 @@ def find_candidates(side: HeightGrid, measured: np.ndarray, nearest: np.ndarray,
     """
     low = side.low
     span = max(int(round(settings.search_width / SCANLINE_RESOLUTION)), 2)
-    row, cell, before, top = _rising(low, span, MIN_RISE_SHARE * settings.min_height)
+    row, cell, before, top = _rising(low, span, MIN_RISE_SHARE * settings.limits.least_height)
     outside = side.offset(cell) > np.asarray(nearest)[row]
     row, cell, before, top = (values[outside] for values in (row, cell, before, top))
     base, slope, rough, count = _road_before(low, row, cell)
     step = top - base
     middle = base + 0.5 * step
-    rising = np.flatnonzero((count >= MIN_ROAD_CELLS) & (step >= MIN_RISE_SHARE * settings.min_height) & (step <= settings.clipping_height)
+    rising = np.flatnonzero((count >= MIN_ROAD_CELLS) & (step >= MIN_RISE_SHARE * settings.limits.least_height) & (step <= settings.clipping_height)
                             & (rough <= MAX_ROUGHNESS_SHARE * step) & (low[row, cell] >= middle) & (before < middle))
     best = rising[_best_within((row * low.shape[1] + cell)[rising], row[rising], (step - 2 * rough)[rising], span)]
     row, cell = row[best], cell[best]

@@ -20,6 +20,7 @@ import numpy as np
 from ..common.corners import MAX_FACE_SKEW, CurbSteps
 from ..common.pseudo_scanlines import SIGMA_PER_MEAN_DEVIATION
 from .candidates import CurbCandidates, ScanlineSamples
+from .grid import LINE_SEPARATION, nearest_distance
 
 if TYPE_CHECKING:
     from .detect import ScanlineBoundarySettings
@@ -169,11 +170,13 @@ class CurbCorners(CurbSteps):
     ----------
     top_u, top_h : (M,) m, outward offset and height above the expected road of the top corner
     residual : (M,) m, standard deviation of the inliers about the three planes
+    sloped : (M,) bool, is the face less steep than an upright one?
     """
 
     top_u: np.ndarray
     top_h: np.ndarray
     residual: np.ndarray
+    sloped: np.ndarray
 
 
 def corners_of(side: ScanlineSamples, candidates: CurbCandidates, settings: ScanlineBoundarySettings) -> CurbCorners:
@@ -189,13 +192,28 @@ def corners_of(side: ScanlineSamples, candidates: CurbCandidates, settings: Scan
     -------
     CurbCorners, at most one per candidate, in the order of the candidates; `scanner_noise` equals `noise` here
     """
+    limits = settings.limits
+    usual = _corners_with_face(side, candidates, settings, limits.clear_slope)
+    if not limits.automatic_slope:
+        return usual
+    # a sloped face is looked for where no upright one is
+    wanted = (side.first + candidates.row) * LINE_SEPARATION + candidates.u
+    again = np.flatnonzero(nearest_distance(wanted, usual.profile * LINE_SEPARATION + usual.u) >= FACE_HALF_WIDTH)
+    sloped = _corners_with_face(side, candidates[again], settings, limits.least_slope)
+    sloped.sloped[:] = True
+    found = CurbCorners.join([usual, sloped])
+    return found[np.lexsort((found.u, found.profile))]
+
+
+def _corners_with_face(side, candidates, settings, least_slope):
+    """`corners_of` whose faces have at least this slope, radians."""
     owner, s, u, h, steep = _neighbourhood(side, candidates, settings)
     # heights above the line of the road, so that its slope is no part of the rise
     over = h - candidates.slope.astype(np.float32)[owner] * u
     share = over / candidates.step.astype(np.float32)[owner]
     road = (u < -FACE_CLEARANCE) & (share < MAX_ROAD_SHARE) & (over > -GUTTER_DEPTH)
     # between sparse points a scanline is less steep than the face
-    upright = steep > np.tan(np.radians(settings.vertical_angle - FACE_SLOPE_TOLERANCE))
+    upright = steep > np.tan(max(least_slope - np.radians(FACE_SLOPE_TOLERANCE), 0.0))
     face = upright & (np.abs(u) < FACE_HALF_WIDTH) & (share > FACE_SHARE[0]) & (share < FACE_SHARE[1])
     raised = (u > FACE_CLEARANCE) & (share > MIN_RAISED_SHARE) & (over < (candidates.step + RAISED_MARGIN).astype(np.float32)[owner])
     count = len(candidates)
@@ -209,7 +227,7 @@ def corners_of(side: ScanlineSamples, candidates: CurbCandidates, settings: Scan
     with np.errstate(invalid="ignore"):
         # angle between the normal of the face and the vertical
         over_run = np.abs(front.coefficients[:, 1] / np.hypot(1.0, front.coefficients[:, 2]))
-        good &= (np.degrees(np.arctan2(1.0, over_run)) >= settings.vertical_angle) & (np.abs(front.coefficients[:, 2]) <= MAX_FACE_SKEW)
+        good &= (np.arctan2(1.0, over_run) >= least_slope) & (np.abs(front.coefficients[:, 2]) <= MAX_FACE_SKEW)
     alive, front, front_points = alive[good], front[good], front_points[good]
     ground, ground_points, good = _planes(parts[0], alive, MAX_LEVEL_VERTICES, (h, u, s), candidates.rough, settings)
     good &= ground.steepness() <= lean
@@ -219,7 +237,7 @@ def corners_of(side: ScanlineSamples, candidates: CurbCandidates, settings: Scan
     bottom_u, bottom_h, bottom_meets = _meeting(ground, front)
     top_u, top_h, top_meets = _meeting(top, front)
     with np.errstate(invalid="ignore"):
-        good &= (bottom_meets & top_meets & (top_h - bottom_h >= settings.min_height) & (top_h - bottom_h <= settings.clipping_height))
+        good &= (bottom_meets & top_meets & (top_h - bottom_h >= settings.limits.least_height) & (top_h - bottom_h <= settings.clipping_height))
     for points, plane, at_u, at_h in ((ground_points, ground, bottom_u, bottom_h), (front_points, front, bottom_u, bottom_h),
                                       (front_points, front, top_u, top_h), (top_points, top, top_u, top_h)):
         good &= _distance(u, h, points, plane.points, at_u, at_h) <= MAX_CORNER_DISTANCE
@@ -231,7 +249,7 @@ def corners_of(side: ScanlineSamples, candidates: CurbCandidates, settings: Scan
     found = CurbCorners(profile=row, s=row * side.interval, u=candidates.u + bottom_u, h=candidates.base + bottom_h,
                         skew=front.coefficients[:, 2].astype(float), height=top_h - bottom_h, run=np.maximum(top_u - bottom_u, 0.0),
                         noise=noise, scanner_noise=noise, support=ground.inliers + front.inliers, behind=top.inliers,
-                        top_u=candidates.u + top_u, top_h=candidates.base + top_h, residual=residual)
+                        top_u=candidates.u + top_u, top_h=candidates.base + top_h, residual=residual, sloped=np.zeros(len(row), bool))
     return found[good]
 
 

@@ -20,17 +20,18 @@ from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...execution.phase import Phase
+from ..common.curb_limits import CurbLimits
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.occlusion import HIDDEN_POINT_SPACING, MIN_OCCLUDER_HEIGHT, OcclusionGrid
 from ..common.pseudo_scanlines import MIN_SCANNER_NOISE
 from ..common.sides import BLOCK_SECTION_LENGTH, MAX_CURB_OFFSET, SIDE_SIGNS, OutermostTrack, expected_height
-from ..common.tracking import curb_chains, drop_short_curbs, link_steps, select_along_road
+from ..common.tracking import curb_chains, drop_short_curbs, link_apart, select_along_road
 from ..edges.fit import EDGE_VERTEX_SPACING, MAX_EDGE_JUMP, MAX_EDGE_SKEW, MIN_EDGE_LENGTH, MIN_HIDDEN_SHARE, EdgeCurve, without_outliers
 from ..edges.road_edges import EdgePiece, RoadEdges, joined_pieces
 from ..profiles.detect import MIN_TRACK_DISTANCE, PASS_MERGE_ACROSS, PASS_MERGE_HEIGHT, block_bounds, block_numbers, hidden_points
 from .candidates import NEIGHBOUR_LINES, find_candidates, gap_fill_rows, samples_near
 from .corners import CurbCorners, corners_of, plane_fit_rows
-from .grid import height_grid
+from .grid import LINE_SEPARATION, height_grid, nearest_distance
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
@@ -38,6 +39,8 @@ if TYPE_CHECKING:
 
 MAX_USUAL_NOISE = 0.005  # m: a higher scatter about the planes is rough ground, such as a verge
 MAX_MEASURED_GAP = 1.0   # m between consecutive corners of a measured line; wider gaps are bridged
+USUAL_STEP_HEIGHT, USUAL_ANGLE = 0.03, 60.0  # m and degrees of table 1 of the paper: such a step is a curb wherever it is seen
+SAME_CURB_DISTANCE = 0.3  # m across within which a sloped face is part of an upright one
 CORNER_BLOCK = 0.5       # m of road per corner of the CORNERS output
 
 _POINT = [("s", float), ("d", float), ("x", float), ("y", float), ("z", float), ("height", float), ("chain", int)]
@@ -52,22 +55,22 @@ class ScanlineBoundarySettings:
     search_width : m across within which the height must change
     sensor_height : m from the trajectory down to the road; 0 = from the data
     clipping_height : m above the road; higher points are not used
-    min_height : m of height change
+    min_height : m of height change; 0 = as the noise allows
     distance_across, distance_along : m on either side of a candidate from which its planes are fitted
     ransac_distance : m from a plane to its inliers
     vertical_angle, horizontal_angle : degrees between the normal of a plane and Z: at least that of a face, at most
-        that of road and sidewalk
+        that of road and sidewalk; 0 for the face = as the noise allows
     max_gap : m between corners that are connected
     """
 
     search_width: float = setting(0.10, 0.04, 0.5, "The search width", "m")
     sensor_height: float = setting(0.0, 0.0, 10.0, "The sensor height", "m")
     clipping_height: float = setting(0.45, 0.05, 2.0, "The clipping height", "m")
-    min_height: float = setting(0.03, 0.01, 0.5, "The minimum height", "m")
+    min_height: float = setting(0.0, 0.01, 0.5, "The minimum height", "m", "for automatic")
     distance_across: float = setting(0.50, 0.15, 2.0, "The distance across", "m")
     distance_along: float = setting(0.40, 0.1, 2.0, "The distance along", "m")
     ransac_distance: float = setting(0.005, 0.001, 0.1, "The RANSAC distance", "m")
-    vertical_angle: float = setting(60.0, 20.0, 90.0, "The vertical angle", "°")
+    vertical_angle: float = setting(0.0, 20.0, 90.0, "The vertical angle", "°", "for automatic")
     horizontal_angle: float = setting(20.0, 1.0, 45.0, "The horizontal angle", "°")
     max_gap: float = setting(2.5, 0.0, 100.0, "The longest connected gap", "m")
 
@@ -77,9 +80,14 @@ class ScanlineBoundarySettings:
         if self.clipping_height <= self.min_height:
             raise RoadExtractionError(f"The clipping height is {self.clipping_height} m and the minimum height {self.min_height} m; "
                                       "the clipping height must be above the minimum height.")
-        if self.vertical_angle <= self.horizontal_angle:
+        if 0 < self.vertical_angle <= self.horizontal_angle:
             raise RoadExtractionError(f"The vertical angle is {self.vertical_angle}° and the horizontal angle {self.horizontal_angle}°; "
                                       "the vertical angle must be above the horizontal one.")
+
+    @property
+    def limits(self) -> CurbLimits:
+        """The least height and slope of curbs."""
+        return CurbLimits.of(self.min_height, self.vertical_angle, min(USUAL_STEP_HEIGHT, self.clipping_height), USUAL_ANGLE)
 
 
 def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: ScanlineBoundarySettings = ScanlineBoundarySettings(),
@@ -217,6 +225,16 @@ def merged_corners(found: Sequence[CurbCorners]) -> CurbCorners:
     -------
     CurbCorners
     """
+    upright, sloped = (_merged([part[part.sloped == kind] for part in found]) for kind in (False, True))
+    # where one pass or scanner shows an upright face, what others show less sharply is no other curb
+    around = np.arange(-NEIGHBOUR_LINES, NEIGHBOUR_LINES + 1)[:, None]
+    keys = ((upright.profile + around) * LINE_SEPARATION + upright.u).ravel()
+    sloped = sloped[nearest_distance(sloped.profile * LINE_SEPARATION + sloped.u, keys) > SAME_CURB_DISTANCE]
+    return CurbCorners.join([upright, sloped])
+
+
+def _merged(found):
+    """The mean of corners that lie beside each other in one plane, weighted by support."""
     corners = CurbCorners.join(found)
     if len(found) < 2 or not len(corners):
         return corners
@@ -227,7 +245,7 @@ def merged_corners(found: Sequence[CurbCorners]) -> CurbCorners:
     total = np.bincount(group, weight)
     values = {name: np.bincount(group, weight * getattr(corners, name)) / total
               for name in ("s", "u", "h", "skew", "height", "run", "noise", "scanner_noise", "top_u", "top_h", "residual")}
-    return CurbCorners(profile=corners.profile[np.r_[True, apart]], **values,
+    return CurbCorners(profile=corners.profile[np.r_[True, apart]], **values, sloped=corners.sloped[np.r_[True, apart]],
                        support=np.bincount(group, corners.support).astype(np.int64),
                        behind=np.bincount(group, corners.behind).astype(np.int64))
 
@@ -243,8 +261,9 @@ def _points_of_side(source, road, side, corners, occlusion, settings, block_leng
     """The bottom and top corners of one side of one road, measured and hidden, sorted by station."""
     frame, sign = source.frame, SIDE_SIGNS[side]
     track = OutermostTrack(frame, road, sign)
-    label = link_steps(corners, source.interval)
-    chains = curb_chains(corners, label, source.interval, settings.min_height, np.radians(settings.vertical_angle))
+    limits = settings.limits
+    label = link_apart(corners, source.interval, ~corners.sloped)
+    chains = curb_chains(corners, label, source.interval, limits)
     stretches = drop_short_curbs(select_along_road(chains, corners, track), chains, corners)
     edges = block_bounds(frame.road(road), *source.span(road), block_length)
     rows = []

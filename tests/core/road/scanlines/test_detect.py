@@ -52,10 +52,11 @@ def test_a_leaning_face_has_its_bottom_before_its_top():
     np.testing.assert_allclose(corners(curbs, "left", "top")[:, 1], 3.56, atol=0.003)
 
 
-def test_a_bevelled_curb_is_found_where_its_slope_is_asked_for():
+@pytest.mark.parametrize("angle", [0.0, 40.0])
+def test_a_bevelled_curb_is_found_unless_an_upright_face_is_asked_for(angle):
     bevelled = street(curb=0.10, face=0.10)
-    assert len(found(bevelled)) == 0
-    curbs = found(bevelled, ScanlineBoundarySettings(vertical_angle=40.0))
+    assert len(found(bevelled, ScanlineBoundarySettings(vertical_angle=60.0))) == 0
+    curbs = found(bevelled, ScanlineBoundarySettings(vertical_angle=angle))
     np.testing.assert_allclose(corners(curbs, "left")[:, 1], 3.5, atol=0.005)
     np.testing.assert_allclose(corners(curbs, "left", "top")[1:-1, 1], 3.6, atol=0.005)
 
@@ -180,7 +181,7 @@ def test_two_passes_that_drifted_apart_give_one_curb_between_them():
 
 
 @pytest.mark.parametrize("wrong, word", [
-    (dict(search_width=0.0), "search width"), (dict(min_height=0.0), "minimum height"), (dict(clipping_height=0.02), "clipping height"),
+    (dict(search_width=0.0), "search width"), (dict(min_height=-0.01), "minimum height"), (dict(clipping_height=0.02), "clipping height"),
     (dict(clipping_height=0.2, min_height=0.3), "above the minimum"), (dict(distance_across=0.0), "across"),
     (dict(distance_along=9.0), "along"), (dict(ransac_distance=0.0), "RANSAC"), (dict(vertical_angle=95.0), "vertical angle"),
     (dict(horizontal_angle=45.0, vertical_angle=40.0), "above the horizontal"), (dict(sensor_height=-1.0), "sensor height"),

@@ -1,0 +1,69 @@
+"""How high and how steep a curb must be: the user's own limits, or as the data allow.
+
+A curb of 5 cm with an upright face is one wherever it is seen. A lower or sloped one is told from seams, rails and verges by
+what averaging along the road leaves of the noise: N profiles lower it from the scanner's sigma to sqrt(sigma² / N + texture²),
+where texture, the footprint of the beam and the registration do not average out. Such a step must stand well above that,
+keep its line to a centimetre, and continue for metres.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+TEXTURE_SIGMA = 0.0025      # m, of heights averaged along a curb, however many: texture of the surfaces, footprint, registration
+SIGNIFICANT_SIGMAS = 4.0    # of what is left of the noise, by which a faint step must rise
+LEAST_HEIGHT = 0.02         # m: lower steps are dropped curbs and seams
+LEAST_SLOPE = 25.0          # °: flatter faces are ramps
+MAX_FAINT_SCATTER = 0.010   # m, of a faint step about its own running line
+MIN_FAINT_LENGTH = 5.0      # m of faint steps in one line that make a curb
+
+
+@dataclass(frozen=True)
+class CurbLimits:
+    """The least height and slope of curbs.
+
+    Attributes
+    ----------
+    clear_height : m, from which a step is a curb by its height, and
+    clear_slope : radians, by its face
+    automatic_height, automatic_slope : may faint steps be lower, or less steep?
+    """
+
+    clear_height: float
+    clear_slope: float
+    automatic_height: bool = False
+    automatic_slope: bool = False
+
+    @classmethod
+    def of(cls, height: float, slope: float, usual_height: float, usual_slope: float) -> CurbLimits:
+        """The limits of settings, m and degrees, of which 0 is automatic; then the usual ones are those of clear steps."""
+        return cls(height or usual_height, np.radians(slope or usual_slope), not height, not slope)
+
+    @property
+    def automatic(self) -> bool:
+        """May there be faint steps?"""
+        return self.automatic_height or self.automatic_slope
+
+    @property
+    def least_height(self) -> float:
+        """m, below which no step is a curb."""
+        return min(LEAST_HEIGHT, self.clear_height) if self.automatic_height else self.clear_height
+
+    @property
+    def least_slope(self) -> float:
+        """Radians, below which no face is a curb's."""
+        return min(np.radians(LEAST_SLOPE), self.clear_slope) if self.automatic_slope else self.clear_slope
+
+    def faint(self, height: float, slope: float, noise: float, count: int, scatter: float) -> bool:
+        """Is a step that is not clear a curb all the same?
+
+        Parameters
+        ----------
+        height : m; slope : radians, of the face
+        noise : m, scatter of single heights beside it; count : profiles that show it
+        scatter : m, of the step about its own running line
+        """
+        left = np.hypot(noise / np.sqrt(max(count, 1)), TEXTURE_SIGMA)
+        return bool(height >= max(self.least_height, SIGNIFICANT_SIGMAS * left) and slope >= self.least_slope and scatter <= MAX_FAINT_SCATTER)
