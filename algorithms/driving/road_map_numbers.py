@@ -16,7 +16,7 @@ NUMBERS = (
     ("EDGES_MEASURED", tr("Of the road edges measured (%)")),
     ("LINE_LENGTH", tr("Length of the marking lines (m)")),
     ("LINES_MEASURED", tr("Of the marking lines measured (%)")),
-    ("LANES", tr("Lanes")),
+    ("LANE_COUNT", tr("Lanes")),
     ("LANE_LENGTH", tr("Length of the driving lines (m)")),
     ("LANES_MEASURED", tr("Of the driving lines measured (%)")),
     ("MARKING_COUNT", tr("Markings")),
@@ -38,7 +38,7 @@ def road_map_numbers(road_lengths: Iterable[float], edges: Features | None, mark
                                  (driving_lines, "LANE_LENGTH", "LANES_MEASURED")):
         found[length], found[share] = _measured(layer)
     lanes = [] if driving_lines is None else driving_lines.rows
-    found["LANES"] = float(len({(row.get("road"), row.get("lane")) for row in lanes}))
+    found["LANE_COUNT"] = float(len({(row.get("road"), row.get("lane")) for row in lanes}))
     found["MARKING_COUNT"] = float(0 if markings is None else len(markings))
     return {name: value for name, value in found.items() if value is not None}
 

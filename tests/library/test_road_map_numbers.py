@@ -20,10 +20,10 @@ def test_lengths_and_shares_are_those_of_the_lines_drawn():
     found = road_map_numbers([120.0, 30.0], lines(ROAD_EDGES, (90, "measured"), (30, "bridged")), lines(MARKING_LINES, (50, "measured")),
                              lines(DRIVING_LINES, (40, "measured"), (40, "inferred"), (20, "measured")), Features("PolygonZ", MARKINGS))
     assert found == {"ROADS": 2, "ROAD_LENGTH": 150, "EDGE_LENGTH": 120, "EDGES_MEASURED": 75, "LINE_LENGTH": 50, "LINES_MEASURED": 100,
-                     "LANES": 2, "LANE_LENGTH": 100, "LANES_MEASURED": 60, "MARKING_COUNT": 0}
+                     "LANE_COUNT": 2, "LANE_LENGTH": 100, "LANES_MEASURED": 60, "MARKING_COUNT": 0}
     assert set(found) == {name for name, _ in NUMBERS}
 
 
 def test_of_what_is_not_there_no_share_is_told():
     found = road_map_numbers([10.0], lines(ROAD_EDGES), None, None, None)
-    assert found["EDGE_LENGTH"] == found["LANES"] == 0 and not any(name.endswith("_MEASURED") for name in found)
+    assert found["EDGE_LENGTH"] == found["LANE_COUNT"] == 0 and not any(name.endswith("_MEASURED") for name in found)
