@@ -8,6 +8,7 @@ from lanewright.core.road.agreement import measure_agreement, select_curb_points
 from lanewright.core.road.common.curb_points import curb_points_at
 from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from lanewright.core.road.edges.fit import fit_road_edges
+from lanewright.core.road.profiles.detect import CurbSettings
 
 
 def boundaries(points, method):
@@ -50,8 +51,8 @@ def test_one_method_alone_says_nothing_of_agreement():
 
 
 def test_a_curb_that_only_one_method_finds_is_drawn_without_agreement():
-    # four centimetres: below the least height of profiles
-    found = boundaries(street(curb=0.04, noise=0.002), "both")
+    survey, settings = survey_of(street(curb=0.04, noise=0.002)), BoundarySettings("both", CurbSettings(min_height=0.05))
+    found = draw_boundaries(find_curb_points(survey, settings), survey.frame)
     assert found.length_by_method["profiles"] == 0
     assert found.edges.length.sum() > 110
     assert np.isnan(found.edges.agree).all()
