@@ -41,16 +41,17 @@ ROAD_MAP = Recipe(
         "removeoutliers": ({"INPUT": "extractmarkings.MARKING_POINTS"}, ()),
         "clustermarkings": ({"MARKING_POINTS": "removeoutliers.OUTPUT", **DRIVE}, ()),
         "fitmarkinglines": (
-            {"CLUSTERED_POINTS": "clustermarkings.CLUSTERED_POINTS", "MARKINGS": "clustermarkings.MARKINGS", **DRIVE},
+            {"CLUSTERED_POINTS": "clustermarkings.CLUSTERED_POINTS", "MARKINGS": "clustermarkings.MARKINGS",
+             "ROAD_EDGES": "detectboundaries.ROAD_EDGES", "ROAD_POINTS": "correctintensity.OUTPUT", **DRIVE},
             (("NAMED_MARKINGS", "MARKINGS"), "MARKING_LINES")),
         "drivinglines": (
             {"MARKING_LINES": "fitmarkinglines.MARKING_LINES", "MARKINGS": "fitmarkinglines.NAMED_MARKINGS",
              "ROAD_EDGES": "detectboundaries.ROAD_EDGES", "ROAD_POINTS": "correctintensity.OUTPUT", **DRIVE},
-            ("DRIVING_LINES", "CURVE_ELEMENTS")),
+            ("DRIVING_LINES", "LANES", "CURVE_ELEMENTS")),
     },
     ("Road edges", "Road surface", "Road points",
      "Intensity image", "Markings", "Marking lines",
-     "Driving lines", "Curve elements"),
+     "Driving lines", "Lanes", "Curve elements"),
 )
 
 SCANLINE_BOUNDARIES = Recipe(
@@ -83,4 +84,19 @@ ASSESSED_ROAD_MAP = Recipe(
      "Driving lines report"),
 )
 
-RECIPES = (ROAD_MAP, SCANLINE_BOUNDARIES, ASSESSED_ROAD_MAP)
+MAP_LAYERS = {name: f"roadmap.{name}" for name in ("LANES", "DRIVING_LINES", "MARKING_LINES", "ROAD_EDGES", "MARKINGS")}
+
+HD_MAP = Recipe(
+    "hd_map", "Survey to HD map",
+    "The road map, and the same lanes as OpenDRIVE and Lanelet2 files.",
+    ("POINT_CLOUDS", "TRAJECTORY", "BOUNDARY_METHOD", "CRS"),
+    {
+        "roadmap": ({**SURVEY, "BOUNDARY_METHOD": "@BOUNDARY_METHOD"},
+                    ("ROAD_EDGES", "MARKINGS", "MARKING_LINES", "DRIVING_LINES", "LANES")),
+        "exportopendrive": (MAP_LAYERS, (("OUTPUT", "OPENDRIVE_FILE"),)),
+        "exportlanelet2": (MAP_LAYERS, (("OUTPUT", "LANELET2_FILE"),)),
+    },
+    ("Road edges", "Markings", "Marking lines", "Driving lines", "Lanes", "Opendrive file", "Lanelet2 file"),
+)
+
+RECIPES = (ROAD_MAP, SCANLINE_BOUNDARIES, ASSESSED_ROAD_MAP, HD_MAP)

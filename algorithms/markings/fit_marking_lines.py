@@ -1,10 +1,10 @@
 """Markings as curves."""
 
-from ...core.common.schemas import MARKING_LINES, MARKINGS
+from ...core.common.schemas import MARKING_LINES, MARKINGS, ROAD_EDGES
 from ...core.countries.catalogue import COUNTRIES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
-from ..survey_input import frame_of, paint_of
+from ..survey_input import frame_of, paint_of, road_points_of
 from ..texts import tr
 
 LINES = "markings.lines.fit:MarkingLineSettings"
@@ -52,6 +52,8 @@ class FitMarkingLines(Algorithm):
         self.add_cloud("CLUSTERED_POINTS", tr("Clustered points"), tr("The file written by Cluster markings."))
         self.add_layer("MARKINGS", tr("Markings"), tr("The layer written by Cluster markings together with the points."), "PolygonZ")
         self.add_trajectory()
+        self.add_layer("ROAD_EDGES", tr("Road edges"), tr("With it curbs help to tell edge lines from lane lines."), "LineStringZ", optional=True)
+        self.add_cloud("ROAD_POINTS", tr("Road points"), tr("With it the width of the road helps to tell what a line separates."), optional=True)
         self.add_settings(LINE_SETTINGS)
         self.add_sink("MARKING_LINES", tr("Marking lines"), fields=MARKING_LINES, geometry="LineStringZ")
         self.add_sink("NAMED_MARKINGS", tr("Markings named by their lines"), fields=MARKINGS, geometry="PolygonZ", optional=True, by_default=False,
@@ -63,12 +65,16 @@ class FitMarkingLines(Algorithm):
         from ...core.markings.lines.naming import named_by_lines
         from ...core.markings.lines.painted_lines import lines_to_features
         from ...core.markings.objects.marking_objects import markings_from_features, with_kinds_of
+        from ...core.road.edges.road_edges import edges_from_features
 
         layer = call.features("MARKINGS", MARKINGS, "PolygonZ")
         points = paint_of(call, "CLUSTERED_POINTS", progress.part(0.0, 0.2))
         frame = frame_of(call, points.crs, progress, points, {"MARKINGS": layer})
         markings = markings_from_features(layer, frame)
-        lines = fit_marking_lines(points, markings, frame, call.settings(LINE_SETTINGS), progress.part(0.2, 1.0))
+        edges = call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ")
+        road_points = road_points_of(call, "ROAD_POINTS", progress.part(0.2, 0.3)) if call.cloud("ROAD_POINTS") else None
+        lines = fit_marking_lines(points, markings, frame, call.settings(LINE_SETTINGS), progress.part(0.3, 1.0),
+                                  edges=None if edges is None else edges_from_features(edges, frame).densified(frame), road_points=road_points)
         call.layer("MARKING_LINES", lines_to_features(lines, frame))
         if call.wants("NAMED_MARKINGS"):
             call.layer("NAMED_MARKINGS", with_kinds_of(layer, named_by_lines(markings, lines)))

@@ -2340,6 +2340,16 @@
         </message>
         <message>
             <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>With it curbs help to tell edge lines from lane lines.</source>
+            <translation>Damit helfen Bordsteine, Randlinien von Fahrstreifenlinien zu unterscheiden.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
+            <source>With it the width of the road helps to tell what a line separates.</source>
+            <translation>Damit hilft die Breite der Straße zu erkennen, was eine Linie trennt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/markings/fit_marking_lines.py" />
             <source>Markings named by their lines</source>
             <translation>Markierungen, nach ihren Linien benannt</translation>
         </message>
@@ -5062,6 +5072,16 @@
             <location filename="../../tools/models.py" />
             <source>The road map, and how its markings and driving lines compare with reference layers of your own: reports, and layers coloured by outcome.</source>
             <translation>Die Straßenkarte, und wie ihre Markierungen und Fahrlinien zu eigenen Referenzlayern passen: Berichte und Layer, gefärbt nach Ergebnis.</translation>
+        </message>
+        <message>
+            <location filename="../../tools/models.py" />
+            <source>Survey to HD map</source>
+            <translation>Von der Vermessung zur HD-Karte</translation>
+        </message>
+        <message>
+            <location filename="../../tools/models.py" />
+            <source>The road map, and the same lanes as OpenDRIVE and Lanelet2 files.</source>
+            <translation>Die Straßenkarte und dieselben Fahrstreifen als OpenDRIVE- und Lanelet2-Dateien.</translation>
         </message>
         <message>
             <location filename="../../resources/styles/assessed_lines.qml" />
