@@ -8,7 +8,7 @@ import numpy as np
 
 from ..markings.cross_section.evidence import driven_offsets
 from ..markings.cross_section.sections import STATION_STEP, CrossSections
-from ..markings.cross_section.weights import CENTRE_LINE, CURB, EDGE_LINE, LANE_LINE, OTHER_LINE, SURFACE
+from ..markings.cross_section.weights import CENTRE_LINE, CURB, EDGE_LINE, HATCHING, LANE_LINE, OTHER_LINE, SURFACE
 from .centreline import status_pieces, without_short_status
 from .lane_track import LANE_STATUS, LaneTrack
 from .lanes_layer import Lanes
@@ -87,6 +87,8 @@ def _border(road, curbs, rows, separates, columns):
     if made_of == CURB and curbs is not None:
         numbers = curbs.number[row - len(road.lines.d)]
         return f"edge {int(numbers.max())}", "curb", ""
+    if made_of == HATCHING:
+        return "none", "hatch", ""
     return ("none", "pavement", "") if made_of == SURFACE else NO_BORDER
 
 

@@ -96,7 +96,7 @@ def _part(boundaries, span, first, last, lane_width, line_distance):
     left, right = _filled(left), _filled(right)
     if left is None or right is None:
         return None
-    painted = boundaries.painted[span.left], boundaries.painted[span.right]
+    painted = boundaries.bounding[span.left], boundaries.bounding[span.right]
     seen = [boundaries.seen[row, rows] & paint for row, paint in zip((span.left, span.right), painted)]
     size = last - first + 1
     width = (left - right) / span.count
@@ -113,8 +113,8 @@ def _part(boundaries, span, first, last, lane_width, line_distance):
     status = np.choose(both, [BRIDGED, INFERRED, MEASURED if span.count == 1 else INFERRED])
     at_left, at_right = span.place == span.count - 1, span.place == 0
     borders = [span.left if at_left else -1, span.right if at_right else -1, span.left_border, span.right_border]
-    return LaneTrack(first, d, width, status, offset, np.full(size, span.left if painted[0] and at_left else -1),
-                     np.full(size, span.right if painted[1] and at_right else -1), span.direction, np.full(size, span.confidence),
+    return LaneTrack(first, d, width, status, offset, np.full(size, span.left if boundaries.painted[span.left] and at_left else -1),
+                     np.full(size, span.right if boundaries.painted[span.right] and at_right else -1), span.direction, np.full(size, span.confidence),
                      np.repeat([borders], size, axis=0))
 
 

@@ -3,7 +3,8 @@
 import pytest
 from qgis.core import Qgis, QgsApplication, QgsProcessingModelAlgorithm
 
-RESULTS = {"road_edges", "road_surface", "road_points", "intensity_image", "markings", "marking_lines", "driving_lines", "lanes", "curve_elements", "lanes"}
+RESULTS = {"road_edges", "road_surface", "road_points", "intensity_image", "markings", "marking_lines", "driving_lines", "lanes",
+           "curve_elements"}
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .sections import STATION_STEP, CrossSections
-from .weights import CENTRE_LINE, CURB, DASHED, DOUBLE, EDGE_LINE, OPEN, OUTSIDE, SOLID, SURFACE, EstimateWeights
+from .weights import CENTRE_LINE, CURB, DASHED, DOUBLE, EDGE_LINE, HATCHING, OPEN, OUTSIDE, SOLID, SURFACE, EstimateWeights
 
 NAMES = {"edge": EDGE_LINE, "centre": CENTRE_LINE}   # a line called lane line may have been called nothing better
 STATIONS_OF_CELL = 5                       # stations of the grid that are always in one interval: 2.5 m
@@ -40,13 +40,18 @@ class Boundaries:
     bend: np.ndarray
 
     @property
+    def bounding(self) -> np.ndarray:
+        """(R,) bool, whether a row is paint that bounds lanes: a line, or the border of a hatched area."""
+        return self.painted | (self.made_of == HATCHING)
+
+    @property
     def painted(self) -> np.ndarray:
-        """(R,) bool, whether a row is paint."""
+        """(R,) bool, whether a row is a painted line."""
         return self.made_of <= DOUBLE
 
 
 def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, surface: np.ndarray | None = None,
-                      open_ends: np.ndarray | None = None, bend: np.ndarray | None = None) -> Boundaries:
+                      open_ends: np.ndarray | None = None, bend: np.ndarray | None = None, hatching: np.ndarray | None = None) -> Boundaries:
     """Lines, curbs and the two ends of the surface or, where that is unknown, open ends, (2, K) offsets each or None, on the grid of the lines."""
     rows, count = len(lines.d), len(lines.s)
     of_name = np.array([_made_of(name) for name in lines.names] + [SOLID], int)
@@ -61,7 +66,7 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
         d.append(np.where(inside, curbs.d[:, at], np.nan))
         seen.append(curbs.seen[:, at] & inside & np.isfinite(curbs.d[:, at]))
         made_of.append(np.full(len(curbs.d), CURB))
-    for ends, made in ((surface, SURFACE), (open_ends, OPEN)):
+    for ends, made in ((surface, SURFACE), (open_ends, OPEN), (hatching, HATCHING)):
         if ends is not None:
             d.append(ends)
             seen.append(np.isfinite(ends))
@@ -157,6 +162,7 @@ def _grouped(first, last, interval, row, d, made, seen, boundaries, weights):
         beside = np.roll(near, -1) if step > 0 else near
         drop |= beside & (np.roll(boundaries.paint[row], -step) * WEAK_TWIN > boundaries.paint[row])
         close = np.abs(np.roll(d, -step) - d) < SURFACE_MERGE
+        drop |= (made == HATCHING) & (np.roll(interval, -step) == interval) & close & (np.roll(made, -step) <= DOUBLE)
         drop |= (made == SURFACE) & (np.roll(interval, -step) == interval) & close & (np.roll(made, -step) != SURFACE)
     interval, row, d, made, seen, trust, paint = (values[~drop] for values in (interval, row, d, made, seen, trust, paint))
     near = np.r_[False, (np.diff(interval) == 0) & (-np.diff(d) < DOUBLE_SPACING[1]) & paint[1:] & paint[:-1]]

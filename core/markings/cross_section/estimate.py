@@ -45,7 +45,7 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
     """
     costs = strip_costs(candidates, evidence, weights, lane_width, first_direction)
     sections = best_sections(candidates, costs, weights)
-    sections.cost += _roads_of_many_lanes(candidates, costs, sections, weights)
+    sections.cost += _roads_of_many_lanes(candidates, costs, sections, evidence.divided, weights)
     area, divider = occupancy(candidates, costs, sections)
     # where no line is seen, as on a crossing, much may change; where no line is known nothing can be said
     paint = (candidates.made_of <= DOUBLE) & candidates.valid
@@ -63,7 +63,7 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
     return RoadEstimate(candidates, costs, sections, choice, posterior, total, first_direction)
 
 
-def _roads_of_many_lanes(c, costs, sections, weights):
+def _roads_of_many_lanes(c, costs, sections, divided, weights):
     """(I, K) nats of how many lanes lead which way."""
     i, k, m = np.nonzero((sections.strip >= FIRST) & (sections.strip <= SECOND))
     kind, end = sections.strip[i, k, m], sections.right[i, k, m]
@@ -74,6 +74,8 @@ def _roads_of_many_lanes(c, costs, sections, weights):
     one_way = (total > 0) & ((ahead == 0) | (ahead == total))
     cost = np.where(one_way, np.array(weights.one_way)[np.clip(total, 1, len(weights.one_way)).astype(int) - 1], 0.0)
     cost = np.where(~one_way & (np.abs(2 * ahead - total) > 1), weights.uneven, cost)
+    cost = np.where(~one_way & (total == 3), weights.two_and_one, cost)
+    cost = np.where(divided[:, None], np.where(one_way | (total == 0), 0.0, weights.two_way_carriageway), cost)
     # where there are more than two lanes, dashes do not part the directions
     kind_right = np.where(sections.right >= 0, np.take_along_axis(sections.strip, np.maximum(sections.right, 0), axis=2), -1)
     parts = (sections.strip == FIRST) & (kind_right == SECOND)

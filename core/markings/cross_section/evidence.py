@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
+from scipy.ndimage import binary_closing, grey_closing
 
+from ...survey.frame.placement import located
 from .candidates import FAR, Candidates
 from .sections import STATION_STEP
 from .strips import BIN, Evidence
@@ -17,6 +19,13 @@ if TYPE_CHECKING:
     from ..objects.marking_objects import MarkingObjects
 
 BINS = int(round(2 * FAR / BIN))
+BAR_REACH = 1.6        # m: bars of one hatched area are at most twice as far apart
+BORDER_SPACING = 0.25  # m between places of its border
+HALF_BORDER = 0.06     # m from the outside of its border line to the middle: half of a narrow line
+SHORTEST_AREA = 5.0    # m
+CARRIAGEWAY_DISTANCE = 40.0  # m between the tracks on two carriageways of one road at most
+OWN_ROAD = 6.0         # m: what runs nearer is on this road
+PASS_SPACING = 20      # stations, between the places of a pass at most
 STOP_REACH = 5.0    # m before and after a stop line where its lanes are still its lanes
 
 
@@ -41,6 +50,32 @@ def driven_offsets(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.ndarr
         there = (s >= first) & (s <= last)
         row[there] = p.at_station(s[there])[0]
     return d, np.array([p.direction for p in passes], int)
+
+
+def other_carriageway(frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray:
+    """(K,) bool, whether another road of the survey was driven the other way beside this one: the two are carriageways of one road.
+
+    Parameters
+    ----------
+    frame : RoadFrame
+    road : number of the road
+    s : (K,) metres, stations
+    """
+    found = np.zeros(len(s), bool)
+    ways = {p.direction for p in frame.passes_of(road)}
+    if len(ways) != 1:
+        return found
+    for p in frame.passes:
+        if p.road == road:
+            continue
+        station, d = frame.road(road).locate(p.x, p.y, corridor=CARRIAGEWAY_DISTANCE)
+        against = np.gradient(np.nan_to_num(station)) * next(iter(ways)) < 0
+        beside = np.isfinite(station) & against & (np.abs(d) > OWN_ROAD)
+        at = np.rint((station[beside] - s[0]) / STATION_STEP)
+        at = at[(at >= 0) & (at < len(s))].astype(int)
+        found[at] = True
+    # the places of a pass are sparser than the stations
+    return binary_closing(found, np.ones(2 * PASS_SPACING + 1, bool)) if len(found) else found
 
 
 def surface_coverage(points: RoadPoints, road: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -119,8 +154,47 @@ def hatched_places(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.
     return found
 
 
+def hatching_borders(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray:
+    """The outer borders of hatched areas: nobody drives between them, and they bound the lanes beside.
+
+    Parameters
+    ----------
+    markings : MarkingObjects
+    frame : RoadFrame
+    road : number of the road
+    s : (K,) metres, stations
+
+    Returns
+    -------
+    (2 G, K) metres, the left and the right border of each of G areas, NaN where it is not
+    """
+    rows = (markings.road == road) & (markings.kind == "hatch")
+    shapes = shapely.force_2d(markings.outlines.polygons()[rows])
+    shapes = shapes[~shapely.is_empty(shapes)]
+    found = [np.empty((0, len(s)))]
+    for group in shapely.get_parts(shapely.union_all(shapely.buffer(shapes, BAR_REACH))) if len(shapes) else ():
+        x, y = shapely.get_coordinates(shapely.segmentize(shapes[shapely.intersects(shapes, group)], BORDER_SPACING)).T
+        station, d = located(frame, np.full(len(x), road), x, y)
+        at = np.rint((station - s[0]) / STATION_STEP)
+        inside = np.isfinite(at) & (at >= 0) & (at < len(s))
+        at, d = at[inside].astype(int), d[inside]
+        if not len(at) or np.ptp(at) * STATION_STEP < SHORTEST_AREA:
+            continue
+        window = slice(at.min(), at.max() + 1)
+        borders = np.full((2, len(s)), np.nan)
+        for side, sign in enumerate((1.0, -1.0)):
+            outer = np.full(window.stop - window.start, -FAR)
+            np.maximum.at(outer, at - window.start, sign * d)
+            # bars touch the border only at their ends
+            outer = grey_closing(outer, size=int(2 * BAR_REACH / STATION_STEP) + 1, mode="nearest")
+            borders[side, window] = sign * (outer - HALF_BORDER)
+        found.append(borders)
+    return np.concatenate(found)
+
+
 def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, directions: np.ndarray, covered: np.ndarray | None = None,
-                hatched: np.ndarray | None = None, markings: MarkingObjects | None = None, road: int = 0) -> Evidence:
+                hatched: np.ndarray | None = None, markings: MarkingObjects | None = None, road: int = 0,
+                divided: np.ndarray | None = None) -> Evidence:
     """The Evidence of each interval, from what is known at each station.
 
     Parameters
@@ -131,6 +205,7 @@ def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, direc
     covered, hatched : (K, BINS) bool, or None
     markings : MarkingObjects, of which arrows and stop lines count; or None
     road : number of the road
+    divided : (K,) bool as `other_carriageway` gives it, or None
     """
     size = np.diff(np.r_[candidates.first, candidates.last[-1] + 1])
 
@@ -145,7 +220,8 @@ def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, direc
     if markings is not None:
         arrows = _arrows(candidates, s, markings, road)
         stops = _stop_lines(candidates, s, markings, road)
-    return Evidence(where, directions, share(covered), share(hatched), arrows, stops)
+    return Evidence(where, directions, share(covered), share(hatched), arrows, stops,
+                    np.zeros(len(size), bool) if divided is None else np.add.reduceat(divided, candidates.first) * 2 > size)
 
 
 def _extents(markings, road, kind):

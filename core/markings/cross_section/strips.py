@@ -8,7 +8,7 @@ import numpy as np
 
 from ...countries.neutral import NEUTRAL
 from .candidates import FAR, Candidates, surface_lane_width
-from .weights import CURB, DOUBLE, OPEN, OUTSIDE, SURFACE, EstimateWeights
+from .weights import CURB, DOUBLE, HATCHING, OPEN, OUTSIDE, SURFACE, EstimateWeights
 
 # Strips from left to right: what nobody drives on, lanes of the direction that is met first, lanes of both directions without
 # paint between them, lanes of the other direction, and again what nobody drives on
@@ -29,6 +29,7 @@ class Evidence:
     driven : (P, I) m, offset of each pass, NaN where it was not; directions : (P,) 1 along, -1 against the road
     asphalt, hatched : (I, B) share of each bin of BIN metres, from -FAR on, that is road surface or hatched; None where unknown
     arrows : (A, 2) interval and offset; stops : (S, 3) interval, least and greatest offset
+    divided : (I,) bool, whether the road is one carriageway of two
     """
 
     driven: np.ndarray
@@ -37,6 +38,7 @@ class Evidence:
     hatched: np.ndarray | None
     arrows: np.ndarray
     stops: np.ndarray
+    divided: np.ndarray
 
 
 @dataclass
@@ -65,7 +67,7 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     outside = (c.made_of == OUTSIDE)[:, :, None] | (c.made_of == OUTSIDE)[:, None, :]
     through, rest = _passed_over(c, w)
     hatched = _share_between(evidence.hatched, c, width) > HATCHED_SHARE if evidence.hatched is not None else np.zeros(width.shape, bool)
-    paint = c.made_of <= DOUBLE
+    paint = (c.made_of <= DOUBLE) | (c.made_of == HATCHING)
     both_paint, any_paint = paint[:, :, None] & paint[:, None, :], paint[:, :, None] | paint[:, None, :]
     asphalt = width * _share_between(evidence.asphalt, c, width) if evidence.asphalt is not None else np.where(both_paint, width, 0.0)
     arrows_in, arrows_off = _arrows(c, evidence.arrows, w)
@@ -127,7 +129,8 @@ def _passed_over(c, w):
     there = c.valid & (c.made_of != OUTSIDE)
     shown = 0.5 + 0.5 * c.seen
     lane = np.where(paint, w.lane_through_paint * c.trust * shown,
-                    np.select([c.made_of == CURB, c.made_of == SURFACE], [w.lane_through_curb * c.seen, w.lane_through_surface], 0.0)) * there
+                    np.select([c.made_of == CURB, c.made_of == SURFACE, c.made_of == HATCHING],
+                              [w.lane_through_curb * c.seen, w.lane_through_surface, w.lane_through_hatching], 0.0)) * there
     rest = np.where(paint, w.paint_in_rest * c.trust * shown, 0.0) * there
     found = []
     for values in (lane, rest):

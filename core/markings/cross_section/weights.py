@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 # What a boundary is made of
-SOLID, DASHED, DOUBLE, CURB, SURFACE, OPEN, OUTSIDE = range(7)
+SOLID, DASHED, DOUBLE, CURB, SURFACE, OPEN, OUTSIDE, HATCHING = range(8)
 PAINTED = (SOLID, DASHED, DOUBLE)
 # What a boundary separates
 LANE_LINE, CENTRE_LINE, EDGE_LINE, OTHER_LINE = range(4)
@@ -28,11 +28,13 @@ class EstimateWeights:
     solid, dashed, double : share of lane lines, centre lines, edge lines and other lines that are drawn like that
     curb, surface : the same of boundaries that are a curb, or where the road surface ends without one
     open_end : the same where nothing is known beyond the outermost line
+    hatching : the same of boundaries that are the border of a hatched area
     named : of a line that separates something else than its layer says
     bridged : of a boundary that is not seen here, but before and behind
     short : of a painted boundary by the metres that it lacks to `long_line`, at most
     stroke, long_line : m of paint that strokes of symbols have too, and that make a line sure
-    lane_through_paint, lane_through_curb, lane_through_surface : of a seen line, curb or end of the surface inside a lane
+    lane_through_paint, lane_through_curb, lane_through_hatching, lane_through_surface : of a seen line, curb, border of a hatched area or end
+        of the surface inside a lane
     paint_in_rest : of a seen line inside a strip where nobody drives
     width_sigma, width_sigma_asked : m, scatter of lane widths on one road, and about the width that the user named
     other_width : share of lanes as wide as lanes are elsewhere; odd_width, odd_width_asked : share of lanes of any other width up to `widest_odd`
@@ -51,7 +53,8 @@ class EstimateWeights:
     change : of a metre across that becomes lane, or ceases to be one; turn : that changes its direction
     divider_change : of a border between lanes that begins or ends
     lanes_remembered, directions_remembered : m without any line, as over a junction, that leave a third of what was known before
-    one_way : of one, two, three, four lanes and more that all lead one way; uneven : of directions whose numbers of lanes differ by two and more
+    one_way : of one, two, three, four lanes and more that all lead one way; uneven : of directions whose numbers of lanes differ by two and
+        more; two_and_one : of two lanes one way and one the other; two_way_carriageway : of two directions on one of two carriageways
     dashed_between_many : of dashes between the directions of a road of more than two lanes
     left_hand : of traffic on the left, against traffic on the right
     """
@@ -61,8 +64,9 @@ class EstimateWeights:
     dashed: tuple[float, ...] = _costs(0.8, 0.4, 0.1, 0.3)
     double: tuple[float, ...] = _costs(0.05, 0.9, 0.05, 0.05)
     curb: tuple[float, ...] = _costs(0.001, 0.02, 0.9, 0.7)
-    surface: tuple[float, ...] = _costs(0.001, 0.001, 0.6, 0.8)
+    surface: tuple[float, ...] = _costs(0.001, 0.001, 0.2, 0.8)
     open_end: tuple[float, ...] = (np.inf, np.inf, 2.3, np.inf)
+    hatching: tuple[float, ...] = _costs(0.01, 0.01, 0.9, 0.5)
     named: float = 3.0
     bridged: float = 0.7
     short: float = 0.3
@@ -70,6 +74,7 @@ class EstimateWeights:
     long_line: float = 25.0
     lane_through_paint: float = 10.0
     lane_through_curb: float = 12.0
+    lane_through_hatching: float = 12.0
     lane_through_surface: float = 3.0
     paint_in_rest: float = 6.0
     width_sigma: float = 0.45
@@ -100,11 +105,13 @@ class EstimateWeights:
     directions_remembered: float = 40.0
     one_way: tuple[float, ...] = (0.4, 1.2, 0.3, 1.2)
     uneven: float = 1.2
+    two_and_one: float = 0.8
+    two_way_carriageway: float = 4.0
     dashed_between_many: float = 1.5
     left_hand: float = 0.7
 
     @property
     def boundary(self) -> np.ndarray:
-        """(7, 4) costs by what a boundary is made of and what it separates."""
+        """(8, 4) costs by what a boundary is made of and what it separates."""
         impossible = (np.inf,) * 4
-        return np.array([self.solid, self.dashed, self.double, self.curb, self.surface, self.open_end, impossible])
+        return np.array([self.solid, self.dashed, self.double, self.curb, self.surface, self.open_end, impossible, self.hatching])

@@ -97,6 +97,15 @@ def test_a_mirrored_street_has_its_lanes_mirrored():
     assert {-offset: -way for offset, way in lanes_of(street(1)).items()} == {offset: -way for offset, way in lanes_of(street(-1)).items()}
 
 
+def test_a_carriageway_beside_one_that_was_driven_the_other_way_is_one_way():
+    """Dashes between two edge lines part the directions of a road alone; here the other direction has a carriageway of its own."""
+    def street(**other):
+        return Street(vehicle=-1.75, **other).paint(3.5, kind="edge").paint(0.0, pattern="dashed").paint(-3.5, kind="edge")
+
+    assert lanes_of(street()) == {-1.75: 1, 1.75: -1}
+    assert lanes_of(street(again=(16.0,))) == {-1.75: 1, 1.75: 1}
+
+
 def test_painted_lanes_are_sure():
     street = Street(vehicle=-1.75).paint(3.5, kind="edge").paint(0.0, pattern="double-solid", kind="centre").paint(-3.5, kind="edge")
     assert min(row["confidence"] for row in street.lanes()[0].rows) > 0.9
