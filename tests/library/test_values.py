@@ -45,7 +45,6 @@ def test_what_is_empty_was_not_given():
     ("roadmap", {"CORRECT_INTENSITY": "maybe"}, r"must be true or false"),
     ("roadmap", {"ROAD_EDGES": "TEMPORARY_OUTPUT"}, r"only QGIS can write to. .* such as road_edges.gpkg"),
     ("roadmap", {"ROAD_EDGES": "memory:"}, r"only QGIS can write to"),
-    ("roadmap", {"TRAJECTORY": ""}, r"Trajectory \(TRAJECTORY\) was not given"),
     ("roadmap", {"TRAJECTORY": ["a.csv", "b.csv"]}, r"must be one text"),
 ])
 def test_what_cannot_be_is_refused_in_one_sentence(algorithm, given, says):

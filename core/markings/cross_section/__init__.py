@@ -7,7 +7,7 @@ from interval to interval, from which lines get their kinds and lanes their plac
 from ...lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "line_kinds": ("line_kinds",),
+    "named_lines": ("line_kinds",),
     "roads": ("EstimatedRoad", "RoadEstimates", "estimate_roads"),
     "sections": ("CrossSections", "sections_of_edges", "sections_of_lines"),
     "weights": ("EstimateWeights",),

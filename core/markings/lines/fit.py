@@ -17,7 +17,7 @@ from ...countries.neutral import NEUTRAL
 from ...curves.model_selection import CURVES
 from ...survey.frame.frame_lines import lines_in_frame
 from ...survey.store.records import join_columns
-from ..cross_section.line_kinds import line_kinds
+from ..cross_section.named_lines import line_kinds
 from ..cross_section.roads import estimate_roads
 from ..cross_section.sections import sections_of_edges, sections_of_lines
 from ..objects.marking_objects import MarkingObjects

@@ -14,9 +14,9 @@ import numpy as np
 
 TEXTURE_SIGMA = 0.0025      # m, of heights averaged along a curb, however many: texture of the surfaces, footprint, registration
 SIGNIFICANT_SIGMAS = 4.0    # of what is left of the noise, by which a faint step must rise
-LEAST_HEIGHT = 0.02         # m: lower steps are dropped curbs and seams
+LEAST_HEIGHT = 0.025        # m: lower steps are dropped curbs and seams
 LEAST_SLOPE = 25.0          # °: flatter faces are ramps
-MAX_FAINT_SCATTER = 0.010   # m, of a faint step about its own running line
+MAX_FAINT_SCATTER = 0.006   # m, of a faint step about its own running line
 MIN_FAINT_LENGTH = 5.0      # m of faint steps in one line that make a curb
 
 

@@ -93,7 +93,8 @@ def test_the_same_street_again_a_thousand_kilometres_on_gives_the_same_map(sampl
                             for name in ("time", "x", "y", "z", "roll", "pitch", "heading")})
     found = make_road_map([cloud, tmp_path / "there.laz"], both, tmp_path / "image.tif")
     assert found.survey_facts["outside"] == 2 * road_map.survey_facts["outside"]
-    assert len(found.road_points) == 2 * len(road_map.road_points)
+    # a point right on the edge of the surface may fall on either side: what asphalt looks like is taken from the whole survey
+    assert len(found.road_points) == pytest.approx(2 * len(road_map.road_points), abs=5)
     for name in LAYERS:
         expected = [shapely.get_coordinates(g, include_z=True) for g in road_map.layer(name).geometries]
         geometries = found.layer(name).geometries

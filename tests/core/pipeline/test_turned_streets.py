@@ -105,4 +105,5 @@ def test_the_map_does_not_depend_on_how_the_street_lies_or_is_driven(street, fol
     swapped = there is mirrored or backwards
     before = metres_by_side(as_surveyed.layer("edges"))
     for side, metres in metres_by_side(found.layer("edges")).items():
-        assert metres == pytest.approx(before[OTHER[side] if swapped else side], abs=2.0)
+        # a low curb that is just seen may end a few metres earlier
+        assert metres == pytest.approx(before[OTHER[side] if swapped else side], abs=4.0)

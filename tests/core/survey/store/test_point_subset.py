@@ -21,7 +21,7 @@ def survey_store(limit, count=6000):
 
 def road_of(store):
     """The points within 3 m of the reference line; none of section 2."""
-    road = PointSubset(store, ROAD_POINT, ("half_width", "covered"), dict(corrected=np.nan, cluster=0))
+    road = PointSubset(store, ROAD_POINT, ("half_width", "covered"), dict(corrected=np.nan, cluster=0, spacing=0))
     for number in store.sections(0):
         records = store.section(0, number)
         rows = np.flatnonzero((np.abs(records["d"]) < to_units(3.0)) & (number != 2))
