@@ -54,4 +54,4 @@ def test_a_road_map_without_a_trajectory_is_that_with_it_and_says_so(survey, tmp
 
                 size.append(sum(shape(f.geometry).length for f in layer))
         # the scanners are 2.45 m behind the place that the trajectory refers to, so both ends differ
-        assert size[1] == pytest.approx(size[0], rel=0.1)
+        assert size[1] == pytest.approx(size[0], rel=0.2)

@@ -154,7 +154,7 @@ def hatched_places(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.
     return found
 
 
-def hatching_borders(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray:
+def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray:
     """The outer borders of hatched areas: nobody drives between them, and they bound the lanes beside.
 
     Parameters

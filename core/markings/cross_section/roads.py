@@ -10,7 +10,7 @@ import numpy as np
 
 from .candidates import Boundaries, boundary_candidates, gather_boundaries
 from .estimate import RoadEstimate, estimate_road, lane_spans
-from .evidence import between_ends, driven_offsets, evidence_of, hatched_places, hatching_borders, other_carriageway, surface_coverage
+from .evidence import between_ends, borders_of_hatching, driven_offsets, evidence_of, hatched_places, other_carriageway, surface_coverage
 from .sections import STATION_STEP, CrossSections
 from .weights import EstimateWeights
 
@@ -79,7 +79,7 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
         hatched = hatched_places(markings, frame, number, of_road.s) if markings is not None else None
         boundaries = gather_boundaries(of_road, (curbs or {}).get(number), ends, open_ends,
                                        np.abs(frame.road(number).curvature(of_road.s)) > 1 / WIDENED_RADIUS,
-                                       hatching_borders(markings, frame, number, of_road.s) if markings is not None else None)
+                                       borders_of_hatching(markings, frame, number, of_road.s) if markings is not None else None)
         candidates = boundary_candidates(boundaries, weights)
         known[number] = boundaries, candidates, evidence_of(candidates, of_road.s, *driven, covered, hatched, markings, number,
                                                                 other_carriageway(frame, number, of_road.s))

@@ -64,7 +64,7 @@ class EstimateWeights:
     dashed: tuple[float, ...] = _costs(0.8, 0.4, 0.1, 0.3)
     double: tuple[float, ...] = _costs(0.05, 0.9, 0.05, 0.05)
     curb: tuple[float, ...] = _costs(0.001, 0.02, 0.9, 0.7)
-    surface: tuple[float, ...] = _costs(0.001, 0.001, 0.2, 0.8)
+    surface: tuple[float, ...] = _costs(0.001, 0.001, 0.6, 0.8)
     open_end: tuple[float, ...] = (np.inf, np.inf, 2.3, np.inf)
     hatching: tuple[float, ...] = _costs(0.01, 0.01, 0.9, 0.5)
     named: float = 3.0
@@ -105,7 +105,7 @@ class EstimateWeights:
     directions_remembered: float = 40.0
     one_way: tuple[float, ...] = (0.4, 1.2, 0.3, 1.2)
     uneven: float = 1.2
-    two_and_one: float = 0.8
+    two_and_one: float = 0.4
     two_way_carriageway: float = 4.0
     dashed_between_many: float = 1.5
     left_hand: float = 0.7
