@@ -14,6 +14,7 @@ STATIONS_OF_CELL = 5                       # stations of the grid that are alway
 MAX_INTERVAL = 4               # cells: longer intervals are divided
 DOUBLE_SPACING = 0.22, 0.6     # m between the two lines of a double line; nearer ones are one line
 WEAK_TWIN = 0.25               # of the paint of the line beside it: less is a frayed edge, no second line
+FRAYED_LENGTH = 6.0             # m of paint at most of such an edge
 MAX_BOUNDARIES = 16            # at one place
 FAR = 30.0                     # m: beyond any road
 LIKELY_SHARE = 0.8, 1.5         # of the usual width of a lane: lanes in bends
@@ -160,7 +161,7 @@ def _grouped(first, last, interval, row, d, made, seen, boundaries, weights):
     drop = np.zeros(len(d), bool)
     for step in (-1, 1):
         beside = np.roll(near, -1) if step > 0 else near
-        drop |= beside & (np.roll(boundaries.paint[row], -step) * WEAK_TWIN > boundaries.paint[row])
+        drop |= beside & (np.roll(boundaries.paint[row], -step) * WEAK_TWIN > boundaries.paint[row]) & (boundaries.paint[row] < FRAYED_LENGTH)
         close = np.abs(np.roll(d, -step) - d) < SURFACE_MERGE
         drop |= (made == HATCHING) & (np.roll(interval, -step) == interval) & close & (np.roll(made, -step) <= DOUBLE)
         drop |= (made == SURFACE) & (np.roll(interval, -step) == interval) & close & (np.roll(made, -step) != SURFACE)
