@@ -124,7 +124,7 @@ class Menu(QObject):
                 "Lanewright", tr("No report has been written since QGIS was started."), level=Qgis.MessageLevel.Info)
 
     def open_table(self):
-        """What the runs of this session gave, as a page in the user's web browser."""
+        """What the runs since QGIS was started gave, as a page in the user's web browser."""
         table = run_table()
         if not table:
             self.iface.messageBar().pushMessage("Lanewright", tr("Nothing has been run since QGIS was started."), level=Qgis.MessageLevel.Info)

@@ -1,0 +1,75 @@
+"""Paint that few scan lines meet, far off or beside a fast vehicle."""
+
+import numpy as np
+import pytest
+from clustered_marks import FRAME, classes, layer_of
+from painted_streets import paint, records_at, road_points, strip
+
+
+def sparse(records, across=0.20, along=0.13):
+    """The records that a scanner far off would leave: tracks 20 cm apart across the road, a point every 13 cm on each."""
+    on_track = (records["d"] * 1e-4 / across % 1.0 < 0.06) & (records["s"] * 1e-4 / along % 1.0 < 0.15)
+    records = records[on_track]
+    records["spacing"] = int(across * 1000)
+    return records
+
+
+def bars(count, turn=1.0):
+    """Bars of hatching, 1 m by 3 m and 2.5 m apart, askew to the road."""
+    def on(s, d):
+        phase = s + turn * (d - 2.0) - 20.0
+        return (d >= 2.0) & (d < 5.0) & (phase % 2.5 < 1.0) & (phase >= 0) & (phase < 2.5 * count)
+    return on
+
+
+def test_hatching_far_off_keeps_its_bars():
+    records = sparse(paint(FRAME, [bars(6)], density=20000))
+    markings, _ = layer_of(road_points(records, FRAME), FRAME)
+    assert classes(markings) == ["hatch"] * 6
+    assert sum(markings.column("area_m2")) == pytest.approx(6 * 3.0, rel=0.3)
+
+
+def test_a_broad_line_far_off_is_one_line_as_wide_as_it_is():
+    # the line leaves the tracks slowly, as every road does, so that each shows it at another place of its width
+    def line(s, d):
+        return (s >= 10) & (s < 70) & (d >= 3.0 + 0.02 * s) & (d < 3.3 + 0.02 * s)
+
+    markings, _ = layer_of(road_points(sparse(paint(FRAME, [line], density=20000)), FRAME), FRAME)
+    longest = max(markings.rows, key=lambda row: row["length_m"])
+    assert longest["length_m"] == pytest.approx(60.0, abs=3.0)
+    assert longest["width_m"] == pytest.approx(0.30, abs=0.08)
+    assert longest["area_m2"] > 0.95 * sum(markings.column("area_m2"))
+
+
+def test_points_as_far_apart_that_were_scanned_densely_are_not_joined():
+    records = sparse(paint(FRAME, [bars(6)], density=20000))
+    records["spacing"] = 0
+    markings, _ = layer_of(road_points(records, FRAME), FRAME)
+    assert "hatch" not in classes(markings)
+
+
+def test_a_line_that_every_scan_line_meets_once_is_a_line():
+    rng = np.random.default_rng(4)
+    s = np.arange(10.0, 30.0, 0.28)
+    records = records_at(FRAME, s, rng.uniform(-3.15, -3.0, len(s)), np.full(len(s), 4000.0), 6.0)
+    markings, _ = layer_of(road_points(records, FRAME), FRAME)
+    assert set(classes(markings)) <= {"lane", "centre"}
+    assert sum(markings.column("length_m")) > 15.0
+
+
+def test_a_long_line_so_far_off_that_its_width_cannot_be_told_is_a_line():
+    s = np.arange(5.0, 60.0, 0.1)
+    records = records_at(FRAME, s, 5.5 + 0.02 * np.sin(7 * s), np.full(len(s), 4000.0), 6.0)
+    markings, _ = layer_of(road_points(records, FRAME), FRAME)
+    assert set(classes(markings)) == {"edge"}
+    assert markings.rows[0]["width_m"] < 0.06
+
+
+def test_the_bright_face_of_a_curb_far_off_is_no_edge_line():
+    face = paint(FRAME, [strip(10, 70, 5.93, 6.0)], density=20000, reach=6.0)
+    face = face[face["s"] * 1e-4 / 0.13 % 1.0 < 0.15]
+    # two tracks of the scan meet it in turns
+    face["d"] -= np.where(face["s"] * 1e-4 % 8.0 < 4.0, 0, 800).astype(np.int32)
+    face["spacing"] = 200
+    markings, _ = layer_of(road_points(face, FRAME), FRAME)
+    assert len(markings) == 0
