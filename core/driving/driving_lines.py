@@ -130,8 +130,10 @@ def _patterns(track, rows, way, lines):
     usual = np.array([lines.names.index(pattern) for pattern in lines.patterns], int)
     found = []
     for side in (track.left[rows], track.right[rows])[::way]:
-        drawn = lines.drawn[side, columns]
-        drawn = np.where(side < 0, len(lines.names), np.where(drawn < 0, usual[side], drawn))
+        painted = (side >= 0) & (side < len(lines.d))
+        row = np.where(painted, side, 0)
+        drawn = lines.drawn[row, columns]
+        drawn = np.where(painted, np.where(drawn < 0, usual[row], drawn), len(lines.names))
         found.append(names[np.bincount(drawn).argmax()] or "none")
     return "|".join(found)
 
@@ -175,7 +177,7 @@ def _curve_elements(rows: list[dict[str, Any]], crs: str, country_name: str) -> 
 
 def _report_lengths(lines: DrivingLines, side: str, progress: Progress) -> None:
     if not len(lines):
-        progress.warn("No two marking lines lie a lane's width apart, so there are no driving lines.")
+        progress.warn("No lane was found: that takes marking lines with room for a lane beside them. So there are no driving lines.")
         return
     lanes = len(set(zip(lines.road.tolist(), lines.lane.tolist())))
     length = {name: float(lines.length[lines.status == name].sum()) for name in LANE_STATUS}

@@ -58,12 +58,13 @@ def _area(road, curbs, track, part, z, frame, number):
     columns = np.arange(track.first, track.last + 1)[part]
     s, d, half = road.lines.s[columns], track.d[part], track.width[part] / 2
     sides = []
-    for side, row in ((1, track.borders[part, 0]), (-1, track.borders[part, 1])):
+    for side, row in ((1, track.left[part]), (-1, track.right[part])):
         x, y = frame.roads[number].to_map(s, d + side * half)
         painted = (row >= 0) & (row < len(road.lines.d))
         own = np.where(painted, road.lines.z[np.where(painted, row, 0), columns], np.nan) if len(road.lines.d) else np.full(len(s), np.nan)
         sides.append(np.c_[x, y, np.where(np.isfinite(own), own, z[part])])
-    about = [_border(road, curbs, track.borders[part, k], track.borders[part, k + 2], columns) for k in (0, 1)]
+    about = [_border(road, curbs, rows[part], uses[part], columns)
+             for rows, uses in ((track.left, track.left_use), (track.right, track.right_use))]
     if track.direction < 0:
         sides, about = [side[::-1] for side in sides[::-1]], about[::-1]
     return dict(road=number, type="driving", direction=track.direction, left=sides[0], right=sides[1], about=about,

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,9 +28,9 @@ class LaneTrack:
     """A lane from grid station `first` on.
 
     d, width : (N,) metres; status : (N,) of MEASURED, INFERRED, BRIDGED; offset : (N,) True
-    where the place comes from one line only; left, right : (N,) index of the bounding lines, -1 for none
-    direction : 1 along the road's reference line, -1 against it; confidence : (N,) 0 to 1
-    borders : (N, 4) rows of Boundaries on the left and on the right, -1 where nothing is painted, and what they separate, -1 where unknown
+    where the place comes from one line only; left, right : (N,) rows of Boundaries that it lies between, -1 where nothing is painted
+    left_use, right_use : (N,) what these separate, LANE_LINE ... OTHER_LINE, -1 where unknown
+    confidence : (N,) 0 to 1; direction : 1 along the road's reference line, -1 against it
     """
 
     first: int
@@ -39,9 +40,10 @@ class LaneTrack:
     offset: np.ndarray
     left: np.ndarray
     right: np.ndarray
-    direction: int
+    left_use: np.ndarray
+    right_use: np.ndarray
     confidence: np.ndarray
-    borders: np.ndarray
+    direction: int
 
     @property
     def last(self) -> int:
@@ -52,18 +54,20 @@ class LaneTrack:
 
     def part(self, a: int, b: int) -> LaneTrack:
         """Rows a to b (exclusive) as a track of their own."""
-        return self._with(self.first + a, (v[a:b] for v in self._columns()))
-
-    def _columns(self):
-        return self.d, self.width, self.status, self.offset, self.left, self.right, self.confidence, self.borders
-
-    def _with(self, first, columns):
-        *others, confidence, borders = columns
-        return LaneTrack(first, *others, self.direction, confidence, borders)
+        return replace(self, first=self.first + a, **self._each(lambda name, v: v[a:b]))
 
     def followed_by(self, other: LaneTrack) -> LaneTrack:
         """This track and one that begins at the next station."""
-        return self._with(self.first, (np.concatenate(pair) for pair in zip(self._columns(), other._columns())))
+        return replace(self, **self._each(lambda name, v: np.append(v, getattr(other, name))))
+
+    def stretched(self, first: int, d: np.ndarray, width: np.ndarray, row: int) -> LaneTrack:
+        """A track from station `first` on that is in all but its place and width as this one is at a row."""
+        alike = replace(self, first=first, **self._each(lambda name, v: np.repeat(v[row], len(d))))
+        return replace(alike, d=d, width=width)
+
+    def _each(self, change: Callable[[str, np.ndarray], np.ndarray]) -> dict[str, Any]:
+        """{name: change(name, values)} of what is known at every station."""
+        return {name: change(name, v) for name, v in vars(self).items() if isinstance(v, np.ndarray)}
 
     def at(self, k: int) -> tuple[float, float]:
         """Offset and width at grid station k; NaN where the lane is not."""
@@ -81,10 +85,10 @@ class LaneTrack:
         return self.part(known[0], known[-1] + 1) if len(known) else None
 
 
-def _filler(count, d, width):
-    """The columns of a LaneTrack between two others."""
-    nothing = np.full(count, -1)
-    return np.asarray(d, float), np.asarray(width, float), np.full(count, BRIDGED), np.ones(count, bool), nothing, nothing
+def _between(first, d, width, direction, confidence):
+    """A bridged LaneTrack between two others."""
+    nothing = np.full(len(d), -1)
+    return LaneTrack(first, d, width, np.full(len(d), BRIDGED), np.ones(len(d), bool), *[nothing] * 4, np.full(len(d), confidence), direction)
 
 
 def connect(tracks: list[LaneTrack], lines: CrossSections, most_bridged: float, most_inferred: float, shown: np.ndarray) -> list[LaneTrack]:
@@ -94,6 +98,13 @@ def connect(tracks: list[LaneTrack], lines: CrossSections, most_bridged: float, 
     exactly one other: never across a split or merge. Where a measured line or another
     lane leads through the gap its course is followed (inferred, or as the other lane
     was found), elsewhere the gap is bridged.
+
+    Parameters
+    ----------
+    tracks : list of LaneTrack
+    lines : CrossSections
+    most_bridged, most_inferred : metres, the longest gap without and with such a guide
+    shown : (K,) bool, whether any line is seen at a grid station
     """
     while True:
         count = len(tracks)
@@ -155,8 +166,7 @@ def _join(a, b, tracks, lines, most_bridged, most_inferred, shown):
     share = np.arange(1, count + 1) / (count + 1)
     # the road's own shape is in the frame; a bridge only has to leave and arrive smoothly
     d = _hermite(a, b, count) if course is None else a.d[-1] - path[0] + jump * share + path[1:-1]
-    between = LaneTrack(a.last + 1, *_filler(count, d, wa + (wb - wa) * share), a.direction,
-                        np.full(count, BRIDGED_TRUST * min(a.confidence[-1], b.confidence[0])), np.full((count, 4), -1))
+    between = _between(a.last + 1, d, wa + (wb - wa) * share, a.direction, BRIDGED_TRUST * min(a.confidence[-1], b.confidence[0]))
     if course is not None:
         between.status[:] = status[1:-1]
     if any(_crowded(between, t) for t in tracks if t is not a and t is not b):

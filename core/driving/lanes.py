@@ -6,13 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..markings.cross_section.candidates import STATIONS_OF_CELL, Boundaries, surface_lane_width
+from ..markings.cross_section.candidates import STATIONS_OF_CELL, Boundaries
 from ..markings.cross_section.estimate import LaneSpan, RoadEstimate, lane_spans
-from ..markings.cross_section.weights import OPEN, SURFACE
-from .lane_track import BRIDGED, INFERRED, MEASURED, LaneTrack
+from ..markings.cross_section.lane_width import lane_places
+from .lane_track import BRIDGED, INFERRED, MAX_LANE_JUMP_SHARE, MEASURED, LaneTrack
 
 BETWEEN_LINES = 4       # rank of lanes between two lines that are seen: these are not moved
-MAX_STEP_SHARE = 0.35   # of a lane's width by which it may move from one interval to the next
 
 
 def estimated_lanes(boundaries: Boundaries, estimate: RoadEstimate, lane_width: float, line_distance: float = 0.0) -> list[LaneTrack]:
@@ -42,7 +41,7 @@ def _to_its_ends(track, boundaries):
     for head in (True, False):
         tip = 0 if head else -1
         left, right = int(track.left[tip]), int(track.right[tip])
-        if min(left, right) < 0:
+        if min(left, right) < 0 or not boundaries.painted[[left, right]].all():
             continue
         at = track.first if head else track.last
         reach, last = STATIONS_OF_CELL, len(boundaries.s) - 1
@@ -52,10 +51,7 @@ def _to_its_ends(track, boundaries):
         if len(ahead):
             ahead = np.sort(ahead)
             d_left, d_right = boundaries.d[left, ahead], boundaries.d[right, ahead]
-            size = len(ahead)
-            more = LaneTrack(int(ahead[0]), (d_left + d_right) / 2, d_left - d_right, np.full(size, track.status[tip]),
-                             np.full(size, track.offset[tip]), np.full(size, left), np.full(size, right), track.direction,
-                             np.full(size, track.confidence[tip]), np.repeat(track.borders[tip][None], size, axis=0))
+            more = track.stretched(int(ahead[0]), (d_left + d_right) / 2, d_left - d_right, tip)
             track = more.followed_by(track) if head else track.followed_by(more)
     return track
 
@@ -63,7 +59,7 @@ def _to_its_ends(track, boundaries):
 def _rank(track):
     """(N,) how sure the place of a lane is: 1 beside one line, 2 between worn lines, 3 divided, 4 between two lines that are seen."""
     between = (track.left >= 0) & (track.right >= 0)
-    return np.select([track.status == MEASURED, between, ~track.offset], [BETWEEN_LINES, 2, 3], 1)
+    return np.select([track.status == MEASURED, track.offset, between], [BETWEEN_LINES, 1, 2], 3)
 
 
 def _appended(track, part):
@@ -90,32 +86,24 @@ def _first(mask):
 
 
 def _part(boundaries, span, first, last, lane_width, line_distance):
-    """The LaneTrack of a span, None where neither of its borders is known."""
-    rows = slice(first, last + 1)
-    left, right = boundaries.d[span.left, rows], boundaries.d[span.right, rows]
-    left, right = _filled(left), _filled(right)
+    """The LaneTrack of a span, None where one of its borders is not known."""
+    rows, sides = slice(first, last + 1), (span.left, span.right)
+    left, right = (_filled(boundaries.d[row, rows]) for row in sides)
     if left is None or right is None:
         return None
-    painted = boundaries.bounding[span.left], boundaries.bounding[span.right]
-    seen = [boundaries.seen[row, rows] & paint for row, paint in zip((span.left, span.right), painted)]
-    size = last - first + 1
-    width = (left - right) / span.count
-    if painted[0] != painted[1]:
-        # beside a curb or the end of the surface a lane is no wider than usual
-        other = span.right if painted[0] else span.left
-        hidden = boundaries.made_of[other] in (SURFACE, OPEN)
-        width = surface_lane_width(left - right, span.count, lane_width, boundaries.bend[rows]) if hidden else np.minimum(width, lane_width)
-        width = np.full(size, 2 * line_distance) if line_distance else width
-        right = right if painted[1] else left - width * span.count
-    d = right + width * (span.place + 0.5)
-    offset = np.full(size, painted[0] != painted[1])
-    both = seen[0].astype(int) + seen[1]
-    status = np.choose(both, [BRIDGED, INFERRED, MEASURED if span.count == 1 else INFERRED])
-    at_left, at_right = span.place == span.count - 1, span.place == 0
-    borders = [span.left if at_left else -1, span.right if at_right else -1, span.left_border, span.right_border]
-    return LaneTrack(first, d, width, status, offset, np.full(size, span.left if boundaries.painted[span.left] and at_left else -1),
-                     np.full(size, span.right if boundaries.painted[span.right] and at_right else -1), span.direction, np.full(size, span.confidence),
-                     np.repeat([borders], size, axis=0))
+    painted = [bool(boundaries.bounding[row]) for row in sides]
+    begin, width = lane_places(left, right, *(boundaries.made_of[row] for row in sides), span.count, lane_width, boundaries.bend[rows])
+    beside_one = painted[0] != painted[1]
+    if beside_one and line_distance:
+        width = np.full(len(left), 2 * line_distance)
+        begin = left if painted[0] else right + width * span.count
+    d = begin - width * (span.count - span.place - 0.5)
+    seen = sum(boundaries.seen[row, rows].astype(int) for row, paint in zip(sides, painted) if paint)
+    status = np.choose(seen, [BRIDGED, INFERRED, MEASURED if span.count == 1 else INFERRED])
+    left_use = span.left if span.place == span.count - 1 else -1
+    right_use = span.right if span.place == 0 else -1
+    about = (beside_one, left_use, right_use, span.left_border, span.right_border, span.confidence)
+    return LaneTrack(first, d, width, status, *(np.full(len(d), value) for value in about), span.direction)
 
 
 def _filled(values):
@@ -131,7 +119,7 @@ def _followed(tracks, parts, first):
         for j, track in enumerate(tracks):
             step = abs(part.d[0] - track.d[-1])
             if track.last == first - 1 and track.direction == part.direction \
-                    and step < MAX_STEP_SHARE * min(part.width[0], track.width[-1]):
+                    and step < MAX_LANE_JUMP_SHARE * min(part.width[0], track.width[-1]):
                 pairs.append((step, k, j))
     found, used = {}, set()
     for _, k, j in sorted(pairs):

@@ -8,7 +8,7 @@ import numpy as np
 
 from .candidates import Candidates
 from .strips import BOTH, FIRST, REST_FIRST, REST_SECOND, SECOND, STRIPS, StripCosts
-from .weights import CENTRE_LINE, DOUBLE, EDGE_LINE, LANE_LINE, OTHER_LINE, EstimateWeights
+from .weights import CENTRE_LINE, EDGE_LINE, LANE_LINE, OTHER_LINE, EstimateWeights
 
 KEPT = 32     # cross-sections of an interval that are kept
 
@@ -37,6 +37,30 @@ class Sections:
     right: np.ndarray
 
 
+@dataclass
+class LaneStrips:
+    """The strips of cross-sections that hold lanes.
+
+    interval, section, left, right : (S,) int, where they are and the boundaries they lie between
+    kind : (S,) FIRST, BOTH or SECOND; number, first : (S,) lanes in them, and how many of these are of the direction that is met first
+    """
+
+    interval: np.ndarray
+    section: np.ndarray
+    left: np.ndarray
+    right: np.ndarray
+    kind: np.ndarray
+    number: np.ndarray
+    first: np.ndarray
+
+
+def lane_strips(sections: Sections, costs: StripCosts) -> LaneStrips:
+    """The LaneStrips of all cross-sections, in order of interval, cross-section and from left to right."""
+    i, k, m = np.nonzero((sections.strip >= FIRST) & (sections.strip <= SECOND))
+    kind, end = sections.strip[i, k, m], sections.right[i, k, m]
+    return LaneStrips(i, k, m, end, kind, costs.lanes[kind, i, m, end], costs.first_lanes[kind, i, m, end])
+
+
 def best_sections(candidates: Candidates, costs: StripCosts, weights: EstimateWeights, kept: int = KEPT) -> Sections:
     """The `kept` best cross-sections of each interval."""
     count, size = candidates.left.shape
@@ -46,43 +70,36 @@ def best_sections(candidates: Candidates, costs: StripCosts, weights: EstimateWe
     back = np.full((count, size, kinds, kept), -1)
     # to the left of everything nobody drives
     best[:, 0, REST_FIRST, 0] = 0.0
-    for j in range(1, size):
-        # (I, i, kind, kept): up to boundary j with a strip of a kind between i and j
-        reach = best[:, :j] + costs.cost[:, :, :j, j].transpose(1, 2, 0)[..., None]
-        if j == size - 1:
-            reach[:, :, [FIRST, BOTH, SECOND]] = np.inf
-            flat = reach.reshape(count, -1)
-            chosen, value = _lowest(flat, kept)
-            return _traced(candidates, best, back, chosen, value, kinds, kept)
+    for j in range(1, size - 1):
+        reach = _reach(best, costs, j)
         for kind in STRIPS:
-            flat = (reach + between[:, j, :, kind][:, None, :, None]).reshape(count, -1)
-            back[:, j, kind], best[:, j, kind] = _lowest(flat, kept)
+            back[:, j, kind], best[:, j, kind] = _lowest(reach + between[:, j, :, kind][:, None, :, None], kept)
         best[:, j][~candidates.valid[:, j]] = np.inf
-    raise AssertionError("unreachable")
+    reach = _reach(best, costs, size - 1)
+    reach[:, :, [FIRST, BOTH, SECOND]] = np.inf
+    return _traced(back, *_lowest(reach, kept))
 
 
-def _lowest(flat, kept):
-    """(I, kept) places and values of the lowest of each row."""
-    if flat.shape[1] > kept:
-        place = np.argpartition(flat, kept - 1, axis=1)[:, :kept]
-    else:
-        place = np.arange(flat.shape[1])[None].repeat(len(flat), axis=0)
-        extra = kept - place.shape[1]
-        if extra:
-            place = np.concatenate([place, np.zeros((len(flat), extra), int)], axis=1)
-    value = np.take_along_axis(flat, place, axis=1)
-    if flat.shape[1] < kept:
-        value[:, flat.shape[1]:] = np.inf
-    order = np.argsort(value, axis=1, kind="stable")
-    return np.take_along_axis(place, order, axis=1), np.take_along_axis(value, order, axis=1)
+def _reach(best, costs, j):
+    """(I, j, 5, kept) nats up to boundary j with a strip of a kind that begins at an earlier boundary."""
+    return best[:, :j] + costs.cost[:, :, :j, j].transpose(1, 2, 0)[..., None]
+
+
+def _lowest(values, kept):
+    """(I, kept) places, in the flattened rows, and values of the lowest of each of I rows; inf where there are fewer."""
+    flat = values.reshape(len(values), -1)
+    flat = np.pad(flat, ((0, 0), (0, max(kept - flat.shape[1], 0))), constant_values=np.inf)
+    place = np.argpartition(flat, kept - 1, axis=1)[:, :kept]
+    lowest = np.take_along_axis(flat, place, axis=1)
+    order = np.argsort(lowest, axis=1, kind="stable")
+    return np.take_along_axis(place, order, axis=1), np.take_along_axis(lowest, order, axis=1)
 
 
 def _boundary_costs(c, w):
     """(I, M, 5, 5) nats of a boundary between a strip on its left and one on its right."""
     scale = (c.length / w.correlation)[:, None]
-    paint = c.made_of <= DOUBLE
     table = w.boundary[c.made_of]
-    extra = np.where(paint, w.short * (1 - c.trust) + w.bridged * (1 - c.seen), w.bridged * (1 - c.seen))
+    extra = c.painted * w.short * (1 - c.trust) + w.bridged * (1 - c.seen)
     cost = np.full((*c.left.shape, len(STRIPS), len(STRIPS)), np.inf)
     for left in STRIPS:
         for right in STRIPS:
@@ -94,24 +111,18 @@ def _boundary_costs(c, w):
     return cost
 
 
-def _traced(c, best, back, chosen, value, kinds, kept):
-    """Sections from the ends of the chains."""
-    count, size = c.left.shape
-    strip, right = np.full((2, count, chosen.shape[1], size), -1)
+def _traced(back, chosen, value):
+    """Sections from the ends of the chains: `back` tells from where each chain came."""
+    count, size, kinds, kept = back.shape
+    strip, right = np.full((2, *chosen.shape, size), -1)
     row = np.arange(count)[:, None]
-    column = np.arange(chosen.shape[1])[None]
-    at = np.full(chosen.shape, size - 1)
-    place = np.where(np.isfinite(value), chosen, -1)
-    alive = place >= 0
-    while alive.any():
-        boundary, rest = place // (kinds * kept), place % (kinds * kept)
-        kind, rank = rest // kept, rest % kept
+    at, place = np.full(chosen.shape, size - 1), np.where(np.isfinite(value), chosen, -1)
+    while (alive := place >= 0).any():
+        boundary, rest = np.divmod(place, kinds * kept)
+        kind, rank = np.divmod(rest, kept)
         r, k = np.nonzero(alive)
         strip[r, k, boundary[alive]] = kind[alive]
         right[r, k, boundary[alive]] = at[alive]
         at = np.where(alive, boundary, at)
-        previous = back[row, boundary.clip(0), kind.clip(0), rank.clip(0)]
-        place = np.where(alive & (boundary > 0), previous, -1)
-        alive = place >= 0
-    del column
+        place = np.where(alive & (boundary > 0), back[row, boundary.clip(0), kind, rank], -1)
     return Sections(value, strip, right)

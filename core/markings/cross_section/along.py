@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from .across import Sections
-from .candidates import FAR, Candidates, surface_lane_width
+from .across import Sections, lane_strips
+from .candidates import FAR, Candidates
+from .lane_width import lane_places
 from .strips import FIRST, SECOND, StripCosts
-from .weights import CURB, OPEN, SURFACE, EstimateWeights
+from .weights import EstimateWeights
 
 PLACE = 0.5      # m across at which cross-sections are compared
 SAME_DIVIDER = 1 # places by which the same border between lanes may lie elsewhere
@@ -24,18 +25,12 @@ def occupancy(candidates: Candidates, costs: StripCosts, sections: Sections) -> 
     count, kept, size = sections.strip.shape
     bins = int(2 * FAR / PLACE)
     area, divider = np.zeros((2, count, kept, bins + 1)), np.zeros((count, kept, bins), bool)
-    i, k, m = np.nonzero((sections.strip >= FIRST) & (sections.strip <= SECOND))
-    kind, end = sections.strip[i, k, m], sections.right[i, k, m]
-    number, first = costs.lanes[kind, i, m, end], costs.first_lanes[kind, i, m, end]
-    d_left, d_right = candidates.right[i, m], candidates.left[i, end]
-    # beside a curb or the end of the surface lanes need not reach there
-    loose = [np.isin(candidates.made_of[i, at], (CURB, SURFACE, OPEN)) for at in (m, end)]
-    widest = number * costs.lane_width
-    beside = number * surface_lane_width(d_left - d_right, number, costs.lane_width, candidates.bend[i])
-    hidden = [np.isin(candidates.made_of[i, at], (SURFACE, OPEN)) for at in (m, end)]
-    d_left, d_right = (np.where(loose[0] & ~loose[1], np.where(hidden[0], d_right + beside, np.minimum(d_left, d_right + widest)), d_left),
-                       np.where(loose[1] & ~loose[0], np.where(hidden[1], d_left - beside, np.maximum(d_right, d_left - widest)), d_right))
-    split = d_left - (d_left - d_right) * first / np.maximum(number, 1)
+    strips = lane_strips(sections, costs)
+    i, k, m, end, number = strips.interval, strips.section, strips.left, strips.right, strips.number
+    d_left, each = lane_places(candidates.right[i, m], candidates.left[i, end], candidates.made_of[i, m], candidates.made_of[i, end], number,
+                               costs.lane_width, candidates.bend[i])
+    d_right = d_left - number * each
+    split = d_left - each * strips.first
     for which, (high, low) in enumerate(((d_left, split), (split, d_right))):
         some = high - low > 1e-6
         a, b = (np.clip(np.rint((v[some] + FAR) / PLACE).astype(int), 0, bins) for v in (low, high))
@@ -44,7 +39,7 @@ def occupancy(candidates: Candidates, costs: StripCosts, sections: Sections) -> 
     area = np.cumsum(area, axis=-1)[..., :-1]
     for place in range(1, int(number.max(initial=1))):
         some = number > place
-        d = d_left[some] - (d_left - d_right)[some] * place / number[some]
+        d = d_left[some] - each[some] * place
         divider[i[some], k[some], np.clip(np.rint((d + FAR) / PLACE).astype(int), 0, bins - 1)] = True
     # painted borders with a lane on both sides
     lane = (sections.strip >= FIRST) & (sections.strip <= SECOND)

@@ -10,22 +10,21 @@ from .sections import STATION_STEP, CrossSections
 from .weights import CENTRE_LINE, CURB, DASHED, DOUBLE, EDGE_LINE, HATCHING, OPEN, OUTSIDE, SOLID, SURFACE, EstimateWeights
 
 NAMES = {"edge": EDGE_LINE, "centre": CENTRE_LINE}   # a line called lane line may have been called nothing better
-STATIONS_OF_CELL = 5                       # stations of the grid that are always in one interval: 2.5 m
+STATIONS_OF_CELL = 5           # stations of the grid that are always in one interval: 2.5 m
 MAX_INTERVAL = 4               # cells: longer intervals are divided
 DOUBLE_SPACING = 0.22, 0.6     # m between the two lines of a double line; nearer ones are one line
 WEAK_TWIN = 0.25               # of the paint of the line beside it: less is a frayed edge, no second line
-FRAYED_LENGTH = 6.0             # m of paint at most of such an edge
+FRAYED_LENGTH = 6.0            # m of paint at most of such an edge
 MAX_BOUNDARIES = 16            # at one place
 FAR = 30.0                     # m: beyond any road
-LIKELY_SHARE = 0.8, 1.5         # of the usual width of a lane: lanes in bends
-SURFACE_MERGE = 0.8               # m: the surface ends at the line or curb that lies this near
+SURFACE_MERGE = 0.8            # m: the surface, or a hatched area, ends at the line or curb that lies this near
 
 
 @dataclass
 class Boundaries:
     """All rows that may bound lanes on one grid of stations: lines, then curbs, then ends of the surface.
 
-    s : (K,) stations; d : (R, K) offsets, NaN where a row is not; seen : (R, K); made_of : (R,) of SOLID ... SURFACE
+    s : (K,) stations; d : (R, K) offsets, NaN where a row is not; seen : (R, K); made_of : (R,) of SOLID ... HATCHING
     patterns : (R, K) what paint is made of at each place; paint : (R,) m of paint of each row
     named : (R,) what a row separates by its layer, -1 where that is not said
     bend : (K,) whether the road bends so much that lanes are widened
@@ -79,15 +78,6 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
                       np.zeros(count, bool) if bend is None else bend)
 
 
-def surface_lane_width(width: np.ndarray, number: int, usual: float, bend: np.ndarray) -> np.ndarray:
-    """Metres, of each of `number` lanes between a line and the end of the surface: the usual width, in bends what there is.
-
-    The surface may end at what hides it, and reach into side streets; but lanes are widened in bends.
-    """
-    each = width / number
-    return np.where(bend & (each > LIKELY_SHARE[0] * usual) & (each < LIKELY_SHARE[1] * usual), each, usual)
-
-
 def _made_of(pattern):
     if "double" in pattern:
         return DOUBLE
@@ -100,7 +90,7 @@ class Candidates:
 
     first, last : (I,) stations of the grid that an interval begins and ends with
     left, right : (I, M) m, offsets of the leftmost and the rightmost line of a boundary (a double line is one boundary)
-    made_of : (I, M) of SOLID ... OUTSIDE; trust, seen : (I, M) 0 to 1
+    made_of : (I, M) of SOLID ... HATCHING; trust, seen : (I, M) 0 to 1
     rows : (I, M, 2) the rows of Boundaries that lie leftmost and rightmost; -1 outside
     valid : (I, M) False where there are fewer boundaries than M
     named : (I, M) what the layer says that a boundary separates, -1 where it does not
@@ -118,6 +108,11 @@ class Candidates:
     valid: np.ndarray
     named: np.ndarray
     bend: np.ndarray
+
+    @property
+    def painted(self) -> np.ndarray:
+        """(I, M) bool, whether a boundary is a painted line."""
+        return self.made_of <= DOUBLE
 
     @property
     def length(self) -> np.ndarray:
@@ -147,56 +142,72 @@ def boundary_candidates(boundaries: Boundaries, weights: EstimateWeights) -> Can
     row, interval = np.nonzero(in_interval)
     made = np.where(boundaries.painted[row], np.select([double[row, interval] > 0.5, dashed[row, interval] > 0.5], [DOUBLE, DASHED], SOLID),
                     boundaries.made_of[row])
-    return _grouped(first, last, interval, row, d[row, interval], made, np.minimum(seen[row, interval], 1.0), boundaries, weights)
+    trust = np.clip((boundaries.paint[row] - weights.stroke) / (weights.long_line - weights.stroke), 0.02, 1.0)
+    entries = dict(interval=interval, row=row, d=d[row, interval], made=made, seen=np.minimum(seen[row, interval], 1.0),
+                   trust=np.where(made <= DOUBLE, trust, 1.0))
+    entries = _rows(entries, np.lexsort((-entries["d"], interval)))
+    return _table(_grouped(_rows(entries, ~_superfluous(entries, boundaries))), boundaries, first, last)
 
 
-def _grouped(first, last, interval, row, d, made, seen, boundaries, weights):
-    """Candidates of entries: two lines beside each other are one boundary."""
-    trust = np.where(made <= DOUBLE, np.clip((boundaries.paint[row] - weights.stroke) / (weights.long_line - weights.stroke), 0.02, 1.0), 1.0)
-    order = np.lexsort((-d, interval))
-    interval, row, d, made, seen, trust = (values[order] for values in (interval, row, d, made, seen, trust))
-    paint = made <= DOUBLE
-    near = np.r_[False, (np.diff(interval) == 0) & (-np.diff(d) < DOUBLE_SPACING[1]) & paint[1:] & paint[:-1]]
-    # a sliver beside a line is that line's frayed edge; the surface ends at its curb
-    drop = np.zeros(len(d), bool)
+def _rows(entries, which):
+    return {name: values[which] for name, values in entries.items()}
+
+
+def _twins(entries):
+    """(N,) bool, whether an entry is paint right beside the paint before it."""
+    paint = entries["made"] <= DOUBLE
+    return np.r_[False, (np.diff(entries["interval"]) == 0) & (-np.diff(entries["d"]) < DOUBLE_SPACING[1]) & paint[1:] & paint[:-1]]
+
+
+def _superfluous(entries, boundaries):
+    """(N,) bool: a sliver beside a line is that line's frayed edge; the surface ends at its line or curb, and so does a hatched area at its line."""
+    interval, d, made = entries["interval"], entries["d"], entries["made"]
+    paint, twins = boundaries.paint[entries["row"]], _twins(entries)
+    found = np.zeros(len(d), bool)
     for step in (-1, 1):
-        beside = np.roll(near, -1) if step > 0 else near
-        drop |= beside & (np.roll(boundaries.paint[row], -step) * WEAK_TWIN > boundaries.paint[row]) & (boundaries.paint[row] < FRAYED_LENGTH)
-        close = np.abs(np.roll(d, -step) - d) < SURFACE_MERGE
-        drop |= (made == HATCHING) & (np.roll(interval, -step) == interval) & close & (np.roll(made, -step) <= DOUBLE)
-        drop |= (made == SURFACE) & (np.roll(interval, -step) == interval) & close & (np.roll(made, -step) != SURFACE)
-    interval, row, d, made, seen, trust, paint = (values[~drop] for values in (interval, row, d, made, seen, trust, paint))
-    near = np.r_[False, (np.diff(interval) == 0) & (-np.diff(d) < DOUBLE_SPACING[1]) & paint[1:] & paint[:-1]]
-    begin = np.flatnonzero(~near)
-    count = np.diff(np.r_[begin, len(d)])
-    end = begin + count - 1
-    of = interval[begin]
-    strength, shown_there = (np.maximum.reduceat(values, begin) if len(begin) else values for values in (trust, seen))
-    solid = np.minimum.reduceat(made, begin) if len(begin) else made
+        beside, twin = np.roll(made, -step), np.roll(twins, -1) if step > 0 else twins
+        found |= twin & (np.roll(paint, -step) * WEAK_TWIN > paint) & (paint < FRAYED_LENGTH)
+        near = (np.roll(interval, -step) == interval) & (np.abs(np.roll(d, -step) - d) < SURFACE_MERGE)
+        found |= near & ((made == HATCHING) & (beside <= DOUBLE) | (made == SURFACE) & (beside != SURFACE))
+    return found
+
+
+def _grouped(entries):
+    """Entries by boundary, from left to right: two lines beside each other are one."""
+    begin = np.flatnonzero(~_twins(entries))
+    if not len(begin):
+        return {**entries, "right_row": entries["row"], "right": entries["d"]}
+    end = np.r_[begin[1:], len(entries["d"])] - 1
+    found = _rows(entries, begin)
+    for name in ("trust", "seen"):
+        found[name] = np.maximum.reduceat(entries[name], begin)
+    made, right = np.minimum.reduceat(entries["made"], begin), entries["d"][end]
     # two lines closer than that are the two sides of one broad line
-    made_of = np.where((count > 1) & (d[begin] - d[end] > DOUBLE_SPACING[0]) & (solid <= DOUBLE), DOUBLE, np.where(solid == DOUBLE, SOLID, solid))
-    rank = np.arange(len(of)) - np.searchsorted(of, of)
-    most = np.bincount(of, minlength=len(first))
-    if most.max(initial=0) > MAX_BOUNDARIES:
-        weak = np.lexsort((-strength, of))
-        place = np.empty(len(of), int)
-        place[weak] = np.arange(len(of)) - np.searchsorted(of[weak], of[weak])
-        keep = place < MAX_BOUNDARIES
-        begin, end, of, strength, made_of, shown_there = (values[keep] for values in (begin, end, of, strength, made_of, shown_there))
-        rank = np.arange(len(of)) - np.searchsorted(of, of)
-        most = np.bincount(of, minlength=len(first))
-    wide = int(most.max(initial=0)) + 2
-    shape = (len(first), wide)
-    left, right = np.full(shape, -FAR), np.full(shape, -FAR)
+    double = (end > begin) & (found["d"] - right > DOUBLE_SPACING[0]) & (made <= DOUBLE)
+    found["made"] = np.where(double, DOUBLE, np.where(made == DOUBLE, SOLID, made))
+    return {**found, "right_row": entries["row"][end], "right": right}
+
+
+def _table(groups, boundaries, first, last):
+    """Candidates of boundaries in order of interval, from left to right; where there are too many, of the surest."""
+    of = groups["interval"]
+    surest = np.lexsort((-groups["trust"], of))
+    place = np.empty(len(of), int)
+    place[surest] = np.arange(len(of)) - np.searchsorted(of[surest], of[surest])
+    groups = _rows(groups, place < MAX_BOUNDARIES)
+    of = groups["interval"]
+    shape = len(first), int(np.bincount(of, minlength=len(first)).max(initial=0)) + 2
+    at = of, np.arange(len(of)) - np.searchsorted(of, of) + 1
+
+    def column(values, missing):
+        found = np.full(shape, missing)
+        found[at] = values
+        return found
+
+    left, right = column(groups["d"], -FAR), column(groups["right"], -FAR)
     left[:, 0] = right[:, 0] = FAR
-    kinds, sure, shown = np.full(shape, OUTSIDE), np.zeros(shape), np.zeros(shape)
-    rows, valid = np.full((*shape, 2), -1), np.zeros(shape, bool)
-    valid[:, 0] = valid[:, -1] = True
-    at = of, rank + 1
-    left[at], right[at], kinds[at], sure[at] = d[begin], d[end], made_of, strength
-    shown[at] = shown_there
-    rows[at] = np.stack([row[begin], row[end]], axis=1)
-    valid[at] = True
-    named = np.full(shape, -1)
-    named[at] = boundaries.named[row[begin]]
-    return Candidates(first, last, left, right, kinds, sure, shown, rows, valid, named, boundaries.bend[(first + last) // 2])
+    valid = column(True, False)
+    valid[:, [0, -1]] = True
+    rows = np.stack([column(groups[name], -1) for name in ("row", "right_row")], axis=2)
+    return Candidates(first, last, left, right, column(groups["made"], OUTSIDE), column(groups["trust"], 0.0), column(groups["seen"], 0.0), rows,
+                      valid, column(boundaries.named[groups["row"]], -1), boundaries.bend[(first + last) // 2])

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .across import SEPARATES, Sections, best_sections
+from .across import SEPARATES, Sections, best_sections, lane_strips
 from .along import best_sequence, occupancy, transition_costs
 from .candidates import Candidates
-from .strips import FIRST, SECOND, Evidence, StripCosts, strip_costs
-from .weights import CENTRE_LINE, DASHED, DOUBLE, LANE_LINE, EstimateWeights
+from .evidence import Evidence
+from .strips import FIRST, SECOND, StripCosts, strip_costs
+from .weights import CENTRE_LINE, DASHED, LANE_LINE, EstimateWeights
 
 
 @dataclass
@@ -48,7 +49,7 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
     sections.cost += _roads_of_many_lanes(candidates, costs, sections, evidence.divided, weights)
     area, divider = occupancy(candidates, costs, sections)
     # where no line is seen, as on a crossing, much may change; where no line is known nothing can be said
-    paint = (candidates.made_of <= DOUBLE) & candidates.valid
+    paint = candidates.painted
     shown = (paint * candidates.seen).sum(1) / np.maximum(paint.sum(1), 1)
     choice, posterior = np.argmin(sections.cost, axis=1), np.zeros(sections.cost.shape)
     known, total = np.flatnonzero(paint.any(1)), 0.0
@@ -65,12 +66,10 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
 
 def _roads_of_many_lanes(c, costs, sections, divided, weights):
     """(I, K) nats of how many lanes lead which way."""
-    i, k, m = np.nonzero((sections.strip >= FIRST) & (sections.strip <= SECOND))
-    kind, end = sections.strip[i, k, m], sections.right[i, k, m]
-    number, first = costs.lanes[kind, i, m, end], costs.first_lanes[kind, i, m, end]
+    strips = lane_strips(sections, costs)
     total, ahead = np.zeros((2, *sections.cost.shape))
-    np.add.at(total, (i, k), number)
-    np.add.at(ahead, (i, k), first)
+    for values, numbers in ((total, strips.number), (ahead, strips.first)):
+        np.add.at(values, (strips.interval, strips.section), numbers)
     one_way = (total > 0) & ((ahead == 0) | (ahead == total))
     cost = np.where(one_way, np.array(weights.one_way)[np.clip(total, 1, len(weights.one_way)).astype(int) - 1], 0.0)
     cost = np.where(~one_way & (np.abs(2 * ahead - total) > 1), weights.uneven, cost)
@@ -107,21 +106,19 @@ class LaneSpan:
 def lane_spans(estimate: RoadEstimate) -> list[LaneSpan]:
     """The lanes of the best sequence, interval by interval, from left to right."""
     found = []
-    c, sections = estimate.candidates, estimate.sections
-    borders = boundary_uses(estimate)
-    for i, k in enumerate(estimate.choice.tolist()):
-        for m in np.flatnonzero((sections.strip[i, k] >= FIRST) & (sections.strip[i, k] <= SECOND)).tolist():
-            kind, end = int(sections.strip[i, k, m]), int(sections.right[i, k, m])
-            number, first = int(estimate.costs.lanes[kind, i, m, end]), int(estimate.costs.first_lanes[kind, i, m, end])
-            same = (sections.strip[i, :, m] == kind) & (sections.right[i, :, m] == end)
-            sure = float(estimate.posterior[i, same].sum())
-            for place in range(number):
-                direction = estimate.first_direction if place < first else -estimate.first_direction
-                left, right = (CENTRE_LINE if place in (first, first - 1) and 0 < first < number and inner == first else LANE_LINE
-                               for inner in (place, place + 1))
-                found.append(LaneSpan(
-                    i, int(c.rows[i, m, 1]), int(c.rows[i, end, 0]), number - 1 - place, number, direction, sure,
-                    int(borders[i, m]) if place == 0 else left, int(borders[i, end]) if place == number - 1 else right))
+    c, sections, borders = estimate.candidates, estimate.sections, boundary_uses(estimate)
+    strips = lane_strips(sections, estimate.costs)
+    best = np.flatnonzero(strips.section == estimate.choice[strips.interval])
+    for i, m, end, kind, number, first in zip(*(values[best].tolist() for values in (
+            strips.interval, strips.left, strips.right, strips.kind, strips.number, strips.first))):
+        same = (sections.strip[i, :, m] == kind) & (sections.right[i, :, m] == end)
+        sure = float(estimate.posterior[i, same].sum())
+        # what the borders of its lanes separate, from left to right
+        uses = [int(borders[i, m]), *(CENTRE_LINE if inner == first else LANE_LINE for inner in range(1, number)), int(borders[i, end])]
+        for place in range(number):
+            direction = estimate.first_direction if place < first else -estimate.first_direction
+            found.append(LaneSpan(i, int(c.rows[i, m, 1]), int(c.rows[i, end, 0]), number - 1 - place, number, direction, sure,
+                                  uses[place], uses[place + 1]))
     return found
 
 

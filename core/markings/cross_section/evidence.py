@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,13 +12,13 @@ from scipy.ndimage import binary_closing, grey_closing
 from ...survey.frame.placement import located
 from .candidates import FAR, Candidates
 from .sections import STATION_STEP
-from .strips import BIN, Evidence
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.store.road_points import RoadPoints
     from ..objects.marking_objects import MarkingObjects
 
+BIN = 0.2              # m across, of what is seen of the surface and of hatching
 BINS = int(round(2 * FAR / BIN))
 BAR_REACH = 1.6        # m: bars of one hatched area are at most twice as far apart
 BORDER_SPACING = 0.25  # m between places of its border
@@ -27,6 +28,25 @@ CARRIAGEWAY_DISTANCE = 40.0  # m between the tracks on two carriageways of one r
 OWN_ROAD = 6.0         # m: what runs nearer is on this road
 PASS_SPACING = 20      # stations, between the places of a pass at most
 STOP_REACH = 5.0    # m before and after a stop line where its lanes are still its lanes
+
+
+@dataclass
+class Evidence:
+    """What is seen beside boundaries, by interval.
+
+    driven : (P, I) m, offset of each pass, NaN where it was not; directions : (P,) 1 along, -1 against the road
+    asphalt, hatched : (I, B) share of each bin of BIN metres, from -FAR on, that is road surface or hatched; None where unknown
+    arrows : (A, 2) interval and offset; stops : (S, 3) interval, least and greatest offset
+    divided : (I,) bool, whether the road is one carriageway of two
+    """
+
+    driven: np.ndarray
+    directions: np.ndarray
+    asphalt: np.ndarray | None
+    hatched: np.ndarray | None
+    arrows: np.ndarray
+    stops: np.ndarray
+    divided: np.ndarray
 
 
 def driven_offsets(frame: RoadFrame, road: int, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

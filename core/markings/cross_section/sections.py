@@ -41,11 +41,6 @@ class CrossSections:
     names: list
     number: np.ndarray
 
-    @property
-    def seen_length(self) -> np.ndarray:
-        """(L,) metres of each line that were measured."""
-        return STATION_STEP * (self.seen & np.isfinite(self.d)).sum(1)
-
 
 def cross_sections(lines: FrameLines, number: np.ndarray, kind: np.ndarray, pattern: np.ndarray, seen: np.ndarray) -> dict[int, CrossSections]:
     """Lines of every road as offsets at common stations.

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...countries.neutral import NEUTRAL
-from .candidates import FAR, Candidates, surface_lane_width
-from .weights import CURB, DOUBLE, HATCHING, OPEN, OUTSIDE, SURFACE, EstimateWeights
+from .candidates import FAR, Candidates
+from .evidence import BIN, Evidence
+from .lane_width import beside_surface_end, lane_places
+from .weights import CURB, HATCHING, OUTSIDE, SURFACE, EstimateWeights
 
 # Strips from left to right: what nobody drives on, lanes of the direction that is met first, lanes of both directions without
 # paint between them, lanes of the other direction, and again what nobody drives on
@@ -19,26 +21,6 @@ ASPHALT_OF_A_LANE = 2.2, 3.0   # m of asphalt that could be a lane: between two 
 ASPHALT_SOFTNESS = 0.2     # m by which that is uncertain
 OTHER_SIGMA = 0.8          # m, scatter of lane widths from road to road
 MIN_SCANNED_SHARE = 0.6    # of a lane's width that must be seen of a lane beside the end of the surface
-BIN = 0.2                  # m across, of what is seen of the surface and of hatching
-
-
-@dataclass
-class Evidence:
-    """What is seen beside boundaries, by interval.
-
-    driven : (P, I) m, offset of each pass, NaN where it was not; directions : (P,) 1 along, -1 against the road
-    asphalt, hatched : (I, B) share of each bin of BIN metres, from -FAR on, that is road surface or hatched; None where unknown
-    arrows : (A, 2) interval and offset; stops : (S, 3) interval, least and greatest offset
-    divided : (I,) bool, whether the road is one carriageway of two
-    """
-
-    driven: np.ndarray
-    directions: np.ndarray
-    asphalt: np.ndarray | None
-    hatched: np.ndarray | None
-    arrows: np.ndarray
-    stops: np.ndarray
-    divided: np.ndarray
 
 
 @dataclass
@@ -67,7 +49,7 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     outside = (c.made_of == OUTSIDE)[:, :, None] | (c.made_of == OUTSIDE)[:, None, :]
     through, rest = _passed_over(c, w)
     hatched = _share_between(evidence.hatched, c, width) > HATCHED_SHARE if evidence.hatched is not None else np.zeros(width.shape, bool)
-    paint = (c.made_of <= DOUBLE) | (c.made_of == HATCHING)
+    paint = c.painted | (c.made_of == HATCHING)
     both_paint, any_paint = paint[:, :, None] & paint[:, None, :], paint[:, :, None] | paint[:, None, :]
     asphalt = width * _share_between(evidence.asphalt, c, width) if evidence.asphalt is not None else np.where(both_paint, width, 0.0)
     arrows_in, arrows_off = _arrows(c, evidence.arrows, w)
@@ -80,25 +62,21 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     idle = scale * (np.where(hatched, 0.0, unused) + rest) + arrows_in * w.arrow_outside + scale * w.driven_rest * inside.sum(0)
     cost[REST_FIRST] = cost[REST_SECOND] = np.where(ordered, idle, np.inf)
 
-    # beside a curb or the end of the surface a lane need not reach there
-    open_side = np.isin(c.made_of, (CURB, SURFACE, OPEN))
-    loose = open_side[:, :, None] ^ open_side[:, None, :]
-    by_surface = np.isin(c.made_of, (SURFACE, OPEN))
-    hidden = loose & (by_surface[:, :, None] | by_surface[:, None, :])
+    made_left, made_right = c.made_of[:, :, None], c.made_of[:, None, :]
+    # strips with paint on one side only, and of those the ones whose other side may be hidden
+    loose = any_paint & ~both_paint
+    hidden = loose & beside_surface_end(made_left, made_right)
     off = np.clip(1 - asphalt / np.maximum(width, 0.1), 0, 1) if evidence.asphalt is not None else 0.0
     possible = ordered & ~outside & any_paint & (width < MAX_LANES * NEUTRAL.widest_lane)
     base = scale * (through + hatched * w.hatched_lane + off * w.off_asphalt)
     for number in range(1, MAX_LANES + 1):
-        each = np.where(loose, np.minimum(width / number, lane_width), width / number)
-        # the surface may end at what hides it, and reach into a side street: a lane is as wide as the others there
-        beside_end = surface_lane_width(width, number, lane_width, c.bend[:, None, None])
-        each = np.where(hidden & (number * lane_width * MIN_SCANNED_SHARE < width), beside_end, each)
-        begin = np.where(loose & open_side[:, :, None], d_right + number * each, d_left)
+        begin, each = lane_places(d_left, d_right, made_left, made_right, number, lane_width, c.bend[:, None, None])
         fits = _width_cost(each, lane_width, w) + _unused(asphalt - number * lane_width, w.unused_asphalt[1]) * loose
         # what lies beyond the end of the surface
         beyond = np.clip(1 - width / np.maximum(number * each, 0.1), 0, 1) * hidden
         total = base + scale * (fits + beyond * w.off_asphalt) + _dividers(arrows_off, each, number, begin, w)
-        total = np.where(possible & (each >= NEUTRAL.narrowest_lane), total, np.inf)
+        scanned = ~hidden | (width > MIN_SCANNED_SHARE * number * lane_width)
+        total = np.where(possible & scanned & (each >= NEUTRAL.narrowest_lane), total, np.inf)
         for split in range(number + 1):
             kind = SECOND if split == 0 else FIRST if split == number else BOTH
             alike = max(split - 1, 0) + max(number - split - 1, 0)
@@ -125,7 +103,7 @@ def _width_cost(width, usual, w):
 
 def _passed_over(c, w):
     """(I, M, M) costs of the boundaries that lie between two others, inside a lane and where nobody drives; per observation."""
-    paint = c.made_of <= DOUBLE
+    paint = c.painted
     there = c.valid & (c.made_of != OUTSIDE)
     shown = 0.5 + 0.5 * c.seen
     lane = np.where(paint, w.lane_through_paint * c.trust * shown,
@@ -202,4 +180,3 @@ def _stop_lines(cost, stops, d_left, d_right, w):
         k = int(interval)
         middle = (d_left[k] + d_right[k]) / 2
         cost[BOTH, k] += np.where((middle > low + 0.5) & (middle < high - 0.5), w.split_stop, 0.0)
-

@@ -8,7 +8,6 @@ import numpy as np
 
 # What a boundary is made of
 SOLID, DASHED, DOUBLE, CURB, SURFACE, OPEN, OUTSIDE, HATCHING = range(8)
-PAINTED = (SOLID, DASHED, DOUBLE)
 # What a boundary separates
 LANE_LINE, CENTRE_LINE, EDGE_LINE, OTHER_LINE = range(4)
 

@@ -1,0 +1,43 @@
+"""How wide lanes are in the strip between two boundaries, and where they begin."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .weights import CURB, OPEN, SURFACE
+
+LIKELY_SHARE = 0.8, 1.5    # of the usual width of a lane: lanes in bends
+
+
+def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made_right: np.ndarray, number: np.ndarray | int, usual: float,
+                bend: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Where lanes lie in strips.
+
+    Between two lines they share the strip. Beside a curb they are no wider than usual. The surface may end at what hides it, and reach into
+    side streets: beside its end they are as wide as usual, and in bends, where lanes are widened, as there is room.
+
+    Parameters
+    ----------
+    left, right : metres, offsets of the two boundaries of each strip; all arrays broadcast together
+    made_left, made_right : SOLID ... HATCHING, what the boundaries are made of
+    number : lanes in the strip
+    usual : metres, the usual width of a lane
+    bend : bool, whether the road bends so much that lanes are widened
+
+    Returns
+    -------
+    begin : metres, offset of the left border of the leftmost lane
+    each : metres, width of each lane
+    """
+    open_left, open_right = (np.isin(made, (CURB, SURFACE, OPEN)) for made in (made_left, made_right))
+    loose = open_left ^ open_right
+    each = (left - right) / number
+    widened = bend & (each > LIKELY_SHARE[0] * usual) & (each < LIKELY_SHARE[1] * usual)
+    hidden = loose & beside_surface_end(made_left, made_right)
+    each = np.where(hidden, np.where(widened, each, usual), np.where(loose, np.minimum(each, usual), each))
+    return np.where(loose & open_left, right + number * each, left), each
+
+
+def beside_surface_end(made_left: np.ndarray, made_right: np.ndarray) -> np.ndarray:
+    """Bool, whether a strip reaches to where the surface ends, or to where nothing is known of it."""
+    return np.isin(made_left, (SURFACE, OPEN)) | np.isin(made_right, (SURFACE, OPEN))
