@@ -2,6 +2,7 @@
 
 import json
 from importlib import import_module
+from inspect import signature
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from accuracy.page import page  # noqa: E402
 from accuracy.surveys import _make_sample, read_case, surveys_in  # noqa: E402
 from lanewright.core.common.features import Features, Field  # noqa: E402
 from lanewright.core.road.common.corners import CurbSteps  # noqa: E402
+from lanewright.core.road.common.curb_limits import CurbLimits  # noqa: E402
 from lanewright.core.sample.survey import SampleSettings  # noqa: E402
 from make_sample import write_layers  # noqa: E402
 
@@ -101,8 +103,12 @@ def test_paint_beyond_the_judged_area_costs_nothing_and_beside_the_road_it_does(
 def test_what_an_ablation_switches_off_is_there_to_be_switched_off(ablation):
     assert ablation.first in STAGES and set(ablation.stages) <= set(STAGES)
     assert ablation.swaps or ablation.stages or ablation.settings != ABLATIONS[0].settings
-    for module, name, _ in ablation.swaps:
-        assert callable(getattr(import_module(f"lanewright.core.{module}"), name))
+    for module, name, stand_in in ablation.swaps:
+        original = getattr(import_module(f"lanewright.core.{module}"), name)
+        if isinstance(original, type):
+            original, stand_in = original.of, stand_in.of
+        # it can be called as the original is
+        signature(stand_in).bind(*(p.name for p in signature(original).parameters.values() if p.default is p.empty))
 
 
 def test_a_step_is_back_in_its_place_after_an_error():
@@ -120,6 +126,6 @@ def test_the_thesis_takes_the_step_nearest_the_vehicle_that_is_high_and_steep_en
     values = {name: np.zeros(5) for name in names}
     values.update(s=np.array([0.0, 0.0, 0.25, 0.25, 0.5]), u=np.array([4.0, 2.0, 3.0, 5.0, 3.0]),
                   height=np.array([0.1, 0.1, 0.02, 0.1, 0.1]), run=np.array([0.02, 0.02, 0.01, 0.02, 0.5]))
-    chain, = nearest_steps(CurbSteps(profile=np.array([0, 0, 1, 1, 2]), **values), None, 0.25, 0.05, np.radians(60))
+    chain, = nearest_steps(CurbSteps(profile=np.array([0, 0, 1, 1, 2]), **values), None, 0.25, CurbLimits(0.05, np.radians(60)))
     np.testing.assert_array_equal(chain.steps, [1, 3])
     assert (chain.start, chain.end) == (0.0, 0.25)

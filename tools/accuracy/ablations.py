@@ -30,9 +30,10 @@ class _NoBeams:
     of = staticmethod(lambda *_: None)
 
 
-def nearest_steps(steps, _label, _width, least, slope):
+def nearest_steps(steps, _label, _width, limits):
     """The thesis's choice: on every profile the step nearest the vehicle, all in one chain."""
-    good = np.flatnonzero((steps.height >= least) & (np.arctan2(steps.height, np.maximum(steps.run, 1e-6)) >= slope))
+    slope = np.arctan2(steps.height, np.maximum(steps.run, 1e-6))
+    good = np.flatnonzero((steps.height >= limits.clear_height) & (slope >= limits.clear_slope))
     order = good[np.lexsort((steps.u[good], steps.profile[good]))]
     first = order[np.r_[True, np.diff(steps.profile[order]) != 0]] if len(order) else order
     return [StepChain(first, float(steps.s[first].min()), float(steps.s[first].max()))] if len(first) else []

@@ -11,6 +11,7 @@ from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.intensity.image import write_intensity_image
 from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.lines.fit import fit_marking_lines
+from lanewright.core.markings.lines.naming import named_by_lines
 from lanewright.core.markings.objects.cluster import cluster_markings
 from lanewright.core.markings.objects.marking_objects import markings_to_features
 from lanewright.core.markings.objects.outliers import remove_outliers
@@ -71,7 +72,10 @@ def _clusters(w, settings):
 
 
 def _lines(w, settings):
-    w.lines = fit_marking_lines(w.clustered, w.marking_objects, w.frame, settings.lines)
+    w.lines = fit_marking_lines(w.clustered, w.marking_objects, w.frame, settings.lines, edges=w.edges.densified(w.frame),
+                                road_points=w.bright)
+    w.marking_objects = named_by_lines(w.marking_objects, w.lines)
+    w.markings = markings_to_features(w.marking_objects, w.frame)
 
 
 def _driving(w, settings):
