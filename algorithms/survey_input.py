@@ -82,7 +82,7 @@ def execution_of(call):
     return call.settings(EXECUTION_SETTINGS, work_folder=folder)
 
 
-def survey_inputs(call, progress):
+def survey_inputs(call):
     """Paths of POINT_CLOUDS, and TRAJECTORY brought to the clouds' CRS."""
     from ..core.survey.las.reader import read_headers
     from ..core.survey.trajectory.reprojection import reproject_trajectory
@@ -92,14 +92,23 @@ def survey_inputs(call, progress):
     return paths, reproject_trajectory(call.trajectory(), clouds)
 
 
-def open_survey_of(call, progress):
-    """The survey of POINT_CLOUDS and TRAJECTORY, open until the run ends."""
+def open_survey_of(call, progress, **reading):
+    """The survey of POINT_CLOUDS and TRAJECTORY, open until the run ends; `reading` are settings that users are not asked for."""
     from ..core.survey.open_survey import open_survey
 
-    paths, trajectory = survey_inputs(call, progress)
-    survey = open_survey(paths, trajectory, call.settings(SURVEY_SETTINGS, crs=call.crs()), progress, execution_of(call))
+    paths, trajectory = survey_inputs(call)
+    survey = open_survey(paths, trajectory, call.settings(SURVEY_SETTINGS, crs=call.crs(), **reading), progress, execution_of(call))
     call.at_end(survey.store.close)
     return survey
+
+
+def check_layers_on_roads(call, layers, frame):
+    """Raise RoadExtractionError where a layer of `layers`, parameter name to Features, was made with another trajectory than the frame's."""
+    from ..core.survey.consistency import check_features_on_roads
+
+    for name, features in layers.items():
+        if features is not None:
+            check_features_on_roads(features, frame, call.label(name))
 
 
 def frame_of(call, crs, progress, road_points=None, layers=None):
@@ -107,7 +116,7 @@ def frame_of(call, crs, progress, road_points=None, layers=None):
 
     `layers` (parameter name to Features) and the road points must have been made with this trajectory.
     """
-    from ..core.survey.consistency import check_features_on_roads, check_road_points_on_roads
+    from ..core.survey.consistency import check_road_points_on_roads
     from ..core.survey.frame.road_frame import build_frame
     from ..core.survey.trajectory.reprojection import reproject_trajectory
 
@@ -117,9 +126,7 @@ def frame_of(call, crs, progress, road_points=None, layers=None):
         trajectory, has_time = _on_clock_of(road_points, trajectory, progress)
     frame = build_frame(trajectory)
     frame.crs, frame.has_time = crs or trajectory.crs, has_time
-    for name, features in (layers or {}).items():
-        if features is not None:
-            check_features_on_roads(features, frame, call.label(name))
+    check_layers_on_roads(call, layers or {}, frame)
     if road_points is not None:
         check_road_points_on_roads(road_points, frame, tr("The points"))
     return frame

@@ -106,7 +106,7 @@ class RoadMap(Algorithm):
             raise RoadExtractionError(tr(
                 "No result was asked for, and all of the work would be lost. Name at least one output, such as DRIVING_LINES, MARKINGS or REPORT."))
         estimated = estimated_trajectory(call, progress.part(0.0, ESTIMATED))
-        paths, trajectory = (call.point_clouds(), estimated.trajectory) if estimated else survey_inputs(call, progress)
+        paths, trajectory = (call.point_clouds(), estimated.trajectory) if estimated else survey_inputs(call)
         progress = progress.part(ESTIMATED if estimated else 0.0, 1.0)
         image_path = call.new_file("INTENSITY_IMAGE") or call.scratch_file("intensity.tif")
         road_map = make_road_map(paths, trajectory, image_path, settings, progress.part(0.0, 0.95))

@@ -1,13 +1,12 @@
 """Cross-sections of the road."""
 
-from dataclasses import replace
-
-from ...core.common.schemas import CROSS_SECTIONS, DRIVING_LINES, LANES, MARKING_LINES, ROAD_EDGES
+from ...core.common.schemas import CROSS_SECTIONS
 from ...core.countries.catalogue import COUNTRIES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
-from ..survey_input import SURVEY_SETTINGS, survey_inputs
+from ..survey_input import SURVEY_SETTINGS
 from ..texts import tr
+from .survey_with_borders import add_borders, survey_with_borders
 
 SECTIONS = "inventory.settings:CrossSectionSettings"
 ABOVE_ROAD = 12.0  # m of height above the road that are read: more than any clearance that a rule asks for
@@ -55,13 +54,11 @@ class CrossSections(Algorithm):
 
     def declare(self):
         self.add_survey()
-        self.add_layer("ROAD_EDGES", tr("Road edges"), tr("With it the carriageway ends at the edges, and heights of curbs are measured there."),
-                       "LineStringZ", optional=True)
-        self.add_layer("MARKING_LINES", tr("Marking lines"), tr("With it lanes end at the painted lines."), "LineStringZ", optional=True)
-        self.add_layer("DRIVING_LINES", tr("Driving lines"), tr("With it lanes have their numbers and directions; not needed beside Lanes."),
-                       "LineStringZ", optional=True)
-        self.add_layer("LANES", tr("Lanes"), tr("With it every lane, shoulder and parking strip of the road map is measured."), "PolygonZ",
-                       optional=True)
+        add_borders(self,
+                    tr("With it the carriageway ends at the edges, and heights of curbs are measured there."),
+                    tr("With it lanes end at the painted lines."),
+                    tr("With it lanes have their numbers and directions; not needed beside Lanes."),
+                    tr("With it every lane, shoulder and parking strip of the road map is measured."))
         self.add_settings(SECTION_SETTINGS)
         self.add_settings(SURVEY_SETTINGS)
         self.add_sink("OUTPUT", tr("Cross-sections"), tr("A line across every lane and carriageway at every section."), fields=CROSS_SECTIONS,
@@ -75,27 +72,13 @@ class CrossSections(Algorithm):
         self.add_number("LEAST_CLEARANCE", tr("Least clearance (m)"))
 
     def work(self, call, progress):
-        from ...core.inventory.borders import BorderLayers
         from ...core.inventory.cross_sections import measure_cross_sections
         from ...core.inventory.section_layer import sections_to_features
         from ...core.report.cross_sections import cross_section_report
-        from ...core.survey.consistency import check_features_on_roads
-        from ...core.survey.open_survey import open_survey
 
         settings = call.settings(SECTION_SETTINGS)
-        layers = BorderLayers(call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ"), call.features("MARKING_LINES", MARKING_LINES, "LineStringZ"),
-                           call.features("DRIVING_LINES", DRIVING_LINES, "LineStringZ"), call.features("LANES", LANES, "PolygonZ"))
-        paths, trajectory = survey_inputs(call, progress)
-        reading = replace(call.settings(SURVEY_SETTINGS, crs=call.crs()), above_road=ABOVE_ROAD)
-        survey = open_survey(paths, trajectory, reading, progress.part(0.0, 0.5))
-        try:
-            for name, features in (("ROAD_EDGES", layers.edges), ("MARKING_LINES", layers.marking_lines), ("DRIVING_LINES", layers.driving_lines),
-                                   ("LANES", layers.lanes)):
-                if features is not None:
-                    check_features_on_roads(features, survey.frame, call.label(name))
-            sections = measure_cross_sections(survey, layers, settings, progress.part(0.5, 1.0))
-        finally:
-            survey.store.close()
+        survey, layers = survey_with_borders(call, progress.part(0.0, 0.5), ABOVE_ROAD)
+        sections = measure_cross_sections(survey, layers, settings, progress.part(0.5, 1.0))
         lines, table = sections_to_features(sections)
         call.layer("OUTPUT", lines)
         call.layer("TABLE", table)

@@ -1,13 +1,12 @@
 """What stands beside the road."""
 
-from dataclasses import replace
-
-from ...core.common.schemas import DRIVING_LINES, LANES, MARKING_LINES, ROAD_EDGES, ROADSIDE, ROADSIDE_OBJECTS
+from ...core.common.schemas import ROADSIDE, ROADSIDE_OBJECTS
 from ...core.countries.catalogue import COUNTRIES
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
-from ..survey_input import SURVEY_SETTINGS, survey_inputs
+from ..survey_input import SURVEY_SETTINGS
 from ..texts import tr
+from .survey_with_borders import add_borders, survey_with_borders
 
 ROADSIDE_OF = "inventory.roadside.settings:RoadsideSettings"
 ABOVE_ROAD = 8.0  # m of height above the road that are read: buildings reach higher than anything that is looked for
@@ -44,13 +43,11 @@ class Roadside(Algorithm):
 
     def declare(self):
         self.add_survey()
-        self.add_layer("ROAD_EDGES", tr("Road edges"), tr("With it things are looked for from the edges outward, and gutters along them."),
-                       "LineStringZ", optional=True)
-        self.add_layer("MARKING_LINES", tr("Marking lines"), tr("With it the carriageway without edges ends at the outermost line."), "LineStringZ",
-                       optional=True)
-        self.add_layer("DRIVING_LINES", tr("Driving lines"), tr("With it the carriageway without edges holds every lane."), "LineStringZ",
-                       optional=True)
-        self.add_layer("LANES", tr("Lanes"), tr("The same, with shoulders and parking strips."), "PolygonZ", optional=True)
+        add_borders(self,
+                    tr("With it things are looked for from the edges outward, and gutters along them."),
+                    tr("With it the carriageway without edges ends at the outermost line."),
+                    tr("With it the carriageway without edges holds every lane."),
+                    tr("The same, with shoulders and parking strips."))
         self.add_settings(ROADSIDE_SETTINGS)
         self.add_settings(SURVEY_SETTINGS)
         self.add_sink("OUTPUT", tr("Roadside"), tr("Lines along the foot, on the ground."), fields=ROADSIDE, geometry="LineStringZ")
@@ -60,27 +57,13 @@ class Roadside(Algorithm):
         self.add_number("POLES", tr("Poles, signs and trunks"))
 
     def work(self, call, progress):
-        from ...core.inventory.borders import BorderLayers
         from ...core.inventory.roadside.find import find_roadside
         from ...core.inventory.roadside.layers import roadside_to_features
         from ...core.report.roadside import roadside_report
-        from ...core.survey.consistency import check_features_on_roads
-        from ...core.survey.open_survey import open_survey
 
         settings = call.settings(ROADSIDE_SETTINGS)
-        layers = BorderLayers(call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ"), call.features("MARKING_LINES", MARKING_LINES, "LineStringZ"),
-                              call.features("DRIVING_LINES", DRIVING_LINES, "LineStringZ"), call.features("LANES", LANES, "PolygonZ"))
-        paths, trajectory = survey_inputs(call, progress)
-        reading = replace(call.settings(SURVEY_SETTINGS, crs=call.crs()), above_road=ABOVE_ROAD)
-        survey = open_survey(paths, trajectory, reading, progress.part(0.0, 0.6))
-        try:
-            for name, features in (("ROAD_EDGES", layers.edges), ("MARKING_LINES", layers.marking_lines), ("DRIVING_LINES", layers.driving_lines),
-                                   ("LANES", layers.lanes)):
-                if features is not None:
-                    check_features_on_roads(features, survey.frame, call.label(name))
-            found = find_roadside(survey, layers, settings, progress.part(0.6, 1.0))
-        finally:
-            survey.store.close()
+        survey, layers = survey_with_borders(call, progress.part(0.0, 0.6), ABOVE_ROAD)
+        found = find_roadside(survey, layers, settings, progress.part(0.6, 1.0))
         lines, points = roadside_to_features(found)
         call.layer("OUTPUT", lines)
         call.layer("OBJECTS", points)

@@ -3,7 +3,7 @@
 from ...core.common.schemas import ROAD_EDGES, ROAD_SURFACE
 from ..algorithm import Algorithm
 from ..parameters import SettingSpec
-from ..survey_input import SURVEY_SETTINGS, open_survey_of
+from ..survey_input import SURVEY_SETTINGS, check_layers_on_roads, open_survey_of
 from ..texts import tr
 
 SURFACE = "road.surface.extract:SurfaceSettings"
@@ -46,14 +46,13 @@ class ExtractRoadSurface(Algorithm):
         from ...core.road.edges.road_edges import edges_from_features
         from ...core.road.surface.extract import extract_road_surface
         from ...core.road.surface.road_surface import surface_to_features
-        from ...core.survey.consistency import check_features_on_roads
         from ...core.survey.road_points_las import write_road_points
 
         layer = call.features("ROAD_EDGES", ROAD_EDGES, "LineStringZ")
         survey = open_survey_of(call, progress.part(0.0, 0.5))
         edges = None
         if layer is not None:
-            check_features_on_roads(layer, survey.frame, call.label("ROAD_EDGES"))
+            check_layers_on_roads(call, {"ROAD_EDGES": layer}, survey.frame)
             edges = edges_from_features(layer, survey.frame)
         road_points, surface = extract_road_surface(survey, edges, call.settings(SURFACE_SETTINGS), progress.part(0.5, 0.9))
         write_road_points(road_points, call.new_file("ROAD_POINTS"), progress.part(0.9, 1.0))

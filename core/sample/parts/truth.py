@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,6 +11,7 @@ from ...common.features import Features, Field
 from ...common.schemas import CURB_KIND, DRIVING_LINES, END, HEIGHT, LANES, LENGTH, PART, ROAD, SIDE, STATION, WIDTH
 
 VERTEX_STEP = 0.25      # m between vertices
+STRAIGHT = 1e-4         # 1/m: lines that bend less are straight
 
 TRUE_BOUNDARIES = [ROAD, SIDE, PART, CURB_KIND, Field("edge", str, "Edge (curb/dropped/pavement)"), STATION, END, HEIGHT, LENGTH]
 TRUE_MARKINGS = [ROAD, Field("class", str, "Class"), Field("line", int, "Line"), Field("pattern", str, "Pattern"),
@@ -30,28 +32,49 @@ class Truth(NamedTuple):
     lanes: Features
 
 
+class TruePlaces(NamedTuple):
+    """Where the true things of a scene lie on the map, (N, 3) m, each with the fields that are known of it.
+
+    boundaries : (line, fields)
+    markings : (ring, fields)
+    driving_lines : (line along the stations, sharpest bend 1/m, fields)
+    surface : (outer ring, inner rings)
+    lanes : (left border, right border, fields), left and right of the line that stations run along
+    """
+
+    boundaries: Iterable[tuple[np.ndarray, dict[str, Any]]]
+    markings: Iterable[tuple[np.ndarray, dict[str, Any]]]
+    driving_lines: Iterable[tuple[np.ndarray, float, dict[str, Any]]]
+    surface: Iterable[tuple[np.ndarray, list[np.ndarray]]]
+    lanes: Iterable[tuple[np.ndarray, np.ndarray, dict[str, Any]]]
+
+    def layers(self, crs: str) -> Truth:
+        """The true layers; driving lines and lanes are drawn in their direction of travel, `radius_m` is that of the sharpest bend."""
+        from shapely import LineString, Polygon
+
+        boundaries, driving_lines = Features("LineStringZ", TRUE_BOUNDARIES, crs=crs), Features("LineStringZ", TRUE_DRIVING_LINES, crs=crs)
+        markings, surface, lanes = (Features("PolygonZ", schema, crs=crs) for schema in (TRUE_MARKINGS, TRUE_SURFACE, TRUE_LANES))
+        for places, fields in self.boundaries:
+            line = LineString(places)
+            boundaries.add(line, road=1, length_m=float(line.length), **fields)
+        for places, fields in self.markings:
+            markings.add(Polygon(places), road=1, **fields)
+        for places, bend, fields in self.driving_lines:
+            line = LineString(places[::fields["direction"]])
+            driving_lines.add(line, radius_m=1.0 / bend if bend > STRAIGHT else None, length_m=float(line.length), **fields)
+        for ring, holes in self.surface:
+            polygon = Polygon(ring, holes)
+            surface.add(polygon, road=1, area_m2=float(polygon.area))
+        for left, right, fields in self.lanes:
+            around = [left, right[::-1]] if fields["direction"] > 0 else [right[::-1], left]
+            lanes.add(Polygon(np.concatenate(around)), type="driving", width_m=float(np.median(np.hypot(*(left - right)[:, :2].T))),
+                      length_m=float(LineString((left + right) / 2).length), **fields)
+        return Truth(boundaries, markings, driving_lines, surface, lanes)
+
+
 def densified(outline: np.ndarray) -> np.ndarray:
     """The closed ring of an outline, (n, 2) m, with vertices at least every quarter of a metre."""
     closed = np.vstack([outline, outline[:1]])
     sides = [a + np.linspace(0, 1, max(1, int(np.ceil(np.hypot(*(b - a)) / VERTEX_STEP))), endpoint=False)[:, None] * (b - a)
              for a, b in zip(closed[:-1], closed[1:])]
     return np.vstack([*sides, outline[:1]])
-
-
-def add_lane(layer: Features, left: np.ndarray, right: np.ndarray, direction: int, **row: Any) -> None:
-    """Add a lane to a layer of TRUE_LANES.
-
-    Parameters
-    ----------
-    layer : Features
-    left, right : (N, 3) m, its borders on the map, left and right of the line that stations run along
-    direction : 1 along that line, -1 against it
-
-    The ring begins with the left border in the direction of travel and comes back along the right one.
-    """
-    from shapely import LineString, Polygon
-
-    if direction < 0:
-        left, right = right[::-1], left[::-1]
-    layer.add(Polygon(np.concatenate([left, right[::-1]])), type="driving", direction=direction,
-              width_m=float(np.median(np.hypot(*(left - right)[:, :2].T))), length_m=float(LineString((left + right) / 2).length), **row)

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import shapely
 
-from ...common.features import Features
-from ..parts.truth import TRUE_BOUNDARIES, TRUE_DRIVING_LINES, TRUE_LANES, TRUE_MARKINGS, TRUE_SURFACE, Truth, add_lane, densified
+from ..parts.truth import TruePlaces, Truth, densified
 
 if TYPE_CHECKING:
     from .scene import PlanScene
@@ -34,13 +33,12 @@ def truth_of_plan(scene: PlanScene, origin: Sequence[float], crs: str) -> Truth:
     def on_map(places, rise=0.0):
         return np.column_stack([places, scene.ground.height(*places.T) + rise]) + origin
 
-    return Truth(_boundaries(scene, on_map, crs), _markings(scene, on_map, crs), _driving_lines(scene, on_map, crs),
-                 _surface(scene, on_map, crs), _lanes(scene, on_map, crs))
+    return TruePlaces(_boundaries(scene, on_map), _markings(scene, on_map), _driving_lines(scene, on_map), _surface(scene, on_map),
+                      _lanes(scene, on_map)).layers(crs)
 
 
-def _boundaries(scene, on_map, crs):
+def _boundaries(scene, on_map):
     """Bottoms and tops of curbs, and edges of the pavement, in pieces of one kind."""
-    layer = Features("LineStringZ", TRUE_BOUNDARIES, crs=crs)
     for ring, height, where, edge in zip(scene.ground.rings, scene.ground.heights, scene.where, scene.edges):
         for some in _runs(ring, where, edge, scene.area):
             bottom, tall = ring[some], height[some]
@@ -49,11 +47,8 @@ def _boundaries(scene, on_map, crs):
             if edge[some[0]] != "pavement":
                 top = bottom + _FACE * _outward(ring)[some]
                 lines.append(("top", np.column_stack([on_map(top)[:, :2], lines[0][1][:, 2] + tall])))
-            for part, coordinates in lines:
-                line = shapely.LineString(coordinates)
-                layer.add(line, road=1, side=side, part=part, kind=str(where[some[0]]), edge=str(edge[some[0]]),
-                          height_m=float(np.median(tall)), length_m=float(line.length))
-    return layer
+            for part, places in lines:
+                yield places, dict(side=side, part=part, kind=str(where[some[0]]), edge=str(edge[some[0]]), height_m=float(np.median(tall)))
 
 
 def _outward(ring):
@@ -85,41 +80,30 @@ def _side(scene, place):
     return "left" if nearest[1][0] > 0 else "right"
 
 
-def _markings(scene, on_map, crs):
-    layer = Features("PolygonZ", TRUE_MARKINGS, crs=crs)
+def _markings(scene, on_map):
     for mark in scene.paint.markings:
         for outline in mark.outlines:
-            polygon = shapely.Polygon(on_map(densified(outline)))
-            layer.add(polygon, road=1, line=mark.line, pattern=mark.pattern, width_m=mark.width, wear=float(mark.wear),
-                      **{"class": mark.kind})
-    return layer
+            yield on_map(densified(outline)), {
+                "class": mark.kind, "line": mark.line, "pattern": mark.pattern, "width_m": mark.width, "wear": float(mark.wear)}
 
 
-def _driving_lines(scene, on_map, crs):
-    layer = Features("LineStringZ", TRUE_DRIVING_LINES, crs=crs)
+def _about(lane):
+    return dict(road=lane.road, lane=lane.number, direction=lane.direction, station_m=float(lane.stations[0]), end_m=float(lane.stations[-1]))
+
+
+def _driving_lines(scene, on_map):
     for lane in scene.lanes:
         middle = (lane.left + lane.right) / 2
         bend = lane.path.curvature(lane.stations)
-        sharpest = float(np.abs(bend / (1.0 - bend * middle)).max())
-        line = shapely.LineString(on_map(lane.path.at(lane.stations, middle))[::lane.direction])
-        layer.add(line, road=lane.road, lane=lane.number, direction=lane.direction, radius_m=1.0 / sharpest if sharpest > 1e-4 else None,
-                  station_m=float(lane.stations[0]), end_m=float(lane.stations[-1]), length_m=float(line.length))
-    return layer
+        yield on_map(lane.path.at(lane.stations, middle)), float(np.abs(bend / (1.0 - bend * middle)).max()), _about(lane)
 
 
-def _surface(scene, on_map, crs):
-    layer = Features("PolygonZ", TRUE_SURFACE, crs=crs)
+def _surface(scene, on_map):
     for part in shapely.get_parts(shapely.intersection(scene.carriageway, scene.area)):
-        rings = [on_map(densified(shapely.get_coordinates(ring)[:-1])) for ring in (part.exterior, *part.interiors)]
-        polygon = shapely.Polygon(rings[0], rings[1:])
-        layer.add(polygon, road=1, area_m2=float(polygon.area))
-    return layer
+        ring, *holes = (on_map(densified(shapely.get_coordinates(ring)[:-1])) for ring in (part.exterior, *part.interiors))
+        yield ring, holes
 
 
-def _lanes(scene, on_map, crs):
-    layer = Features("PolygonZ", TRUE_LANES, crs=crs)
+def _lanes(scene, on_map):
     for lane in scene.lanes:
-        left, right = (on_map(lane.path.at(lane.stations, border)) for border in (lane.left, lane.right))
-        add_lane(layer, left, right, lane.direction, road=lane.road, lane=lane.number, station_m=float(lane.stations[0]),
-                 end_m=float(lane.stations[-1]))
-    return layer
+        yield *(on_map(lane.path.at(lane.stations, border)) for border in (lane.left, lane.right)), _about(lane)

@@ -1,0 +1,29 @@
+"""What every inventory is made of: a survey, and the layers of its road map that say where carriageway and lanes end."""
+
+from ...core.common.schemas import DRIVING_LINES, LANES, MARKING_LINES, ROAD_EDGES
+from ..survey_input import check_layers_on_roads, open_survey_of
+from ..texts import tr
+
+# parameter -> its label, fields and geometry, in the order of BorderLayers
+BORDER_LAYERS = {
+    "ROAD_EDGES": (tr("Road edges"), ROAD_EDGES, "LineStringZ"),
+    "MARKING_LINES": (tr("Marking lines"), MARKING_LINES, "LineStringZ"),
+    "DRIVING_LINES": (tr("Driving lines"), DRIVING_LINES, "LineStringZ"),
+    "LANES": (tr("Lanes"), LANES, "PolygonZ"),
+}
+
+
+def add_borders(algorithm, *helps):
+    """Declare the layers of the road map, each with what it is good for."""
+    for (name, (label, _, geometry)), text in zip(BORDER_LAYERS.items(), helps, strict=True):
+        algorithm.add_layer(name, label, text, geometry, optional=True)
+
+
+def survey_with_borders(call, progress, above_road):
+    """The survey, with points up to `above_road` metres above the road, and the BorderLayers, which lie on its roads."""
+    from ...core.inventory.borders import BorderLayers
+
+    layers = {name: call.features(name, schema, geometry) for name, (_, schema, geometry) in BORDER_LAYERS.items()}
+    survey = open_survey_of(call, progress, above_road=above_road)
+    check_layers_on_roads(call, layers, survey.frame)
+    return survey, BorderLayers(*layers.values())
