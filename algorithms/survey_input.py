@@ -28,6 +28,13 @@ SURVEY_SETTINGS = (
         choices=("automatic", "gps", "adjusted", "week", "day"), advanced=True,
     ),
     SettingSpec(
+        "INTENSITY_FROM", SURVEY, "intensity_from", tr("Intensity from"),
+        tr("Where the points have no intensity but colours, rgb takes the brightness of their colours in its place (0.2126 red, "
+           "0.7152 green, 0.0722 blue). It is a substitute: shadows and vehicles on the photographs darken and cover paint, and what the "
+           "camera saw is displaced where it was not well aligned with the scanner."),
+        choices=("intensity", "rgb"), advanced=True,
+    ),
+    SettingSpec(
         "FIT_PASSES", SURVEY, "fit_passes", tr("Lay passes over one road on each other"),
         tr("Where two drives over a road measurably lie centimetres apart, as navigation drifts between them, each is moved by its "
            "share until curbs and paint agree, and the log says how far. Off keeps every point where it was measured, for surveys "
@@ -166,7 +173,8 @@ def bright_road_points_of(call, name, progress):
     if values and min(low for low, _ in values) == max(high for _, high in values):
         raise RoadExtractionError(
             tr("{path} has no intensity (all values are the same), so paint cannot be told from asphalt. Road edges and surface "
-               "need none; for markings, export the point clouds with intensity.").format(path=call.cloud(name))
+               "need none; for markings, export the point clouds with intensity, or, where they have colours, make these points again "
+               "with Intensity from (INTENSITY_FROM) set to rgb.").format(path=call.cloud(name))
         )
     return road_points
 

@@ -18,6 +18,7 @@ from ..common.memory import ScratchBuffers
 from ..common.parallel import POLL_INTERVAL
 from ..common.progress import Progress
 from .frame.projection import POINTS_PER_PROJECTION, RoadProjection
+from .las.luminance import luminance
 from .las.parallel_reader import ParallelCloudReader
 from .las.scale import LasAxis
 from .las.scanners import ScannerCensus, times_by_value
@@ -129,10 +130,11 @@ class BlockProjector:
     corridor : metres either side
     has_time : whether points are assigned to passes by their time; else by the nearest point on a road
     week_ends : whether the GPS week ends during the scan
+    coloured : whether the luminance of the colours is taken as intensity
     """
 
-    def __init__(self, frame: RoadFrame, corridor: float, has_time: bool, week_ends: bool = False):
-        self.frame, self.corridor, self.has_time, self.week_ends = frame, corridor, has_time, week_ends
+    def __init__(self, frame: RoadFrame, corridor: float, has_time: bool, week_ends: bool = False, coloured: bool = False):
+        self.frame, self.corridor, self.has_time, self.week_ends, self.coloured = frame, corridor, has_time, week_ends, coloured
         self.dtype = point_dtype(SURVEY_POINT, frame.farthest)
         self.projection = RoadProjection(frame, corridor) if has_time else None
         self.roads = np.array([p.road for p in frame.passes] + [-1])
@@ -200,7 +202,7 @@ class BlockProjector:
         columns["time"][:] = raw["gps_time"] if "gps_time" in raw.dtype.names else 0.0
         if self.week_ends:
             columns["time"][:] = unwrap_week(columns["time"])
-        columns["intensity"][:] = raw["intensity"]
+        columns["intensity"][:] = luminance(piece) if self.coloured else raw["intensity"]
         columns["source"][:] = raw["point_source_id"]
         columns["scanner"] = np.broadcast_to(np.uint8(0), len(raw))
         if "scanner_channel" in names and flagged:
@@ -282,6 +284,7 @@ class SurveyReader:
     has_time : whether points are assigned to passes by their time
     week_ends : whether the GPS week ends during the scan
     above_road : metres above the road up to which points are kept
+    coloured : whether the luminance of the colours is taken as intensity
 
     Attributes, complete after `read`
     ---------------------------------
@@ -295,13 +298,13 @@ class SurveyReader:
     """
 
     def __init__(self, frame: RoadFrame, store: SectionStore, corridor: float, has_time: bool, week_ends: bool = False,
-                 above_road: float = KEPT_ABOVE_ROAD):
+                 above_road: float = KEPT_ABOVE_ROAD, coloured: bool = False):
         self.frame, self.store, self.above_road = frame, store, above_road
         self.census, self.darkest, self.brightest, self.unplaced_time = ScannerCensus(), 65535, 0, 0
         self.tracks = VehicleTracks(frame)
         self.slots = TimeSlots(1)
         self.sampled: list[tuple[np.ndarray, np.ndarray]] = []
-        self._blocks = BlockProjector(frame, corridor, has_time, week_ends)
+        self._blocks = BlockProjector(frame, corridor, has_time, week_ends, coloured)
         # created once the rough height of the road is known; until then parts of blocks wait
         self._ground: HeightFilter | None = None
         self._histogram: HeightHistogram
@@ -313,7 +316,8 @@ class SurveyReader:
         total, done = sum(file.count for file in files), 0
         self.slots = TimeSlots.for_points(total, MAX_SPLIT_SAMPLES)
         threads = min(MAX_INGEST_THREADS, os.cpu_count() or 1)
-        with ParallelCloudReader(DECODED_LAYERS) as readers, ThreadPoolExecutor(threads) as pool:
+        layers = (*DECODED_LAYERS, "rgb") if self._blocks.coloured else DECODED_LAYERS
+        with ParallelCloudReader(layers) as readers, ThreadPoolExecutor(threads) as pool:
             waiting: deque[Future] = deque()
 
             def take():

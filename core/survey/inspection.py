@@ -14,6 +14,7 @@ from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from ..io.crs import check_metric, horizontal_part, parse_crs
 from .frame.road_frame import build_frame
+from .las.luminance import INTENSITY_SOURCES, without_intensity
 from .las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
 from .las.scanners import ScannerCensus
 from .open_survey import SurveySettings, match_clocks
@@ -174,8 +175,9 @@ class _Counter:
         _judge_crs(found)
         if trajectory is not None:
             _judge_trajectory(found, wkt, has_time, progress)
-        if not self.intensity[1:].any():
-            found.notes.append("All intensities are 0: road edges can be found, markings and driving lines cannot.")
+        if np.count_nonzero(self.intensity) < 2:
+            found.notes.append(f"All intensities are {self.intensity.argmax()}: road edges can be found, markings and driving lines cannot. "
+                               f"{without_intensity(files, INTENSITY_SOURCES[0])}".strip())
         if not has_time:
             found.notes.append("There is no usable gps_time: each point is assigned to the nearest position on the trajectory, "
                                "which mixes the passes where a street was driven twice. Export the point clouds with gps_time, or process "

@@ -23,6 +23,7 @@ from .adjustment.adjust import adjust_passes
 from .clock_check import check_clock
 from .frame.road_frame import CORRIDOR, build_frame
 from .ingest import KEPT_ABOVE_ROAD, KEPT_BELOW_ROAD, SurveyReader, unwrap_week
+from .las.luminance import INTENSITY_SOURCES, check_coloured, without_intensity
 from .las.parallel_reader import ParallelCloudReader
 from .las.reader import POINTS_PER_BLOCK, CloudHeader, read_headers
 from .las.scanners import numbers_by_value
@@ -54,6 +55,7 @@ class SurveySettings:
     scanner_field : "automatic", "scanner_channel" or "point_source_id"
     time : time system of the trajectory: automatic, gps, adjusted, week or day
     crs : WKT for clouds that carry none
+    intensity_from : "intensity", or "rgb" for the luminance of the colours
     fit_passes : whether passes over one road are adjusted to each other
     above_road : m above the road up to which points are kept; the map needs what hides a curb, an inventory what hangs over the road
     section_length : m of station in a section of the store
@@ -65,6 +67,7 @@ class SurveySettings:
     scanner_field: str = "automatic"
     time: str = "automatic"
     crs: str = ""
+    intensity_from: str = INTENSITY_SOURCES[0]
     fit_passes: bool = True
     above_road: float = setting(KEPT_ABOVE_ROAD, 1.0, 100.0, "The height above the road", "m")
     section_length: float = SECTION_LENGTH
@@ -73,6 +76,8 @@ class SurveySettings:
 
     def __post_init__(self) -> None:
         check_limits(self)
+        if self.intensity_from not in INTENSITY_SOURCES:
+            raise RoadExtractionError(f"Intensity cannot be taken from “{self.intensity_from}”; choose one of {', '.join(INTENSITY_SOURCES)}.")
 
 
 @dataclass
@@ -254,7 +259,9 @@ def read_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: S
         If a file cannot be read, the CRS is geographic or not in metres, or the
         trajectory does not overlap the cloud in space or time.
     """
-    files = read_headers(paths)
+    files, coloured = read_headers(paths), settings.intensity_from == "rgb"
+    if coloured:
+        check_coloured(files)
     crs = check_projected(files, settings.crs, trajectory.crs)
     if note := crs_note(files, settings.crs, crs):
         progress.warn(note)
@@ -273,7 +280,7 @@ def read_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: S
                       "the files of each drive with its own part of the trajectory.")
     _check_extent(files, frame, crs, trajectory.crs)
     store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length, settings.memory_limit)
-    reader = SurveyReader(frame, store, settings.corridor, has_time, week_ends, settings.above_road)
+    reader = SurveyReader(frame, store, settings.corridor, has_time, week_ends, settings.above_road, coloured)
     again = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
     reader.read(files, settings.block, progress.part(0.0, INGEST_PROGRESS) if again else progress)
     total = sum(file.count for file in files)
@@ -303,6 +310,10 @@ def read_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: S
     progress.info(f"Points read: {total:,} from {len(files)} file(s), {store.count:,} near the road kept; "
                  f"{len(frame.roads)} road(s), {len(frame.passes)} pass(es), {len(scanners)} scanner(s); "
                  f"sensor {height:.2f} m above the road.")
+    if coloured:
+        progress.info("The brightness of the points' colours is taken as their intensity.")
+    if not survey.has_intensity and (note := without_intensity(files, settings.intensity_from)):
+        progress.warn(note)
     if has_time and len(scanners) == 1:
         at = INGEST_PROGRESS if again else 1.0
         _tell_scanners_apart(survey, reader, progress.part(at, at))

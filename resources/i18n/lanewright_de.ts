@@ -3705,6 +3705,16 @@
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />
+            <source>Intensity from</source>
+            <translation>Intensität aus</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
+            <source>Where the points have no intensity but colours, rgb takes the brightness of their colours in its place (0.2126 red, 0.7152 green, 0.0722 blue). It is a substitute: shadows and vehicles on the photographs darken and cover paint, and what the camera saw is displaced where it was not well aligned with the scanner.</source>
+            <translation>Wo die Punkte keine Intensität, aber Farben haben, nimmt rgb an ihrer Stelle die Helligkeit der Farben (0,2126 Rot, 0,7152 Grün, 0,0722 Blau). Das ist ein Ersatz: Schatten und Fahrzeuge auf den Fotos verdunkeln und verdecken Farbe auf der Straße, und was die Kamera sah, ist versetzt, wo sie nicht gut auf den Scanner ausgerichtet war.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
             <source>Lay passes over one road on each other</source>
             <translation>Befahrungen derselben Straße aufeinanderlegen</translation>
         </message>
@@ -3750,8 +3760,8 @@
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />
-            <source>{path} has no intensity (all values are the same), so paint cannot be told from asphalt. Road edges and surface need none; for markings, export the point clouds with intensity.</source>
-            <translation>{path} hat keine Intensität (alle Werte sind gleich), Farbe lässt sich so nicht vom Asphalt unterscheiden. Straßenränder und Oberfläche brauchen keine; für Markierungen die Punktwolken mit Intensität exportieren.</translation>
+            <source>{path} has no intensity (all values are the same), so paint cannot be told from asphalt. Road edges and surface need none; for markings, export the point clouds with intensity, or, where they have colours, make these points again with Intensity from (INTENSITY_FROM) set to rgb.</source>
+            <translation>{path} hat keine Intensität (alle Werte sind gleich), daher lässt sich Markierung nicht von Asphalt unterscheiden. Straßenränder und Oberfläche brauchen keine; für Markierungen die Punktwolken mit Intensität exportieren oder, wo sie Farben haben, diese Punkte neu erzeugen und dabei Intensität aus (INTENSITY_FROM) auf rgb setzen.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />

@@ -38,6 +38,7 @@ class CloudHeader:
     has_time, has_channel : whether the points have gps_time and a scanner channel
     adjusted_time : whether gps_time is adjusted standard GPS time (global encoding bit 0), not seconds of the GPS week
     chunk : points that are compressed together; 1 in a LAS file, 0 where the number varies
+    has_colour : whether the points have red, green and blue
     """
 
     path: str
@@ -52,6 +53,7 @@ class CloudHeader:
     has_channel: bool
     adjusted_time: bool
     chunk: int = 0
+    has_colour: bool = False
 
 
 def open_cloud(path: str | os.PathLike[str], layers: Iterable[str] | None = None, checked: bool = False, sparse: bool = False) -> Any:
@@ -127,7 +129,7 @@ def read_header(path: str | os.PathLike[str]) -> CloudHeader:
             str(path), str(header.version), header.point_format.id, count,
             tuple(map(float, low)), tuple(map(float, high)), tuple(map(float, header.scales)),
             _crs_of(header), "gps_time" in names, "scanner_channel" in names,
-            bool(header.global_encoding.gps_time_type.value), points_per_chunk(path))
+            bool(header.global_encoding.gps_time_type.value), points_per_chunk(path), "red" in names)
 
 
 def _listed(numbers):

@@ -76,7 +76,7 @@ def test_the_density_raster_has_north_above(tmp_path):
 
 
 def test_a_trajectory_of_the_same_survey_covers_it(tmp_path):
-    found = inspect_survey([a_carpet(tmp_path / "a.laz")], drive())
+    found = inspect_survey([a_carpet(tmp_path / "a.laz", intensity=np.arange(12000))], drive())
     assert found.near_share == 1.0 and found.in_time_share == 1.0 and not found.notes
 
 
@@ -94,6 +94,7 @@ def test_a_trajectory_of_another_day_is_noted_with_both_times(tmp_path):
 def test_what_the_road_map_would_stumble_over_is_noted(tmp_path):
     found = inspect_survey([a_carpet(tmp_path / "a.laz", crs="", intensity=0)])
     assert any("no CRS" in note for note in found.notes) and any("intensities are 0" in note for note in found.notes)
+    assert any("intensities are 500" in note for note in inspect_survey([a_carpet(tmp_path / "b.laz")]).notes)
 
 
 def test_the_report_tells_and_shows(tmp_path):
