@@ -21,9 +21,10 @@ from ..cross_section.named_lines import line_kinds
 from ..cross_section.roads import estimate_roads
 from ..cross_section.sections import sections_of_edges, sections_of_lines
 from ..objects.marking_objects import MarkingObjects
+from .common_trend import CommonTrend
 from .dash_pattern import same_dash_pattern
 from .geometry import LineShape, fit_line_shapes
-from .linking import CommonTrend, LinkedLine, link_lines, link_over_long_gaps, without_strays
+from .linking import LinkedLine, link_lines, link_over_long_gaps, without_strays
 from .painted_lines import FittedPieces, PaintedLines
 from .selection import SelectedLine, crossings, hatching_bars, hatching_borders, select_lines
 from .strands import line_paint, trace_strands

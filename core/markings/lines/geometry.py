@@ -17,8 +17,9 @@ from ...survey.frame.frame_lines import LINE_VERTEX_SPACING
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import Road
+    from .common_trend import CommonTrend
     from .fit import MarkingLineSettings
-    from .linking import CommonTrend, LinkedLine
+    from .linking import LinkedLine
 
 MIN_POINTS_PER_PLACE = 3     # points that a place must have to count, where there are enough such places
 MIN_GUIDED_GAP = 4.0         # m: in a longer gap the curve is guided parallel to the other lines

@@ -14,14 +14,16 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 
 from ...curves.robust import median
+from .common_trend import MAX_LINE_SLOPE, CommonTrend, weighted_medians
 
 if TYPE_CHECKING:
     from .strands import Strand
 
-TREND_STEP = 0.5                           # m, nodes of the drift
-SLOPE_WINDOW = 5.0                         # m that slopes are averaged over
 END_WINDOW = 6.0                           # m of a strand's end that say where it goes
 MIN_PAINT_BESIDE_GAP = 3.0                 # m that either side of a long gap must have
 MAX_STRAND_OVERLAP = 0.6                   # m that two strands of one line may overlap
@@ -30,72 +32,14 @@ MAX_STRAY_LENGTH = 4.0                     # m: longer strands make their own ca
 MAX_STRAY_OFFSET = 0.10                    # m across
 DOUBLE_LINE_SPACING = (0.19, 0.50)         # m between the middles of the two lines of a double line
 MIDDLE_SHARE = (0.25, 0.75)                # of the way from one line of a double to the other: its middle
-MAX_LINE_SLOPE = np.tan(np.radians(10.0))  # across per along by which two strands may differ
-
-
-class CommonTrend:
-    """How the offset of all lines of a road changes together: d(s) of a line minus this is nearly constant."""
-
-    def __init__(self, strands: list[Strand]) -> None:
-        self.s, self.value = np.zeros(1), np.zeros(1)
-        long = [strand for strand in strands if strand.length >= 1.5]
-        if not long:
-            return
-        s, slope, weight = _slopes(long)
-        bins = np.floor(s / TREND_STEP).astype(np.int64)
-        order = np.lexsort((slope, bins))
-        starts = np.flatnonzero(np.r_[True, np.diff(bins[order]) != 0])
-        first = bins.min()
-        nodes = np.arange(first, bins.max() + 1)
-        middle = np.full(len(nodes), np.nan)
-        middle[bins[order[starts]] - first] = _weighted_medians(slope[order], weight[order], starts)
-        known = np.isfinite(middle)
-        at = (nodes + 0.5) * TREND_STEP
-        # where nothing is painted for long the lines are taken to follow the reference
-        middle = np.interp(at, at[known], middle[known])
-        away = np.abs(at - at[known][np.clip(np.searchsorted(at[known], at), 0, known.sum() - 1)])
-        behind = np.abs(at - at[known][np.clip(np.searchsorted(at[known], at) - 1, 0, known.sum() - 1)])
-        middle *= np.exp(-np.minimum(away, behind) / 10.0)
-        reach = int(SLOPE_WINDOW / TREND_STEP / 2)
-        middle = np.convolve(np.pad(middle, reach, mode="edge"), np.full(2 * reach + 1, 1 / (2 * reach + 1)), "valid")
-        self.s = np.r_[at[0] - TREND_STEP / 2, at + TREND_STEP / 2]
-        self.value = np.r_[0.0, np.cumsum(middle * TREND_STEP)]
-
-    def at(self, s: np.ndarray) -> np.ndarray:
-        """(N,) metres at stations s; flat beyond the painted part."""
-        return np.interp(s, self.s, self.value)
-
-
-def _slopes(strands):
-    """Station, dd/ds and weight every half metre of some strands, each from the places within 2.5 m on the strand."""
-    counts = np.array([len(strand.s) for strand in strands])
-    starts = np.cumsum(counts) - counts
-    owner = np.repeat(np.arange(len(strands)), counts)
-    own_s, own_d = (np.concatenate([getattr(strand, name) for strand in strands]) for name in ("s", "d"))
-    at = [np.arange(strand.first + TREND_STEP / 2, strand.last, TREND_STEP) for strand in strands]
-    of = np.repeat(np.arange(len(strands)), [len(some) for some in at])
-    at = np.concatenate(at)
-    # strands one after the other, so far apart that none reaches into the next
-    far = owner * (float(max(strand.last for strand in strands) - min(strand.first for strand in strands)) + 4 * SLOPE_WINDOW)
-    shift = far[starts]
-    low, high = (np.searchsorted(own_s + far, at + shift[of] + side * SLOPE_WINDOW / 2) for side in (-1, 1))
-    # from the strand's own start, so that sums keep their digits
-    s, d = own_s - own_s[starts][owner], own_d - own_d[starts][owner]
-    n = high - low
-    ms, md, mss, msd = (sums[high] - sums[low] for sums in (np.append(0.0, np.cumsum(v)) for v in (s, d, s * s, s * d)))
-    spread = n * mss - ms * ms
-    good = (n >= 5) & (spread > 0.2 * n * n)
-    slope = np.where(good, (n * msd - ms * md) / np.where(good, spread, 1.0), 0.0)
-    # a slope beyond any lane change is a false strand's
-    good &= np.abs(slope) < MAX_LINE_SLOPE
-    return at[good], slope[good], (spread / np.maximum(n, 1))[good]
+COST_WITHOUT_LINK = 2.01                   # the worst possible link costs 1 for its mismatch and 1 for its gap
 
 
 @dataclass
 class LinkedLine:
     """Strands of one painted line in order of station."""
 
-    strands: list
+    strands: list[Strand]
 
     @property
     def first(self) -> float:
@@ -151,7 +95,7 @@ def line_ends(lines: list[LinkedLine], trend: CommonTrend, at_start: bool, reach
     middle, offset = (np.add.reduceat(v * weight, starts) / total if len(owner) else v for v in (s, d))
     span = np.maximum.reduceat(s, starts) - np.minimum.reduceat(s, starts) if len(owner) else s
     order = np.lexsort((d, owner))
-    level = _weighted_medians(d[order], weight[order], starts)
+    level = weighted_medians(d[order], weight[order], starts)
     away = s - np.repeat(middle, count)
     squares = np.add.reduceat(weight * away**2, starts) if len(owner) else s
     slope = np.add.reduceat(weight * away * (d - np.repeat(offset, count)), starts) / np.where(span < 1.0, 1.0, squares) if len(owner) else s
@@ -161,19 +105,6 @@ def line_ends(lines: list[LinkedLine], trend: CommonTrend, at_start: bool, reach
         tip = float(tips[k])
         found[k] = _End(tip, lv + sl * (tip - m), sl, reached)
     return found
-
-
-def _weighted_medians(values, weight, starts):
-    """(G,) weighted medians of groups of (N,) values, ascending within each group, that begin at `starts`."""
-    if not len(starts):
-        return np.empty(0)
-    count = np.diff(np.append(starts, len(values)))
-    # a row for every group, so that each sums its own weights and nothing else
-    table = np.zeros((len(starts), int(count.max())))
-    column = np.arange(len(values)) - np.repeat(starts, count)
-    table[np.repeat(np.arange(len(starts)), count), column] = weight
-    share = np.cumsum(table, axis=1)
-    return values[starts + (share < share[:, -1:] / 2).sum(axis=1)]
 
 
 def lateral_mismatch(before: _End, after: _End) -> float:
@@ -193,7 +124,7 @@ def _trust(before, after):
 
 
 def link_lines(lines: list[LinkedLine], trend: CommonTrend, max_gap: float, allowed: float = 0.30) -> list[LinkedLine]:
-    """Lines linked over gaps up to `max_gap`, each end once, the best match first.
+    """Lines linked over gaps up to `max_gap`, each end once, at the least cost of all links together.
 
     Parameters
     ----------
@@ -223,13 +154,8 @@ def link_lines(lines: list[LinkedLine], trend: CommonTrend, max_gap: float, allo
             if _between_twins(twin_ends[a], twin_starts[b], before, after):
                 continue
             if miss <= limit:
-                pairs.append(((miss / limit) ** 2 + max(gap, 0.0) / max_gap, before.s, a, int(b)))
-    follows, preceded = {}, set()
-    for _, _, a, b in sorted(pairs):
-        if a not in follows and b not in preceded:
-            follows[a] = b
-            preceded.add(b)
-    return _joined(lines, follows, preceded)
+                pairs.append(((miss / limit) ** 2 + max(gap, 0.0) / max_gap, a, int(b)))
+    return _joined(lines, assigned_links(pairs))
 
 
 def twin_offsets(lines: list[LinkedLine], trend: CommonTrend, tips: list[_End], at_start: bool) -> np.ndarray:
@@ -271,8 +197,43 @@ def _between_twins(twin_before, twin_after, before, after):
     return MIDDLE_SHARE[0] < share < MIDDLE_SHARE[1]
 
 
-def _joined(lines, follows, preceded):
-    found = []
+def assigned_links(pairs: list[tuple[float, int, int]]) -> dict[int, int]:
+    """Which line goes on as which other, so that the sum of all costs is least.
+
+    A line that is not linked costs as much as the worst link that is possible, so that links are made rather than left out. Lines that
+    compete for the same links are assigned together (Hungarian method, as in `scipy.optimize.linear_sum_assignment`).
+
+    Parameters
+    ----------
+    pairs : list of (cost, line that ends, line that begins), costs from 0 to COST_WITHOUT_LINK
+
+    Returns
+    -------
+    {line that ends: line that begins}
+    """
+    if not pairs:
+        return {}
+    cost, a, b = (np.array(values) for values in zip(*pairs))
+    ends, row = np.unique(a, return_inverse=True)
+    starts, column = np.unique(b, return_inverse=True)
+    count = len(ends) + len(starts)
+    graph = coo_matrix((np.ones(len(row)), (row, len(ends) + column)), shape=(count, count))
+    number, group = connected_components(graph, directed=False)
+    order = np.argsort(group[row], kind="stable")
+    links = {}
+    for of_group in np.split(order, np.searchsorted(group[row][order], np.arange(1, number))):
+        rows, i = np.unique(row[of_group], return_inverse=True)
+        columns, j = np.unique(column[of_group], return_inverse=True)
+        gain = np.zeros((len(rows), len(columns)))
+        gain[i, j] = COST_WITHOUT_LINK - cost[of_group]
+        for u, v in zip(*linear_sum_assignment(gain, maximize=True)):
+            if gain[u, v] > 0:
+                links[int(ends[rows[u]])] = int(starts[columns[v]])
+    return links
+
+
+def _joined(lines, follows):
+    found, preceded = [], set(follows.values())
     for k in range(len(lines)):
         if k in preceded:
             continue
@@ -305,16 +266,11 @@ def link_over_long_gaps(lines: list[LinkedLine], trend: CommonTrend, max_gap: fl
                     continue
                 if same_dash_pattern(lines[a], lines[b]) or _runs_beside(lines, (a, b), before, after, trend):
                     score = (lateral_mismatch(before, after) / allowed) ** 2 + (after.s - before.s) / max_bridge
-                    pairs.append((score, before.s, a, int(b)))
+                    pairs.append((score, a, int(b)))
         if not pairs:
             return lines
-        follows, preceded = {}, set()
-        for _, _, a, b in sorted(pairs):
-            if a not in follows and b not in preceded:
-                follows[a] = b
-                preceded.add(b)
         # the pattern and the course of a longer line are known better: search again
-        lines = _joined(lines, follows, preceded)
+        lines = _joined(lines, assigned_links(pairs))
 
 
 def without_strays(line: LinkedLine, trend: CommonTrend) -> LinkedLine:

@@ -15,7 +15,7 @@ from .linking import DOUBLE_LINE_SPACING, LinkedLine
 
 if TYPE_CHECKING:
     from ..objects.marking_objects import MarkingObjects
-    from .linking import CommonTrend
+    from .common_trend import CommonTrend
     from .strands import Strand
 
 SAME_COURSE_OFFSET = 0.25     # m: a single dash this near the course of a dashed line is one of its dashes
