@@ -45,6 +45,8 @@ LOOKS = {
     "LANES": ("lanes", 23),
     "TRUTH_LANES": ("truth_lanes", 22),
     "TRAJECTORY": ("trajectory", 80),
+    "PASSES": ("passes", 65),
+    "CORRECTIONS": ("corrections", 95),
     "ASSESSED_CELLS": ("assessed_cells", 15),
     "ASSESSED_POLYGONS": ("assessed_polygons", 35),
     "ASSESSED_LINES": ("assessed_lines", 75),

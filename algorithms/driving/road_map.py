@@ -2,8 +2,9 @@
 
 from ...core.common.errors import RoadExtractionError
 from ...core.common.features import Features
-from ...core.common.schemas import CURB_POINTS, CURVE_ELEMENTS, DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, ROAD_EDGES, ROAD_SURFACE
+from ...core.common.schemas import CURB_POINTS, CURVE_ELEMENTS, DRIVING_LINES, LANES, MARKING_LINES, MARKINGS, PASSES, ROAD_EDGES, ROAD_SURFACE
 from ..algorithm import Algorithm
+from ..corrections import add_corrections, corrections_of
 from ..markings.cluster_markings import CLUSTER_SETTINGS
 from ..markings.correct_intensity import INTENSITY_SETTINGS
 from ..markings.extract_markings import MARKING_SETTINGS
@@ -66,6 +67,7 @@ class RoadMap(Algorithm):
 
     def declare(self):
         self.add_survey(trajectory_optional=True, without=WITHOUT_TRAJECTORY)
+        add_corrections(self)
         self.add_settings((METHOD_SETTING,))
         self.add(FlagSpec(
             "CORRECT_INTENSITY", tr("Correct intensity first"),
@@ -82,6 +84,8 @@ class RoadMap(Algorithm):
         add_execution(self)
         for name, _, geometry, fields, label in LAYERS:
             self.add_sink(name, label, fields=fields, geometry=geometry, optional=True)
+        self.add_sink("PASSES", tr("Passes (the trajectory)"), tr("Where the vehicle drove, as this run used it: one line a pass."), fields=PASSES,
+                      geometry="LineStringZ", optional=True)
         self.add_sink("CURB_POINTS", tr("Curb points"), fields=CURB_POINTS, geometry="PointZ", optional=True, by_default=False)
         self.add_laz(
             "ROAD_POINTS", tr("Road points"), tr("Class 11, with the fields the single stages need."), optional=True, by_default=False
@@ -105,11 +109,12 @@ class RoadMap(Algorithm):
         if not any(call.wants(one.name) for one in self.outputs()):
             raise RoadExtractionError(tr(
                 "No result was asked for, and all of the work would be lost. Name at least one output, such as DRIVING_LINES, MARKINGS or REPORT."))
+        corrections = corrections_of(call)
         estimated = estimated_trajectory(call, progress.part(0.0, ESTIMATED))
         paths, trajectory = (call.point_clouds(), estimated.trajectory) if estimated else survey_inputs(call)
         progress = progress.part(ESTIMATED if estimated else 0.0, 1.0)
         image_path = call.new_file("INTENSITY_IMAGE") or call.scratch_file("intensity.tif")
-        road_map = make_road_map(paths, trajectory, image_path, settings, progress.part(0.0, 0.95))
+        road_map = make_road_map(paths, trajectory, image_path, settings, progress.part(0.0, 0.95), corrections)
         if estimated:
             road_map.survey_facts["trajectory"] = estimated.summary()
         if call.wants("ROAD_POINTS"):
@@ -121,10 +126,14 @@ class RoadMap(Algorithm):
         for name, attribute, geometry, fields, _ in LAYERS:
             layer = made[attribute] = road_map.layer(attribute)
             call.layer(name, layer if layer is not None else Features(geometry, fields, crs=road_map.crs))
+        if call.wants("PASSES"):
+            from ...core.survey.frame.pass_lines import passes_to_features
+
+            call.layer("PASSES", passes_to_features(road_map.frame, road_map.crs))
         call.layer("CURB_POINTS", road_map.layer("curb_points"))
         if call.wants("REPORT"):
             from ...core.report.road_map import road_map_report
 
             call.text("REPORT", road_map_report(road_map, image_path))
         return road_map_numbers([road.length for road in road_map.frame.roads],
-                                *(made[name] for name in ("edges", "marking_lines", "driving_lines", "markings")))
+                                *(made[name] for name in ("edges", "marking_lines", "driving_lines", "markings")), road_map.corrections)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from ...core.common.features import Features
+from ...core.corrections.corrections import Corrections
 from ..texts import tr
 
 MEASURED = "measured"
@@ -20,17 +21,21 @@ NUMBERS = (
     ("LANE_LENGTH", tr("Length of the driving lines (m)")),
     ("LANES_MEASURED", tr("Of the driving lines measured (%)")),
     ("MARKING_COUNT", tr("Markings")),
+    ("TRUST", tr("Confidence of the driving lines, mean along them (0 to 1)")),
+    ("CORRECTIONS_MADE", tr("Corrections made")),
+    ("CORRECTIONS_UNMATCHED", tr("Corrections that match nothing")),
 )
 
 
 def road_map_numbers(road_lengths: Iterable[float], edges: Features | None, marking_lines: Features | None, driving_lines: Features | None,
-                     markings: Features | None) -> dict[str, float]:
-    """The values of NUMBERS; a share of nothing is left out.
+                     markings: Features | None, corrections: Corrections | None = None) -> dict[str, float]:
+    """The values of NUMBERS; a share or mean of nothing is left out.
 
     Parameters
     ----------
     road_lengths : m of each road
     edges, marking_lines, driving_lines, markings : layers of the road map, None where there are none
+    corrections : of an analyst, and which of them were made; None for none
     """
     lengths = list(road_lengths)
     found: dict[str, float | None] = {"ROADS": float(len(lengths)), "ROAD_LENGTH": float(sum(lengths))}
@@ -40,7 +45,19 @@ def road_map_numbers(road_lengths: Iterable[float], edges: Features | None, mark
     lanes = [] if driving_lines is None else driving_lines.rows
     found["LANE_COUNT"] = float(len({(row.get("road"), row.get("lane")) for row in lanes}))
     found["MARKING_COUNT"] = float(0 if markings is None else len(markings))
+    found["TRUST"] = _trust(driving_lines)
+    unmatched = 0 if corrections is None else len({one.row for one in corrections.unmatched})
+    made = 0 if corrections is None else len({one.row for one in corrections.rows}) - unmatched
+    found["CORRECTIONS_MADE"], found["CORRECTIONS_UNMATCHED"] = float(made), float(unmatched)
     return {name: value for name, value in found.items() if value is not None}
+
+
+def _trust(layer):
+    """Mean confidence of lines by their lengths, None without lines."""
+    pieces = [] if layer is None else [(geometry.length, row.get("confidence")) for geometry, row in layer]
+    known = [(length, sure) for length, sure in pieces if sure is not None]
+    total = sum(length for length, _ in known)
+    return sum(length * sure for length, sure in known) / total if total else None
 
 
 def _measured(layer):

@@ -67,6 +67,9 @@ CURVE_ELEMENTS = [ROAD, Field("lane", int, "Lane"), STATION, END, Field("turn", 
                   Field("pt_y", float, "PT y"), Field("pi_x", float, "PI x"), Field("pi_y", float, "PI y"),
                   Field("rmse_m", float, "RMSE of the arc (m)"),
                   Field("speed_kmh", int, "Highest design speed allowed (km/h)"), Field("code", str, "Design code check")]
+CORRECTIONS = [Field("action", str, "Action (accept/delete/move/draw)"), Field("target", str, "What is meant (edge/marking/lane)"), ROAD, STATION,
+               OFFSET, Field("note", str, "Note"), Field("kind", str, "Kind of a line that is drawn (edge/lane/centre)"),
+               Field("pattern", str, "Pattern of a line that is drawn (solid/dashed)")]
 MAP_FINDINGS = [Field("fault", str, "Fault"), Field("element", str, "Road, lane, way or relation"), Field("text", str, "What was seen")]
 CROSS_SECTIONS = [ROAD, Field("section", int, "Section"), STATION, Field("part", str, "Part (carriageway/lane)"), Field("lane", int, "Lane"),
                   Field("type", str, "Type of the lane"), Field("direction", int, "Direction (1 along, -1 against the road, 0 not known)"),
@@ -97,6 +100,8 @@ TRAJECTORY = [Field("time", float, "Time (s)"), Field("roll", float, "Roll (°)"
               Field("heading", float, "Heading (°, clockwise from grid north)"), PASS, ROAD, STATION]
 ESTIMATED_TRAJECTORY = [*TRAJECTORY, Field("sigma_m", float, "Uncertainty of the place, one sigma (m)"),
                         Field("sigma_z_m", float, "Uncertainty of the height, one sigma (m)")]
+PASSES = [PASS, ROAD, Field("direction", int, "Direction (1 along, -1 against the road)"), STATION, END, LENGTH,
+          Field("begin_s", float, "Begins (s, clock of the point clouds)"), Field("finish_s", float, "Ends (s, clock of the point clouds)")]
 OUTCOME = Field("outcome", str, "Outcome (correct/missed/false/excluded)")
 WHY = Field("why", str, "Why")
 ASSESSED_BOUNDARIES = [OUTCOME, WHY, Field("road", int, "Road, or line of the reference"), SIDE, STATION, END,

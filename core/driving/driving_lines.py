@@ -80,7 +80,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
             arcs += [dict(row, road=number, lane=lane) for row in _lane_curves(track.direction, elements)]
         areas += lane_areas(one, curbs.get(number) if curbs else None, tracks, heights, frame, number)
         progress.report(0.4 + 0.6 * (count + 1) / len(estimates.roads))
-    lines = _driving_lines(rows, marking_lines.crs)
+    lines = driving_lines_of(rows, marking_lines.crs)
     _report_lengths(lines, estimates.side, progress)
     return lines, _curve_elements(arcs, marking_lines.crs, settings.country), make_lanes(areas, marking_lines.crs)
 
@@ -159,7 +159,8 @@ def _column(rows: list[dict[str, Any]], name: str, kind: Any) -> np.ndarray:
     return np.array([row[name] for row in rows], kind)
 
 
-def _driving_lines(rows: list[dict[str, Any]], crs: str) -> DrivingLines:
+def driving_lines_of(rows: list[dict[str, Any]], crs: str) -> DrivingLines:
+    """DrivingLines of one row a piece: dicts of the columns of DrivingLines, `curve`, and `places` (V, 3) in the direction of travel."""
     places = [row["places"] for row in rows]
     return DrivingLines(
         _column(rows, "road", int), _column(rows, "lane", int), _column(rows, "pattern", object), _column(rows, "direction", int),

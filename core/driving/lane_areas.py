@@ -49,7 +49,7 @@ def lane_areas(road: EstimatedRoad, curbs: CrossSections | None, tracks: list[La
     for row in rows:
         names[row["lane"]] = names.get(row["lane"], 0) + 1
         row["lane_id"] = f"{number}.{row['lane']}.{names[row['lane']]}"
-    _follow(rows)
+    follow(rows)
     return rows
 
 
@@ -137,7 +137,7 @@ def _connector(before, after, a, b, columns, driven, s, heights, frame, number):
                 end=float(s[columns[-1]]), first=float(d[0]), last=float(d[-1]), width=float(np.median(2 * half)))
 
 
-def _follow(rows):
+def follow(rows: list[dict[str, Any]]) -> None:
     """Name in every row what follows it in the direction of travel."""
     for row in rows:
         way = row["direction"]

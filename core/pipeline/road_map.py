@@ -16,6 +16,11 @@ import numpy as np
 from ..assess.curvature import marking_curvature
 from ..common.features import Features
 from ..common.progress import Progress
+from ..corrections.corrections import Corrections, corrections_from_features
+from ..corrections.edges import correct_edges
+from ..corrections.lanes import correct_lanes
+from ..corrections.markings import correct_marking_lines, correct_markings
+from ..countries.catalogue import country
 from ..driving.driving_layers import curve_elements_to_features, driving_lines_to_features
 from ..driving.driving_lines import DrivingSettings, make_driving_lines
 from ..driving.lanes_layer import lanes_to_features
@@ -23,7 +28,7 @@ from ..execution.choice import ExecutionSettings
 from ..intensity.correction import IntensitySettings, correct_intensity
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image
 from ..io.geotiff import IntensityImage
-from ..markings.lines.fit import MarkingLineSettings, fit_marking_lines
+from ..markings.lines.fit import MarkingLineSettings, fit_marking_lines, name_lines
 from ..markings.lines.naming import named_by_lines
 from ..markings.lines.painted_lines import lines_to_features
 from ..markings.objects.cluster import ClusterSettings, cluster_markings
@@ -98,6 +103,7 @@ class RoadMap:
     density : CubeDensity of the points near the road and of the road points
     marking_curvature : MarkingCurvature, None without lines
     country : whose design code the curves are checked against
+    corrections : of an analyst, and which of them something was found for
     """
 
     frame: RoadFrame
@@ -122,6 +128,7 @@ class RoadMap:
     density: tuple[CubeDensity, ...] = ()
     marking_curvature: Any = None
     country: str = DrivingSettings.country
+    corrections: Corrections = field(default_factory=Corrections)
 
     def layer(self, name: str) -> Features | None:
         """The result of a name, such as "edges", as a layer in map coordinates; None where it was not made."""
@@ -135,7 +142,7 @@ CONVERTERS: dict[str, Callable[[Any, RoadFrame], Features]] = dict(
 
 
 def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_path: str | Path,
-                  settings: RoadMapSettings = RoadMapSettings(), progress: Progress = Progress()) -> RoadMap:
+                  settings: RoadMapSettings = RoadMapSettings(), progress: Progress = Progress(), corrections: Features | None = None) -> RoadMap:
     """Run the chain.
 
     Parameters
@@ -143,6 +150,7 @@ def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_pat
     paths : point cloud files
     trajectory : Trajectory
     image_path : where the intensity image is written (.tif)
+    corrections : the layer CORRECTIONS of an analyst, or None; each is made where its kind of line was found, so that what follows builds on it
 
     Returns
     -------
@@ -159,14 +167,15 @@ def make_road_map(paths: Sequence[str | Path], trajectory: Trajectory, image_pat
     survey = stages.run("survey", "Reading the survey …", open_survey, paths, trajectory, settings.survey,
                         execution=settings.execution)
     try:
-        return _map_of(survey, image_path, settings, stages)
+        return _map_of(survey, image_path, settings, stages, corrections)
     except BaseException:
         survey.store.close()
         raise
 
 
-def _map_of(survey, image_path, settings, stages):
+def _map_of(survey, image_path, settings, stages, corrections):
     """The map of an open survey, whose store the road points keep."""
+    wanted = Corrections() if corrections is None else corrections_from_features(corrections, survey.frame, survey.crs)
     extent = Extent(survey.store.count / 1e6, sum(road.length for road in survey.frame.roads) / 1e3)
     stages.plan(extent, () if survey.has_intensity else INTENSITY_STAGES)
     if survey.has_intensity:
@@ -175,16 +184,16 @@ def _map_of(survey, image_path, settings, stages):
     found = stages.run("curbs", "Detecting curbs …", find_curb_points, survey, settings.boundaries)
     survey.executor.release()
     boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, found, survey.frame, settings.edges)
-    road_points, surface = stages.run("surface", "Extracting the road surface …", extract_road_surface,
-                                      survey, boundaries.edges, settings.surface)
+    edges = correct_edges(boundaries.edges, survey.frame, wanted)
+    road_points, surface = stages.run("surface", "Extracting the road surface …", extract_road_surface, survey, edges, settings.surface)
     facts = dict(files=len(survey.files), scanners=len(survey.scanners), passes=len(survey.frame.passes),
                  roads=len(survey.frame.roads), sensor_height=survey.sensor_height, **survey.counts)
     density = tuple(_density(points, store, stages.progress, stages.done)
                     for points, store in ((survey, survey.store), (road_points, road_points)))
     survey.store.clear_cache()
-    result = RoadMap(survey.frame, survey.crs, boundaries.curb_points, boundaries.edges, surface, road_points,
+    result = RoadMap(survey.frame, survey.crs, boundaries.curb_points, edges, surface, road_points,
                      boundaries.differences, boundaries.length_by_method, seconds=stages.seconds, survey_facts=facts,
-                     density=density, country=settings.driving.country)
+                     density=density, country=settings.driving.country, corrections=wanted)
     result.counts.update(curb_points=len(boundaries.curb_points), road_points=len(road_points))
     if survey.has_intensity:
         _paint(result, image_path, settings, stages)
@@ -192,7 +201,17 @@ def _map_of(survey, image_path, settings, stages):
         result.without_paint = ("The point cloud has no intensity (all values are the same), so paint cannot be told from "
                                 "asphalt: no markings, marking lines or driving lines were made.")
         stages.progress.warn(result.without_paint)
+    if len(wanted):
+        _tell_corrections(wanted, stages.progress)
     return result
+
+
+def _tell_corrections(corrections, progress):
+    """Say in the log how many corrections were made, and list those that match nothing."""
+    progress.info(f"Corrections: {len(corrections)}, of which {len(corrections) - len(corrections.unmatched)} were made.")
+    if corrections.unmatched:
+        progress.warn(f"{len(corrections.unmatched)} corrections match nothing in this run any more: "
+                      + "; ".join(one.described() for one in corrections.unmatched) + ".")
 
 
 def _span(survey):
@@ -231,15 +250,22 @@ def _paint(result, image_path, settings, stages):
         points = stages.run("outliers", "Removing outliers …", remove_outliers, points, settings.outliers)
     result.counts["marking_points_kept"] = len(points)
     markings, clustered = stages.run("clusters", "Clustering markings …", cluster_markings, points, frame, settings.clusters)
+    markings = correct_markings(markings, result.corrections)
     edges = result.edges.densified(frame)
     lines = stages.run("lines", "Fitting marking lines …", fit_marking_lines, clustered, markings, frame, settings.lines,
                        edges=edges, road_points=result.road_points)
+    known = np.c_[edges.course.x, edges.course.y, edges.course.z]
+    corrected = correct_marking_lines(lines, frame, result.corrections, known)
+    if corrected is not lines:
+        lines = name_lines(corrected, frame, settings.lines, markings, edges, result.road_points, clustered)
     markings = named_by_lines(markings, lines)
     result.markings, result.marking_lines = markings_to_features(markings, frame), lines_to_features(lines, frame)
     result.marking_curvature = marking_curvature(_places(clustered), result.marking_lines.geometries, frame.origin)
     driving, elements, lanes = stages.run(
         "driving", "Making driving lines …", make_driving_lines, lines, frame, settings.driving,
         markings=markings, edges=edges, road_points=result.road_points)
+    driving, elements, lanes = correct_lanes(driving, elements, lanes, frame, result.corrections,
+                                             settings.driving.lane_width or country(settings.driving.country).usual_lane, known)
     result.driving_lines, result.curve_elements = driving_lines_to_features(driving, frame), curve_elements_to_features(elements, frame)
     result.lanes = lanes_to_features(lanes, frame.origin)
     if not len(result.markings):

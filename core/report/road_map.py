@@ -47,6 +47,8 @@ def road_map_report(road_map: Any, image_path: str | None = None, progress: Prog
         _markings(page, road_map)
         _marking_curvature(page, road_map)
         _driving(page, road_map)
+    if len(road_map.corrections):
+        _corrections(page, road_map.corrections)
     page.heading("Time")
     total = sum(road_map.seconds.values())
     page.table(("Stage", "Seconds"), [*((STAGE_TITLES[k], v) for k, v in road_map.seconds.items()), ("Together", total)])
@@ -155,6 +157,18 @@ def _driving(page, road_map):
         page.text("The driving lines have no circular arcs.")
     _curvature_diagrams(page, road_map)
     _design_code(page, road_map)
+
+
+def _corrections(page, corrections):
+    """What an analyst asked for, and what of it this run has nothing for."""
+    page.heading("Corrections")
+    lost = {one.row for one in corrections.unmatched}
+    if lost:
+        page.warning(f"{len(lost)} corrections match nothing in this run; they were left out. Look at these places and delete or renew the rows.")
+    page.table(("Row", "Action", "Target", "Road", "Station (m)", "Offset (m)", "Note", "Made"),
+               [(one.row, one.action, one.target, one.road if one.on_a_road else "–", one.station if one.on_a_road else "–",
+                 one.offset if one.on_a_road else "–", one.note or "–", "no" if one.row in lost else "yes")
+                for one in sorted(corrections.rows, key=lambda one: (one.row not in lost, one.row))])
 
 
 def _density(page, road_map):

@@ -18,12 +18,15 @@ MOST_DECIMALS = 2  # of any other number
 
 # Field -> {value: words}; what is not among them is shown as it is
 WORDS = {
-    "status": {"measured": tr("measured"), "bridged": tr("bridged"), "inferred": tr("inferred"), "occluded": tr("hidden"), "grown": tr("grown")},
+    "status": {"measured": tr("measured"), "bridged": tr("bridged"), "inferred": tr("inferred"), "occluded": tr("hidden"), "grown": tr("grown"),
+            "accepted": tr("accepted"), "drawn": tr("drawn")},
     "side": {"left": tr("left"), "right": tr("right")},
     "part": {"bottom": tr("bottom"), "top": tr("top")},
     "use": {"keep": tr("marking"), "other": tr("other paint")},
-    "source": {"pair": tr("between two lines"), "offset": tr("beside one line")},
+    "source": {"pair": tr("between two lines"), "offset": tr("beside one line"), "drawn": tr("drawn by hand")},
     "turn": {"left": tr("left"), "right": tr("right")},
+    "action": {"accept": tr("accept"), "delete": tr("delete"), "move": tr("move"), "draw": tr("draw")},
+    "target": {"edge": tr("road edge"), "marking": tr("marking"), "lane": tr("lane")},
     "outcome": {"correct": tr("correct"), "missed": tr("missed"), "false": tr("false"), "excluded": tr("excluded")},
 }
 DIRECTIONS = {1: tr("along the road"), -1: tr("against the road"), 0: tr("not driven")}
@@ -37,6 +40,8 @@ TITLES = {
     "LANES": '{lane}, {direction}, {length}, {status}',
     "MARKINGS": '{class}, {length}',
     "ROAD_SURFACE": '{surface}, {status}',
+    "PASSES": '{pass}, {direction}, {length}',
+    "CORRECTIONS": '{action}, {target}, {note}',
     "CURB_POINTS": '{curb_point}, {side}, {height}, {status}',
 }
 
@@ -62,6 +67,10 @@ def _parts():
         "direction": _part(value("direction"), "direction"),
         "class": _part(f"coalesce(\"class\", '{tr('Paint')}')", "class"),
         "surface": _part(f"'{tr('Road surface')}'", "road"),
+        "pass": _part(f"'{tr('Pass')} ' || \"pass\"", "pass"),
+        "action": _part(value("action"), "action"),
+        "target": _part(value("target"), "target"),
+        "note": _part('"note"', "note"),
         "curb_point": _part(f"'{tr('Curb point')}'", "road"),
     }
 

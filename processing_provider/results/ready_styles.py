@@ -15,7 +15,8 @@ from qgis.PyQt.QtGui import QColor
 
 from ..texts import tr
 
-STATUS = (("measured", "#1a9850"), ("bridged", "#fdae61"), ("inferred", "#d73027"), ("occluded", "#7b3294"), ("grown", "#b8860b"))
+STATUS = (("measured", "#1a9850"), ("bridged", "#fdae61"), ("inferred", "#d73027"), ("occluded", "#7b3294"), ("grown", "#b8860b"),
+          ("accepted", "#4393c3"), ("drawn", "#2166ac"))
 CONFIDENCE = ((0.0, 0.5, "#d73027"), (0.5, 0.8, "#fdae61"), (0.8, 1.0, "#1a9850"))
 LINE_WIDTH = 0.7  # mm
 
@@ -38,7 +39,8 @@ def add_ready_styles(layer: QgsVectorLayer) -> None:
 
 
 def _by_status(layer):
-    words = {"measured": tr("measured"), "bridged": tr("bridged"), "inferred": tr("inferred"), "occluded": tr("hidden"), "grown": tr("grown")}
+    words = {"measured": tr("measured"), "bridged": tr("bridged"), "inferred": tr("inferred"), "occluded": tr("hidden"), "grown": tr("grown"),
+             "accepted": tr("accepted"), "drawn": tr("drawn")}
     found = layer.uniqueValues(layer.fields().lookupField("status"))
     return QgsCategorizedSymbolRenderer("status", [QgsRendererCategory(value, _symbol(layer, colour), words[value]) for value, colour in STATUS
                                                    if value in found or not found])

@@ -699,6 +699,21 @@
             <translation>{label}: Keine LAS- oder LAZ-Datei heißt {name}.</translation>
         </message>
         <message>
+            <location filename="../../algorithms/corrections.py" />
+            <source>Corrections</source>
+            <translation>Korrekturen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/corrections.py" />
+            <source>What an analyst decided at doubtful places: points or lines with the fields action (accept, delete, move, draw) and target (edge, marking, lane); note, and of a line that is drawn kind and pattern, where they are wanted. A row is about what this run finds within half a metre of it (of a lane, a metre; what is moved, two), whatever its number. A row without geometry lies at its road, station_m and offset_m. What matches nothing is listed in log and report. The window of doubtful places writes this layer.</source>
+            <translation>Was an zweifelhaften Stellen entschieden wurde: Punkte oder Linien mit den Feldern action (accept, delete, move, draw) und target (edge, marking, lane); dazu note und, bei einer gezeichneten Linie, kind und pattern, wo sie gewünscht sind. Eine Zeile gilt dem, was dieser Lauf im Umkreis von einem halben Meter findet (bei Fahrstreifen ein Meter, beim Verschieben zwei), gleich welche Nummer es hat. Eine Zeile ohne Geometrie liegt bei ihrem road, station_m und offset_m. Was zu nichts passt, steht in Protokoll und Bericht. Das Fenster der zweifelhaften Stellen schreibt diesen Layer.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/corrections.py" />
+            <source>{label} lacks the field(s) {fields}. Make the layer with the buttons of the window of doubtful places, or give it the fields action and target.</source>
+            <translation>{label} fehlen die Felder {fields}. Den Layer mit den Knöpfen im Fenster der zweifelhaften Stellen anlegen oder ihm die Felder action und target geben.</translation>
+        </message>
+        <message>
             <location filename="../../algorithms/destinations.py" />
             <source>{label} was to be written to {path}, but it is written as {kinds} only. Name the file so.</source>
             <translation>{label} sollte nach {path} geschrieben werden, wird aber nur als {kinds} geschrieben. Die Datei so benennen.</translation>
@@ -915,6 +930,16 @@
         </message>
         <message>
             <location filename="../../algorithms/driving/road_map.py" />
+            <source>Passes (the trajectory)</source>
+            <translation>Fahrten (die Trajektorie)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map.py" />
+            <source>Where the vehicle drove, as this run used it: one line a pass.</source>
+            <translation>Wo das Fahrzeug fuhr, wie dieser Lauf es verwendet hat: eine Linie je Fahrt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map.py" />
             <source>Curb points</source>
             <translation>Bordsteinpunkte</translation>
         </message>
@@ -982,6 +1007,21 @@
             <location filename="../../algorithms/driving/road_map_numbers.py" />
             <source>Of the driving lines measured (%)</source>
             <translation>Davon gemessen: Fahrlinien (%)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map_numbers.py" />
+            <source>Confidence of the driving lines, mean along them (0 to 1)</source>
+            <translation>Zuverlässigkeit der Fahrlinien, Mittel über ihre Länge (0 bis 1)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map_numbers.py" />
+            <source>Corrections made</source>
+            <translation>Ausgeführte Korrekturen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/driving/road_map_numbers.py" />
+            <source>Corrections that match nothing</source>
+            <translation>Korrekturen, zu denen nichts passt</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/check_map.py" />
@@ -4275,6 +4315,16 @@
         </message>
         <message>
             <location filename="../../processing_provider/results/attributes.py" />
+            <source>accepted</source>
+            <translation>bestätigt</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>drawn</source>
+            <translation>gezeichnet</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
             <source>left</source>
             <translation>links</translation>
         </message>
@@ -4312,6 +4362,31 @@
             <location filename="../../processing_provider/results/attributes.py" />
             <source>beside one line</source>
             <translation>neben einer Linie</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>drawn by hand</source>
+            <translation>von Hand gezeichnet</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>accept</source>
+            <translation>bestätigen</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>delete</source>
+            <translation>löschen</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>move</source>
+            <translation>verschieben</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
+            <source>draw</source>
+            <translation>zeichnen</translation>
         </message>
         <message>
             <location filename="../../processing_provider/results/attributes.py" />
@@ -4375,6 +4450,11 @@
         </message>
         <message>
             <location filename="../../processing_provider/results/attributes.py" />
+            <source>Pass</source>
+            <translation>Befahrung</translation>
+        </message>
+        <message>
+            <location filename="../../processing_provider/results/attributes.py" />
             <source>Curb point</source>
             <translation>Bordsteinpunkt</translation>
         </message>
@@ -4422,11 +4502,6 @@
             <location filename="../../processing_provider/results/runs.py" />
             <source>Lanewright</source>
             <translation>Lanewright</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
-            <source>Pass</source>
-            <translation>Befahrung</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
@@ -4800,6 +4875,31 @@
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
+            <source>Action (accept/delete/move/draw)</source>
+            <translation>Aktion (accept/delete/move/draw)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>What is meant (edge/marking/lane)</source>
+            <translation>Was gemeint ist (edge/marking/lane)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Note</source>
+            <translation>Notiz</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Kind of a line that is drawn (edge/lane/centre)</source>
+            <translation>Art einer gezeichneten Linie (edge/lane/centre)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Pattern of a line that is drawn (solid/dashed)</source>
+            <translation>Muster einer gezeichneten Linie (solid/dashed)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
             <source>Fault</source>
             <translation>Fehler</translation>
         </message>
@@ -5005,6 +5105,16 @@
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
+            <source>Begins (s, clock of the point clouds)</source>
+            <translation>Beginnt (s, Uhr der Punktwolken)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Ends (s, clock of the point clouds)</source>
+            <translation>Endet (s, Uhr der Punktwolken)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
             <source>Road, or line of the reference</source>
             <translation>Straße, oder Linie der Referenz</translation>
         </message>
@@ -5162,6 +5272,26 @@
             <location filename="../../resources/styles/control_points.qml" />
             <source>Check point</source>
             <translation>Prüfpunkt</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/corrections.qml" />
+            <source>Accepted</source>
+            <translation>Bestätigt</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/corrections.qml" />
+            <source>To be deleted</source>
+            <translation>Zu löschen</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/corrections.qml" />
+            <source>Moved here</source>
+            <translation>Hierher verschoben</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/corrections.qml" />
+            <source>Drawn</source>
+            <translation>Gezeichnet</translation>
         </message>
         <message>
             <location filename="../../resources/styles/cross_sections.qml" />

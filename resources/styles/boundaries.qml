@@ -1,6 +1,6 @@
 <!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>
 <qgis labelsEnabled="0" styleCategories="Symbology|Labeling" version="3.40.6-Bratislava">
-  <renderer-v2 type="categorizedSymbol" referencescale="-1" attr="concat(&quot;side&quot;, ' ', &quot;status&quot;)" forceraster="0" enableorderby="0" symbollevels="0">
+  <renderer-v2 type="categorizedSymbol" referencescale="-1" attr="concat(&quot;side&quot;, ' ', if(&quot;status&quot; in ('accepted', 'drawn'), 'measured', &quot;status&quot;))" forceraster="0" enableorderby="0" symbollevels="0">
     <categories>
       <category type="string" uuid="{b148f09b-76e9-430d-9ab0-a71465919d5b}" label="Left, measured" render="true" value="left measured" symbol="0"/>
       <category type="string" uuid="{a66deb6b-eca4-4791-8768-9454b51613a0}" label="Left, bridged" render="true" value="left bridged" symbol="1"/>

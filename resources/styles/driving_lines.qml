@@ -1,6 +1,6 @@
 <!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>
 <qgis labelsEnabled="0" styleCategories="Symbology|Labeling" version="3.40.6-Bratislava">
-  <renderer-v2 enableorderby="0" type="categorizedSymbol" forceraster="0" attr="status" symbollevels="0" referencescale="-1">
+  <renderer-v2 enableorderby="0" type="categorizedSymbol" forceraster="0" attr="if(&quot;status&quot; in ('accepted', 'drawn'), 'measured', &quot;status&quot;)" symbollevels="0" referencescale="-1">
     <categories>
       <category render="true" uuid="{58f462e9-8e50-4adc-841b-52bfcc4f77e0}" type="string" label="Measured" symbol="0" value="measured"/>
       <category render="true" uuid="{54f82007-e4ef-45e0-99b6-415e8d94a2bf}" type="string" label="Bridged" symbol="1" value="bridged"/>

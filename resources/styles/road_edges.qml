@@ -1,6 +1,6 @@
 <!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>
 <qgis styleCategories="Symbology|Labeling" labelsEnabled="0" version="3.40.6-Bratislava">
-  <renderer-v2 forceraster="0" symbollevels="0" enableorderby="0" type="categorizedSymbol" referencescale="-1" attr="concat(&quot;side&quot;, ' ', &quot;status&quot;)">
+  <renderer-v2 forceraster="0" symbollevels="0" enableorderby="0" type="categorizedSymbol" referencescale="-1" attr="concat(&quot;side&quot;, ' ', if(&quot;status&quot; in ('accepted', 'drawn'), 'measured', &quot;status&quot;))">
     <categories>
       <category value="left measured" label="Left, measured" render="true" symbol="0" type="string" uuid="{cf721983-6046-42be-8d28-5a35aa08a880}"/>
       <category value="left bridged" label="Left, bridged" render="true" symbol="1" type="string" uuid="{1010dfed-36ba-4165-85f7-ee1f62453e0e}"/>

@@ -11,8 +11,8 @@ CORE = Path(__file__).resolve().parents[2] / "core"
 FILES = sorted(path for path in CORE.rglob("*.py") if "__pycache__" not in path.parts)
 MODULES = [path for path in FILES if path.name != "__init__.py"]
 # Each folder imports only from those before it
-ORDER = ("common", "execution", "countries", "io", "curves", "survey", "road", "intensity", "markings", "driving", "inventory", "export", "assess",
-         "overlay", "sample", "report", "pipeline")
+ORDER = ("common", "execution", "countries", "io", "curves", "survey", "road", "intensity", "markings", "driving", "corrections", "inventory",
+         "export", "assess", "overlay", "sample", "report", "pipeline")
 MOST_FILES = 15   # of a folder: more cannot be taken in at a glance
 
 

@@ -15,7 +15,6 @@ from ...common.setting import check_limits, setting
 from ...countries.catalogue import country
 from ...countries.neutral import NEUTRAL
 from ...curves.model_selection import CURVES
-from ...survey.frame.frame_lines import lines_in_frame
 from ...survey.store.records import join_columns
 from ..cross_section.named_lines import line_kinds
 from ..cross_section.roads import estimate_roads
@@ -25,7 +24,7 @@ from .common_trend import CommonTrend
 from .dash_pattern import same_dash_pattern
 from .geometry import LineShape, fit_line_shapes
 from .linking import LinkedLine, link_lines, link_over_long_gaps, without_strays
-from .painted_lines import FittedPieces, PaintedLines
+from .painted_lines import PaintedLines, painted_lines_of
 from .selection import SelectedLine, crossings, hatching_bars, hatching_borders, select_lines
 from .strands import line_paint, trace_strands
 
@@ -122,11 +121,15 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     if replaced:
         progress.warn(f"{replaced} of {number} lines cannot take the curve “{settings.curve}”; "
                       "the automatic curve was used for them.")
-    return _named(_painted_lines(rows, frame, clustered_points.crs), frame, settings, markings, edges, road_points, clustered_points)
+    return name_lines(painted_lines_of(rows, frame, clustered_points.crs), frame, settings, markings, edges, road_points, clustered_points)
 
 
-def _named(lines, frame, settings, markings, edges, road_points, paint):
-    """The lines with the kinds that the estimate of their roads gives them; one that bounds no lane is called by how it is drawn."""
+def name_lines(lines: PaintedLines, frame: RoadFrame, settings: MarkingLineSettings, markings: MarkingObjects, edges: RoadEdges | None,
+               road_points: RoadPoints | None, paint: RoadPoints) -> PaintedLines:
+    """The lines with the kinds that the estimate of their roads gives them; one that bounds no lane is called by how it is drawn.
+
+    Parameters are those of `fit_marking_lines`; `paint` are its clustered points.
+    """
     if not len(lines):
         return lines
     curbs = sections_of_edges(edges) if edges is not None else None
@@ -169,14 +172,3 @@ def _drawn_pieces(one: SelectedLine, shape: LineShape, origin: np.ndarray) -> It
             station=piece.first, end=piece.last, offset=np.median(d[near]) if near.any() else np.nan, width=one.width,
             rmse=np.sqrt(np.mean(residuals**2)) if measured else np.nan)
 
-
-def _painted_lines(rows: list[dict[str, Any]], frame: RoadFrame, crs: str) -> PaintedLines:
-    def column(name: str, kind: Any) -> np.ndarray:
-        return np.array([row[name] for row in rows], kind)
-
-    places = [row["places"] for row in rows]
-    fitted = FittedPieces([row["curve"] for row in rows], column("arc", float).reshape(-1, 2), np.concatenate([*places, np.empty((0, 3))]),
-                          np.append(0, np.cumsum([len(some) for some in places], dtype=int)),
-                          *(column(name, float) for name in ("station", "end", "offset", "width", "rmse")))
-    course = lines_in_frame(fitted.linestrings(frame), column("road", int), frame)
-    return PaintedLines(column("line", int), column("kind", object), column("pattern", object), column("status", object), course, fitted, crs)

@@ -151,3 +151,34 @@ def lines_from_features(features: Features, frame: RoadFrame) -> PaintedLines:
     kind, pattern, status = (np.array([str(row.get(name) or missing) for row in rows], object)
                              for name, missing in (("kind", ""), ("pattern", ""), ("status", "measured")))
     return PaintedLines(line, kind, pattern, status, lines_in_frame(parts, road, frame), crs=features.crs)
+
+
+def painted_lines_of(rows: list[dict[str, Any]], frame: RoadFrame, crs: str) -> PaintedLines:
+    """PaintedLines of one row a piece, as `pieces_of_lines` gives them.
+
+    Parameters
+    ----------
+    rows : dicts of road, line, kind, pattern, status, and of what FittedPieces holds: curve, arc, places (V, 3), station, end, offset, width, rmse
+    frame : RoadFrame
+    crs : WKT, "" where unknown
+    """
+    def column(name: str, kind: Any) -> np.ndarray:
+        return np.array([row[name] for row in rows], kind)
+
+    places = [row["places"] for row in rows]
+    fitted = FittedPieces([row["curve"] for row in rows], column("arc", float).reshape(-1, 2), np.concatenate([*places, np.empty((0, 3))]),
+                          np.append(0, np.cumsum([len(some) for some in places], dtype=int)),
+                          *(column(name, float) for name in ("station", "end", "offset", "width", "rmse")))
+    course = lines_in_frame(fitted.linestrings(frame), column("road", int), frame)
+    return PaintedLines(column("line", int), column("kind", object), column("pattern", object), column("status", object), course, fitted, crs)
+
+
+def pieces_of_lines(lines: PaintedLines) -> list[dict[str, Any]]:
+    """The pieces of lines that were fitted, one row each, as `painted_lines_of` takes them."""
+    fitted = lines.fitted
+    if fitted is None:
+        raise ValueError("Lines that were read from a layer have no fitted curves.")
+    return [dict(road=int(lines.course.road[k]), line=int(lines.line[k]), kind=lines.kind[k], pattern=lines.pattern[k], status=lines.status[k],
+                 curve=fitted.curve[k], arc=fitted.arc[k], places=fitted.vertices[fitted.start[k]:fitted.start[k + 1]],
+                 **{name: float(getattr(fitted, name)[k]) for name in ("station", "end", "offset", "width", "rmse")})
+            for k in range(len(lines))]

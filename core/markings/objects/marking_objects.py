@@ -7,7 +7,7 @@ Stages hand each other `MarkingObjects`. Map coordinates are made in one place,
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -109,6 +109,11 @@ class MarkingObjects:
     def with_kinds(self, kind: np.ndarray) -> MarkingObjects:
         """The same markings with other classes, (M,) str objects."""
         return replace(self, kind=kind)
+
+    def take(self, rows: np.ndarray) -> MarkingObjects:
+        """Some of the markings, by their numbers."""
+        own = [one.name for one in fields(self) if one.name not in ("outlines", "crs")]
+        return replace(self, **{name: getattr(self, name)[rows] for name in own}, outlines=Outlines.of(self.outlines.polygons()[rows]))
 
 
 # Fields of the layer that hold one number each, by the attribute of MarkingObjects

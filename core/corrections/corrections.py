@@ -1,0 +1,165 @@
+"""The layer CORRECTIONS, read and checked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+
+from ..common.errors import RoadExtractionError
+from ..common.features import Features
+from ..io.crs import horizontal_part, parse_crs, same_crs
+from ..survey.frame.frame_lines import LINE_VERTEX_SPACING
+
+if TYPE_CHECKING:
+    from ..survey.frame.road_frame import RoadFrame
+
+ACTIONS = ("accept", "delete", "move", "draw")
+TARGETS = ("edge", "marking", "lane")
+ACCEPTED, DRAWN = "accepted", "drawn"   # status of what an analyst confirmed, and of what an analyst drew
+
+
+@dataclass(frozen=True)
+class Correction:
+    """One row of the layer.
+
+    row : its number in the layer, from 1
+    action : one of ACTIONS; target : one of TARGETS
+    places : (V, 3) local metres, z is NaN where the row has none; one place for a point
+    road : number of the road that it lies on in this run, -1 for none
+    station, offset : metres of its middle on that road, NaN for none
+    kind, pattern : of a marking line that is drawn, "" where not said
+    note : the analyst's words
+    """
+
+    row: int
+    action: str
+    target: str
+    places: np.ndarray
+    road: int = -1
+    station: float = np.nan
+    offset: float = np.nan
+    kind: str = ""
+    pattern: str = ""
+    note: str = ""
+
+    @property
+    def draws(self) -> bool:
+        """Whether it brings a line of its own."""
+        return self.action in ("move", "draw")
+
+    @property
+    def on_a_road(self) -> bool:
+        return self.road >= 0
+
+    def described(self) -> str:
+        """What it asks for and where, in a few words."""
+        place = f"road {self.road}, station {self.station:.1f} m, offset {self.offset:+.1f} m" if self.on_a_road else "off the roads of this survey"
+        return f"row {self.row}, {self.action} {self.target}, {place}" + (f" ({self.note})" if self.note else "")
+
+
+@dataclass
+class Corrections:
+    """All corrections of a run; `matched` holds the rows of those that something was found for."""
+
+    rows: list[Correction] = field(default_factory=list)
+    matched: set[int] = field(default_factory=set)
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def of(self, target: str) -> list[Correction]:
+        """Those of one target, in the order of the layer."""
+        return [one for one in self.rows if one.target == target]
+
+    @property
+    def unmatched(self) -> list[Correction]:
+        """Those for which this run has nothing at their place."""
+        return [one for one in self.rows if one.row not in self.matched]
+
+
+def corrections_from_features(features: Features, frame: RoadFrame, crs: str = "") -> Corrections:
+    """Read the layer CORRECTIONS.
+
+    Parameters
+    ----------
+    features : Features of points, lines or rows without geometry, in map coordinates. `action` and `target` are needed; a row without
+        geometry lies at its `road`, `station_m` and `offset_m`; `note`, `kind` and `pattern` are used where they are
+    frame : RoadFrame
+    crs : WKT of the survey; corrections in another CRS are brought there, those that say none are taken to be in it
+
+    Returns
+    -------
+    Corrections
+
+    Raises
+    ------
+    RoadExtractionError
+        If an action or target is unknown, a row has no place, or what is moved or drawn has no line.
+    """
+    found = Corrections()
+    for number, (geometry, row) in enumerate(zip(_in_crs(features, crs), features.rows), start=1):
+        action, target = (str(row.get(name) or "").strip().lower() for name in ("action", "target"))
+        for name, value, known in (("action", action, ACTIONS), ("target", target, TARGETS)):
+            if value not in known:
+                raise RoadExtractionError(f"Row {number} of the corrections has the {name} {value!r}; it must be one of {', '.join(known)}.")
+        parts = [places for places in _parts_of(geometry, row, frame, number) if len(places)]
+        if action in ("move", "draw") and any(len(places) < 2 for places in parts):
+            raise RoadExtractionError(f"Row {number} of the corrections is to {action} something, which takes a line; it has a point. "
+                                      "Draw the line where it belongs.")
+        kind, pattern, note = (str(row.get(name) or "").strip() for name in ("kind", "pattern", "note"))
+        for places in parts:
+            road, station, offset = _located(frame, places)
+            found.rows.append(Correction(number, action, target, places, road, station, offset, kind, pattern, note))
+    return found
+
+
+def _in_crs(features: Features, crs: str) -> list[Any]:
+    """The geometries of the layer in another CRS."""
+    source, target = parse_crs(features.crs), parse_crs(crs)
+    if source is None or target is None or same_crs(source, target):
+        return list(features.geometries)
+    from pyproj import Transformer
+
+    transformer = Transformer.from_crs(horizontal_part(source), horizontal_part(target), always_xy=True)
+    return [None if geometry is None else shapely.transform(
+        geometry, lambda places: np.c_[np.column_stack(transformer.transform(places[:, 0], places[:, 1])), places[:, 2]], include_z=True)
+        if geometry.has_z else shapely.transform(geometry, lambda places: np.column_stack(transformer.transform(places[:, 0], places[:, 1])))
+        for geometry in features.geometries]
+
+
+def _parts_of(geometry: Any, row: dict[str, Any], frame: RoadFrame, number: int) -> Iterable[np.ndarray]:
+    """Local places of each part of a row."""
+    if geometry is None or geometry.is_empty:
+        yield np.array([_place_of(row, frame, number)])
+        return
+    for part in shapely.get_parts(geometry):
+        if part.geom_type not in ("Point", "LineString"):
+            raise RoadExtractionError(f"Row {number} of the corrections is a {part.geom_type}; a point or a line is needed.")
+        if part.geom_type == "LineString":
+            part = shapely.segmentize(part, LINE_VERTEX_SPACING)
+        places = shapely.get_coordinates(part, include_z=True)
+        x, y = frame.to_local(places[:, 0], places[:, 1])
+        # a line that was drawn in a map window has heights of 0, which are none
+        z = places[:, 2] - frame.origin[2] if places[:, 2].any() else np.full(len(places), np.nan)
+        yield np.c_[x, y, z]
+
+
+def _place_of(row, frame, number):
+    """Local x, y and no z of a row without geometry."""
+    values = [row.get(name) for name in ("road", "station_m", "offset_m")]
+    if any(value is None for value in values) or not 0 <= int(values[0]) < len(frame.roads):
+        raise RoadExtractionError(f"Row {number} of the corrections has neither a geometry nor a road of this survey with station_m and offset_m, "
+                                  "so its place is not known. Draw it as a point or line.")
+    x, y = frame.roads[int(values[0])].to_map(np.array([float(values[1])]), np.array([float(values[2])]))
+    return float(x[0]), float(y[0]), np.nan
+
+
+def _located(frame, places):
+    """(road, station, offset) of the middle of places."""
+    middle = places[len(places) // 2:len(places) // 2 + 1]
+    road, s, d = frame.locate_nearest(middle[:, 0], middle[:, 1])
+    return int(road[0]), float(s[0]), float(d[0])

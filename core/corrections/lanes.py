@@ -1,0 +1,191 @@
+"""Driving lines, lanes and curve elements as an analyst corrected them."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..curves.model_selection import fit_curve
+from ..driving.driving_layers import CurveElements, DrivingLines
+from ..driving.driving_lines import driving_lines_of
+from ..driving.lane_areas import NO_BORDER, follow, make_lanes
+from ..driving.lanes_layer import Lanes
+from ..survey.frame.placement import located
+from .apply import LineKind, apply_corrections
+from .corrections import DRAWN, Correction, Corrections
+
+if TYPE_CHECKING:
+    from ..survey.frame.road_frame import RoadFrame
+
+LANE_REACH = 1.0        # m: half of the narrowest lane
+NO_LINES = "none|none"
+SURE = 1.0         # confidence of what an analyst confirmed or drew
+MOST_LOST = 0.5    # share of a curve that may be taken away before its elements go with it
+
+
+class _DrivingLines(LineKind):
+    """Pieces hold what `driving_lines_of` takes."""
+
+    reach = LANE_REACH
+
+    def __init__(self, frame: RoadFrame, known: np.ndarray, lane_width: float):
+        super().__init__(frame, known)
+        self.lane_width = lane_width
+
+    def columns(self, piece):
+        return piece["places"]
+
+    def with_columns(self, piece, columns):
+        return dict(piece, places=columns)
+
+    def accepted(self, piece):
+        return dict(super().accepted(piece), confidence=SURE)
+
+    def drawn(self, correction, places, like, pieces):
+        way = _way(self.frame, correction, places) if like is None else like["direction"]
+        blank = dict(road=correction.road, lane=_free_lane(pieces, correction.road), pattern=NO_LINES, direction=way, station=correction.station,
+                     end=correction.station, width=self.lane_width)
+        places = _in_direction(self.frame, correction, places, way)
+        fit = fit_curve(places[:, 0], places[:, 1])
+        piece = dict(blank if like is None else like, source="drawn", status=DRAWN, confidence=SURE, curve=fit.curve, rmse=np.nan,
+                     offset=correction.offset, places=places)
+        return self.with_stations(dict(piece, drawn_by=correction), places)
+
+
+class _Lanes(LineKind):
+    """Pieces hold what `make_lanes` takes, and in `columns` their middle and both borders side by side."""
+
+    reach = LANE_REACH
+
+    def __init__(self, frame: RoadFrame, known: np.ndarray, lines: list[dict[str, Any]]):
+        super().__init__(frame, known)
+        self.lines = lines   # driving lines, already corrected: what was drawn has its lane and width there
+
+    def columns(self, piece):
+        return piece["columns"]
+
+    def with_columns(self, piece, columns):
+        return dict(piece, columns=columns, changed=True)
+
+    def accepted(self, piece):
+        return dict(super().accepted(piece), confidence=SURE, changed=True)
+
+    def drawn(self, correction, places, like, pieces):
+        line = next(one for one in self.lines if one.get("drawn_by") is correction)
+        middle = line["places"]
+        way = np.gradient(middle[:, :2], axis=0)
+        left = np.c_[-way[:, 1], way[:, 0]] / np.maximum(np.hypot(*way.T), 1e-9)[:, None] * line["width"] / 2
+        sides = [np.c_[middle[:, :2] + side * left, middle[:, 2]] for side in (1, -1)]
+        piece = dict(road=line["road"], lane=line["lane"], type="driving", direction=line["direction"], about=[NO_BORDER, NO_BORDER], status=DRAWN,
+                     confidence=SURE, station=line["station"], end=line["end"], lane_id="")
+        return self.with_columns(piece, np.concatenate([middle, *sides], axis=1))
+
+
+def correct_lanes(lines: DrivingLines, elements: CurveElements, lanes: Lanes, frame: RoadFrame, corrections: Corrections, lane_width: float,
+                  known: np.ndarray) -> tuple[DrivingLines, CurveElements, Lanes]:
+    """Driving lines, curve elements and lanes with the corrections of the target lane; those that something was found for are noted.
+
+    Lanes that are cut have as many ids as pieces, and what follows each is found anew on their roads. Where half of a curve was taken
+    away its elements go too.
+
+    Parameters
+    ----------
+    lines : DrivingLines
+    elements : CurveElements
+    lanes : Lanes
+    frame : RoadFrame
+    corrections : Corrections
+    lane_width : m of a lane that is drawn where its road has none
+    known : (K, 3) further local places whose heights are known
+
+    Returns
+    -------
+    DrivingLines, CurveElements, Lanes; the same objects where there is nothing to correct
+    """
+    wanted = corrections.of("lane")
+    if not wanted:
+        return lines, elements, lanes
+    known = np.concatenate([lines.vertices, known])
+    width = float(np.median(lines.width)) if len(lines) else lane_width
+    before = _rows_of_lines(lines)
+    rows, of_lines, lines_changed = apply_corrections(_DrivingLines(frame, known, width), before, wanted)
+    # the area of a lane is drawn about its driving line
+    wanted = [one for one in wanted if not one.draws or one.row in of_lines]
+    areas, of_lanes, lanes_changed = apply_corrections(_Lanes(frame, known, rows), _rows_of_lanes(lanes), wanted)
+    corrections.matched |= of_lines | of_lanes
+    if lines_changed:
+        lines, elements = driving_lines_of(rows, lines.crs), _remaining(elements, before, rows)
+    return lines, elements, _lanes_of(areas, frame, lanes.crs) if lanes_changed else lanes
+
+
+def _rows_of_lines(lines):
+    names = [one.name for one in fields(lines) if one.name not in ("curve", "vertices", "start", "crs")]
+    return [dict({name: getattr(lines, name)[k] for name in names}, curve=lines.curve[k], places=lines.vertices[lines.start[k]:lines.start[k + 1]])
+            for k in range(len(lines))]
+
+
+def _rows_of_lanes(lanes):
+    names = ("road", "lane", "lane_id", "type", "direction", "status", "confidence", "station", "end")
+    found = []
+    for k in range(len(lanes)):
+        left, right = lanes.borders(k)
+        about = [(lanes.left_line[k], lanes.left_kind[k], lanes.left_pattern[k]), (lanes.right_line[k], lanes.right_kind[k], lanes.right_pattern[k])]
+        found.append(dict({name: getattr(lanes, name)[k] for name in names}, about=about, successors=lanes.successors[k],
+                          columns=np.c_[(left + right) / 2, left, right], changed=False))
+    return found
+
+
+def _lanes_of(pieces, frame, crs):
+    """Lanes of pieces of which some were changed: their ids, and what follows on their roads."""
+    changed = {(piece["road"], piece["lane"]) for piece in pieces if piece["changed"]}
+    before = {piece["lane_id"] for piece in pieces}
+    for road, lane in sorted(changed):
+        own = sorted((piece for piece in pieces if (piece["road"], piece["lane"]) == (road, lane)), key=lambda piece: piece["station"])
+        for number, piece in enumerate(own, start=1):
+            piece["lane_id"] = f"{road}.{lane}.{number}"
+    for piece in pieces:
+        middle, half = piece["columns"], np.hypot(*(piece["columns"][:, 3:5] - piece["columns"][:, 6:8]).T) / 2
+        _, d = located(frame, np.full(2, piece["road"]), middle[[0, -1], 0], middle[[0, -1], 1])
+        first, last = d if piece["direction"] >= 0 else d[::-1]
+        piece.update(first=float(first), last=float(last), width=float(2 * np.median(half)), left=middle[:, 3:6], right=middle[:, 6:9])
+        piece.setdefault("successors", ())
+    gone = before - {piece["lane_id"] for piece in pieces}
+    roads = {road for road, _ in changed} | {piece["road"] for piece in pieces if gone & set(piece["successors"])}
+    for road in sorted(roads):
+        follow([piece for piece in pieces if piece["road"] == road])
+    ids = {piece["lane_id"] for piece in pieces}
+    after = {piece["lane_id"]: (piece["lane"], set(piece["successors"]) & ids) for piece in pieces}
+    for piece in pieces:
+        # behind a short piece lies what follows that piece
+        through = {name for other in after[piece["lane_id"]][1] if after[other][0] == piece["lane"] for name in after[other][1]}
+        piece["successors"] = tuple(name for name in piece["successors"] if name in ids - through)
+    return make_lanes(pieces, crs)
+
+
+def _remaining(elements: CurveElements, before: list[dict[str, Any]], after: list[dict[str, Any]]) -> CurveElements:
+    """Curve elements less those of which half lies on no piece of the lane any more that was there before."""
+    keep = np.ones(len(elements), bool)
+    for k in range(len(elements)):
+        lane = (elements.road[k], elements.lane[k])
+        held, left = (sum(max(min(elements.end[k], row["end"]) - max(elements.station[k], row["station"]), 0.0) for row in rows
+                          if (row["road"], row["lane"]) == lane and row["status"] != DRAWN) for rows in (before, after))
+        keep[k] = left >= (1 - MOST_LOST) * held
+    rows = np.flatnonzero(keep)
+    arrays = {one.name: getattr(elements, one.name)[rows] for one in fields(elements) if isinstance(getattr(elements, one.name), np.ndarray)}
+    return replace(elements, **arrays, arc=[elements.arc[k] for k in rows])
+
+
+def _way(frame: RoadFrame, correction: Correction, places: np.ndarray) -> int:
+    """1 for a line drawn along the road, -1 for one drawn against it: a lane is drawn as it is driven."""
+    s, _ = located(frame, np.full(2, correction.road), places[[0, -1], 0], places[[0, -1], 1])
+    return -1 if s[1] < s[0] else 1
+
+
+def _in_direction(frame, correction, places, way):
+    return places if _way(frame, correction, places) == way else places[::-1]
+
+
+def _free_lane(pieces, road):
+    return max((int(piece["lane"]) for piece in pieces if piece["road"] == road), default=0) + 1
