@@ -21,7 +21,8 @@ class ExportLanelet2(Algorithm):
     HELP = ("Lanes that are driven, their connectors, bicycle lanes and shoulders become lanelets; parking, hatched areas and medians do not. Where "
             "a lane begins beside another one, both are cut, so that neighbours share their border. Curbs are curbstone high or low, painted borders "
             "line_thin or line_thick, other edges road_border, and what is neither is virtual. Zebra crossings and stop lines come from the "
-            "markings. What was inferred or bridged has the tags lanewright:status and lanewright:confidence.\n\n"
+            "markings. What was inferred or bridged has the tags lanewright:status and lanewright:confidence, and "
+            "lanewright:sigma_m is the uncertainty of the lane.\n\n"
             "The file is read back and checked before it is handed over; the report names the transformation to latitude and longitude and what "
             "the heights are. Traffic lights, signs, right of way and regulatory elements are not there.")
     TAGS = ("Lanelet2", "osm", "HD map", "Autoware", "planner")

@@ -24,7 +24,8 @@ class ExportOpenDrive(Algorithm):
     HELP = ("The reference line is made of lines, arcs and spirals, where the tolerance allows none of them of parametric cubics. Lanes beside each "
             "other are one road; a section begins where a lane begins or ends. Widths are cubics, heights an elevation with superelevation or, on a "
             "crowned road, the shape of the cross-section. Connectors are the roads of junctions. Curbs are narrow lanes with their height; zebra "
-            "crossings, stop lines, arrows and hatched areas are objects. What was inferred or bridged is said in userData.\n\n"
+            "crossings, stop lines, arrows and hatched areas are objects. What was inferred or bridged, and the uncertainty of every lane, is "
+            "said in userData.\n\n"
             "The file is read back and checked before it is handed over: the report says how far its borders lie from the survey's. OpenDRIVE "
             "stores no line to drive on; the report also says how far the middles of the lanes are from the driving lines. Signals, signs, "
             "speed limits and buildings are not there.")

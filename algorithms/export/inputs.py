@@ -51,7 +51,7 @@ def write_map_layers(call, layers, progress):
     return {"LANE_COUNT": float(len(lanes)), "LENGTH": length}
 
 
-LINE_FIELDS = tuple(field for field in DRIVING_LINES if field.name in ("road", "lane", "status", "station_m", "end_m"))
+LINE_FIELDS = tuple(field for field in DRIVING_LINES if field.name in ("road", "lane", "status", "station_m", "end_m", "sigma_m"))
 MARKING_LINE_FIELDS = tuple(field for field in MARKING_LINES if field.name in ("road", "line", "kind", "pattern", "width_m"))
 EDGE_FIELDS = tuple(field for field in ROAD_EDGES if field.name in ("road", "height_m"))
 MARKING_FIELDS = tuple(field for field in MARKINGS if field.name in ("road", "class"))
@@ -61,7 +61,8 @@ def add_road_map_layers(algorithm):
     """The layers of the road map that an export takes."""
     algorithm.add_layer("LANES", tr("Lanes"), tr("Made by Driving lines or Road map, with its fields and heights."), "PolygonZ")
     algorithm.add_layer("DRIVING_LINES", tr("Driving lines"), tr(
-        "Held against the middles of the lanes: the report says how far apart they are."), "LineStringZ", optional=True)
+        "Held against the middles of the lanes: the report says how far apart they are. The uncertainty of every lane comes from "
+        "them."), "LineStringZ", optional=True)
     algorithm.add_layer("MARKING_LINES", tr("Marking lines"), tr("The widths of the painted borders."), "LineStringZ", optional=True)
     algorithm.add_layer("ROAD_EDGES", tr("Road edges"), tr("The heights of curbs."), "LineStringZ", optional=True)
     algorithm.add_layer("MARKINGS", tr("Markings"), tr("Zebra crossings, stop lines, arrows and hatched areas."), "PolygonZ", optional=True)

@@ -21,6 +21,7 @@ RADIUS = Field("radius_m", float, "Radius (m)")
 # main: along the road; corner, side_street: leads away from it; island: stands in it
 CURB_KIND = Field("kind", str, "Kind (main/corner/side_street/island)")
 RMSE = Field("rmse_m", float, "RMSE of the fit (m)")
+SIGMA = Field("sigma_m", float, "Uncertainty across, one sigma (m)")
 
 # station_m of a line is where it starts, end_m where it ends, along the road
 END = Field("end_m", float, "End station (m)")
@@ -29,7 +30,7 @@ CURB_POINTS = [ROAD, NEAREST_PASS, SIDE, STATUS, STATION, OFFSET, HEIGHT, PART,
                CURB_KIND, Field("chain", int, "Chain along the curb"), Field("along_m", float, "Distance along the chain (m)"),
                Field("residual_m", float, "Residual (m)"),
                Field("support", int, "Supporting points")]
-ROAD_EDGES = [ROAD, NEAREST_PASS, SIDE, STATUS, STATION, END, HEIGHT, PART, AGREE, LENGTH, RMSE,
+ROAD_EDGES = [ROAD, NEAREST_PASS, SIDE, STATUS, STATION, END, HEIGHT, PART, AGREE, LENGTH, RMSE, SIGMA,
               CURB_KIND, Field("chain", int, "Chain along the curb")]
 SCANLINES = [ROAD, PASS, Field("scanner", int, "Scanner"), STATION, LENGTH, Field("interval_m", float, "Interval of the planes (m)")]
 ROAD_SURFACE = [ROAD, STATUS, STATION, END, Field("area_m2", float, "Area (m²)"), Field("points", int, "Road points")]
@@ -42,7 +43,7 @@ MARKING_LINES = [ROAD, Field("line", int, "Line"), Field("kind", str, "Kind (edg
                  STATION, END, OFFSET, LENGTH, WIDTH, Field("params", str, "Fitted function (JSON)")]
 DRIVING_LINES = [ROAD, Field("lane", int, "Lane"), Field("kind", str, "Kind"), Field("pattern", str, "Lines to its left|right"),
                  Field("direction", int, "Direction (1 along, -1 against the road)"),
-                 Field("source", str, "Source (pair/offset)"), STATUS, CONFIDENCE, Field("curve", str, "Curve"), RADIUS, RMSE,
+                 Field("source", str, "Source (pair/offset)"), STATUS, CONFIDENCE, Field("curve", str, "Curve"), RADIUS, RMSE, SIGMA,
                  STATION, END, OFFSET, LENGTH, WIDTH, Field("params", str, "Fitted function (JSON)")]
 # left and right as seen in the direction of travel; along the road where nobody drives
 LANES = [ROAD, Field("lane", int, "Lane"), Field("lane_id", str, "Lane and piece (road.lane.piece)"),

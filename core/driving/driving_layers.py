@@ -36,6 +36,7 @@ class DrivingLines:
     rmse : (P,) metres, of the lane's places from its curve
     station, end : (P,) metres along the road
     offset, width : (P,) metres, medians along the piece
+    sigma : (P,) metres, uncertainty of the place across the line, one sigma, see `uncertainty.py`
     vertices : (V, 3) local metres in the direction of travel, one piece after the other
     start : (P + 1,) int, first vertex of each piece, and V
     crs : WKT, "" where unknown
@@ -54,6 +55,7 @@ class DrivingLines:
     end: np.ndarray
     offset: np.ndarray
     width: np.ndarray
+    sigma: np.ndarray
     vertices: np.ndarray
     start: np.ndarray
     crs: str = ""
@@ -114,10 +116,9 @@ def driving_lines_to_features(lines: DrivingLines, frame: RoadFrame) -> Features
         places = lines.vertices[lines.start[k]:lines.start[k + 1]] + frame.origin
         layer.add(shapely.linestrings(places), road=int(lines.road[k]), lane=int(lines.lane[k]), kind="lane", pattern=lines.pattern[k],
                   direction=int(lines.direction[k]), source=lines.source[k], status=lines.status[k], confidence=float(lines.confidence[k]),
-                  curve=curve.kind,
-                  radius_m=float(curve.radius) if np.isfinite(curve.radius) else None, rmse_m=float(lines.rmse[k]),
-                  station_m=float(lines.station[k]), end_m=float(lines.end[k]), offset_m=float(lines.offset[k]), length_m=_length(places),
-                  width_m=float(lines.width[k]), params=functions[id(curve)])
+                  curve=curve.kind, radius_m=float(curve.radius) if np.isfinite(curve.radius) else None, rmse_m=float(lines.rmse[k]),
+                  sigma_m=round(float(lines.sigma[k]), 4), station_m=float(lines.station[k]), end_m=float(lines.end[k]),
+                  offset_m=float(lines.offset[k]), length_m=_length(places), width_m=float(lines.width[k]), params=functions[id(curve)])
     return layer
 
 

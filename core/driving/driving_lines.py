@@ -24,6 +24,7 @@ from .lane_track import LANE_STATUS, LaneTrack, connect
 from .lanes import estimated_lanes
 from .lanes_layer import Lanes
 from .settings import DrivingSettings
+from .uncertainty import lane_sigma
 
 if TYPE_CHECKING:
     from ..survey.frame.road_frame import RoadFrame
@@ -76,7 +77,8 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
             heights = [frame.track_height(number, s[t.first:t.last + 1]) for t in tracks]
         courses = lane_courses(tracks, s, frame.roads[number], alignment)
         for lane, (track, course, elements, z) in enumerate(zip(tracks, courses, alignment, heights), start=1):
-            rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(track, track.direction, course, elements, one.lines, z)]
+            sigma = lane_sigma(track, course, s[track.first:track.last + 1], frame.roads[number], frame.pass_sigma.get(number, 0.0))
+            rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(track, track.direction, course, elements, one.lines, z, sigma)]
             arcs += [dict(row, road=number, lane=lane) for row in _lane_curves(track.direction, elements)]
         areas += lane_areas(one, curbs.get(number) if curbs else None, tracks, heights, frame, number)
         progress.report(0.4 + 0.6 * (count + 1) / len(estimates.roads))
@@ -102,7 +104,7 @@ def road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: float
 
 
 def _lane_pieces(track: LaneTrack, way: int, course: Course, elements: list[Element], road_lines: CrossSections,
-                 z: np.ndarray) -> Iterator[dict[str, Any]]:
+                 z: np.ndarray, sigma: np.ndarray) -> Iterator[dict[str, Any]]:
     """The pieces of one lane by status, in order of station."""
     s = road_lines.s
     grid = s[track.first:track.last + 1]
@@ -117,7 +119,8 @@ def _lane_pieces(track: LaneTrack, way: int, course: Course, elements: list[Elem
         yield dict(
             pattern=_patterns(track, rows, way, road_lines), direction=way, source="offset" if track.offset[rows].mean() > 0.5 else "pair",
             status=LANE_STATUS[code], confidence=float(track.confidence[rows].mean()),
-            curve=element.arc if element is not None else course.curve, rmse=course.rmse, station=start, end=end,
+            curve=element.arc if element is not None else course.curve, rmse=course.rmse,
+            sigma=np.sqrt(np.mean(sigma[rows] ** 2)), station=start, end=end,
             offset=np.median(track.d[rows]), width=np.median(track.width[rows]), places=places[::-1] if way < 0 else places)
 
 
@@ -166,7 +169,7 @@ def driving_lines_of(rows: list[dict[str, Any]], crs: str) -> DrivingLines:
         _column(rows, "road", int), _column(rows, "lane", int), _column(rows, "pattern", object), _column(rows, "direction", int),
         _column(rows, "source", object), _column(rows, "status", object), _column(rows, "confidence", float), [row["curve"] for row in rows],
         _column(rows, "rmse", float), _column(rows, "station", float), _column(rows, "end", float), _column(rows, "offset", float),
-        _column(rows, "width", float), np.concatenate([*places, np.empty((0, 3))]),
+        _column(rows, "width", float), _column(rows, "sigma", float), np.concatenate([*places, np.empty((0, 3))]),
         np.append(0, np.cumsum([len(some) for some in places], dtype=int)), crs)
 
 

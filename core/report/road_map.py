@@ -21,6 +21,9 @@ LINE_COLOUR, ELEMENT_COLOUR, CODE_COLOUR = "#2b6ca3", "#009e73", "#d55e00"  # of
 STAGE_TITLES = dict(survey="Reading and placing points", curbs="Curbs", edges="Road edges", surface="Road surface",
                     intensity="Intensity correction", image="Intensity image", markings="Marking extraction",
                     outliers="Outlier removal", clusters="Clustering", lines="Marking lines", driving="Driving lines")
+SIGMA_TITLE = "Uncertainty (mm)"
+SIGMA_NOTE = ("The uncertainty is one sigma across the line, from residuals, point spacing and what passes differ by; two thirds of the places lie "
+              "within it on simulated streets. What the whole trajectory is off is not in it.")
 MAP_COLOUR_KEY = (("#e63c3c", "road edge, measured"), ("#ff963c", "road edge, bridged"), ("#e63cff", "the two methods more than 5 cm apart"),
                   ("#ffdc50", "marking"), ("#3cc8e6", "marking line"), ("#3cdc5a", "driving line"),
                   ("#bfff3c", "bridged"), ("#c878dc", "inferred"))
@@ -91,11 +94,22 @@ def _totals(measure, *columns):
     return [(*key, total[key]) for key in sorted(total)]
 
 
+def _totals_with_sigma(length, sigma, *columns):
+    """`_totals` of (N,) lengths, each with the RMS of (N,) sigmas over its length in mm, None where none is known."""
+    known = np.isfinite(sigma)
+    squares = {tuple(key): value for *key, value in _totals((length * sigma**2)[known], *(np.asarray(column, object)[known] for column in columns))}
+    lengths = {tuple(key): value for *key, value in _totals(length[known], *(np.asarray(column, object)[known] for column in columns))}
+    return [(*key, total, 1000.0 * float(np.sqrt(squares[tuple(key)] / lengths[tuple(key)])) if lengths.get(tuple(key)) else "–")
+            for *key, total in _totals(length, *columns)]
+
+
 def _road(page, road_map):
     page.heading("Road edges and surface")
     edges, surface = road_map.edges, road_map.surface
     if len(edges):
-        page.table(("Curb", "Side", "Status", "Length (m)"), _totals(edges.length, edges.kind, edges.side, edges.status))
+        page.table(("Curb", "Side", "Status", "Length (m)", SIGMA_TITLE),
+                   _totals_with_sigma(edges.length, edges.sigma, edges.kind, edges.side, edges.status))
+        page.note(SIGMA_NOTE)
     else:
         page.text("No curb was found along this road, so no edge line was drawn.")
     if road_map.boundary_differences is not None:
@@ -146,7 +160,11 @@ def _driving(page, road_map):
     if not len(road_map.driving_lines):
         page.text("No driving line was made: no two lines that bound a lane were found.")
         return
-    page.table(("Lane", "Source", "Status", "Length (m)"), _lengths(road_map.driving_lines, "lane", "source", "status"))
+    lines = road_map.driving_lines
+    page.table(("Lane", "Source", "Status", "Length (m)", SIGMA_TITLE),
+               _totals_with_sigma(shapely.length(lines.geometries), np.array(lines.column("sigma_m", np.nan), float),
+                                  *(lines.column(name) for name in ("lane", "source", "status"))))
+    page.note(SIGMA_NOTE)
     elements = road_map.curve_elements
     if len(elements):
         names = ("lane", "station_m", "end_m", "turn", "radius_m", "delta_deg", "length_m", "tangent_m", "middle_m",

@@ -12,8 +12,8 @@ from ..texts import tr
 
 # Unit at the end of a field's name -> decimals that mean something
 DECIMALS = {"m": 2, "cm": 1, "m2": 2, "ft": 2, "deg": 2, "pct": 1, "x": 3, "y": 3}
-DECIMALS_OF = {"rmse_m": 3, "resid_m": 3, "loo_m": 3, "residual_m": 3, "radius_m": 1, "radius_ft": 1, "confidence": 2, "time": 3,
-               "roll": 2, "pitch": 2, "heading": 1, "elongation": 1, "pixel": 1, "line_px": 1}
+DECIMALS_OF = {"rmse_m": 3, "sigma_m": 3, "sigma_z_m": 3, "resid_m": 3, "loo_m": 3, "residual_m": 3, "radius_m": 1, "radius_ft": 1, "confidence": 2,
+               "time": 3, "roll": 2, "pitch": 2, "heading": 1, "elongation": 1, "pixel": 1, "line_px": 1}
 MOST_DECIMALS = 2  # of any other number
 
 # Field -> {value: words}; what is not among them is shown as it is
@@ -33,10 +33,10 @@ DIRECTIONS = {1: tr("along the road"), -1: tr("against the road"), 0: tr("not dr
 
 # Result -> what a feature is, in an expression of QGIS; fields are named in quotes
 TITLES = {
-    "ROAD_EDGES": '{edge}, {side}, {length}, {status}',
-    "BOUNDARIES": '{edge}, {side}, {length}, {status}',
+    "ROAD_EDGES": '{edge}, {side}, {length}, {status}, {sigma}',
+    "BOUNDARIES": '{edge}, {side}, {length}, {status}, {sigma}',
     "MARKING_LINES": '{line}, {pattern}, {length}, {status}',
-    "DRIVING_LINES": '{lane}, {direction}, {length}, {status}',
+    "DRIVING_LINES": '{lane}, {direction}, {length}, {status}, {sigma}',
     "LANES": '{lane}, {direction}, {length}, {status}',
     "MARKINGS": '{class}, {length}',
     "ROAD_SURFACE": '{surface}, {status}',
@@ -60,6 +60,7 @@ def _parts():
         "length": _part('format_number("length_m", 0) || \' m\'', "length_m"),
         "height": _part(f"'{tr('height')} ' || format_number(\"height_m\", 2) || ' m'", "height_m"),
         "status": _part(value("status"), "status"),
+        "sigma": _part("'± ' || format_number(\"sigma_m\" * 1000, 0) || ' mm'", "sigma_m"),
         "line": _part(f"CASE WHEN \"kind\" = 'edge' THEN '{tr('Edge line')}' WHEN \"kind\" = 'centre' THEN '{tr('Centre line')}' "
                       f"ELSE '{tr('Lane line')}' END || ' ' || \"line\"", "kind", "line"),
         "pattern": _part('"pattern"', "pattern"),

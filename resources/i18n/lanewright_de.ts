@@ -1260,8 +1260,8 @@
         </message>
         <message>
             <location filename="../../algorithms/export/export_lanelet2.py" />
-            <source>Lanes that are driven, their connectors, bicycle lanes and shoulders become lanelets; parking, hatched areas and medians do not. Where a lane begins beside another one, both are cut, so that neighbours share their border. Curbs are curbstone high or low, painted borders line_thin or line_thick, other edges road_border, and what is neither is virtual. Zebra crossings and stop lines come from the markings. What was inferred or bridged has the tags lanewright:status and lanewright:confidence.</source>
-            <translation>Befahrene Fahrstreifen, ihre Verbindungen, Radfahrstreifen und Seitenstreifen werden Lanelets; Parkstreifen, Sperrflächen und Mittelstreifen nicht. Wo ein Fahrstreifen neben einem anderen beginnt, werden beide geteilt, damit Nachbarn ihren Rand teilen. Borde sind curbstone high oder low, markierte Ränder line_thin oder line_thick, andere Ränder road_border, und was keines davon ist, virtual. Zebrastreifen und Haltlinien kommen aus den Markierungen. Was erschlossen oder überbrückt ist, trägt die Tags lanewright:status und lanewright:confidence.</translation>
+            <source>Lanes that are driven, their connectors, bicycle lanes and shoulders become lanelets; parking, hatched areas and medians do not. Where a lane begins beside another one, both are cut, so that neighbours share their border. Curbs are curbstone high or low, painted borders line_thin or line_thick, other edges road_border, and what is neither is virtual. Zebra crossings and stop lines come from the markings. What was inferred or bridged has the tags lanewright:status and lanewright:confidence, and lanewright:sigma_m is the uncertainty of the lane.</source>
+            <translation>Befahrene Fahrstreifen, ihre Verbindungen, Radfahrstreifen und Seitenstreifen werden Lanelets; Parkstreifen, Sperrflächen und Mittelstreifen nicht. Wo ein Fahrstreifen neben einem anderen beginnt, werden beide geteilt, damit Nachbarn ihren Rand teilen. Borde sind curbstone high oder low, markierte Ränder line_thin oder line_thick, andere Ränder road_border, und was keines davon ist, virtual. Zebrastreifen und Haltlinien kommen aus den Markierungen. Was erschlossen oder überbrückt ist, trägt die Tags lanewright:status und lanewright:confidence, und lanewright:sigma_m ist die Unsicherheit des Fahrstreifens.</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/export_lanelet2.py" />
@@ -1365,8 +1365,8 @@
         </message>
         <message>
             <location filename="../../algorithms/export/export_opendrive.py" />
-            <source>The reference line is made of lines, arcs and spirals, where the tolerance allows none of them of parametric cubics. Lanes beside each other are one road; a section begins where a lane begins or ends. Widths are cubics, heights an elevation with superelevation or, on a crowned road, the shape of the cross-section. Connectors are the roads of junctions. Curbs are narrow lanes with their height; zebra crossings, stop lines, arrows and hatched areas are objects. What was inferred or bridged is said in userData.</source>
-            <translation>Die Referenzlinie besteht aus Geraden, Bögen und Klothoiden, wo die Toleranz keine davon zulässt aus parametrischen Polynomen dritten Grades. Fahrstreifen nebeneinander sind eine Straße; ein Abschnitt beginnt, wo ein Fahrstreifen beginnt oder endet. Breiten sind Polynome dritten Grades, Höhen ein Höhenverlauf mit Querneigung oder, bei Dachprofil, die Form des Querschnitts. Verbindungen sind die Straßen der Knoten. Borde sind schmale Streifen mit ihrer Höhe; Zebrastreifen, Haltlinien, Pfeile und Sperrflächen sind Objekte. Was erschlossen oder überbrückt ist, steht in userData.</translation>
+            <source>The reference line is made of lines, arcs and spirals, where the tolerance allows none of them of parametric cubics. Lanes beside each other are one road; a section begins where a lane begins or ends. Widths are cubics, heights an elevation with superelevation or, on a crowned road, the shape of the cross-section. Connectors are the roads of junctions. Curbs are narrow lanes with their height; zebra crossings, stop lines, arrows and hatched areas are objects. What was inferred or bridged, and the uncertainty of every lane, is said in userData.</source>
+            <translation>Die Referenzlinie besteht aus Geraden, Bögen und Klothoiden, wo die Toleranz keine davon zulässt aus parametrischen Polynomen dritten Grades. Fahrstreifen nebeneinander sind eine Straße; ein Abschnitt beginnt, wo ein Fahrstreifen beginnt oder endet. Breiten sind Polynome dritten Grades, Höhen ein Höhenverlauf mit Querneigung oder, bei Dachprofil, die Form des Querschnitts. Verbindungen sind die Straßen der Knoten. Borde sind schmale Streifen mit ihrer Höhe; Zebrastreifen, Haltlinien, Pfeile und Sperrflächen sind Objekte. Was erschlossen oder überbrückt ist, und die Unsicherheit jedes Fahrstreifens, steht in userData.</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/export_opendrive.py" />
@@ -1550,8 +1550,8 @@
         </message>
         <message>
             <location filename="../../algorithms/export/inputs.py" />
-            <source>Held against the middles of the lanes: the report says how far apart they are.</source>
-            <translation>Mit den Mitten der Fahrstreifen verglichen: Der Bericht sagt, wie weit sie auseinander liegen.</translation>
+            <source>Held against the middles of the lanes: the report says how far apart they are. The uncertainty of every lane comes from them.</source>
+            <translation>Werden mit den Mitten der Fahrstreifen verglichen: der Bericht sagt, wie weit sie auseinanderliegen. Die Unsicherheit jedes Fahrstreifens kommt aus ihnen.</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/inputs.py" />
@@ -4572,6 +4572,11 @@
             <location filename="../../core/common/schemas.py" />
             <source>RMSE of the fit (m)</source>
             <translation>RMSE der Einpassung (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Uncertainty across, one sigma (m)</source>
+            <translation>Unsicherheit quer, ein Sigma (m)</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />

@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 
 from ...common.setting import check_limits, setting
+from ..lane_uncertainty import sigma_of_lanes
 from ..painted_objects import stop_lines, walked_crossings
 from ..sources import RoadMapSource, nearest_values
 
@@ -93,6 +94,7 @@ class _Drafting:
         self.left, self.right = numbers[:len(lanes.left)], numbers[len(lanes.left):]
         self.way_of: dict[tuple[int, ...], int] = {}
         self.heights = source.road_edges
+        self.sigma = sigma_of_lanes(lanes, source.driving_lines)
 
     def run(self) -> LaneletDraft:
         lanes = self.lanes
@@ -135,6 +137,8 @@ class _Drafting:
             tags["speed_limit"] = str(int(self.settings.speed_limit))
         if lanes.type[k] == "connector":
             tags["turn_direction"] = _turn((lanes.left[rows] + lanes.right[rows]) / 2)
+        if np.isfinite(self.sigma[k]):
+            tags["lanewright:sigma_m"] = f"{self.sigma[k]:.3f}"
         if lanes.status[k] != "measured":
             tags |= {"lanewright:status": lanes.status[k], "lanewright:confidence": f"{lanes.confidence[k]:.2f}"}
         centre = self._new_nodes((lanes.left[rows] + lanes.right[rows]) / 2)

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
+from ..lane_uncertainty import sigma_of_lanes
 from ..sources import RoadMapSource, nearest_values
 from .junctions import link_roads
 from .model import MapLane, MapRoad, OpenDriveMap, RoadMark
@@ -104,6 +105,7 @@ def draft_opendrive(source: RoadMapSource, settings: OpenDriveSettings = OpenDri
 class _Drafting:
     def __init__(self, source: RoadMapSource, origin: np.ndarray, settings: OpenDriveSettings) -> None:
         self.source, self.lanes, self.origin, self.settings = source, source.lanes, origin, settings
+        self.sigma = sigma_of_lanes(self.lanes, source.driving_lines)
         self.notes: list[str] = []
         self.cells = cut_into_cells(self.lanes)
         self.slices = slices_of(self.cells, self.lanes)
@@ -174,6 +176,8 @@ class _Drafting:
         lane.type = TYPE_OF_LANE[self.lanes.type[cell.piece]]
         lane.marks = [self._mark(cell, lane.id > 0)]
         lane.data = {"lanewright:lane_id": str(self.lanes.lane_id[cell.piece])}
+        if np.isfinite(self.sigma[cell.piece]):
+            lane.data["lanewright:sigma_m"] = f"{self.sigma[cell.piece]:.3f}"
         if self.lanes.status[cell.piece] != "measured":
             lane.data |= {"lanewright:status": str(self.lanes.status[cell.piece]),
                           "lanewright:confidence": f"{self.lanes.confidence[cell.piece]:.2f}"}

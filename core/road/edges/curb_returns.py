@@ -11,6 +11,7 @@ from ..common.curb_points import CurbPoints
 from ..common.pseudo_scanlines import expand_ranges
 from ..common.tracking import MAX_JOINED_GAP
 from .road_edges import EdgePiece
+from .uncertainty import CURB_RETURN, edge_sigma
 
 RETURN_VERTEX_SPACING = 0.25  # m between vertices: the nose of an island has a radius below a metre
 MIN_CORNER_TURN = np.radians(50.0)  # from the chord before to the chord after a sharp corner
@@ -41,7 +42,8 @@ def curb_return_lines(curb_points: CurbPoints, frame: RoadFrame) -> dict[int, li
     return found
 
 
-def draw_curb_returns(edges: list[EdgePiece], road: int, lines: list[tuple[CurbPoints, np.ndarray]], number: int) -> int:
+def draw_curb_returns(edges: list[EdgePiece], road: int, lines: list[tuple[CurbPoints, np.ndarray]], number: int,
+                      passes: float = 0.0) -> int:
     """Add the edges of corners, side streets and islands of one road.
 
     A corner begins with the vertex at which the main edge ends, so that the two touch.
@@ -52,6 +54,7 @@ def draw_curb_returns(edges: list[EdgePiece], road: int, lines: list[tuple[CurbP
     road : number of the road
     lines : of this road, from `curb_return_lines`
     number : of the first line
+    passes : m, one sigma of the middle of the passes
 
     Returns
     -------
@@ -68,6 +71,7 @@ def draw_curb_returns(edges: list[EdgePiece], road: int, lines: list[tuple[CurbP
         # the main edge's own end is a place of the curve, so that an arc stays one where the curb was not seen for a metre
         places = np.concatenate([*(v[None] for v in (first,) if v is not None), places, *(v[None] for v in (last,) if v is not None)])
         vertices, residual = _drawn(places)
+        along = _chord_length(*places.T[:2])
         vertices = np.round(vertices, COORDINATE_DECIMALS)
         if closed:
             vertices[-1] = vertices[0]
@@ -75,7 +79,8 @@ def draw_curb_returns(edges: list[EdgePiece], road: int, lines: list[tuple[CurbP
         vertices = vertices[np.r_[True, np.hypot(*np.diff(vertices[:, :2], axis=0).T) > 0]]
         edges.append(EdgePiece(vertices, road, points.side[0], "measured", number, float(points.station.min()), float(points.station.max()),
                                float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), float(np.median(points.height)),
-                               float(np.sqrt(np.mean(residual**2))), kind=kind))
+                               float(np.sqrt(np.mean(residual**2))), kind=kind,
+                               sigma=edge_sigma(along, along, residual, CURB_RETURN, passes)))
         number += 1
     return number
 

@@ -18,6 +18,7 @@ from ..common.occlusion import HIDDEN_POINT_SPACING
 from ..common.tracking import MAX_JOINED_GAP
 from .curb_returns import curb_return_lines, draw_curb_returns
 from .road_edges import EdgePiece, RoadEdges, joined_pieces
+from .uncertainty import edge_sigma
 
 MEDIAN_WINDOW = 5.0           # m of running median
 OUTLIER_MADS = 3.0            # median absolute deviations, as sigmas, and
@@ -72,11 +73,11 @@ def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSett
             rows = table[(table["road"] == road.number) & (table["side"] == side)]
             drawn = []
             for piece in _pieces(rows, settings.max_gap):
-                drawn.append(_draw(found, road, side, piece, lines))
+                drawn.append(_draw(found, road, side, piece, lines, frame.pass_sigma.get(road.number, 0.0)))
                 lines += 1
             if settings.fallback_width:
                 lines = _draw_fallback(found, frame, road, side, drawn, settings.fallback_width, lines)
-        lines = draw_curb_returns(found, road.number, returns.get(road.number, []), lines)
+        lines = draw_curb_returns(found, road.number, returns.get(road.number, []), lines, frame.pass_sigma.get(road.number, 0.0))
     edges = joined_pieces(found, frame, curb_points.crs)
     length = {status: edges.length[edges.status == status].sum() for status in ("measured", "bridged")}
     if len(edges):
@@ -194,7 +195,7 @@ def _noise(t, values):
     return max(float(np.median(np.abs(off) / np.sqrt(1 + f**2 + (1 - f) ** 2))) * MAD_TO_SIGMA, MIN_POINT_SIGMA)
 
 
-def _draw(found, road, side, piece, number):
+def _draw(found, road, side, piece, number, passes):
     """Add the pieces of one edge; returns its (start, end) station."""
     points, bridged = piece
     curve = EdgeCurve(points)
@@ -203,11 +204,12 @@ def _draw(found, road, side, piece, number):
     for i, j in zip(bounds[:-1], bounds[1:]):
         check_cancelled()
         a, b = curve.t[i], curve.t[j]
-        vertices = curve.at(np.linspace(a, b, max(int(np.ceil((b - a) / EDGE_VERTEX_SPACING)), 1) + 1))
-        rows = points[i:j + 1]
+        along = np.linspace(a, b, max(int(np.ceil((b - a) / EDGE_VERTEX_SPACING)), 1) + 1)
+        vertices, rows = curve.at(along), points[i:j + 1]
         found.append(EdgePiece(vertices, road.number, side, "bridged" if bridged[i] else "measured", number, float(rows["s"][0]),
                                float(rows["s"][-1]), float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()),
-                               float(np.median(rows["height"])), float(np.sqrt(np.mean(curve.residual[i:j + 1] ** 2)))))
+                               float(np.median(rows["height"])), float(np.sqrt(np.mean(curve.residual[i:j + 1] ** 2))),
+                               sigma=edge_sigma(along, curve.t, curve.residual, passes=passes)))
     return float(points["s"][0]), float(points["s"][-1])
 
 

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
 
 EDGE_FIELDS = dict(nearest_pass=NEAREST_PASS.name, side="side", status="status", part="part", kind="kind", chain="chain", station="station_m",
-                   end="end_m", height="height_m", length="length_m", rmse="rmse_m", agree="agree_cm")
+                   end="end_m", height="height_m", length="length_m", rmse="rmse_m", sigma="sigma_m", agree="agree_cm")
 
-EDGE_DECIMALS = dict(station=3, end=3, height=3, length=3, rmse=4, agree=1)   # of numbers in the layer
+EDGE_DECIMALS = dict(station=3, end=3, height=3, length=3, rmse=4, sigma=4, agree=1)   # of numbers in the layer
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class EdgePiece:
     road : number
     side, status, part, kind : as in RoadEdges
     chain : number of the line; its pieces share it
-    station, end, height, length, rmse : metres, as in RoadEdges
+    station, end, height, length, rmse, sigma : metres, as in RoadEdges
     """
 
     vertices: np.ndarray
@@ -51,6 +51,7 @@ class EdgePiece:
     part: str = "bottom"
     kind: str = "main"
     agree: float = np.nan
+    sigma: float = np.nan
 
 
 @dataclass(frozen=True)
@@ -66,6 +67,7 @@ class RoadEdges:
     chain : (E,) int, the pieces of one line share it
     station, end : (E,) metres along the road
     height, length, rmse : (E,) metres: of the curb, along the line in plan, of the curb points from the line
+    sigma : (E,) metres, uncertainty of the place across the line, one sigma, see `uncertainty.py`
     agree : (E,) centimetres that two methods lie apart, at 95 % of the piece
     course : FrameLines, one per piece
     crs : WKT, "" where unknown
@@ -86,6 +88,7 @@ class RoadEdges:
     length: np.ndarray
     rmse: np.ndarray
     agree: np.ndarray
+    sigma: np.ndarray
     course: FrameLines
     crs: str = ""
 

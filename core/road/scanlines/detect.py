@@ -28,6 +28,7 @@ from ..common.sides import BLOCK_SECTION_LENGTH, MAX_CURB_OFFSET, SIDE_SIGNS, Ou
 from ..common.tracking import curb_chains, drop_short_curbs, link_apart, select_along_road
 from ..edges.fit import EDGE_VERTEX_SPACING, MAX_EDGE_JUMP, MAX_EDGE_SKEW, MIN_EDGE_LENGTH, MIN_HIDDEN_SHARE, EdgeCurve, without_outliers
 from ..edges.road_edges import EdgePiece, RoadEdges, joined_pieces
+from ..edges.uncertainty import edge_sigma
 from ..profiles.detect import MIN_TRACK_DISTANCE, PASS_MERGE_ACROSS, PASS_MERGE_HEIGHT, block_bounds, block_numbers, hidden_points
 from .candidates import NEIGHBOUR_LINES, find_candidates, gap_fill_rows, samples_near
 from .corners import CurbCorners, corners_of, plane_fit_rows
@@ -321,7 +322,7 @@ def boundary_lines(corners: CurbPoints, frame: RoadFrame, max_gap: float, progre
             hidden = np.sort(own.station[own.status == "occluded"])
             for part in ("bottom", "top"):
                 for points, status in _pieces(_points(own[own.part == part], frame), hidden, max_gap):
-                    _draw(pieces, points, status, road=road.number, side=side, part=part, chain=number)
+                    _draw(pieces, points, status, frame.pass_sigma.get(road.number, 0.0), road=road.number, side=side, part=part, chain=number)
                     number += 1
     lines = joined_pieces(pieces, frame, corners.crs)
     length = {part: lines.length[lines.part == part].sum() for part in ("bottom", "top")}
@@ -354,14 +355,15 @@ def _pieces(points, hidden, max_gap):
     return [(part, flags[:-1]) for part, flags in parts if len(part) >= 2 and part["s"][-1] - part["s"][0] >= MIN_EDGE_LENGTH]
 
 
-def _draw(pieces, points, status, **fields):
+def _draw(pieces, points, status, passes, **fields):
     """Add the pieces of one line."""
     curve = EdgeCurve(points)
     bounds = np.r_[0, np.flatnonzero(status[1:] != status[:-1]) + 1, len(points) - 1]
     for i, j in zip(bounds[:-1], bounds[1:]):
         a, b = curve.t[i], curve.t[j]
-        vertices = curve.at(np.linspace(a, b, max(int(np.ceil((b - a) / EDGE_VERTEX_SPACING)), 1) + 1))
-        rows = points[i:j + 1]
+        along = np.linspace(a, b, max(int(np.ceil((b - a) / EDGE_VERTEX_SPACING)), 1) + 1)
+        vertices, rows = curve.at(along), points[i:j + 1]
         pieces.append(EdgePiece(vertices, status=str(status[i]), station=float(rows["s"][0]), end=float(rows["s"][-1]),
                                 length=float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), height=float(np.median(rows["height"])),
-                                rmse=float(np.sqrt(np.mean(curve.residual[i:j + 1] ** 2))), **fields))
+                                rmse=float(np.sqrt(np.mean(curve.residual[i:j + 1] ** 2))),
+                                sigma=edge_sigma(along, curve.t, curve.residual, passes=passes), **fields))

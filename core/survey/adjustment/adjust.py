@@ -16,6 +16,7 @@ from scipy.sparse.linalg import spsolve
 
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
+from ...curves.robust import MAD_TO_SIGMA
 from ..store.records import COORDINATE_SCALE, to_units
 from ..store.section_store import SectionStore
 from .corrections import CORRECTION_STEP, PassCorrections
@@ -45,11 +46,35 @@ def adjust_passes(survey: Any, progress: Progress = Progress()) -> None:
     for k, road in enumerate(roads):
         offsets = pass_offsets(survey, road, progress.part(0.5 * k / len(roads), 0.5 * (k + 1) / len(roads)))
         apart = _disagree(offsets)
+        if (sigma := pass_sigma(offsets)) is not None:
+            survey.frame.pass_sigma[road] = sigma
         if apart:
             moves.update(solve_corrections(offsets))
         _report_offsets(road, offsets, apart, progress)
     if moves:
         _replace_points(survey, _map_corrections(survey.frame, moves), progress.part(0.5, 1.0))
+
+
+def pass_sigma(offsets: list[PassOffsets]) -> float | None:
+    """How far the middle of the passes over a road may be off across it, from what they differ.
+
+    Two passes with independent errors of one sigma s differ by s * sqrt(2), and the mean of n of them is off by s / sqrt(n). Single offsets
+    that are far off do not count: of the RMS and the median deviation as a sigma the smaller is taken.
+
+    Parameters
+    ----------
+    offsets : PassOffsets of one road
+
+    Returns
+    -------
+    m, one sigma; None where no offset was measured
+    """
+    left = np.concatenate([pair.left[np.isfinite(pair.left)] for pair in offsets] or [np.empty(0)])
+    count = len({number for pair in offsets for number in (pair.one, pair.other)})
+    if not len(left):
+        return None
+    apart = min(np.sqrt(np.mean(left**2)), MAD_TO_SIGMA * np.median(np.abs(left)))
+    return float(apart / np.sqrt(2 * count))
 
 
 def solve_corrections(offsets: list[PassOffsets]) -> dict[int, tuple[np.ndarray, np.ndarray]]:

@@ -8,7 +8,7 @@ published methods use this frame, and every stage works in it.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -147,6 +147,7 @@ class RoadFrame:
     crs : WKT, "" where unknown
     has_time : whether points are assigned to passes by their time
     notes : remarks on the trajectory, for the log
+    pass_sigma : {road number: m}, one sigma across of the middle of its passes, by what they differ; without entry where it is unknown
     """
 
     origin: np.ndarray
@@ -155,6 +156,7 @@ class RoadFrame:
     crs: str = ""
     has_time: bool = True
     notes: Sequence[str] = ()
+    pass_sigma: dict[int, float] = field(default_factory=dict)
 
     def road(self, number: int) -> Road:
         """The road of a number."""

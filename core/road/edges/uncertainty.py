@@ -1,0 +1,61 @@
+"""How uncertain the place of a road edge is: one sigma across it.
+
+Four things add up as squares: the foot of a curb is found to a share of the point spacing; curb points scatter about the line, and their
+errors go on over metres; towards its ends a line is held from one side only; and passes that were driven apart and laid on each other agree
+on a middle of which nobody knows how far off it is. The shares were found on simulated streets with truth (docs/accuracy.md). What the
+trajectory is off as a whole is not in it, since one pass does not show it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+SCATTER_REACH = 10.0    # m along the line, either way, over which the scatter of curb points is taken
+END_LENGTH = 5.0        # m from its end at which the uncertainty of a line's end has fallen to 1/e in square
+
+
+@dataclass(frozen=True)
+class EdgeUncertainty:
+    """The shares of an edge's uncertainty.
+
+    foot : m, of a curb's foot, where curb points are regular
+    scatter : of the RMS of residuals of curb points
+    end : m, at the end of a line
+    gap : m per m to the nearest curb point
+    """
+
+    foot: float
+    scatter: float
+    end: float
+    gap: float
+
+
+MAIN_EDGE = EdgeUncertainty(foot=0.0018, scatter=0.9, end=0.003, gap=0.0005)
+CURB_RETURN = EdgeUncertainty(foot=0.0045, scatter=1.5, end=0.006, gap=0.0005)   # found in plan, from fewer points
+
+
+def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, shares: EdgeUncertainty = MAIN_EDGE, passes: float = 0.0) -> float:
+    """One sigma across a piece of an edge, the RMS over places along it.
+
+    Parameters
+    ----------
+    at : (K,) m along the line, where the piece is looked at
+    places : (N,) m along the line of all its curb points, rising
+    residual : (N,) m, distances of the curb points from the line
+    shares : EdgeUncertainty
+    passes : m, one sigma of the middle of the passes, see `RoadFrame.pass_sigma`
+
+    Returns
+    -------
+    float, m
+    """
+    first, last = np.searchsorted(places, at - SCATTER_REACH), np.searchsorted(places, at + SCATTER_REACH, side="right")
+    total = np.append(0.0, np.cumsum(np.square(residual)))
+    scatter = (total[last] - total[first]) / np.maximum(last - first, 1)
+    k = np.clip(np.searchsorted(places, at), 1, len(places) - 1)
+    gap = np.clip(np.minimum(at - places[k - 1], places[k] - at), 0.0, None)
+    end = np.clip(np.minimum(at - places[0], places[-1] - at), 0.0, None)
+    variance = shares.foot**2 + shares.scatter**2 * scatter + shares.end**2 * np.exp(-end / END_LENGTH) + (shares.gap * gap) ** 2 + passes**2
+    return float(np.sqrt(variance.mean()))

@@ -1,0 +1,44 @@
+"""How uncertain a driving line is said to be."""
+
+import numpy as np
+import pytest
+from lined_streets import Street
+
+
+def sigmas(lines, **wanted):
+    """sigma_m of the pieces with these values."""
+    return [row["sigma_m"] for row in lines.rows if all(row[name] == value for name, value in wanted.items())]
+
+
+def two_lanes(wander=0.0, gap=None, **street):
+    """A street of two lanes whose lines wander by so many metres over twelve metres, the lines left out in a gap."""
+    found = Street(vehicle=-1.75, **street)
+    for k, offset in enumerate((-3.5, 0.0, 3.5)):
+        def at(s, offset=offset, k=k):
+            return offset + wander * np.sin(2 * np.pi * s / 12.0 + k)
+        for first, last in ((5.0, 115.0),) if gap is None else ((5.0, gap[0]), (gap[1], 115.0)):
+            found.paint(at, first, last, kind="edge" if k != 1 else "centre", line=k + 1)
+        if gap is not None:
+            found.paint(at, *gap, kind="edge" if k != 1 else "centre", line=k + 1, status="bridged")
+    return found
+
+
+def test_between_clean_lines_it_is_some_millimetres_and_lines_that_wander_make_it_worse():
+    clean, wavy = (sigmas(two_lanes(wander).lanes()[0], status="measured") for wander in (0.0, 0.04))
+    assert len(clean) == len(wavy) == 2
+    assert 0.001 < max(clean) < 0.006 and min(wavy) > 1.5 * max(clean)
+
+
+def test_a_bridge_is_worse_than_what_it_joins():
+    lines, _ = two_lanes(gap=(50.0, 62.0)).lanes()
+    measured, bridged = sigmas(lines, status="measured"), [s for status in ("bridged", "inferred") for s in sigmas(lines, status=status)]
+    assert measured and bridged and min(bridged) > max(measured)
+
+
+def test_what_passes_differ_by_is_in_it():
+    street = two_lanes(again=(1.75,))
+    before = sigmas(street.lanes()[0], status="measured")
+    street.frame.pass_sigma[0] = 0.04
+    after = sigmas(street.lanes()[0], status="measured")
+    np.testing.assert_allclose(after, np.hypot(before, 0.04), atol=1e-4)
+    assert before[0] == pytest.approx(before[1], rel=0.5)

@@ -1,0 +1,35 @@
+"""How uncertain an edge is said to be grows with what makes it so."""
+
+import numpy as np
+import pytest
+from lanewright.core.road.edges.uncertainty import CURB_RETURN, MAIN_EDGE, edge_sigma
+
+PLACES = np.arange(0.0, 100.5, 0.5)
+MIDDLE = np.arange(40.0, 60.0, 0.5)
+EXACT = np.zeros(len(PLACES))
+
+
+def test_a_regular_curb_seen_without_scatter_is_as_good_as_its_foot_is_found():
+    assert edge_sigma(MIDDLE, PLACES, EXACT) == pytest.approx(MAIN_EDGE.foot, rel=0.02)
+    assert edge_sigma(MIDDLE, PLACES, EXACT, CURB_RETURN) == pytest.approx(CURB_RETURN.foot, rel=0.02)
+
+
+def test_curb_points_that_scatter_make_it_uncertain_there_and_not_fifty_metres_on():
+    rough = np.where(PLACES < 30.0, 0.020, 0.0)
+    assert edge_sigma(np.arange(5.0, 20.0), PLACES, rough) > 0.015
+    assert edge_sigma(np.arange(80.0, 90.0), PLACES, rough) < 0.003
+
+
+def test_the_middle_of_a_long_gap_is_worse_than_its_ends():
+    gappy = PLACES[(PLACES < 40.0) | (PLACES > 60.0)]
+    at = [edge_sigma(np.array([station]), gappy, np.zeros(len(gappy))) for station in (40.0, 45.0, 50.0)]
+    assert at[0] < at[1] < at[2]
+
+
+def test_the_end_of_an_edge_is_worse_than_its_middle():
+    assert edge_sigma(np.array([0.0]), PLACES, EXACT) > 1.5 * edge_sigma(np.array([50.0]), PLACES, EXACT)
+
+
+def test_passes_that_differ_add_as_squares():
+    alone = edge_sigma(MIDDLE, PLACES, EXACT)
+    assert edge_sigma(MIDDLE, PLACES, EXACT, passes=0.04) == pytest.approx(np.hypot(alone, 0.04))
