@@ -28,8 +28,8 @@ from ..execution.choice import ExecutionSettings
 from ..intensity.correction import IntensitySettings, correct_intensity
 from ..intensity.image import ImageSettings, check_fits, make_intensity_image
 from ..io.geotiff import IntensityImage
-from ..markings.lines.fit import MarkingLineSettings, fit_marking_lines, name_lines
-from ..markings.lines.naming import named_by_lines
+from ..markings.lines.fit import MarkingLineSettings, fit_marking_lines
+from ..markings.lines.naming import named_by_estimate, named_by_lines
 from ..markings.lines.painted_lines import lines_to_features
 from ..markings.objects.cluster import ClusterSettings, cluster_markings
 from ..markings.objects.marking_objects import markings_to_features
@@ -257,7 +257,7 @@ def _paint(result, image_path, settings, stages):
     known = np.c_[edges.course.x, edges.course.y, edges.course.z]
     corrected = correct_marking_lines(lines, frame, result.corrections, known)
     if corrected is not lines:
-        lines = name_lines(corrected, frame, settings.lines, markings, edges, result.road_points, clustered)
+        lines = named_by_estimate(corrected, frame, country(settings.lines.country).usual_lane, markings, edges, result.road_points, clustered)
     markings = named_by_lines(markings, lines)
     result.markings, result.marking_lines = markings_to_features(markings, frame), lines_to_features(lines, frame)
     result.marking_curvature = marking_curvature(_places(clustered), result.marking_lines.geometries, frame.origin)

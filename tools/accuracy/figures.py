@@ -5,6 +5,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.core.io.geotiff import IntensityImage
 from lanewright.core.markings.paint.extract import MARKING_METHODS, extract_markings
@@ -16,6 +17,7 @@ from lanewright.core.survey.trajectory.reader import read_trajectory
 from . import judge
 from .ablations import ABLATIONS
 from .chain import Work, run, set_in
+from .evidence import confidence_figures, evidence_figures
 from .otherwise import street_figures
 from .surveys import read_case
 
@@ -29,27 +31,33 @@ def figures_of(folder, quick=False):
     # every raster made in memory would be said to lack a CRS
     gdal.PushErrorHandler("CPLQuietErrorHandler")
     case = read_case(folder)
-    streets = street_figures(case, variants=not quick)
-    if not case.steps:
-        return dict(name=case.name, kind=case.kind, text=case.text, points=len_of(case.cloud), has=sorted(case.truth.has), steps=False,
-                    streets=streets)
+    about = dict(name=case.name, kind=case.kind, text=case.text, points=len_of(case.cloud), has=sorted(case.truth.has), steps=case.steps,
+                 streets=street_figures(case, variants=not quick))
+    lanes = not quick and "driving_lines" in case.truth.has and "refused" not in about["streets"]["as surveyed"]
+    if not case.steps and not lanes:
+        return about
     with tempfile.TemporaryDirectory() as scratch:
         began = time.perf_counter()
-        survey = open_survey([case.cloud], read_trajectory(case.trajectory))
+        drive = read_trajectory(case.trajectory)
+        survey = open_survey([case.cloud], drive)
         reading = time.perf_counter() - began
         try:
             work = run(Work(survey, Path(scratch)))
-            figures = dict(
-                name=case.name, kind=case.kind, text=case.text, points=len_of(case.cloud), road_points=len(work.road),
-                has=sorted(case.truth.has), beams=work.beams, steps=True, streets=streets,
-                seconds={"survey": reading, **work.seconds}, whole=judged(case, work))
-            figures["boundaries"] = boundary_methods(case, work)
-            figures["methods"] = marking_methods(case, work)
-            if not quick:
-                figures["cells"] = resolutions(case, work)
-                figures["ablations"] = ablations(case, work)
+            figures = {**about, **_steps(case, work, reading, quick)} if case.steps else about
+            if lanes:
+                track = np.column_stack([drive.x, drive.y])
+                figures.update(evidence=evidence_figures(case, track, work), confidence=confidence_figures(case, track, list(work.driving)))
         finally:
             survey.store.close()
+    return figures
+
+
+def _steps(case, work, reading, quick):
+    """The figures of every method and step."""
+    figures = dict(road_points=len(work.road), beams=work.beams, seconds={"survey": reading, **work.seconds}, whole=judged(case, work),
+                   boundaries=boundary_methods(case, work), methods=marking_methods(case, work))
+    if not quick:
+        figures.update(cells=resolutions(case, work), ablations=ablations(case, work))
     return figures
 
 

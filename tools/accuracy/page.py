@@ -2,7 +2,7 @@
 
 from . import published
 from .ablations import ABLATIONS
-from .streets_page import otherwise_section, streets_section
+from .streets_page import evidence_section, otherwise_section, streets_section
 from .tables import mean, number, table, triple
 
 STAGES = {"Road surface": ("survey", "curbs", "edges", "surface"), "Marking extraction": ("intensity", "image", "markings"),
@@ -11,7 +11,7 @@ STAGES = {"Road surface": ("survey", "curbs", "edges", "surface"), "Marking extr
 
 def page(figures, samples):
     every, figures = figures, [f for f in figures if f["steps"]]
-    sections = (_intro(every, samples), streets_section(every), otherwise_section(every), _road_points(figures),
+    sections = (_intro(every, samples), streets_section(every), otherwise_section(every), evidence_section(every), _road_points(figures),
                 _cells(figures), _classes(figures), _seconds(figures),
                 _markings(figures), _methods(figures), _driving(figures), _boundaries(figures), _ablation(figures, samples))
     return "\n\n".join(section for section in sections if section) + "\n"

@@ -41,7 +41,7 @@ def judged(case, track, edges, paint, lanes):
     if paint is not None:
         found.update(paint=(paint["found"], paint["found"] + paint["missed"]), paint_right=(paint["right"], paint["right"] + paint["false"]))
     if "driving_lines" in case.truth.has:
-        found.update(_driving(case.truth, track, [line for line, _ in lanes]))
+        found.update(driving_figures(case.truth, track, [line for line, _ in lanes]))
     return {name: tuple(map(float, pair)) for name, pair in found.items() if pair[1]}
 
 
@@ -56,7 +56,7 @@ def pooled(cases):
     total = {}
     for figures in cases:
         for name, pair in figures.items():
-            total[name] = tuple(np.add(total.get(name, (0.0, 0.0)), pair).tolist())
+            total[name] = tuple(np.add(total.get(name, (0.0,) * len(pair)), pair).tolist())
     return total
 
 
@@ -85,7 +85,8 @@ def _near(true, lines, tolerance, area):
     return (distance(places, lines) <= tolerance).sum(), len(places)
 
 
-def _driving(truth, track, lines):
+def driving_figures(truth, track, lines):
+    """The figures of driving lines (shapely lines), as `judged` gives them."""
     road = shapely.LineString(track)
     found = {name: np.zeros(2) for name in ("lanes_5", "lanes", "driven_5", "driven")}
     for lane in truth.driving:
@@ -99,11 +100,16 @@ def _driving(truth, track, lines):
             found[f"{name}_5"] += (off <= NARROW).sum(), len(off)
     places, ahead = sampled(lines, truth.area)
     off = distance(places, truth.driving)
-    elsewhere = (off > APART) & (shapely.distance(shapely.points(places), road) < APART)
-    found["lanes_right"] = (off[~elsewhere] <= BROAD).sum(), (~elsewhere).sum()
+    counted = in_a_true_lane(places, off, road)
+    found["lanes_right"] = (off[counted] <= BROAD).sum(), counted.sum()
     close = off < SAME
     found["directions"] = (_agree(places[close], ahead[close], truth.driving) > 0).sum(), close.sum()
     return found
+
+
+def in_a_true_lane(places, off, road):
+    """(N,) bool, False for places on the track (a shapely line) where the truth has no lane; `off` m lies the nearest true driving line."""
+    return (off <= APART) | (shapely.distance(shapely.points(places), road) >= APART)
 
 
 def _agree(places, ahead, lines):

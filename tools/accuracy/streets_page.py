@@ -1,6 +1,7 @@
 """The sections of the page on streets of every kind, and on streets surveyed otherwise."""
 
-from .streets import harmonic, percent, pooled
+from .evidence import BINS, EVIDENCE
+from .streets import STEP, harmonic, percent, pooled
 from .tables import number, table
 
 HEAD = ("survey", "curbs", "corners, islands", "pavement edges", "drawn edges right", "markings F1", "driving lines 5 / 15 cm",
@@ -74,3 +75,44 @@ def _change(before, after):
     if before is None or after is None:
         return "–"
     return "·" if abs(after - before) < 0.05 else f"{after - before:+.1f}"
+
+
+def evidence_section(figures):
+    """What each kind of evidence brings to lines and lanes, pooled over the surveys by length, and how right the confidence is."""
+    figures = [f for f in figures if f.get("evidence")]
+    if not figures:
+        return ""
+    names = ("lanes_5", "lanes", "driven", "lanes_right", "directions")
+
+    def scores(name):
+        return [percent(pooled([f["evidence"][name] for f in figures]), one) for one in names]
+
+    whole = scores("")
+    rows = [["**everything**", *(number(value) for value in whole), ""]]
+    for name in EVIDENCE:
+        felt = [f["name"] for f in figures if _differs(f["evidence"][""], f["evidence"][name])]
+        rows.append([name, *(_change(before, after) for before, after in zip(whole, scores(name))), ", ".join(felt) or "none"])
+    return ("## What each kind of evidence brings to lines and lanes\n\nLines and lanes are one estimate from many kinds of evidence. Here each "
+            "kind is left out alone, everything else as it is; the first row is pooled over the surveys by length, the others are the change "
+            "in points. A minus is what the evidence is worth. Evidence that few surveys feel counts there: the last column names those whose "
+            "driving lines (15 cm), miscoding or directions change by more than half a point.\n\n"
+            + table(["left out", "driving lines 5 cm", "15 cm", "driven lanes 15 cm", "drawn lanes right, 15 cm", "directions right", "felt by"],
+                    rows)
+            + "\n\n" + _confidence(figures))
+
+
+def _differs(before, after):
+    pairs = [(percent(before, name), percent(after, name)) for name in ("lanes", "lanes_right", "directions")]
+    return any((a is None) != (b is None) or a is not None and abs(a - b) > 0.5 for a, b in pairs)
+
+
+def _confidence(figures):
+    total = pooled([f.get("confidence") or {} for f in figures])
+    rows = []
+    for k in sorted(total, key=int, reverse=True):
+        right, count, said = total[k]
+        if count:
+            span = f"{BINS[int(k)]:.2f} to {min(BINS[int(k) + 1], 1.0):.2f}"
+            rows.append([span, number(said / count, 2), number(right / count, 2), number(count * STEP, 0)])
+    return ("Pieces of lanes carry a `confidence`. Of what is drawn with some confidence, the share that lies within 15 cm of a true driving "
+            "line:\n\n" + table(["said", "mean", "right", "m of driving lines"], rows))

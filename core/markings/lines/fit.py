@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -16,14 +16,12 @@ from ...countries.catalogue import country
 from ...countries.neutral import NEUTRAL
 from ...curves.model_selection import CURVES
 from ...survey.store.records import join_columns
-from ..cross_section.named_lines import line_kinds
-from ..cross_section.roads import estimate_roads
-from ..cross_section.sections import sections_of_edges, sections_of_lines
 from ..objects.marking_objects import MarkingObjects
 from .common_trend import CommonTrend
 from .dash_pattern import same_dash_pattern
 from .geometry import LineShape, fit_line_shapes
 from .linking import LinkedLine, link_lines, link_over_long_gaps, without_strays
+from .naming import named_by_estimate
 from .painted_lines import PaintedLines, painted_lines_of
 from .selection import SelectedLine, crossings, hatching_bars, hatching_borders, select_lines
 from .strands import line_paint, trace_strands
@@ -121,25 +119,8 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
     if replaced:
         progress.warn(f"{replaced} of {number} lines cannot take the curve “{settings.curve}”; "
                       "the automatic curve was used for them.")
-    return name_lines(painted_lines_of(rows, frame, clustered_points.crs), frame, settings, markings, edges, road_points, clustered_points)
-
-
-def name_lines(lines: PaintedLines, frame: RoadFrame, settings: MarkingLineSettings, markings: MarkingObjects, edges: RoadEdges | None,
-               road_points: RoadPoints | None, paint: RoadPoints) -> PaintedLines:
-    """The lines with the kinds that the estimate of their roads gives them; one that bounds no lane is called by how it is drawn.
-
-    Parameters are those of `fit_marking_lines`; `paint` are its clustered points.
-    """
-    if not len(lines):
-        return lines
-    curbs = sections_of_edges(edges) if edges is not None else None
-    estimates = estimate_roads(sections_of_lines(lines), frame, country(settings.country).usual_lane, curbs=curbs, markings=markings,
-                               road_points=road_points, paint=paint)
-    found = line_kinds(estimates)
-    drawn = np.where([pattern.startswith("double") for pattern in lines.pattern], "centre",
-                     np.where(lines.pattern == "dashed", "lane", "edge")).astype(object)
-    kind = np.array([found.get(number, own) for number, own in zip(lines.line.tolist(), drawn)], object)
-    return replace(lines, kind=kind)
+    drawn = painted_lines_of(rows, frame, clustered_points.crs)
+    return named_by_estimate(drawn, frame, country(settings.country).usual_lane, markings, edges, road_points, clustered_points)
 
 
 def _linked(strands, settings):

@@ -1,15 +1,53 @@
-"""Markings named after the lines that they make: a dash alone does not show whether it separates lanes or directions."""
+"""Lines named by the estimate of their road, and markings after the lines that they make: a dash alone does not show what it separates."""
 
 from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 
+from ..cross_section.named_lines import line_kinds
+from ..cross_section.roads import estimate_roads
+from ..cross_section.sections import sections_of_edges, sections_of_lines
 from ..objects.classify import LINE_KINDS
 from ..objects.marking_objects import MarkingObjects
 from .painted_lines import PaintedLines
 
+if TYPE_CHECKING:
+    from ...road.edges.road_edges import RoadEdges
+    from ...survey.frame.road_frame import RoadFrame
+    from ...survey.store.road_points import RoadPoints
+
 MAX_DISTANCE_TO_LINE = 0.15   # m between a marking and the line along it
+
+
+def named_by_estimate(lines: PaintedLines, frame: RoadFrame, usual_width: float, markings: MarkingObjects | None = None,
+                      edges: RoadEdges | None = None, road_points: RoadPoints | None = None, paint: RoadPoints | None = None) -> PaintedLines:
+    """Lines with the `kind` that the estimate of their road gives them; one that bounds no lane is called by how it is drawn.
+
+    Parameters
+    ----------
+    lines : PaintedLines
+    frame : RoadFrame
+    usual_width : metres, of lanes where the lines do not tell
+    markings, edges, road_points : what else the estimate is made from, or None
+    paint : points of markings, which serve where there are no road points, or None
+
+    Returns
+    -------
+    PaintedLines, the same with the new names
+    """
+    if not len(lines):
+        return lines
+    curbs = sections_of_edges(edges) if edges is not None else None
+    found = line_kinds(estimate_roads(sections_of_lines(lines), frame, usual_width, curbs=curbs, markings=markings, road_points=road_points,
+                                      paint=paint))
+    drawn = np.where([pattern.startswith("double") for pattern in lines.pattern], "centre",
+                     np.where(lines.pattern == "dashed", "lane", "edge")).astype(object)
+    kind = np.array([found.get(number, own) for number, own in zip(lines.line.tolist(), drawn)], object)
+    return replace(lines, kind=kind)
 
 
 def named_by_lines(markings: MarkingObjects, lines: PaintedLines) -> MarkingObjects:

@@ -1,0 +1,48 @@
+"""`make accuracy`: what each kind of evidence brings to lines and lanes, and how right their confidence is."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from shapely import LineString
+
+pytest.importorskip("osgeo.gdal")
+
+from accuracy.evidence import EVIDENCE, confidence_figures  # noqa: E402
+from accuracy.streets_page import evidence_section  # noqa: E402
+from lanewright.core.markings.cross_section.weights import EstimateWeights  # noqa: E402
+
+TRUE_LANE = LineString([(0, 0), (100, 0)])
+CASE = SimpleNamespace(truth=SimpleNamespace(driving=[TRUE_LANE], area=None))
+TRACK = np.array([[0.0, -20.0], [100.0, -20.0]])
+
+
+@pytest.mark.parametrize("name", EVIDENCE)
+def test_leaving_out_evidence_changes_weights_that_there_are(name):
+    change = EVIDENCE[name]
+    if isinstance(change, dict):
+        assert replace(EstimateWeights(), **change) != EstimateWeights()
+
+
+def test_the_confidence_of_a_lane_is_compared_with_the_share_of_it_that_is_right():
+    # 20 of 100 m lie half a metre off
+    drawn = LineString([(0, 0.05), (80, 0.05), (80, 0.5), (100, 0.5)])
+    (right, count, said), = confidence_figures(CASE, TRACK, [(drawn, {"confidence": 0.8})]).values()
+    assert right / count == pytest.approx(0.8, abs=0.01) and said / count == pytest.approx(0.8)
+
+
+def test_what_is_drawn_on_the_track_where_the_truth_has_no_lane_counts_neither_way():
+    drawn = LineString([(10, -20), (60, -20)])
+    (right, count, _), = confidence_figures(CASE, TRACK, [(drawn, {"confidence": 0.9})]).values()
+    assert right == count == 0
+
+
+def test_the_page_says_what_a_street_loses_without_some_evidence():
+    whole = dict(lanes=(95.0, 100.0), lanes_5=(90.0, 100.0), driven=(99.0, 100.0), lanes_right=(98.0, 100.0), directions=(100.0, 100.0))
+    evidence = {"": whole, **{name: whole for name in EVIDENCE}, "arrows": dict(whole, directions=(60.0, 100.0))}
+    text = evidence_section([dict(name="a street", evidence=evidence, confidence={"4": (970.0, 1000.0, 990.0)})])
+    arrows = next(line for line in text.splitlines() if line.startswith("| arrows"))
+    assert "-40.0" in arrows and arrows.endswith("| a street |")
+    assert next(line for line in text.splitlines() if line.startswith("| stop lines")).endswith("| none |")
+    assert "| 0.95 to 1.00 | 0.99 | 0.97 | 100 |" in text
