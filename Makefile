@@ -1,6 +1,6 @@
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench accuracy package manual window lint translations test-newer test-hdmap models
+.PHONY: help setup demo test bench accuracy package manual window lint translations test-newer test-hdmap test-cluster models
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(firstword $(MAKEFILE_LIST)) | sed -E 's/^([a-z-]+):.*## /make \1\t/' | expand -t 16
@@ -40,6 +40,9 @@ models: setup ## the graphical models, after an algorithm gained or lost a param
 
 test-hdmap: setup ## exported HD maps read by asam-qc, pyxodr, lanelet2 and ezdxf, which it installs into build/hdmap/
 	@tools/test_hdmap.sh
+
+test-cluster: setup ## phases on a real Dask cluster on this computer, from PyPI into build/cluster/
+	@tools/test_cluster.sh
 
 test-newer: ## the tests on QGIS 3.44, in a Debian forky of its own under build/ (root, debootstrap)
 	@tools/test_newer.sh

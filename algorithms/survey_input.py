@@ -51,6 +51,19 @@ EXECUTION_SETTINGS = (
            "100 million points, and none for smaller ones. Where no Python can be started, this program does their work, and the log says so."),
         advanced=True,
     ),
+    SettingSpec(
+        "SCHEDULER", "execution.choice:ExecutionSettings", "scheduler", tr("Address of a Dask scheduler"),
+        tr("The workers of a Dask cluster that is running already find curbs and make scanlines, with the same results: tls://host:8786, or "
+           "tcp://127.0.0.1:8786 on this computer. They need the same Python, packages and Lanewright, no QGIS, and a work folder that all "
+           "machines see. The manual's page on large surveys tells how to start one. Worker processes are not used then."),
+        advanced=True,
+    ),
+    SettingSpec(
+        "INSECURE", "execution.choice:ExecutionSettings", "insecure", tr("Connect without encryption"),
+        tr("Whoever can reach an unencrypted cluster can run programs on it. Set this only in a network that is yours alone; on this "
+           "computer it is not needed."),
+        advanced=True,
+    ),
 )
 
 

@@ -1,4 +1,4 @@
-"""Phases of the work and who runs them: threads of this process, or worker processes.
+"""Phases of the work and who runs them: threads of this process, worker processes, or the workers of a Dask cluster.
 
 In: a `Phase`, a public function with what it reads from and plain settings, and the sections of road it is to work on. Out: its results in
 the order of the sections, the same from every `Executor`.
@@ -7,7 +7,8 @@ the order of the sections, the same from every `Executor`.
 from ..lazy import public
 
 __getattr__, __all__ = public(__name__, {
-    "choice": ("ExecutionSettings", "executor_for"),
+    "choice": ("ExecutionSettings", "cluster_for", "executor_for"),
+    "cluster": ("Cluster", "cluster_of"),
     "phase": ("Executor", "Phase", "Recipe"),
     "plain": ("digest", "read_plain", "write_plain"),
     "processes": ("WorkerProcesses",),

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
+from .cluster import Cluster, cluster_of
+from .cluster_connection import check_address
 from .interpreter import find_interpreter
 from .phase import Executor
 from .processes import WorkerProcesses
@@ -25,16 +27,45 @@ class ExecutionSettings:
     ----------
     workers : worker processes; 0 for threads of this process or, for a large survey, one process per processor core
     work_folder : folder in which the points that were read and the results of phases are kept for later runs; "" for none
+    scheduler : address of a running Dask scheduler whose workers do the work instead; "" for none
+    insecure : whether the connection to it may go unencrypted beyond this computer
     """
 
     workers: int = setting(0, 0, 256, "The number of workers", "", "for the automatic choice")
     work_folder: str = ""
+    scheduler: str = ""
+    insecure: bool = False
 
     def __post_init__(self) -> None:
         check_limits(self)
+        if self.scheduler:
+            check_address(self.scheduler, self.insecure)
+
+    @property
+    def work(self) -> WorkFolder | None:
+        """The work folder, if there is one.
+
+        Raises
+        ------
+        RoadExtractionError
+            If nothing can be written there.
+        """
+        return WorkFolder(self.work_folder) if self.work_folder else None
 
 
-def executor_for(points: int, settings: ExecutionSettings = ExecutionSettings(), progress: Progress = Progress()) -> Executor:
+def cluster_for(settings: ExecutionSettings, progress: Progress = Progress()) -> Cluster | None:
+    """The Dask cluster of a run, None where there is none; asked for before the survey is read, as there is much that it may lack.
+
+    Raises
+    ------
+    RoadExtractionError
+        If the cluster cannot be used.
+    """
+    return cluster_of(settings.scheduler, settings.insecure, settings.work, progress) if settings.scheduler else None
+
+
+def executor_for(points: int, settings: ExecutionSettings = ExecutionSettings(), progress: Progress = Progress(),
+                 cluster: Cluster | None = None) -> Executor:
     """The executor of a run; close it at the end.
 
     Parameters
@@ -42,8 +73,9 @@ def executor_for(points: int, settings: ExecutionSettings = ExecutionSettings(),
     points : of the survey
     settings : ExecutionSettings
     progress : is told who does the work, where that are not threads as usual
+    cluster : result of `cluster_for`
     """
-    executor = _executor_for(points, settings, progress)
+    executor = cluster or _executor_for(points, settings, progress)
     return KeptResults(executor, WorkFolder(settings.work_folder)) if settings.work_folder else executor
 
 

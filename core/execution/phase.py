@@ -54,6 +54,11 @@ def no_place(item: Any) -> str:
     return str(item)
 
 
+def no_size(item: Any) -> float:
+    """The size of items that are alike."""
+    return 0.0
+
+
 @dataclass(frozen=True)
 class Phase:
     """One step of the work, the same for all sections of road.
@@ -63,12 +68,16 @@ class Phase:
     source : what it reads from, open in this process
     arguments : plain values that all items share
     place : names the stretch of road that an item is, for messages
+    size : tells items apart by how long they take; any unit
+    join : the result of an item from those of the two halves of its range of numbers; None where an item cannot be halved
     """
 
     function: Callable[..., Any]
     source: Any
     arguments: tuple[Any, ...] = ()
     place: Callable[[Any], str] = field(default=no_place, compare=False)
+    size: Callable[[Any], float] = field(default=no_size, compare=False)
+    join: Callable[[list[Any]], Any] | None = field(default=None, compare=False)
 
     def result(self, item: Any) -> Any:
         """The result of one item, computed here."""
@@ -78,8 +87,14 @@ class Phase:
 class Executor(Protocol):
     """Who runs phases."""
 
-    def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress()) -> Iterator[Any]:
+    def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
         """Yield the results of all items in their order.
+
+        Parameters
+        ----------
+        phase, items : the work
+        progress : Progress
+        keep : a file for every item, which the executor may write the result to as soon as it is computed; it stays
 
         Raises
         ------

@@ -11,6 +11,7 @@ import os
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
+from uuid import uuid4
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from .phase import name_of, named
 TREE = "tree"   # the entry of the file that says how the arrays belong together
 
 
-def write_plain(path: Path, value: Any) -> None:
+def write_plain(path: Path, value: Any, unfinished_in: Path | None = None) -> None:
     """Write a value to a file, which appears whole or not at all.
 
     Parameters
@@ -27,6 +28,7 @@ def write_plain(path: Path, value: Any) -> None:
     path : of the file, ending in .npz
     value : None, bool, int, float, str, numpy arrays and numbers, lists, tuples and dicts of these, and objects of classes of
         core whose attributes are such values. A class may leave attributes out by `__getstate__`
+    unfinished_in : folder on the same disk that has the unfinished file; by default that of the file
 
     Raises
     ------
@@ -35,7 +37,8 @@ def write_plain(path: Path, value: Any) -> None:
     """
     arrays: list[np.ndarray] = []
     text = json.dumps(_tree(value, arrays))
-    unfinished = path.with_name(f"{path.stem}.{os.getpid()}.part.npz")
+    # processes of several machines may write the same file
+    unfinished = (unfinished_in or path.parent) / f"{path.stem}.{uuid4().hex}.part.npz"
     try:
         np.savez(unfinished, **{TREE: np.frombuffer(text.encode(), np.uint8), **{f"a{k}": array for k, array in enumerate(arrays)}})
         os.replace(unfinished, path)

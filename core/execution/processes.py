@@ -20,7 +20,7 @@ from ..common.progress import Progress
 from .interpreter import command_of, environment, import_folders, no_window
 from .phase import Phase, name_of
 from .plain import read_plain, write_plain
-from .tasks import ShippedPhase
+from .tasks import ShippedPhase, raise_answer
 
 TRIALS = 2          # of an item whose worker ended; what kills two workers kills a third
 END_TIME = 5.0      # s that a worker may take to end by itself
@@ -49,8 +49,8 @@ class WorkerProcesses:
         self._lock = threading.Lock()
         self._numbers = count()
 
-    def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress()) -> Iterator[Any]:
-        """Yield the results of all items in their order; see `Executor`.
+    def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
+        """Yield the results of all items in their order; see `Executor`. Nothing is kept by it.
 
         Raises
         ------
@@ -96,21 +96,11 @@ class WorkerProcesses:
                 self._drop(worker)
                 continue
             self._idle.put(worker)
-            if answer:
-                self._raise(phase, item, answer)
+            raise_answer(answer, phase, item, "A worker process")
             return
         raise RoadExtractionError(
             f"Worker processes ended {TRIALS} times while they worked on {phase.place(item)}; usually the computer is out of memory. "
             f"Try fewer workers, or 0 for the automatic choice. {last}".rstrip())
-
-    def _raise(self, phase, item, answer):
-        if "refused" in answer:
-            raise RoadExtractionError(answer["refused"])
-        if "memory" in answer:
-            raise RoadExtractionError(f"A worker process ran out of memory at {phase.place(item)}. Try fewer workers.")
-        if "disk" in answer:
-            raise OSError(answer["disk"])
-        raise RuntimeError(f"A worker process failed at {phase.place(item)}:\n{answer['bug']}")
 
     def _disk_error(self, error):
         return RoadExtractionError(f"The folder for temporary files, {self.folder}, cannot be used: {error}. "

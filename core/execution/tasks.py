@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import threading
+import traceback
 from collections import OrderedDict
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from .phase import Recipe, named
+from ..common.errors import Cancelled, RoadExtractionError
+from .phase import Phase, Recipe, named
 from .plain import read_plain, write_plain
 
 OPEN_PHASES = 2   # phases kept open in a worker: the current one and the one before
@@ -28,28 +31,74 @@ class ShippedPhase:
 
 
 class Tasks:
-    """Computes items of phases that lie in files."""
+    """Computes items of phases that lie in files; several threads may share it."""
 
     def __init__(self) -> None:
+        self._lock = threading.Lock()
         self._open: OrderedDict[Path, tuple[Any, Any, tuple[Any, ...]]] = OrderedDict()
         self._sources: dict[Any, Any] = {}   # sources that several phases share, by the keys of their recipes
 
-    def do(self, phase: Path, item: Path, result: Path) -> None:
+    def answer(self, phase: Path, item: Path, result: Path) -> dict[str, str]:
         """Compute one item.
 
         Parameters
         ----------
         phase : file of a ShippedPhase
         item : file of the item
-        result : file that the result is written to
+        result : file that the result is written to; unfinished, it lies beside the phase
+
+        Returns
+        -------
+        empty, or what went wrong: one of the keys "refused", "cancelled", "memory", "disk" and "bug", and words
         """
-        function, source, arguments = self._phase(phase)
-        write_plain(result, function(source, read_plain(item), *arguments))
+        try:
+            function, source, arguments = self._phase(phase)
+            write_plain(result, function(source, read_plain(item), *arguments), phase.parent)
+        except RoadExtractionError as error:
+            return {"refused": str(error)}
+        except Cancelled:
+            return {"cancelled": "the caller has ended the phase"}
+        except MemoryError:
+            return {"memory": "out of memory"}
+        except OSError as error:
+            return {"disk": str(error)}
+        except Exception:
+            return {"bug": traceback.format_exc()}
+        return {}
 
     def _phase(self, path):
-        if path not in self._open:
-            shipped: ShippedPhase = read_plain(path)
-            self._open[path] = named(shipped.function), shipped.source.open(self._sources), shipped.arguments
-            while len(self._open) > OPEN_PHASES:
-                self._open.popitem(last=False)
-        return self._open[path]
+        with self._lock:
+            if path not in self._open:
+                shipped: ShippedPhase = read_plain(path)
+                self._open[path] = named(shipped.function), shipped.source.open(self._sources), shipped.arguments
+                while len(self._open) > OPEN_PHASES:
+                    self._open.popitem(last=False)
+            return self._open[path]
+
+
+def raise_answer(answer: dict[str, str], phase: Phase, item: Any, worker: str) -> None:
+    """Raise what went wrong with an item, in the words for users.
+
+    Parameters
+    ----------
+    answer : of `Tasks.answer`
+    phase, item : that were asked for
+    worker : what messages call the worker
+
+    Raises
+    ------
+    RoadExtractionError
+        Of the phase, or if the worker ran out of memory.
+    OSError
+        If a file could not be read or written.
+    RuntimeError
+        Of a bug, with its traceback.
+    """
+    if "refused" in answer:
+        raise RoadExtractionError(answer["refused"])
+    if "memory" in answer:
+        raise RoadExtractionError(f"{worker} ran out of memory at {phase.place(item)}. Try fewer workers.")
+    if "disk" in answer:
+        raise OSError(answer["disk"])
+    if answer:
+        raise RuntimeError(f"{worker} failed at {phase.place(item)}:\n{answer.get('bug', answer)}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import Any
 
 from ..common.parallel import ordered_map
@@ -21,8 +22,8 @@ class Threads:
     def __init__(self, count: int | None = None):
         self.count = count
 
-    def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress()) -> Iterator[Any]:
-        """Yield the results of all items in their order; see `Executor`."""
+    def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
+        """Yield the results of all items in their order; see `Executor`. Nothing is kept by it."""
         return ordered_map(phase.result, items, progress, self.count)
 
     def release(self) -> None:

@@ -35,7 +35,7 @@ class WorkFolder:
     """
 
     def __init__(self, path: str):
-        self.path = Path(path)
+        self.path = Path(path).absolute()
         try:
             self.path.mkdir(exist_ok=True)
             trial = self.path / f"{uuid4().hex}.part"
@@ -118,7 +118,7 @@ class KeptResults:
     def __init__(self, executor: Executor, work: WorkFolder):
         self.executor, self.work = executor, work
 
-    def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress()) -> Iterator[Any]:
+    def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
         """Yield the results of all items in their order; see `Executor`."""
         items = list(items)
         # a recipe names the folder, which may be moved
@@ -128,16 +128,17 @@ class KeptResults:
         missing = [k for k, file in enumerate(files) if not file.exists()]
         if len(missing) < len(items):
             progress.info(f"{len(items) - len(missing)} of {len(items)} stretches of road were finished by an earlier run.")
-        made = self.executor.run(phase, [items[k] for k in missing], progress)
         left = set(missing)
         try:
             folder.mkdir(exist_ok=True)
+            made = self.executor.run(phase, [items[k] for k in missing], progress, [files[k] for k in missing])
             for k, file in enumerate(files):
                 if k not in left:
                     yield read_plain(file)
                     continue
                 result = next(made)
-                write_plain(file, result)
+                if not file.exists():
+                    write_plain(file, result)
                 yield result
         except OSError as error:
             raise self.work.error(error) from error

@@ -17,12 +17,8 @@ import json
 import os
 import shutil
 import sys
-import traceback
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from .tasks import Tasks
+from typing import Any
 
 PACKAGE = "lanewright"
 ROOT = Path(__file__).resolve().parents[2]
@@ -58,28 +54,11 @@ def main() -> None:
         if task.get("end"):
             return
         try:
-            answers.write(json.dumps(answer_to(tasks, folder, task)) + "\n")
+            answers.write(json.dumps(tasks.answer(*(folder / task[name] for name in ("phase", "item", "result")))) + "\n")
             answers.flush()
         except BrokenPipeError:
             break
     shutil.rmtree(folder, ignore_errors=True)
-
-
-def answer_to(tasks: Tasks, folder: Path, task: dict[str, str]) -> dict[str, Any]:
-    """Do a task; what went wrong, by kind and in words."""
-    from lanewright.core.common.errors import RoadExtractionError
-
-    try:
-        tasks.do(folder / task["phase"], folder / task["item"], folder / task["result"])
-    except RoadExtractionError as error:
-        return {"refused": str(error)}
-    except MemoryError:
-        return {"memory": True}
-    except OSError as error:
-        return {"disk": str(error)}
-    except Exception:
-        return {"bug": traceback.format_exc()}
-    return {}
 
 
 if __name__ == "__main__":

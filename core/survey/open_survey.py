@@ -13,11 +13,11 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
-from ..execution.choice import ExecutionSettings, executor_for
+from ..execution.choice import ExecutionSettings, cluster_for, executor_for
 from ..execution.phase import Executor, Recipe
 from ..execution.plain import digest, read_plain, write_plain
 from ..execution.threads import THREADS
-from ..execution.work_folder import Heard, WorkFolder, code_digest
+from ..execution.work_folder import Heard, code_digest
 from ..io.crs import check_projected, crs_note, parse_crs
 from .adjustment.adjust import adjust_passes
 from .clock_check import check_clock
@@ -202,13 +202,16 @@ def open_survey(paths: Sequence[str | Path], trajectory: Trajectory, settings: S
     Raises
     ------
     RoadExtractionError
-        As `read_survey`, and if the work folder cannot be used.
+        As `read_survey`, and if the work folder or the cluster cannot be used.
     """
-    if execution.work_folder:
-        survey = _kept_survey(WorkFolder(execution.work_folder), paths, trajectory, settings, progress)
-    else:
-        survey = read_survey(paths, trajectory, settings, progress)
-    survey.executor = executor_for(survey.store.count, execution, progress)
+    work, cluster = execution.work, cluster_for(execution, progress)
+    try:
+        survey = _kept_survey(work, paths, trajectory, settings, progress) if work else read_survey(paths, trajectory, settings, progress)
+    except BaseException:
+        if cluster is not None:
+            cluster.close()
+        raise
+    survey.executor = executor_for(survey.store.count, execution, progress, cluster)
     survey.store.at_close = survey.executor.close
     return survey
 

@@ -3775,6 +3775,26 @@
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />
+            <source>Address of a Dask scheduler</source>
+            <translation>Adresse eines Dask-Schedulers</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
+            <source>The workers of a Dask cluster that is running already find curbs and make scanlines, with the same results: tls://host:8786, or tcp://127.0.0.1:8786 on this computer. They need the same Python, packages and Lanewright, no QGIS, and a work folder that all machines see. The manual's page on large surveys tells how to start one. Worker processes are not used then.</source>
+            <translation>Die Worker eines bereits laufenden Dask-Clusters suchen Bordsteine und bilden Scanlinien, mit denselben Ergebnissen: tls://rechner:8786, oder tcp://127.0.0.1:8786 auf diesem Rechner. Sie brauchen dasselbe Python, dieselben Pakete und dasselbe Lanewright, kein QGIS, und einen Arbeitsordner, den alle Rechner sehen. Wie man einen startet, steht im Handbuch unter Large surveys. Weitere Prozesse werden dann nicht verwendet.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
+            <source>Connect without encryption</source>
+            <translation>Unverschlüsselt verbinden</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
+            <source>Whoever can reach an unencrypted cluster can run programs on it. Set this only in a network that is yours alone; on this computer it is not needed.</source>
+            <translation>Wer einen unverschlüsselten Cluster erreicht, kann Programme auf ihm ausführen. Nur in einem Netz einschalten, das Ihnen allein gehört; auf diesem Rechner ist es nicht nötig.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey_input.py" />
             <source>No trajectory was given; it is estimated from the points …</source>
             <translation>Es wurde keine Trajektorie angegeben; sie wird aus den Punkten geschätzt …</translation>
         </message>

@@ -105,7 +105,7 @@ def test_the_code_is_written_for_qt_5_and_qt_6_alike():
 
 def test_no_program_is_started_but_a_python_that_runs_the_worker():
     commands = [re.findall(r"subprocess\.(\w+)\([^\n]*\n\s*(\w+\()", path.read_text(encoding="utf-8")) for path in WORKERS]
-    assert commands == [[("run", "command_of(")], [("Popen", "command_of(")], []]
+    assert commands == [[("run", "command_of(")], [("Popen", "command_of(")], [], [], []]
     from lanewright.core.execution.interpreter import WORKER, command_of
 
     command = command_of("/usr/bin/python3", "--try")
@@ -146,13 +146,16 @@ def test_nothing_is_fetched_or_sent():
     network = re.compile(r"^\s*(?:import|from)\s+(?:urllib|requests|http|socket|ftplib|smtplib|aiohttp)\b"
                          r"|QtNetwork|QgsNetwork|QgsBlockingNetwork", re.M)
     assert not [path for path in shipped() if network.search(path.read_text(encoding="utf-8"))]
+    # the scheduler of a cluster that the user names is the one exception
+    cluster = re.compile(r"^\s*(?:import|from)\s+(?:dask|distributed)\b", re.M)
+    assert [path.name for path in shipped() if cluster.search(path.read_text(encoding="utf-8"))] == ["cluster_connection.py"]
 
 
-WORKERS = [ROOT / "core" / "execution" / name for name in ("interpreter.py", "processes.py", "worker.py")]
+WORKERS = [ROOT / "core" / "execution" / name for name in ("interpreter.py", "processes.py", "worker.py", "cluster.py", "cluster_task.py")]
 
 
 def test_no_input_is_ever_run():
-    """Not as Python, not as a program, not unpickled, not unpacked. Worker processes alone are started, and remove their own folder."""
+    """Not as Python, not as a program, not unpickled, not unpacked. Worker processes alone are started; the folders of runs alone are removed."""
     acting = re.compile(r"(?<![\w.])(?:eval|exec|compile|__import__)\(|\bpickle\b|\bmarshal\b|\bsubprocess\b|os\.system|os\.popen"
                         r"|\bshelve\b|allow_pickle=True|\bzipfile\b|\btarfile\b|rmtree")
     found = [(path.name, match.group()) for path in shipped() for match in acting.finditer(path.read_text(encoding="utf-8"))

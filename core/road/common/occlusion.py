@@ -7,6 +7,8 @@ road is open: a driveway, a junction.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from copy import copy
 from typing import Any
 
 import numpy as np
@@ -64,6 +66,13 @@ class OcclusionGrid:
         own = slice(part.first - self.first, part.first - self.first + len(part.tall))
         self.tall[own] |= part.tall
         self.ground[own] = np.fmin(self.ground[own], part.ground)
+
+    @classmethod
+    def join(cls, parts: Sequence[OcclusionGrid]) -> OcclusionGrid:
+        """One grid of the profiles of several, which follow each other."""
+        joined = copy(parts[0])
+        joined.ground, joined.tall = (np.concatenate([getattr(part, name) for part in parts]) for name in ("ground", "tall"))
+        return joined
 
     def add_level_ground(self, profiles: tuple[int, int], nearest: np.ndarray, farthest: np.ndarray, height: np.ndarray) -> None:
         """Add ground without gaps.

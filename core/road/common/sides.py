@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .decimation import POINTS_PER_LEVEL_CELL, PointDecimation, limit_points_per_cell
-from .occlusion import MIN_OCCLUDER_HEIGHT
+from .occlusion import MIN_OCCLUDER_HEIGHT, OcclusionGrid
 from .pseudo_scanlines import PseudoScanLines, cells_of_points, ground_of_profiles, join_profile_runs
 
 if TYPE_CHECKING:
@@ -56,6 +56,12 @@ def work_sections(survey: Survey, road: int, width: float) -> list[tuple[int, in
     count = max(int(np.ceil((end - start) / WORK_SECTION_LENGTH)), 1)
     bounds = np.unique(np.rint(np.linspace(first, last, count + 1)).astype(int))
     return [(int(a), int(b)) for a, b in zip(bounds[:-1], bounds[1:])]
+
+
+def join_sections(parts: Sequence[tuple[Mapping[str, Any], Mapping[str, OcclusionGrid]]]) -> tuple[dict[str, Any], dict[str, OcclusionGrid]]:
+    """What the phases of profiles and scanlines find in a section, from what they find in parts of it that follow each other."""
+    found, beside = ({side: [part[side] for part in column if side in part] for side in SIDE_SIGNS} for column in zip(*parts))
+    return {side: type(some[0]).join(some) for side, some in found.items() if some}, {side: OcclusionGrid.join(some) for side, some in beside.items()}
 
 
 def side_profiles(decimation: PointDecimation, road: int, section: tuple[int, int], tracks: Mapping[str, OutermostTrack],

@@ -115,15 +115,24 @@ def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str,
     line = survey.frame.road(road)
     known, barrier = KnownPlaces(_places_along(line, main, MAX_JOINED_GAP)), _places_along(line, main, MIN_OPENING_LENGTH).T
     phase = Phase(plan_steps_of_section, decimation, (road, limits, known, barrier, settings),
-                  lambda section: survey.stretch(road, *(k * settings.profile_width for k in section)))
+                  lambda section: survey.stretch(road, *(k * settings.profile_width for k in section)),
+                  lambda section: survey.store.points_between(road, *(k * settings.profile_width for k in section)), _join_parts)
     sections = work_sections(survey, road, settings.profile_width)
-    found = [part for part in decimation.executor.run(phase, sections, progress) if part is not None]
-    if not found:
+    found = _join_parts(decimation.executor.run(phase, sections, progress))
+    if found is None:
         return []
-    steps, falls = PlanSteps.join([part for part, _, _ in found]), np.concatenate([part for _, part, _ in found])
-    scanner_noise = np.concatenate([part for _, _, part in found])
+    steps, falls, scanner_noise = found
     chains = [c for c in join_chains(link_plan_steps(steps), steps) if is_curb_like(c, steps, scanner_noise, settings)]
     return classify_curbs(chains, steps, falls, _runs(main, line), line, limits, survey.frame.passes_of(road))
+
+
+def _join_parts(parts):
+    """The results of `plan_steps_of_section` of several sections as one."""
+    found = [part for part in parts if part is not None]
+    if not found:
+        return None
+    steps, falls, scanner_noise = zip(*found)
+    return PlanSteps.join(steps), np.concatenate(falls), np.concatenate(scanner_noise)
 
 
 class SearchLimit:

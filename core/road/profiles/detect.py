@@ -24,6 +24,7 @@ from ..common.sides import (
     SIDE_SIGNS,
     OutermostTrack,
     expected_height,
+    join_sections,
     side_profiles,
     work_sections,
 )
@@ -124,7 +125,8 @@ def _steps_of_road(decimation, road, settings, progress):
     sections = work_sections(survey, road, width)
     first, last = sections[0][0], sections[-1][1]
     occlusion = {side: OcclusionGrid(width, first, last - first, MAX_CURB_OFFSET) for side in SIDE_SIGNS}
-    phase = Phase(steps_of_section, decimation, (road, settings), lambda section: survey.stretch(road, *(k * width for k in section)))
+    phase = Phase(steps_of_section, decimation, (road, settings), lambda section: survey.stretch(road, *(k * width for k in section)),
+                  lambda section: survey.store.points_between(road, *(k * width for k in section)), join_sections)
     parts = {side: [] for side in SIDE_SIGNS}
     for found, beside in decimation.executor.run(phase, sections, progress):
         for side, steps in found.items():

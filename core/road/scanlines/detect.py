@@ -24,7 +24,7 @@ from ..common.curb_limits import CurbLimits
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.occlusion import HIDDEN_POINT_SPACING, MIN_OCCLUDER_HEIGHT, OcclusionGrid
 from ..common.pseudo_scanlines import MIN_SCANNER_NOISE
-from ..common.sides import BLOCK_SECTION_LENGTH, MAX_CURB_OFFSET, SIDE_SIGNS, OutermostTrack, expected_height
+from ..common.sides import BLOCK_SECTION_LENGTH, MAX_CURB_OFFSET, SIDE_SIGNS, OutermostTrack, expected_height, join_sections
 from ..common.tracking import curb_chains, drop_short_curbs, link_apart, select_along_road
 from ..edges.fit import EDGE_VERTEX_SPACING, MAX_EDGE_JUMP, MAX_EDGE_SKEW, MIN_EDGE_LENGTH, MIN_HIDDEN_SHARE, EdgeCurve, without_outliers
 from ..edges.road_edges import EdgePiece, RoadEdges, joined_pieces
@@ -126,7 +126,8 @@ def _corners_of_road(source, road, settings, progress):
     sections = _sections(*source.span(road), interval)
     first, last = sections[0][0], sections[-1][1]
     occlusion = {side: OcclusionGrid(interval, first, last - first, MAX_CURB_OFFSET) for side in SIDE_SIGNS}
-    phase = Phase(corners_of_section, source, (road, settings), lambda section: source.stretch(road, *(k * interval for k in section)))
+    phase = Phase(corners_of_section, source, (road, settings), lambda section: source.stretch(road, *(k * interval for k in section)),
+                  lambda section: source.points_between(road, *(k * interval for k in section)), join_sections)
     parts = {side: [] for side in SIDE_SIGNS}
     for found, beside in source.executor.run(phase, sections, progress):
         for side, corners in found.items():

@@ -134,7 +134,8 @@ def all_scanlines(survey: Survey, road: int, settings: ScanlineSettings = Scanli
     start, end = survey.store.span(road)
     bounds = np.linspace(start, end, max(int(np.ceil((end - start) / BLOCK_SECTION_LENGTH)), 1) + 1)
 
-    phase = Phase(scanlines_of_section, survey, (road, settings, lattice), lambda section: survey.stretch(road, *section))
+    phase = Phase(scanlines_of_section, survey, (road, settings, lattice), lambda section: survey.stretch(road, *section),
+                  lambda section: survey.store.points_between(road, *section), Scanlines.join)
     yield from survey.executor.run(phase, list(zip(bounds[:-1].tolist(), bounds[1:].tolist())), progress)
 
 

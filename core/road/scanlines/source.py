@@ -65,6 +65,10 @@ class SurveyScanlines:
         """What messages call the road between two stations, m."""
         return self.survey.stretch(road, start, end)
 
+    def points_between(self, road: int, start: float, end: float) -> int:
+        """About how many points lie between two stations (m)."""
+        return self.survey.store.points_between(road, start, end)
+
     def roads(self) -> list[int]:
         """Numbers of the roads."""
         return self.survey.store.roads()
@@ -137,6 +141,10 @@ class LayerScanlines:
     def stretch(self, road: int, start: float, end: float) -> str:
         """What messages call the road between two stations, m."""
         return f"road {road}, {start:.0f} to {end:.0f} m"
+
+    def points_between(self, road: int, start: float, end: float) -> int:
+        """Points are not known; 0."""
+        return 0
 
     def roads(self) -> list[int]:
         """Numbers of the roads."""

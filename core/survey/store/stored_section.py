@@ -35,6 +35,11 @@ class StoredSection:
         """Bytes in memory."""
         return sum(part.nbytes for part in self.parts if isinstance(part, Columns))
 
+    @property
+    def size(self) -> int:
+        """Points."""
+        return sum(map(self._count, self.parts))
+
     def spill(self, file: SpillFile) -> None:
         """Write the parts in memory to the file, as one part."""
         waiting = [part for part in self.parts if isinstance(part, Columns)]

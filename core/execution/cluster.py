@@ -1,0 +1,258 @@
+"""Phases run by the workers of a Dask cluster, who share points and results with the caller in a folder that all of them see."""
+
+from __future__ import annotations
+
+import os
+import queue
+import shutil
+import tempfile
+import threading
+import time
+import weakref
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import count
+from pathlib import Path
+from typing import Any
+from uuid import uuid4
+
+from ..common.errors import RoadExtractionError
+from ..common.parallel import POLL_INTERVAL
+from ..common.progress import Progress
+from . import cluster_task
+from .cluster_connection import check_versions, check_workers, client_of, wait_for_workers
+from .phase import Phase, name_of
+from .plain import read_plain, write_plain
+from .tasks import ShippedPhase, raise_answer
+from .work_folder import WorkFolder, code_digest
+
+BEAT_TIME = 2.0         # s between two signs of life of the caller
+CALLER_LOST = 300.0     # s without one after which workers remove the caller's folder; a computer may be suspended for a while
+SCHEDULER_LOST = 15.0   # s without a connection to the scheduler after which the run ends
+CLOSE_TIME = 5.0        # s for the last tasks to let go of the folder
+RESULT_TIME = 30.0      # s until a result written by another machine is seen here: network file systems remember that it was not there
+
+
+def cluster_of(address: str, insecure: bool, work: WorkFolder | None, progress: Progress = Progress()) -> Cluster:
+    """The cluster of a scheduler, checked and ready for work; close it at the end.
+
+    Parameters
+    ----------
+    address : of a running scheduler
+    insecure : is an unencrypted connection to another computer wanted?
+    work : folder of the user's that all machines see; None takes one for temporary files, which all workers on this computer see
+    progress : is told how many workers there are and where to watch them
+
+    Raises
+    ------
+    RoadExtractionError
+        If the cluster cannot be used: see `client_of`, `check_versions` and `check_workers`.
+    """
+    client = client_of(address, insecure)
+    cluster = None
+    try:
+        workers = wait_for_workers(client, progress)
+        check_versions(client)
+        try:
+            cluster = Cluster(client, work.path if work else None)
+        except OSError as error:
+            raise (work.error(error) if work else _disk_error(tempfile.gettempdir(), error)) from error
+        check_workers(client, cluster.folder, cluster_task.BEAT, work is not None, progress)
+    except BaseException:
+        (cluster or client).close()
+        raise
+    progress.info(f"Curbs and scanlines are found by {len(workers)} worker(s) of the Dask cluster {address}. "
+                  f"They can be watched at {client.dashboard_link}.")
+    return cluster
+
+
+@dataclass
+class _Part:
+    """An item of a phase, or half of one, at work."""
+
+    item: Any
+    file: Path
+    size: float = 0.0
+    whole: _Part | None = None
+    halves: tuple[_Part, ...] = ()
+    done: bool = False
+
+
+class Cluster:
+    """Executor that uses the workers of a Dask cluster.
+
+    Parameters
+    ----------
+    client : distributed.Client, closed at the end
+    work : folder that all workers see; None takes one for temporary files
+
+    Attributes
+    ----------
+    folder : own folder of the run, removed at the end
+    """
+
+    def __init__(self, client: Any, work: Path | None = None):
+        self.client, self.named = client, work is not None
+        self.folder = Path(tempfile.mkdtemp(prefix="lanewright-")) if work is None else work / f"run-{uuid4().hex[:8]}"
+        self.folder.mkdir(exist_ok=True)
+        self._left = weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
+        (self.folder / cluster_task.BEAT).write_text(str(CALLER_LOST), encoding="utf-8")
+        self._numbers, self._closed = count(), threading.Event()
+        threading.Thread(target=_beat, args=(self.folder / cluster_task.BEAT, self._closed), daemon=True).start()
+
+    def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
+        """Yield the results of all items in their order; see `Executor`. The largest begin.
+
+        Raises
+        ------
+        RoadExtractionError
+            Of the phase; or if workers ended at half an item, the scheduler is lost, or a folder cannot be used.
+        """
+        shipped = self.folder / f"phase{next(self._numbers)}.npz"
+        work = _Work(self, phase, shipped)
+        try:
+            write_plain(shipped, ShippedPhase(name_of(phase.function), phase.source.recipe(self.folder), tuple(phase.arguments)))
+            parts = [_Part(item, keep[k] if keep else self.new_file(), phase.size(item)) for k, item in enumerate(items)]
+            work.submit(parts)
+            for part in parts:
+                while not part.done:
+                    progress.report(sum(one.done for one in parts) / len(parts))
+                    work.take()
+                result = work.result(part)
+                if not keep:
+                    part.file.unlink(missing_ok=True)
+                yield result
+            progress.report(1.0)
+        except OSError as error:
+            raise _disk_error(self.folder, error) from error
+        finally:
+            # tasks at work look whether it is there
+            shipped.unlink(missing_ok=True)
+            work.end()
+
+    def new_file(self) -> Path:
+        """A new name in the folder."""
+        return self.folder / f"file{next(self._numbers)}.npz"
+
+    def release(self) -> None:
+        """Memory of workers is not ours."""
+
+    def close(self) -> None:
+        """Let the scheduler go and remove the folder; nothing more is run."""
+        self._closed.set()
+        self.client.close()
+        self._left.detach()
+        until = time.monotonic() + CLOSE_TIME
+        while self.folder.exists() and time.monotonic() < until:
+            shutil.rmtree(self.folder, ignore_errors=True)
+
+
+class _Work:
+    """The tasks of a phase: sent, awaited, sent again in halves."""
+
+    def __init__(self, cluster, phase, shipped):
+        self.cluster, self.client, self.phase, self.shipped = cluster, cluster.client, phase, shipped
+        self.code, self.pending, self.lost_since = code_digest(), {}, None
+        self.ready: queue.SimpleQueue = queue.SimpleQueue()
+
+    def submit(self, parts):
+        """Send parts, the largest first."""
+        rank = {size: k for k, size in enumerate(sorted({part.size for part in parts}))}
+        for part in parts:
+            item = self.cluster.new_file()
+            write_plain(item, part.item)
+            future = self.client.submit(cluster_task.do, str(self.shipped), str(item), str(part.file), self.code, pure=False, retries=0,
+                                        priority=rank[part.size], key=f"{self.phase.function.__name__}-{uuid4().hex}")
+            self.pending[future.key] = part, future, item
+            future.add_done_callback(self.ready.put)
+
+    def take(self):
+        """Wait a moment for a task to end, and see what became of it."""
+        try:
+            future = self.ready.get(timeout=POLL_INTERVAL)
+        except queue.Empty:
+            self._check_scheduler()
+            return
+        if future.key not in self.pending:
+            return
+        part, future, item = self.pending.pop(future.key)
+        item.unlink(missing_ok=True)
+        if future.status == "finished":
+            self._answered(part, future.result())
+        elif future.status == "error":
+            self._failed(part, future.exception())
+        else:
+            raise self._lost()
+
+    def _answered(self, part, answer):
+        if "memory" in answer:
+            self._halve(part, "ran out of memory")
+            return
+        if "code" in answer:
+            raise RoadExtractionError("A worker that came later has another Lanewright than this computer. Install this one there.")
+        raise_answer(answer, self.phase, part.item, "A worker of the cluster")
+        part.done = True
+        if part.whole is not None and all(half.done for half in part.whole.halves):
+            self._join(part.whole)
+
+    def _failed(self, part, error):
+        if type(error).__name__ != "KilledWorker":
+            raise error
+        self._halve(part, "ended")
+
+    def _halve(self, part, what):
+        """Send the halves of a part at which workers end; refuse where it is half already, or cannot be halved."""
+        first, last = part.item if self.phase.join else (0, 0)
+        if part.whole is not None or last - first < 2:
+            raise RoadExtractionError(f"Workers of the cluster {what} while they worked on {self.phase.place(part.item)}; usually their memory is "
+                                      "too small. Start fewer of them on each machine, or with a higher --memory-limit.")
+        middle = (first + last) // 2
+        part.halves = tuple(_Part(half, self.cluster.new_file(), part.size, part) for half in ((first, middle), (middle, last)))
+        self.submit(part.halves)
+
+    def _join(self, part):
+        write_plain(part.file, self.phase.join([self.result(half) for half in part.halves]), self.cluster.folder)
+        for half in part.halves:
+            half.file.unlink(missing_ok=True)
+        part.done = True
+
+    def result(self, part):
+        """The result of a part that is done."""
+        until = time.monotonic() + RESULT_TIME
+        while not part.file.exists() and time.monotonic() < until:
+            time.sleep(POLL_INTERVAL)
+        return read_plain(part.file)
+
+    def _check_scheduler(self):
+        if self.client.status == "running":
+            self.lost_since = None
+            return
+        self.lost_since = self.lost_since or time.monotonic()
+        if self.client.status == "closed" or time.monotonic() - self.lost_since > SCHEDULER_LOST:
+            raise self._lost()
+
+    def _lost(self):
+        advice = "Run again with the same WORK_FOLDER: what is finished is kept there." if self.cluster.named else "Run again, or without SCHEDULER."
+        return RoadExtractionError(f"The connection to the Dask scheduler was lost while {self.phase.function.__name__} was at work. {advice}")
+
+    def end(self):
+        """Leave nothing to do."""
+        futures = [future for _, future, _ in self.pending.values()]
+        if futures and self.client.status == "running":
+            self.client.cancel(futures, force=True)
+        for _, _, item in self.pending.values():
+            item.unlink(missing_ok=True)
+        self.pending.clear()
+
+
+def _beat(file, closed):
+    while not closed.wait(BEAT_TIME):
+        try:
+            os.utime(file)
+        except OSError:
+            return   # the folder is gone
+
+
+def _disk_error(folder, error):
+    return RoadExtractionError(f"The folder {folder}, which the workers of the cluster share, cannot be used: {error}. Free some space there, or "
+                               "choose another.")

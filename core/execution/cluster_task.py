@@ -1,0 +1,116 @@
+"""What runs on the workers of a Dask cluster: the look around before the work, and one item of a phase after the other.
+
+The caller keeps a folder that all of them see. A phase is wanted as long as its file is there; the caller itself is alive as long as
+it touches the file BEAT, and where it does no longer, the workers remove the folder.
+"""
+
+from __future__ import annotations
+
+import shutil
+import threading
+import time
+from pathlib import Path
+from typing import Any
+from uuid import uuid4
+
+from ..common.errors import Cancelled
+from ..common.parallel import cancellation_scope
+from ..common.progress import Progress
+from .tasks import Tasks
+from .work_folder import code_digest
+
+BEAT = "beat"          # file that the caller touches; it holds the seconds after which a caller is taken for dead that did not
+LOOK_TIME = 0.5        # s between two looks whether a phase is still wanted
+WATCH_TIME = 2.0       # s between two looks at BEAT
+
+_tasks = Tasks()
+_watched: set[str] = set()
+_lock = threading.Lock()
+
+
+def look(folder: str, word: str, dask_worker: Any = None) -> dict[str, Any]:
+    """What the caller must know of a worker.
+
+    Parameters
+    ----------
+    folder : of the caller
+    word : file in it that the worker must see
+    dask_worker : the worker itself, given by Dask
+
+    Returns
+    -------
+    code : digest of the worker's Lanewright
+    problem : why the folder is of no use, "" where it can be read and written
+    memory : bytes that the worker may take, 0 where nothing limits it
+    """
+    problem = ""
+    _watch(folder)
+    try:
+        if not (Path(folder) / word).exists():
+            problem = "it is not there"
+        trial = Path(folder) / uuid4().hex
+        trial.touch()
+        trial.unlink()
+    except OSError as error:
+        problem = problem or error.strerror or str(error)
+    return dict(code=code_digest(), problem=problem, memory=int(dask_worker.memory_manager.memory_limit or 0))
+
+
+def do(phase: str, item: str, result: str, code: str) -> dict[str, str]:
+    """Compute one item of a phase, unless its result is there.
+
+    Parameters
+    ----------
+    phase, item, result : files as in `Tasks.answer`
+    code : digest of the caller's Lanewright
+
+    Returns
+    -------
+    as `Tasks.answer`; also {"code": ...} where the worker's Lanewright is another
+    """
+    if Path(result).exists():
+        return {}
+    if code_digest() != code:
+        return {"code": code_digest()}
+    _watch(str(Path(phase).parent))
+    with cancellation_scope(_WhileWanted(Path(phase))):
+        return _tasks.answer(Path(phase), Path(item), Path(result))
+
+
+class _WhileWanted(Progress):
+    """Cancels what is done for a phase that the caller has ended."""
+
+    def __init__(self, phase):
+        self.phase, self.looked = phase, time.monotonic()
+
+    def check_cancelled(self):
+        if time.monotonic() - self.looked > LOOK_TIME:
+            self.looked = time.monotonic()
+            if not self.phase.exists():
+                raise Cancelled
+
+
+def _watch(folder):
+    """See to it that the folder goes when the caller is gone; one thread for each folder."""
+    with _lock:
+        if folder in _watched:
+            return
+        _watched.add(folder)
+    threading.Thread(target=_remove_after, args=(Path(folder),), daemon=True).start()
+
+
+def _remove_after(folder):
+    beat, last, since = folder / BEAT, 0, time.monotonic()
+    try:
+        patience = float(beat.read_text(encoding="utf-8"))
+        while time.monotonic() - since < patience:
+            # clocks of two machines differ, so the time of the file is only compared with itself
+            now = beat.stat().st_mtime_ns
+            if now != last:
+                last, since = now, time.monotonic()
+            time.sleep(WATCH_TIME)
+        shutil.rmtree(folder, ignore_errors=True)
+    except (OSError, ValueError):
+        pass   # the caller removed the folder
+    with _lock:
+        _watched.discard(str(folder))

@@ -1,0 +1,219 @@
+"""How phases are given to a Dask cluster, with a stand-in for the cluster: its tasks run in threads of this process.
+
+The real one, with a scheduler and workers, is that of `make test-cluster`.
+"""
+
+import builtins
+import threading
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+from curbed_streets import parked_car, street, survey_of
+from lanewright.core.common.errors import Cancelled, RoadExtractionError
+from lanewright.core.common.parallel import check_cancelled
+from lanewright.core.common.progress import Progress
+from lanewright.core.execution import cluster_task
+from lanewright.core.execution.choice import ExecutionSettings
+from lanewright.core.execution.cluster import Cluster
+from lanewright.core.execution.cluster_connection import check_address, client_of, is_loopback
+from lanewright.core.execution.phase import Phase
+from lanewright.core.execution.plain import read_plain, write_plain
+from lanewright.core.execution.threads import Threads
+from lanewright.core.execution.work_folder import KeptResults, WorkFolder, code_digest
+from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
+
+
+class KilledWorker(Exception):
+    """What Dask raises where workers end at a task."""
+
+
+class StandIn:
+    """Does in threads what a distributed.Client has done; `deadly(first, last)` says at which items a worker would end."""
+
+    status = "running"
+
+    def __init__(self, deadly=lambda first, last: False):
+        self.pool, self.deadly, self.keys, self.items, self.priorities = ThreadPoolExecutor(2), deadly, [], [], []
+
+    def submit(self, function, phase, item, *arguments, pure, retries, priority, key):
+        self.items.append(tuple(read_plain(item)))
+        self.priorities.append(priority)
+        return StandInFuture(key, self.pool.submit(self._do, function, phase, item, *arguments))
+
+    def _do(self, function, phase, item, *arguments):
+        if self.deadly(*read_plain(item)):
+            raise KilledWorker
+        return function(phase, item, *arguments)
+
+    def cancel(self, futures, force):
+        for future in futures:
+            future.own.cancel()
+
+    def close(self):
+        self.pool.shutdown()
+
+
+class StandInFuture:
+    def __init__(self, key, own):
+        self.key, self.own = key, own
+
+    def add_done_callback(self, call):
+        self.own.add_done_callback(lambda _: call(self))
+
+    @property
+    def status(self):
+        return "cancelled" if self.own.cancelled() else "error" if self.own.exception() else "finished"
+
+    def result(self):
+        return self.own.result()
+
+    def exception(self):
+        return self.own.exception()
+
+
+def boundaries(executor, progress=Progress()):
+    survey = survey_of(parked_car(street(open_left=[(25.0, 33.0)]), start=40.0))
+    survey.executor = executor
+    try:
+        return draw_boundaries(find_curb_points(survey, BoundarySettings("both"), progress), survey.frame)
+    finally:
+        survey.store.close()
+        executor.close()
+
+
+def numbers_of(found):
+    course, points = found.edges.course, found.curb_points
+    columns = course.x, course.y, course.z, course.d, found.edges.agree, points.x, points.y, points.height, points.support
+    return [column.tobytes() for column in columns]
+
+
+@pytest.fixture(scope="module")
+def by_threads():
+    return numbers_of(boundaries(Threads(1)))
+
+
+def test_what_is_sent_as_files_gives_what_threads_give_and_leaves_nothing(by_threads):
+    executor = Cluster(StandIn())
+    assert numbers_of(boundaries(executor)) == by_threads
+    assert not executor.folder.exists()
+
+
+def test_a_section_at_which_workers_end_is_halved_once_and_gives_the_same(by_threads):
+    halves = []
+
+    def deadly(first, last):
+        half = any((a == first) != (b == last) for a, b in client.items)
+        halves.extend([(first, last)] * half)
+        return first <= 100 < last and not half
+
+    client = StandIn(deadly)
+    executor = Cluster(client)
+    assert numbers_of(boundaries(executor)) == by_threads
+    assert len(halves) >= 4 and not executor.folder.exists()
+
+
+def test_where_workers_end_at_a_half_the_road_is_named():
+    executor = Cluster(StandIn(deadly=lambda first, last: first <= 100 < last))
+    with pytest.raises(RoadExtractionError, match=r"Workers of the cluster ended.*road 0, -?\d+ to -?\d+ m.*memory-limit"):
+        boundaries(executor)
+    assert not executor.folder.exists()
+
+
+def test_a_phase_that_cannot_be_halved_is_named_at_once():
+    client = StandIn(deadly=lambda first, last: True)
+    executor = Cluster(client)
+    with pytest.raises(RoadExtractionError, match="Workers of the cluster ended"):
+        list(executor.run(Phase(lengths_of, survey_of(street())), [(0, 8)]))
+    assert len(client.items) == 1
+    executor.close()
+
+
+lengths_of = survey_of.__globals__["build_frame"]   # any function of core: it is never called
+
+
+def test_the_largest_sections_begin():
+    client = StandIn(deadly=lambda first, last: True)
+    executor = Cluster(client)
+    with pytest.raises(RoadExtractionError):
+        list(executor.run(Phase(lengths_of, survey_of(street()), size=lambda item: item[1] - item[0]), [(0, 8), (8, 30), (30, 33), (33, 55)]))
+    assert client.priorities == [1, 2, 0, 2]
+    executor.close()
+
+
+def test_cancel_leaves_no_folder():
+    class Impatient(Progress):
+        def report(self, fraction):
+            raise Cancelled
+
+    executor = Cluster(StandIn())
+    with pytest.raises(Cancelled):
+        boundaries(executor, Impatient())
+    assert not executor.folder.exists()
+
+
+def test_a_task_stops_when_its_phase_is_no_longer_wanted(tmp_path, monkeypatch):
+    monkeypatch.setattr(cluster_task, "LOOK_TIME", 0.0)
+    phase = tmp_path / "phase.npz"
+    phase.touch()
+    wanted = cluster_task._WhileWanted(phase)
+    wanted.check_cancelled()
+    phase.unlink()
+    with pytest.raises(Cancelled):
+        wanted.check_cancelled()
+    check_cancelled()
+
+
+def test_a_result_that_is_there_is_not_computed_again(tmp_path):
+    write_plain(tmp_path / "result.npz", 7)
+    assert cluster_task.do(str(tmp_path / "no phase"), str(tmp_path / "no item"), str(tmp_path / "result.npz"), code_digest()) == {}
+    assert read_plain(tmp_path / "result.npz") == 7
+
+
+def test_a_worker_with_other_code_computes_nothing(tmp_path):
+    assert cluster_task.do(str(tmp_path / "phase"), str(tmp_path / "item"), str(tmp_path / "result"), "another") == {"code": code_digest()}
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_folder_of_a_caller_that_is_gone_is_removed_and_that_of_another_stays(tmp_path, monkeypatch):
+    monkeypatch.setattr(cluster_task, "WATCH_TIME", 0.05)
+    for name, patience in (("gone", "0.2"), ("alive", "60")):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / cluster_task.BEAT).write_text(patience)
+    cluster_task._remove_after(tmp_path / "gone")
+    threading.Thread(target=cluster_task._remove_after, args=(tmp_path / "alive",), daemon=True).start()
+    assert not (tmp_path / "gone").exists() and (tmp_path / "alive").exists()
+    (tmp_path / "alive" / cluster_task.BEAT).unlink()
+
+
+def test_results_go_straight_to_the_work_folder(by_threads, tmp_path):
+    work = WorkFolder(str(tmp_path / "work"))
+    executor = KeptResults(Cluster(StandIn(), work.path), work)
+    assert numbers_of(boundaries(executor)) == by_threads
+    assert list(work.path.glob("phase-*/*.npz")) and not list(work.path.glob("run-*")) and not list(work.path.rglob("*.part*"))
+
+
+@pytest.mark.parametrize("address, own", [
+    ("tcp://127.0.0.1:8786", True), ("tcp://[::1]:8786", True), ("localhost:8786", True), ("tls://10.1.2.3:8786", False),
+    ("tcp://10.1.2.3:8786", False), ("tcp://localhost.example:8786", False), ("tcp://127.example.org:1", False), ("10.1.2.3", False)])
+def test_this_computer_is_known_by_its_address(address, own):
+    assert is_loopback(address) is own
+
+
+def test_another_computer_is_not_talked_to_without_encryption_unless_that_is_wanted():
+    with pytest.raises(RoadExtractionError, match="not be encrypted.*tls://.*INSECURE"):
+        ExecutionSettings(scheduler="tcp://10.1.2.3:8786")
+    assert ExecutionSettings(scheduler="tls://10.1.2.3:8786").scheduler and ExecutionSettings(scheduler="tcp://10.1.2.3:1", insecure=True).insecure
+    check_address("tcp://127.0.0.1:8786", insecure=False)
+
+
+def test_where_dask_is_missing_one_sentence_says_how_to_get_it(monkeypatch):
+    imported = builtins.__import__
+
+    def without(name, *others):
+        if name.startswith("distributed"):
+            raise ImportError(f"No module named {name!r}")
+        return imported(name, *others)
+
+    monkeypatch.setattr(builtins, "__import__", without)
+    with pytest.raises(RoadExtractionError, match=r"needs dask.distributed.*pip install .lanewright\[cluster\]"):
+        client_of("tcp://127.0.0.1:8786")
