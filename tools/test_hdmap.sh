@@ -26,7 +26,7 @@ issues=0
 for file in "$here/files"/*.xodr; do
   printf '<Config><Param name="InputFile" value="%s"/><CheckerBundle application="xodrBundle"><Param name="resultFile" value="%s"/></CheckerBundle></Config>' \
     "$file" "$file.xqar" >"$file.config"
-  "$here/qc/bin/qc_opendrive" -c "$file.config" >"$file.log" 2>&1 || { tail -n 5 "$file.log"; exit 1; }
+  "$here/qc/bin/python" -m qc_opendrive -c "$file.config" >"$file.log" 2>&1 || { tail -n 5 "$file.log"; exit 1; }
   found="$(grep -c '<Issue' "$file.xqar" || true)"
   [ "$found" -eq 0 ] || { echo "asam-qc: $found issues in $(basename "$file")"; grep -o '<Issue[^>]*' "$file.xqar" | head -n 5; }
   issues=$((issues + found))

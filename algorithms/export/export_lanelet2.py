@@ -47,9 +47,10 @@ class ExportLanelet2(Algorithm):
         from ...core.export.lanelet.layers import layers_of_lanelets, node_places
         from ...core.export.lanelet.reader import read_lanelet2
         from ...core.export.lanelet.writer import lanelet2_text, to_degrees
+        from ...core.export.shared_borders import with_shared_borders
         from ...core.report.map_export import map_export_report
 
-        source = road_map_source(call, progress.part(0.0, 0.2))
+        source = with_shared_borders(road_map_source(call, progress.part(0.0, 0.2)))
         progress.report(0.2)
         draft = draft_lanelets(source, call.settings(LANELET_SETTINGS, location=call.choice("LOCATION")))
         degrees = to_degrees(draft.nodes, source.lanes.crs)

@@ -22,10 +22,10 @@ class ExportOpenDrive(Algorithm):
     ID, TITLE, GROUP = "exportopendrive", "Export OpenDRIVE", "Export"
     SUMMARY = "Writes lanes as an OpenDRIVE map for simulators: roads with a reference line, lane sections, heights, road marks and junctions."
     HELP = ("The reference line is made of lines, arcs and spirals, where the tolerance allows none of them of parametric cubics. Lanes beside each "
-            "other are one road; a section begins where a lane begins or ends. Widths are cubics, heights an elevation with superelevation or, on a "
-            "crowned road, the shape of the cross-section. Connectors are the roads of junctions. Curbs are narrow lanes with their height; zebra "
-            "crossings, stop lines, arrows and hatched areas are objects. What was inferred or bridged, and the uncertainty of every lane, is "
-            "said in userData.\n\n"
+            "other are one road; a section begins where a lane begins or ends, and a junction where lanes part. Beside a double line lanes reach to "
+            "its middle, where the mark of both stripes is. Widths are cubics, heights an elevation with superelevation or, on a crowned road, the "
+            "shape of the cross-section. Connectors are the roads of junctions. Curbs are narrow lanes with their height; zebra crossings, stop "
+            "lines, arrows and hatched areas are objects. What was inferred or bridged, and the uncertainty of every lane, is said in userData.\n\n"
             "The file is read back and checked before it is handed over: the report says how far its borders lie from the survey's. OpenDRIVE "
             "stores no line to drive on; the report also says how far the middles of the lanes are from the driving lines. Signals, signs, "
             "speed limits and buildings are not there.")
@@ -52,8 +52,9 @@ class ExportOpenDrive(Algorithm):
         from ...core.export.opendrive.layers import layers_of_opendrive
         from ...core.export.opendrive.reader import read_opendrive
         from ...core.export.opendrive.writer import opendrive_text
+        from ...core.export.shared_borders import with_shared_borders
 
-        source = road_map_source(call, progress.part(0.0, 0.2))
+        source = with_shared_borders(road_map_source(call, progress.part(0.0, 0.2)))
         settings = call.settings(ROAD_SETTINGS, version=call.choice("VERSION"), traffic_side=call.choice("TRAFFIC_SIDE"))
         draft = draft_opendrive(source, settings, progress.part(0.2, 0.7))
         draft.map.reference = reference_of_crs(source.lanes.crs)
@@ -63,6 +64,9 @@ class ExportOpenDrive(Algorithm):
         shown, found = layers_of_opendrive(whole, source.lanes.crs), check_opendrive(whole, source.lanes.crs, progress.part(0.7, 0.9))
         across, rise = border_misses(source.lanes, shown.lanes)
         driven = driving_line_misses(source.driving_lines, shown.lanes)
+        lanes = source.lanes
+        double = set(zip(lanes.road[source.gaps.any(1)].tolist(), lanes.lane[source.gaps.any(1)].tolist()))
+        single = driving_line_misses(source.driving_lines, shown.lanes, apart_from=double)
         notes = [*source.notes, *draft.notes]
         if not source.lanes.crs:
             notes.append(tr("The layer of lanes has no CRS: the file has no geoReference."))
@@ -76,7 +80,7 @@ class ExportOpenDrive(Algorithm):
         progress.info(tr("{roads} roads, {junctions} junctions; borders within {across:.3f} m of the survey's.").format(
             roads=len(whole.roads), junctions=len(whole.junctions), across=across.largest))
         if call.wants("REPORT"):
-            call.text("REPORT", _report(call, whole, found, shown, (across, rise, driven), notes))
+            call.text("REPORT", _report(call, whole, found, shown, (across, rise, driven, single), notes))
         numbers = {"ROADS": len(whole.roads), "JUNCTIONS": len(whole.junctions), "SUCCESSORS": found.successors, "FINDINGS": len(found.found),
                    "BORDER_MAXIMUM": across.largest, "HEIGHT_MAXIMUM": rise.largest}
         if driven.places:
@@ -96,7 +100,8 @@ def _report(call, whole, found, shown, misses, notes):
     facts = [("Roads", len(whole.roads)), ("Junctions", len(whole.junctions)), ("Lanes of sections that are driven", found.lanes),
              ("Links from one lane to the next", found.successors), ("Pairs of lanes side by side", found.neighbours),
              ("False origin", f"{whole.offset[0]:g}, {whole.offset[1]:g}"), ("geoReference", whole.reference or "none")]
-    names = ("Borders, across", "Borders, in height", "Driving lines from the middles of lanes (measured)")
+    names = ("Borders, across", "Borders, in height", "Driving lines from the middles of lanes (measured)",
+             "The same, of lanes beside no double line")
     tables = [
         ("Against the survey", ("", "Mean (m)", "95 % (m)", "Largest (m)", "Places"),
          [(name, round(one.mean, 4), round(one.p95, 4), round(one.largest, 4), one.places) for name, one in zip(names, misses) if one.places]),

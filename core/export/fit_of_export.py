@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import NamedTuple
 
 import numpy as np
@@ -34,12 +35,17 @@ def border_misses(source: Lanes, exported: Lanes) -> tuple[Misses, Misses]:
     return _misses(vertices, segments)
 
 
-def driving_line_misses(driving_lines: Features | None, exported: Lanes, measured_only: bool = True) -> Misses:
-    """Across, of driving lines against the middles of the lanes that are read back."""
+def driving_line_misses(driving_lines: Features | None, exported: Lanes, measured_only: bool = True,
+                        apart_from: Collection[tuple[int, int]] = ()) -> Misses:
+    """Across, of driving lines against the middles of the lanes that are read back.
+
+    apart_from : (road, lane) whose driving lines are left out
+    """
     middles = [(left + right) / 2 for left, right in (exported.borders(k) for k in range(len(exported))
                                                       if exported.type[k] in ("driving", "connector"))]
     rows = [shapely.get_coordinates(geometry, include_z=True) for geometry, row in driving_lines or ()
-            if geometry is not None and (not measured_only or row.get("status") in (None, "measured"))]
+            if geometry is not None and (not measured_only or row.get("status") in (None, "measured"))
+            and (row.get("road"), row.get("lane")) not in apart_from]
     if not rows or not middles:
         return _summary(np.empty(0))
     return _misses(np.concatenate(rows), np.concatenate([np.concatenate([line[:-1], line[1:]], axis=1) for line in middles]))[0]

@@ -26,6 +26,7 @@ class RoadMapSource:
     lanes : Lanes in map coordinates
     driving_lines, marking_lines, road_edges, markings : Features or None
     notes : sentences for the user, filled by `checked`
+    gaps : (P, 2) metres between the two stripes at the left and right border of each lane, None or 0 where there is one
     """
 
     lanes: Lanes
@@ -34,6 +35,7 @@ class RoadMapSource:
     road_edges: Features | None = None
     markings: Features | None = None
     notes: list[str] = field(default_factory=list)
+    gaps: np.ndarray | None = None
 
     def others(self) -> Iterator[tuple[str, Features]]:
         """(what messages call it, layer) of the layers beside the lanes that there are."""

@@ -116,6 +116,35 @@ def split():
     return scene.lanes()
 
 
+def double_line(apart=0.3, patterns=("double-solid", "double-solid"), pieces=((60.0, 0.0, 0.0), (60.0, 1 / 60, 1 / 60))):
+    """A street whose two lanes end at a stripe each; from 80 m on the stripes are one line."""
+    scene, line = LaneScene(), Axis(pieces)
+
+    def stripe(side):
+        return lambda s: side * apart / 2 * np.clip((80.0 - s) / 20.0, 0, 1)
+    for lane, (side, direction, pattern) in enumerate(((-1, 1, patterns[0]), (1, -1, patterns[1])), start=1):
+        for piece, (first, last) in enumerate(((0.0, 60.0), (60.0, line.length)), start=1):
+            borders = (stripe(-1), -3.5) if side < 0 else (3.5, stripe(1))
+            scene.add(line, *borders, first, last, lane=lane, piece=piece, direction=direction,
+                      **{**kinds(), "left_pattern": pattern, "left_line": f"line {lane}"})
+    return scene.lanes()
+
+
+def parting(island=1.5):
+    """Two lanes one way that part at 60 m, on both sides of an island, and go on beside each other from 120 m."""
+    scene, line = LaneScene(), Axis(((180.0, 0.0, 0.0),))
+
+    def side(sign):
+        def border(s):
+            share = np.clip(np.minimum(s - 60, 120 - s) / 20, 0, 1)
+            return sign * island * share**2 * (3 - 2 * share)
+        return border
+    for piece, (first, last) in enumerate(((0, 60), (60, 120), (120, 180)), start=1):
+        scene.add(line, side(-1), lambda s: side(-1)(s) - 3.5, first, last, lane=1, piece=piece)
+        scene.add(line, lambda s: side(1)(s) + 3.5, side(1), first, last, lane=2, piece=piece)
+    return scene.lanes()
+
+
 def crossing(arm=40.0, half=12.0, width=3.5):
     """Four arms of two lanes meet; straight on and both turns are connectors."""
     scene = LaneScene()

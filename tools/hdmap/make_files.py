@@ -13,11 +13,11 @@ from plugin_package import load  # noqa: E402
 
 
 def scenes():
-    from made_lanes import crossing, s_curve, split, street, widening
+    from made_lanes import crossing, double_line, parting, s_curve, split, street, widening
 
     return {"street": street(cut=30.0), "left_hand": street(side="left", cut=30.0), "arc": street(((100.0, 1 / 40, 1 / 40),)),
             "crowned": s_curve(slope=0.02, crown=0.025), "tilted": s_curve(slope=0.02, crossfall=0.02), "widening": widening(), "split": split(),
-            "crossing": crossing()}
+            "crossing": crossing(), "double_line": double_line(), "parting": parting()}
 
 
 def main():
@@ -28,12 +28,13 @@ def main():
     from lanewright.core.export.map_crs import reference_of_crs
     from lanewright.core.export.opendrive.exporter import OpenDriveSettings, draft_opendrive
     from lanewright.core.export.opendrive.writer import opendrive_text
+    from lanewright.core.export.shared_borders import with_shared_borders
     from lanewright.core.export.sources import RoadMapSource, checked
 
     folder = Path(sys.argv[1])
     folder.mkdir(parents=True, exist_ok=True)
     for name, lanes in scenes().items():
-        source = checked(RoadMapSource(lanes))
+        source = with_shared_borders(checked(RoadMapSource(lanes)))
         expected = {"lanes": int((np.isin(lanes.type, ("driving", "connector"))).sum()), "successors": sum(map(len, lanes.successors))}
         for version in ("1.7", "1.8"):
             draft = draft_opendrive(source, OpenDriveSettings(version=version))

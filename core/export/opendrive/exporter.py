@@ -15,7 +15,7 @@ from .junctions import link_roads
 from .model import MapLane, MapRoad, OpenDriveMap, RoadMark
 from .road_objects import add_objects
 from .road_shape import add_heights, add_lanes, centre_of, shape_of
-from .strips import Cell, Slice, cut_into_cells, is_connector, mark_junctions, slices_of, strips_of
+from .strips import Cell, Slice, cut_into_cells, end_to_end, is_connector, mark_junctions, slices_of, strips_of
 
 ROUND_ORIGIN = 100.0      # m: the false origin is a multiple of it
 LONGEST_JUNCTION = 100.0  # m of road between two ends of a junction
@@ -132,13 +132,20 @@ class _Drafting:
             if one.at_start and one.at_end and one.length < LONGEST_JUNCTION:
                 inside.append(one)
                 continue
-            if one.at_start:
-                part, one = one.split(_cut_row(one, False))
-                inside.append(part)
-            if one.at_end:
-                one, part = one.split(_cut_row(one, True))
-                inside.append(part)
-            ordinary.append(one)
+            for at_end in (False, True):
+                row = _cut_row(one, at_end) if (one.at_end if at_end else one.at_start) else 0
+                if row:
+                    first, last = one.split(row)
+                    part, one = (last, first) if at_end else (first, last)
+                    inside.append(part)
+                elif one.at_end if at_end else one.at_start:   # too short for a way and a road
+                    inside.append(one)
+                    break
+            else:
+                ordinary.append(one)
+        ordinary, between = _between_junctions(ordinary, {id(cell) for one in inside for cell in one.cells}
+                                               | {id(cell) for cell in self.cells if is_connector(cell, self.lanes)})
+        inside += between
         owner = {id(cell): one for one in ordinary for cell in one.cells}
         breaks = {(id(one), id(owner[id(other)])) for one in ordinary for cell in one.cells for other in cell.after if id(other) in owner
                   and any(id(near) not in owner for near in cell.after + other.before)}
@@ -147,9 +154,11 @@ class _Drafting:
         lost = sum(1 for one in inside for cell in one.cells if not cell.direction)
         if lost:
             self.notes.append(f"{lost} pieces that nobody drives lie within junctions, where OpenDRIVE has no place for them.")
-        for cell in ways:
-            single = Slice([cell])
-            found.append(([single.turned() if cell.direction < 0 else single], True))
+        for way in end_to_end(ways):
+            # what comes from nowhere or leads nowhere is no way through
+            through = bool(way[0].before) and bool(way[-1].after)
+            strip = [Slice([cell]) for cell in way]
+            found.append(([one.turned() for one in strip[::-1]] if way[0].direction < 0 else strip, through))
         return found
 
     def road(self, strip: list[Slice], number: int, single: bool) -> DraftRoad:
@@ -162,10 +171,11 @@ class _Drafting:
         add_heights(road, shape, tolerance)
         status: dict[str, float] = defaultdict(float)
         for one, ids, section, centre in zip(strip, numbers, road.sections, centres):
-            for cell, id in zip(one.cells, ids):
+            for k, (cell, id) in enumerate(zip(one.cells, ids)):
                 self._describe(section.lanes[id], cell)
+                section.lanes[id].marks = [self._mark_between(one, k if id > 0 else k + 1, id)]
                 status[str(self.lanes.status[cell.piece])] += cell.length
-            self._mark_centre(section.lanes[0], one, centre)
+            section.lanes[0].marks = [self._mark_between(one, centre, 0)]
             self._add_curbs(section.lanes, one, ids)
             section.order = sorted(section.lanes, reverse=True)
         if set(status) != {"measured"}:
@@ -174,7 +184,6 @@ class _Drafting:
 
     def _describe(self, lane: MapLane, cell: Cell) -> None:
         lane.type = TYPE_OF_LANE[self.lanes.type[cell.piece]]
-        lane.marks = [self._mark(cell, lane.id > 0)]
         lane.data = {"lanewright:lane_id": str(self.lanes.lane_id[cell.piece])}
         if np.isfinite(self.sigma[cell.piece]):
             lane.data["lanewright:sigma_m"] = f"{self.sigma[cell.piece]:.3f}"
@@ -199,10 +208,30 @@ class _Drafting:
             mark.dash, mark.gap = self.settings.dash
         return mark
 
-    def _mark_centre(self, lane: MapLane, one: Slice, centre: int) -> None:
-        right = self._mark(one.cells[centre], True) if centre < len(one.cells) else None
-        left = self._mark(one.cells[centre - 1], False) if centre else None
-        lane.marks = [next((mark for mark in (right, left) if mark is not None and mark.type != "none"), right or left or RoadMark(0.0, "none"))]
+    def _mark_between(self, one: Slice, number: int, lane: int) -> RoadMark:
+        """The mark of a border of a slice, which is the outer one of `lane`: of two stripes where each of the lanes beside it has its own."""
+        left = self._mark(one.cells[number - 1], False) if number else None
+        right = self._mark(one.cells[number], True) if number < len(one.cells) else None
+        own, other = (right, left) if lane >= 0 else (left, right)
+        painted = [mark for mark in (own, other) if mark is not None and mark.type != "none"]
+        if not painted:
+            return own or other or RoadMark(0.0, "none")
+        mark = next((mark for mark in painted if " " in mark.type), painted[0])
+        gap = self._gap(one.cells[number - 1], False) if number else 0.0
+        if gap and left is not None and right is not None and len(painted) == 2:
+            lines = self._about(one.cells[number - 1], False)[2], self._about(one.cells[number], True)[2]
+            if " " not in mark.type and "curb" not in (left.type, right.type) and lines[0] != lines[1]:
+                # named from the middle of the road outwards, at lane 0 from left to right
+                mark.type = f"{right.type} {left.type}" if lane > 0 else f"{left.type} {right.type}"
+                mark.dash, mark.gap = next(((one.dash, one.gap) for one in painted if one.dash), (0.0, 0.0))
+            mark.apart = round(gap, 3) if " " in mark.type else 0.0
+        return mark
+
+    def _gap(self, cell: Cell, left: bool) -> float:
+        """Metres between the two stripes of the border on one side along the road."""
+        if self.source.gaps is None:
+            return 0.0
+        return float(self.source.gaps[cell.piece, 0 if left == (cell.direction >= 0) else 1])
 
     def _paint_width(self, line: str) -> float:
         layer = self.source.marking_lines
@@ -222,6 +251,20 @@ class _Drafting:
             lanes[beyond] = curb
 
 
+def _between_junctions(slices, inside):
+    """(slices, those of them that are too short for a road and lie between ways through junctions)."""
+    found = []
+    while True:
+        more = [one for one in slices if one.length < SHORTEST_WAY and all(
+            others and all(id(other) in inside for other in others)
+            for others in ([other for cell in one.cells for other in cell.before], [other for cell in one.cells for other in cell.after]))]
+        if not more:
+            return slices, found
+        found += more
+        inside = inside | {id(cell) for one in more for cell in one.cells}
+        slices = [one for one in slices if not any(one is other for other in more)]
+
+
 def _against(strip):
     """Whether a road is driven against its direction alone."""
     ways = {cell.direction for one in strip for cell in one.cells}
@@ -229,9 +272,11 @@ def _against(strip):
 
 
 def _cut_row(one: Slice, at_end: bool) -> int:
-    """The vertex at which a way through a junction is cut off from a slice: some metres from its end, a third of it at most."""
+    """The vertex at which a way through a junction is cut off from a slice: some metres from its end, a third of it at most; 0 where none is."""
     middle = (one.cells[0].left + one.cells[-1].right)[:, :2] / 2
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(middle, axis=0).T)))
+    if len(along) < 3 or along[-1] < 2 * SHORTEST_WAY:
+        return 0
     wanted = min(max(SHORTEST_WAY, along[-1] / 3), LONGEST_WAY)
     row = int(np.argmin(np.abs(along - (along[-1] - wanted if at_end else wanted))))
-    return min(max(row, 1), len(along) - 2) if len(along) > 2 else 1
+    return min(max(row, 1), len(along) - 2)

@@ -50,8 +50,8 @@ def link_roads(whole: OpenDriveMap, drafts: list[DraftRoad]) -> list[str]:
                             _link(drafts, touches, here, end, there, "start" if any(cell is back for back in other.before) else "end")
     junction = _clusters(drafts, touches)
     notes = []
-    for (k, end), found in touches.items():
-        notes += _end_link(drafts, k, end, found, junction)
+    for k, end in touches:
+        notes += _end_link(drafts, k, end, touches, junction)
     _connections(whole, drafts, touches, junction)
     return sorted(set(notes))
 
@@ -88,12 +88,17 @@ def _clusters(drafts, touches):
     return {k: roots.index(root(k)) for k in parent}
 
 
-def _end_link(drafts, k, end, found, junction):
+def _end_link(drafts, k, end, touches, junction):
     """Link one end of a road; sentences on what cannot be linked."""
+    found = touches[k, end]
     road = drafts[k].road
     name = "successor" if end == "end" else "predecessor"
     if k not in junction and any(touch.other in junction for touch in found):
         setattr(road, name, RoadLink("junction", junction_id(drafts, junction[next(t.other for t in found if t.other in junction)])))
+        return []
+    # a junction lies between this road and those whose ends are linked to it
+    found = [touch for touch in found if k in junction or not any(one.other in junction for one in touches.get((touch.other, touch.other_end), ()))]
+    if not found:
         return []
     # of several roads the one with the most lanes is kept: OpenDRIVE has one link an end
     ends = sorted({(touch.other, touch.other_end) for touch in found}, key=lambda way: (-sum(touch[1:3] == way for touch in found), way))

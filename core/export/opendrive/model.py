@@ -20,7 +20,8 @@ MARK_TYPES = ("none", "solid", "broken", "solid solid", "solid broken", "broken 
 
 @dataclass
 class RoadMark:
-    """How a border is painted from `s` on (metres from the start of the section). dash, gap : metres, 0 where solid."""
+    """How a border is painted from `s` on (metres from the start of the section). dash, gap : metres, 0 where solid. apart : metres between
+    the middles of the two stripes of a double mark, 0 where unknown."""
 
     s: float
     type: str
@@ -29,6 +30,7 @@ class RoadMark:
     weight: str = "standard"
     dash: float = 0.0
     gap: float = 0.0
+    apart: float = 0.0
 
 
 @dataclass

@@ -144,9 +144,13 @@ def _lane(element):
 def _mark(element):
     mark = RoadMark(element.number("sOffset", 0.0), element.get("type", "none"), element.get("color", "standard"),
                     element.number("width", MARK_WIDTH), element.get("weight", "standard"))
-    line = element.find("type", "line")
-    if line is not None:
-        mark.dash, mark.gap = line.number("length", 0.0), line.number("space", 0.0)
+    kind = element.find("type")
+    lines = list(kind.all("line")) if kind is not None else []
+    dashed = next((line for line in lines if line.number("space", 0.0)), None)
+    if dashed is not None:
+        mark.dash, mark.gap = dashed.number("length", 0.0), dashed.number("space", 0.0)
+    if len(lines) == 2:
+        mark.apart = abs(lines[0].number("tOffset", 0.0) - lines[1].number("tOffset", 0.0))
     return mark
 
 

@@ -20,6 +20,9 @@ MOST_SECTIONS = 40       # between two cross-sections that are written
 LEAST_END = 0.5          # m of width from which the end of a road has a direction
 MOST_ASKEW = 0.2         # rad between the end of a road and a square cut: more is askew on purpose
 LOOSER = (1.0, 5.0, 25.0)   # times the tolerance that the reference line may lie beside a border with corners
+SMOOTHER = (1.0, 3.0)    # m, standard deviations of the means that take the corners from a border that no other line follows
+BEND_STEP = 0.25         # m between the places at which a border is held against the curvature
+LEAST_STRETCH = 0.1      # of a border against the reference line: less is beside the centre of the curve
 FOOT_ROUNDS = 8
 LEAST_STEP = 0.001       # m along the road between places that count
 
@@ -61,7 +64,7 @@ def shape_of(strip: list[Slice], centres: list[int], tolerance: float) -> RoadSh
     guide, index = _guide(strip, centres)
     keep = np.append(True, np.hypot(*np.diff(guide, axis=0).T) > NEAREST_POINTS)
     ends, widest = _end_headings(strip, guide)
-    plan = _reference(guide[keep], tolerance, ends, tolerance / max(widest, 1.0))
+    plan = _reference(guide[keep], tolerance, ends, tolerance / max(widest, 1.0), _reach(strip, index, guide)[keep])
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(guide, axis=0).T)))
     along *= plan.length / along[-1]
     s_all, t_all, z_all = [], [], []
@@ -91,15 +94,45 @@ def _guide(strip, centres):
     return np.concatenate([placed[0], *(placed[k][1:] for k in range(1, len(strip)))]), rows
 
 
-def _reference(points, tolerance, ends, turn_tolerance):
+def _reach(strip, index, guide):
+    """(N, 2) metres from the guide to the rightmost border (negative) and to the leftmost one."""
+    found = np.zeros((len(guide), 2))
+    for one, rows in zip(strip, index):
+        for side, border, sign in ((0, one.cells[-1].right, -1), (1, one.cells[0].left, 1)):
+            away = sign * np.hypot(*(border[:, :2] - guide[rows]).T)
+            found[rows, side] = np.minimum(found[rows, side], away) if sign < 0 else np.maximum(found[rows, side], away)
+    return found
+
+
+def _reference(points, tolerance, ends, turn_tolerance, reach):
     """The reference line; a border with a corner is cut short by it, and the lane offset has the rest."""
-    # to meet other roads squarely matters more than to lie on the border
-    for headings in (ends, (None, None)):
-        for loose in LOOSER:
-            plan = fit_reference(points, loose * tolerance, headings, turn_tolerance)
-            if plan is not None:
-                return plan
+    # to meet other roads squarely matters more than to lie on the border, and no border may fold back in a curve
+    for guide in (points, *(_smoothed(points, width) for width in SMOOTHER)):
+        for headings in (ends, (None, None)):
+            for loose in LOOSER:
+                plan = fit_reference(guide, loose * tolerance, headings, turn_tolerance)
+                if plan is not None and not _folds(plan, points, reach):
+                    return plan
     return polynomial_reference(points)
+
+
+def _folds(plan, points, reach):
+    """Whether a border lies beyond the centre of a curve, or nearly."""
+    along = np.append(0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T)))
+    s = np.linspace(0.0, plan.length, max(int(plan.length / BEND_STEP), 1) + 1)
+    bend = plan.at(s)[2]
+    return any((1 - bend * np.interp(s, along * plan.length / along[-1], side) < LEAST_STRETCH).any() for side in reach.T)
+
+
+def _smoothed(points, width):
+    """A line without its corners: every place is the mean of those around it; the ends stay."""
+    along = np.append(0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T)))
+    even = np.linspace(0.0, along[-1], max(int(along[-1] / BEND_STEP), 2) + 1)
+    line = np.stack([np.interp(even, along, column) for column in points.T], axis=1)
+    count = int(min(3 * width / even[1], len(line) - 1))
+    padded = np.concatenate([2 * line[0] - line[count:0:-1], line, 2 * line[-1] - line[-2:-count - 2:-1]])
+    weights = np.exp(-0.5 * (np.arange(-count, count + 1) * even[1] / width) ** 2)
+    return np.stack([np.convolve(column, weights / weights.sum(), mode="valid") for column in padded.T], axis=1)
 
 
 def _end_headings(strip, guide):
@@ -147,7 +180,7 @@ def add_lanes(road: MapRoad, shape: RoadShape, strip: list[Slice], centres: list
     offsets, numbers = [], []
     for k, (one, centre) in enumerate(zip(strip, centres)):
         start, end = shape.starts[k], shape.starts[k + 1]
-        s, t = zip(*(_rising(a, b) for a, b in zip(shape.s[k], shape.t[k])))
+        s, t = zip(*(_within(start, end, *_rising(*_lengthened(shape, strip, k, j))) for j in range(len(one.cells) + 1)))
         functions = fit_cubics(s, t, start, end, tolerance)
         if _crossing(functions, end - start):
             functions = broken_lines(s, _untangled(s, t, centre), start, end)
@@ -162,6 +195,32 @@ def add_lanes(road: MapRoad, shape: RoadShape, strip: list[Slice], centres: list
     rows = np.concatenate(offsets)
     road.lane_offset = Cubics.constant() if np.abs(rows[:, 1:]).max() < 1e-4 else Cubics(rows)
     return numbers
+
+
+def _lengthened(shape, strip, k, border):
+    """s and t of a border of a slice, with a vertex more at each end where it goes on in the next slice: sections are cut square, lanes not."""
+    s, t = shape.s[k][border], shape.t[k][border]
+    for other, here, there, beyond in ((k - 1, 0, -1, -2), (k + 1, -1, 0, 1)):
+        if not 0 <= other < len(strip):
+            continue
+        node = strip[k].nodes()[border][here]
+        same = [j for j, nodes in enumerate(strip[other].nodes()) if nodes[there] == node]
+        if len(same) == 1:
+            at = 0 if here == 0 else len(s)
+            s, t = np.insert(s, at, shape.s[other][same[0], beyond]), np.insert(t, at, shape.t[other][same[0], beyond])
+    return s, t
+
+
+def _within(start, end, s, values):
+    """Places of a function from start to end; where it reaches beyond, it is cut off there."""
+    inner = (s > start + LEAST_STEP) & (s < end - LEAST_STEP)
+    if not inner.any() and len(s) < 2:
+        return s, values
+    # what ends before an edge keeps its last place: the function goes straight on from there
+    first = [start] if s[0] <= start + LEAST_STEP else []
+    last = [end] if s[-1] >= end - LEAST_STEP else []
+    places = np.concatenate([first, s[inner], last])
+    return (places, np.interp(places, s, values)) if len(places) > 1 else (s, values)
 
 
 def _rising(s, values):

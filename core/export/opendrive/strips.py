@@ -57,6 +57,10 @@ class Slice:
         """(n, 3) each, from left to right, one more than cells."""
         return [self.cells[0].left, *(cell.right for cell in self.cells)]
 
+    def nodes(self) -> list[tuple[int, ...]]:
+        """Numbers of the vertices of its borders, from left to right."""
+        return [self.cells[0].left_nodes, *(cell.right_nodes for cell in self.cells)]
+
     def split(self, row: int) -> tuple[Slice, Slice]:
         """The slice cut at a vertex, linked as it was."""
         parts: tuple[list[Cell], list[Cell]] = ([], [])
@@ -185,7 +189,21 @@ def slices_of(cells: list[Cell], lanes: Lanes) -> list[Slice]:
 
 
 def mark_junctions(slices: list[Slice], lanes: Lanes) -> None:
-    """Tell every slice at which of its ends ways through a junction lie beside it: they begin or end there, on its side."""
+    """Tell every slice at which of its ends ways through a junction lie beside it: they begin or end there, on its side.
+
+    Where lanes beside each other go on in lanes that are no longer beside each other, there is a junction too: a road has one successor.
+    """
+    owner = {id(cell): k for k, one in enumerate(slices) for cell in one.cells}
+    for one in slices:
+        for at_end in (False, True):
+            ends = {(owner[id(other)], any(cell is back for back in other.before)) for cell in one.cells if cell.direction
+                    for other in (cell.after if at_end else cell.before) if id(other) in owner}
+            if len(ends) > 1:
+                for number, at_start in ends:
+                    if at_start:
+                        slices[number].at_start = True
+                    else:
+                        slices[number].at_end = True
     for one in slices:
         for at_end in (False, True):
             touching = [other for cell in one.cells for other in (cell.after if at_end else cell.before)]
@@ -239,4 +257,29 @@ def strips_of(slices: list[Slice], breaks: set[tuple[int, int]]) -> list[list[Sl
             here = follows.get(here)
         if strip:
             found.append(strip)
+    return found
+
+
+def end_to_end(cells: list[Cell]) -> list[list[Cell]]:
+    """Single lanes that follow each other without a fork, each such row along the road's direction."""
+    known = {id(cell) for cell in cells}
+
+    def beyond(cell: Cell, ahead: bool) -> Cell | None:
+        others = cell.after if ahead else cell.before
+        if len(others) != 1 or id(others[0]) not in known or others[0] is cell:
+            return None
+        back = others[0].before if ahead else others[0].after
+        return others[0] if len(back) == 1 and back[0] is cell else None
+
+    found, used = [], set()
+    for cell in cells:
+        if id(cell) in used:
+            continue
+        row = [cell]
+        used.add(id(cell))
+        for ahead in (True, False):
+            while (other := beyond(row[-1] if ahead else row[0], ahead)) is not None and id(other) not in used:
+                used.add(id(other))
+                row.insert(len(row) if ahead else 0, other)
+        found.append(row)
     return found

@@ -8,6 +8,8 @@ from ..xml_tree import XmlElement, xml_text
 from .geometry import Cubics, PlanElement
 from .model import LaneSection, MapLane, MapRoad, OpenDriveMap, RoadMark
 
+SOLID_LENGTH = 1.0   # m: a stripe without gaps is repeated from any length on
+
 
 def opendrive_text(whole: OpenDriveMap, vendor: str = "Lanewright") -> str:
     """The file as text."""
@@ -111,9 +113,12 @@ def _lane(lane: MapLane) -> XmlElement:
 def _add_mark(lane: XmlElement, mark: RoadMark) -> None:
     width = mark.width if mark.type != "none" else None
     element = lane.add("roadMark", sOffset=mark.s, type=mark.type, weight=mark.weight, color=mark.colour, width=width, laneChange=None)
-    if mark.dash:
+    stripes = mark.type.split(" ") if mark.apart else [mark.type] if mark.dash else []
+    if stripes:
         kind = element.add("type", name=mark.type, width=mark.width)
-        kind.add("line", length=mark.dash, space=mark.gap, tOffset=0.0, sOffset=0.0, width=mark.width)
+        for stripe, t in zip(stripes, (mark.apart / 2, -mark.apart / 2)):
+            dash, gap = (mark.dash, mark.gap) if "broken" in stripe else (SOLID_LENGTH, 0.0)
+            kind.add("line", length=dash, space=gap, tOffset=t if mark.apart else 0.0, sOffset=0.0, width=mark.width)
 
 
 def _add_object(objects: XmlElement, item: dict) -> None:

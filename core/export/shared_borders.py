@@ -1,0 +1,152 @@
+"""One border between neighbours: where two lanes face each other across a double line or a few centimetres, both are led along its middle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import dijkstra
+from scipy.spatial import cKDTree
+
+from ..driving.lanes_layer import Lanes
+from .sources import RoadMapSource
+
+WIDEST_DOUBLE = 0.5       # m between the stripes of a double line at the most; what is wider is a median
+SAME_VERTEX = 0.001       # m in plan between vertices that are one
+SAME_ROAD_RISE = 0.3      # m in height between vertices of one road
+SAME_SECTION_ALONG = 0.1  # m along the road between vertices of one cross-section
+MOST_LANE_OVERLAP = 0.35  # m that a lane placed where paint is missing may lie on its neighbour: a tenth of a lane
+LEAST_STRIPE_GAP = 0.12   # m between the middles of two stripes at the least: what is nearer is one line measured twice
+TOLD_MOVE = 0.05          # m from which the user is told
+SHARED_FADE = 10.0        # m of border beyond a common one in which it comes back to its own place
+FACING_TRIED = 4          # vertices around one that may face it
+
+
+@dataclass(frozen=True)
+class SharedBorders:
+    """lanes : Lanes with common borders; gaps : (P, 2) median metres between the stripes at each left and right border, 0 for one line;
+    moved : largest metres that a border was moved."""
+
+    lanes: Lanes
+    gaps: np.ndarray
+    moved: float
+
+
+def with_shared_borders(source: RoadMapSource) -> RoadMapSource:
+    """A road map whose lanes share their borders, with a note for the user where one was moved by more than a line is wide."""
+    found = share_borders(source.lanes)
+    notes = list(source.notes)
+    if found.moved > TOLD_MOVE:
+        notes.append(f"Maps have one border between two lanes: facing borders, as of a double line, were led along their middle, moved by up to "
+                     f"{found.moved:.2f} m.")
+    return replace(source, lanes=found.lanes, gaps=found.gaps, notes=notes)
+
+
+def share_borders(lanes: Lanes) -> SharedBorders:
+    """Lanes whose borders are the same line where they face each other.
+
+    Maps for planners and simulators know one border between two lanes. A double line has two stripes, each the border of its lane; and a lane
+    placed where paint was missing may lie some centimetres beside the measured one. Vertices of one cross-section that face each other move to
+    their middle. Where the common border ends, its lanes come back to their own borders along SHARED_FADE.
+
+    Parameters
+    ----------
+    lanes : Lanes in metres; lanes of one road with vertices in the same cross-sections, as the layer LANES has them
+
+    Returns
+    -------
+    SharedBorders; the number and order of vertices stay as they are
+    """
+    rows = np.concatenate([lanes.left, lanes.right])
+    nodes, first = _numbered(rows)
+    places = rows[first]
+    pairs, beyond = _facing(lanes, nodes, places)
+    if not len(pairs):
+        return SharedBorders(lanes, np.zeros((len(lanes), 2)), 0.0)
+    apart = places[pairs[:, 1]] - places[pairs[:, 0]]
+    move = np.zeros_like(places)
+    np.add.at(move, pairs[:, 0], apart / 2)
+    np.add.at(move, pairs[:, 1], -apart / 2)
+    target = places + move + _faded(lanes, nodes, places, pairs, move)
+    target[pairs[:, 1]] = target[pairs[:, 0]]   # the same to the last digit
+    moved = target[nodes]
+    count = len(lanes.left)
+    gap = np.zeros(len(places))
+    gap[pairs.ravel()] = np.repeat(beyond, 2)
+    gaps = np.stack([[_typical(gap[nodes[side + a:side + b]]) for a, b in zip(lanes.start[:-1], lanes.start[1:])] for side in (0, count)], axis=1)
+    return SharedBorders(replace(lanes, left=moved[:count], right=moved[count:]), gaps, float(np.hypot(*(target - places)[:, :2].T).max()))
+
+
+def _typical(gaps):
+    """Metres between the stripes at a border, 0 where most of it is one line."""
+    found = float(np.median(gaps)) if len(gaps) else 0.0
+    return found if found > LEAST_STRIPE_GAP else 0.0
+
+
+def _numbered(rows):
+    """((V,) number of each vertex's place, (N,) a vertex of each place)."""
+    near = cKDTree(rows[:, :2]).query_pairs(SAME_VERTEX, output_type="ndarray")
+    near = near[np.abs(rows[near[:, 0], 2] - rows[near[:, 1], 2]) < SAME_ROAD_RISE] if len(near) else near.reshape(0, 2)
+    first = np.arange(len(rows))
+    np.minimum.at(first, near[:, 1], near[:, 0])
+    first, nodes = np.unique(first, return_inverse=True)
+    return nodes, first
+
+
+def _inward(lanes, nodes, count):
+    """((N, 2) unit vector from each place to the other border of its lane, (N,) whether it bounds lanes on one side only)."""
+    across = (lanes.right - lanes.left)[:, :2]
+    across = across / np.maximum(np.hypot(*across.T), 1e-9)[:, None]
+    ordinary = np.repeat(lanes.type != "connector", np.diff(lanes.start))
+    vectors, known = np.concatenate([across, -across]), np.tile(ordinary, 2)
+    total, number = np.zeros((count, 2)), np.zeros(count)
+    np.add.at(total, nodes[known], vectors[known])
+    np.add.at(number, nodes[known], 1)
+    mean = total / np.maximum(number, 1)[:, None]
+    size = np.hypot(*mean.T)
+    return mean / np.maximum(size, 1e-9)[:, None], (number > 0) & (size > 0.8)
+
+
+def _facing(lanes, nodes, places):
+    """((M, 2) places that are each other's nearest, with their lanes on opposite sides; (M,) metres between the lanes, negative where they
+    overlap)."""
+    inward, free = _inward(lanes, nodes, len(places))
+    free = np.flatnonzero(free)
+    if len(free) < 2:
+        return np.empty((0, 2), int), np.empty(0)
+    near, found = cKDTree(places[free, :2]).query(places[free, :2], k=min(FACING_TRIED + 1, len(free)), distance_upper_bound=WIDEST_DOUBLE)
+    best = np.full(len(places), -1)
+    least, gaps = np.full(len(places), np.inf), np.zeros(len(places))
+    for distance, other in zip(near.T[1:], found.T[1:]):
+        there = np.flatnonzero(np.isfinite(distance))
+        a, b = free[there], free[other[there]]
+        gap = places[b] - places[a]
+        beyond = -np.einsum("ij,ij->i", gap[:, :2], inward[a])       # positive outside of a's lane
+        along = np.abs(gap[:, 0] * inward[a, 1] - gap[:, 1] * inward[a, 0])
+        good = (np.einsum("ij,ij->i", inward[a], inward[b]) < -0.8) & (beyond > -MOST_LANE_OVERLAP) & (along < SAME_SECTION_ALONG)
+        good &= (np.abs(gap[:, 2]) < SAME_ROAD_RISE) & (distance[there] < least[a])
+        best[a[good]], least[a[good]], gaps[a[good]] = b[good], distance[there][good], beyond[good]
+    mine = np.flatnonzero(best >= 0)
+    mine = mine[(best[best[mine]] == mine) & (mine < best[mine])]
+    return np.stack([mine, best[mine]], axis=1), gaps[mine]
+
+
+def _faded(lanes, nodes, places, pairs, move):
+    """(N, 3) how far places beyond the ends of common borders follow them."""
+    count = len(lanes.left)
+    steps = np.ones(count, bool)
+    steps[lanes.start[1:] - 1] = False
+    first = np.flatnonzero(steps)
+    first = np.concatenate([first, first + count])
+    a, b = nodes[first], nodes[first + 1]
+    length = np.hypot(*(places[b] - places[a])[:, :2].T)
+    size = len(places)
+    graph = coo_matrix((np.maximum(length, 1e-6), (a, b)), shape=(size, size)).tocsr()
+    common = np.unique(pairs)
+    distance, _, source = dijkstra(graph, directed=False, indices=common, limit=SHARED_FADE, return_predecessors=True, min_only=True)
+    follows = np.flatnonzero(np.isfinite(distance) & (distance > 0))
+    share = 1 - distance[follows] / SHARED_FADE
+    found = np.zeros_like(places)
+    found[follows] = move[source[follows]] * (share**2 * (3 - 2 * share))[:, None]
+    return found
