@@ -1,5 +1,6 @@
 """`make accuracy`: what each kind of evidence brings to lines and lanes, and how right their confidence is."""
 
+import json
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -10,6 +11,7 @@ from shapely import LineString
 pytest.importorskip("osgeo.gdal")
 
 from accuracy.evidence import EVIDENCE, confidence_figures  # noqa: E402
+from accuracy.streets import driving_figures  # noqa: E402
 from accuracy.streets_page import evidence_section  # noqa: E402
 from lanewright.core.markings.cross_section.weights import EstimateWeights  # noqa: E402
 
@@ -36,6 +38,13 @@ def test_what_is_drawn_on_the_track_where_the_truth_has_no_lane_counts_neither_w
     drawn = LineString([(10, -20), (60, -20)])
     (right, count, _), = confidence_figures(CASE, TRACK, [(drawn, {"confidence": 0.9})]).values()
     assert right == count == 0
+
+
+def test_figures_of_driving_lines_can_be_saved():
+    found = driving_figures(CASE.truth, TRACK, [LineString([(0, 0.05), (100, 0.05)])])
+    assert json.loads(json.dumps(found))["lanes"] == [1000.0, 1000.0]
+    # no pass drove in the lane
+    assert "driven" not in found
 
 
 def test_the_page_says_what_a_street_loses_without_some_evidence():

@@ -86,7 +86,7 @@ def _near(true, lines, tolerance, area):
 
 
 def driving_figures(truth, track, lines):
-    """The figures of driving lines (shapely lines), as `judged` gives them."""
+    """The figures of driving lines (shapely lines) that `judged` gives."""
     road = shapely.LineString(track)
     found = {name: np.zeros(2) for name in ("lanes_5", "lanes", "driven_5", "driven")}
     for lane in truth.driving:
@@ -104,7 +104,7 @@ def driving_figures(truth, track, lines):
     found["lanes_right"] = (off[counted] <= BROAD).sum(), counted.sum()
     close = off < SAME
     found["directions"] = (_agree(places[close], ahead[close], truth.driving) > 0).sum(), close.sum()
-    return found
+    return {name: tuple(map(float, pair)) for name, pair in found.items() if pair[1]}
 
 
 def in_a_true_lane(places, off, road):
