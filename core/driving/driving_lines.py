@@ -16,6 +16,7 @@ from ..markings.objects.marking_objects import MarkingObjects
 from ..road.edges.road_edges import RoadEdges
 from .alignment import Element, lane_elements
 from .centreline import Course, element_of, lane_courses, status_pieces, without_short_status
+from .connectors import RoadLanes, connectors_between_roads
 from .curve_elements import is_curve
 from .driving_layers import CurveElements, DrivingLines
 from .heights import lane_heights
@@ -61,6 +62,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     rows: list[dict[str, Any]] = []
     arcs: list[dict[str, Any]] = []
     areas: list[dict[str, Any]] = []
+    lanes: dict[int, RoadLanes] = {}
     curbs = sections_of_edges(edges) if edges is not None else None
     estimates = estimate_roads(sections_of_lines(marking_lines), frame, settings.lane_width or country(settings.country).usual_lane,
                                settings.traffic_side, curbs, markings, road_points, width_asked=bool(settings.lane_width))
@@ -81,7 +83,9 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
             rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(track, track.direction, course, elements, one.lines, z, sigma)]
             arcs += [dict(row, road=number, lane=lane) for row in _lane_curves(track.direction, elements)]
         areas += lane_areas(one, curbs.get(number) if curbs else None, tracks, heights, frame, number)
+        lanes[number] = RoadLanes(s, tracks, heights)
         progress.report(0.4 + 0.6 * (count + 1) / len(estimates.roads))
+    areas += connectors_between_roads(lanes, frame, areas)
     lines = driving_lines_of(rows, marking_lines.crs)
     _report_lengths(lines, estimates.side, progress)
     return lines, _curve_elements(arcs, marking_lines.crs, settings.country), make_lanes(areas, marking_lines.crs)
@@ -98,7 +102,7 @@ def road_lanes(road: EstimatedRoad, settings: DrivingSettings, lane_width: float
     """
     tracks = estimated_lanes(road.boundaries, road.estimate, lane_width, settings.line_distance)
     tracks = connect(tracks, road.lines, settings.max_bridge, settings.max_inferred, road.boundaries.seen[road.boundaries.painted].any(0))
-    known = [track.without_bridged_ends() for track in tracks]
+    known = [track.without_doubtful_ends() for track in tracks]
     tracks = [track for track in known if track is not None and len(track) * STATION_STEP >= settings.shortest]
     return sorted(tracks, key=lambda track: (track.first, float(track.d[0])))
 

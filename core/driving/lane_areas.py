@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..markings.cross_section.evidence import driven_offsets
 from ..markings.cross_section.sections import STATION_STEP, CrossSections
 from ..markings.cross_section.weights import CENTRE_LINE, CURB, EDGE_LINE, HATCHING, LANE_LINE, OTHER_LINE, SURFACE
 from .centreline import status_pieces, without_short_status
+from .connectors import NEXT_LANE_GAP, NO_BORDER, connectors_on_road
 from .lane_track import LANE_STATUS, LaneTrack
 from .lanes_layer import Lanes
 
@@ -18,10 +18,6 @@ if TYPE_CHECKING:
     from ..survey.frame.road_frame import RoadFrame
 
 KIND_OF_BORDER = {LANE_LINE: "lane", CENTRE_LINE: "centre", EDGE_LINE: "edge", OTHER_LINE: "edge"}
-NO_BORDER = "none", "none", ""        # line, kind and pattern
-NEXT_LANE_GAP = 3.0                   # m between the end of a lane and the beginning of what follows it
-LONGEST_CONNECTOR = 150.0             # m between the end of a lane and the beginning of the one that the vehicle drove on to
-CONNECTOR_CONFIDENCE = 0.5            # where the way is known from the drive alone
 
 
 def lane_areas(road: EstimatedRoad, curbs: CrossSections | None, tracks: list[LaneTrack], heights: list[np.ndarray], frame: RoadFrame,
@@ -44,7 +40,7 @@ def lane_areas(road: EstimatedRoad, curbs: CrossSections | None, tracks: list[La
             part = slice(*np.searchsorted(road.lines.s[track.first:track.last + 1], [start, end + STATION_STEP / 2]))
             if part.stop - part.start >= 2:
                 rows.append(_area(road, curbs, track, part, z, frame, number) | dict(lane=lane, status=LANE_STATUS[code]))
-    rows += _connectors(road, tracks, heights, frame, number)
+    rows += connectors_on_road(road.lines.s, tracks, heights, frame, number)
     names: dict[int, int] = {}
     for row in rows:
         names[row["lane"]] = names.get(row["lane"], 0) + 1
@@ -91,50 +87,6 @@ def _border(road, curbs, rows, separates, columns):
     if made_of == HATCHING:
         return "none", "hatch", ""
     return ("none", "pavement", "") if made_of == SURFACE else NO_BORDER
-
-
-def _connectors(road, tracks, heights, frame, number):
-    """Areas along the drive from the end of a lane to the beginning of the next one of its direction."""
-    s = road.lines.s
-    driven, directions = driven_offsets(frame, number, s)
-    rows, lane = [], len(tracks)
-    for way in (1, -1):
-        ends = [(track, z, track.last if way > 0 else track.first) for track, z in zip(tracks, heights) if track.direction == way]
-        begins = [(track, z, track.first if way > 0 else track.last) for track, z in zip(tracks, heights) if track.direction == way]
-        for before, z_before, a in ends:
-            for p in np.flatnonzero(directions == way).tolist():
-                if not abs(driven[p, a] - before.at(a)[0]) < before.at(a)[1] / 2:
-                    continue
-                found = [(way * (b - a), after, z, b) for after, z, b in begins if NEXT_LANE_GAP < way * (b - a) * STATION_STEP < LONGEST_CONNECTOR
-                         and abs(driven[p, b] - after.at(b)[0]) < after.at(b)[1] / 2]
-                if not found:
-                    continue
-                _, after, z_after, b = min(found, key=lambda one: one[0])
-                low, high = sorted((a, b))
-                columns = np.arange(low, high + 1)
-                if not np.isfinite(driven[p, columns]).all():
-                    continue
-                lane += 1
-                area = _connector(before, after, a, b, columns, driven[p], s, (z_before, z_after), frame, number)
-                rows.append(area | dict(lane=lane, status="inferred"))
-                break
-    return rows
-
-
-def _connector(before, after, a, b, columns, driven, s, heights, frame, number):
-    share = (columns - a) / (b - a)
-    ends = [track.at(k) for track, k in ((before, a), (after, b))]
-    off = [place - driven[k] for (place, _), k in zip(ends, (a, b))]
-    # from the middle of the one lane to the middle of the other, along the drive between them
-    d = driven[columns] + off[0] * (1 - share) + off[1] * share
-    half = (ends[0][1] * (1 - share) + ends[1][1] * share) / 2
-    z = heights[0][a - before.first] * (1 - share) + heights[1][b - after.first] * share
-    sides = [np.column_stack([*frame.roads[number].to_map(s[columns], d + side * half), z]) for side in (1, -1)]
-    if before.direction < 0:
-        sides = [side[::-1] for side in sides[::-1]]
-    return dict(road=number, type="connector", direction=before.direction, left=sides[0], right=sides[1], about=[NO_BORDER, NO_BORDER],
-                confidence=CONNECTOR_CONFIDENCE * min(before.confidence.mean(), after.confidence.mean()), station=float(s[columns[0]]),
-                end=float(s[columns[-1]]), first=float(d[0]), last=float(d[-1]), width=float(np.median(2 * half)))
 
 
 def follow(rows: list[dict[str, Any]]) -> None:

@@ -20,6 +20,7 @@ GAP_NEIGHBOURHOOD = 10.0         # m around a gap within which other lanes tell 
 MIN_LANE_SEPARATION_SHARE = 0.6  # share of a lane's width that lanes keep from each other
 MIN_SHOWN_SHARE = 0.5            # of a gap in which lines are seen
 BRIDGED_TRUST = 0.7              # share of the confidence at both ends of a gap that is left between them
+LEAST_CONFIDENCE_OF_END = 0.25   # of a lane at its end: of what is said with less, three in four metres would be wrong
 END_WIDTH_LENGTH = 10.0          # m over which a lane's width at its end is taken
 
 
@@ -79,9 +80,9 @@ class LaneTrack:
         rows = int(END_WIDTH_LENGTH / STATION_STEP)
         return float(np.median(self.width[:rows] if head else self.width[-rows:]))
 
-    def without_bridged_ends(self) -> LaneTrack | None:
-        """The track less bridged stretches at its ends, where nothing follows; None if nothing is left."""
-        known = np.flatnonzero(self.status != BRIDGED)
+    def without_doubtful_ends(self) -> LaneTrack | None:
+        """The track less stretches at its ends that are bridged, where nothing follows, or improbable; None if nothing is left."""
+        known = np.flatnonzero((self.status != BRIDGED) & (self.confidence >= LEAST_CONFIDENCE_OF_END))
         return self.part(known[0], known[-1] + 1) if len(known) else None
 
 
