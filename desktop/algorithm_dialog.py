@@ -6,10 +6,11 @@ import json
 from pathlib import Path
 
 from processing.gui.AlgorithmDialog import AlgorithmDialog
-from qgis.core import Qgis, QgsProcessingAlgorithm, QgsProcessingParameterDefinition, QgsSettings
+from qgis.core import Qgis, QgsProcessingAlgorithm, QgsProcessingParameterDefinition, QgsProject, QgsSettings
 from qgis.PyQt.QtWidgets import QDialogButtonBox, QFileDialog, QInputDialog, QMenu, QPushButton, QTextBrowser, QWidget
 
 from ..processing_provider.texts import tr
+from .corrections_layer import corrections_layers
 
 LAST_FOLDER = "/Processing/LastOutputPath"  # QGIS's own setting
 PRESETS = "lanewright/presets"
@@ -32,9 +33,16 @@ class LanewrightDialog(AlgorithmDialog):
         self.presets.aboutToShow.connect(self._list_presets)
         self.presets_button.setMenu(self.presets)
         self.updateRunButtonVisibility()  # the box shows all of its buttons when it gets another
+        self._offer_corrections()
         help_shown = self.findChild(QTextBrowser, "textShortHelp")
         if help_shown is not None:
             help_shown.setHtml(help_shown.toHtml().replace(algorithm.displayName(), title, 1))
+
+    def _offer_corrections(self):
+        """The corrections of the project, where it has one layer of them."""
+        layers = corrections_layers(QgsProject.instance())
+        if self.algorithm().parameterDefinition("CORRECTIONS") is not None and len(layers) == 1:
+            self.setParameters({"CORRECTIONS": layers[0].id()})
 
     def _button(self, text, tip):
         button = QPushButton(text)

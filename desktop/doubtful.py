@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from qgis.core import Qgis, QgsLayerTreeGroup, QgsPointXY, QgsRectangle
+from qgis.core import Qgis, QgsGeometry, QgsLayerTreeGroup, QgsLineString, QgsPointXY, QgsRectangle
 
 from ..processing_provider.results.layer_tree import OUTPUT
 from ..processing_provider.texts import tr
 from .section import layers_of, title_of
 
 OUTPUTS = ("ROAD_EDGES", "MARKING_LINES", "DRIVING_LINES", "LANES")
+TARGETS = {"ROAD_EDGES": "edge", "MARKING_LINES": "marking", "DRIVING_LINES": "lane", "LANES": "lane"}  # what a correction calls them
 GUESSED = ("bridged", "inferred")
+DECIDED = ("accepted", "drawn")  # an analyst has seen these
 UNSURE = 0.5        # confidence below which a piece is doubtful
 APART = 5.0         # cm between the two boundary methods, as in the report
 SHORTEST = 2.0      # m: shorter pieces are not worth a stop
@@ -19,15 +21,32 @@ SAME_PLACE = 10.0   # m of station within which doubts are looked at together
 
 
 @dataclass(frozen=True)
-class Doubt:
-    """One place: what is doubtful there (one line for each), where along the road, and its extent and middle in the CRS of the layers."""
+class DoubtfulPiece:
+    """One piece of a line or lane: what is doubtful, its target for a correction, its course, and where it begins along the road."""
 
-    reasons: tuple[str, ...]
+    text: str
+    target: str
+    line: QgsGeometry
+    road: int
+    station: float
+    offset: float | None
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """One place: the pieces that are doubtful there, where along the road, and its extent and middle in the CRS of the layers."""
+
+    pieces: tuple[DoubtfulPiece, ...]
     road: int
     station: float
     extent: QgsRectangle
     middle: QgsPointXY
     crs: object
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """What is doubtful there, one line a piece."""
+        return tuple(piece.text for piece in self.pieces)
 
 
 def doubts_of(group: QgsLayerTreeGroup) -> list[Doubt]:
@@ -50,7 +69,7 @@ def reason(row: dict) -> str:
 
     row : {field: value}; what a layer does not have says nothing
     """
-    if (_number(row.get("length_m")) or 0.0) < SHORTEST:
+    if (_number(row.get("length_m")) or 0.0) < SHORTEST or row.get("status") in DECIDED:
         return ""
     apart, sure = _number(row.get("agree_cm")), _number(row.get("confidence"))
     if apart is not None and apart > APART:
@@ -70,7 +89,20 @@ def _number(value):
 def _doubt(text, row, geometry, layer):
     middle = geometry.interpolate(geometry.length() / 2).asPoint() if layer.geometryType() == Qgis.GeometryType.Line else \
         geometry.pointOnSurface().asPoint()
-    return Doubt((text,), int(_number(row.get("road")) or 0), _number(row.get("station_m")) or 0.0, geometry.boundingBox(), middle, layer.crs())
+    road, station = int(_number(row.get("road")) or 0), _number(row.get("station_m")) or 0.0
+    piece = DoubtfulPiece(text, TARGETS[layer.customProperty(OUTPUT)], course_of(geometry), road, station, _number(row.get("offset_m")))
+    return Doubt((piece,), road, station, geometry.boundingBox(), middle, layer.crs())
+
+
+def course_of(geometry: QgsGeometry) -> QgsGeometry:
+    """The line of a feature without heights; of a lane's area, the middle between its borders, along which its ring runs there and back."""
+    if geometry.type() == Qgis.GeometryType.Polygon:
+        ring = [vertex for vertex in next(geometry.constParts()).exteriorRing().vertices()][:-1]
+        left, right = ring[:len(ring) // 2], ring[len(ring) // 2:][::-1]
+        return QgsGeometry(QgsLineString([(a.x() + b.x()) / 2 for a, b in zip(left, right)], [(a.y() + b.y()) / 2 for a, b in zip(left, right)]))
+    flat = QgsGeometry(geometry)
+    flat.get().dropZValue()
+    return flat
 
 
 def _gathered(doubts):
@@ -81,7 +113,7 @@ def _gathered(doubts):
         if last is not None and last.road == doubt.road and doubt.station - last.station <= SAME_PLACE:
             extent = QgsRectangle(last.extent)
             extent.combineExtentWith(doubt.extent)
-            places[-1] = Doubt(last.reasons + doubt.reasons, last.road, last.station, extent, last.middle, last.crs)
+            places[-1] = Doubt(last.pieces + doubt.pieces, last.road, last.station, extent, last.middle, last.crs)
         else:
             places.append(doubt)
     return places

@@ -11,11 +11,12 @@ from ..processing_provider.reports import last_report
 from ..processing_provider.results.layer_tree import replaces_last_run, road_maps, set_replaces_last_run
 from ..processing_provider.results.run_table import run_table
 from ..processing_provider.texts import tr
-from .doubt_tour import DoubtTour
+from .doubt_dock import DoubtDock
 from .layout_dialog import LayoutDialog, road_map_groups, shown_layers
 from .manual import ManualWindow
 from .map_layout import road_map_layout
 from .sample_run import SampleRun
+from .section import clouds_of
 from .section_dock import SectionDock
 
 PROVIDER = "lanewright"
@@ -30,8 +31,7 @@ class Menu(QObject):
         self.iface = iface
         self.actions = []
         self.dialog = self.layout_dialog = self.designer = None  # kept, or Python would collect the open windows
-        self.section = None
-        self.tour = DoubtTour(iface)
+        self.section = self.doubts = None
         self.sample = SampleRun(iface)
         self.manual = ManualWindow(iface.mainWindow())
         theme = QgsApplication.getThemeIcon
@@ -41,7 +41,7 @@ class Menu(QObject):
         self._add(tr("Print layout of the road map"), self.open_layout, tr("A map of the layers that Lanewright made"),
                   theme("/mActionNewLayout.svg"))
         self._add(tr("Next doubtful place"), self.next_doubt, tr("Goes along the road map through pieces that were not measured, that are uncertain, "
-                  "or where the boundary methods differ"), theme("/mActionZoomNext.svg"))
+                  "or where the boundary methods differ, and keeps what you decide there"), theme("/mActionZoomNext.svg"))
         self._add(tr("Cross-section"), self.open_section, tr("Points and lines of the road where you click in the map"),
                   theme("/mActionElevationProfile.svg"))
         self._add(tr("Open the last report"), self.open_report, tr("The report of the run that ended last"), theme("/mIconHtml.svg"))
@@ -110,9 +110,20 @@ class Menu(QObject):
             self.iface.messageBar().pushMessage(
                 "Lanewright", tr("There is no road map in this project yet: run Road map first."), level=Qgis.MessageLevel.Info)
             return
-        self.tour.go_on(groups[0])
-        if self.section is not None and self.section.isVisible() and self.tour.place is not None:
-            self.section.show_at(self.tour.place.middle, self.tour.place.crs)
+        if self.doubts is None:
+            self.doubts = DoubtDock(self.iface)
+            self.doubts.shown.connect(self._show_section)
+            self.doubts.run_wanted.connect(self.run_again)
+        self.doubts.go(groups[0])
+
+    def _show_section(self, place):
+        """The section at a doubtful place, where its window is open."""
+        if self.section is not None and self.section.isVisible():
+            self.section.show_at(place.middle, place.crs)
+
+    def run_again(self, group, corrections):
+        """Road map with the point clouds of a road map and the corrections made in it."""
+        self.open_road_map(POINT_CLOUDS=clouds_of(group), CORRECTIONS=corrections.id())
 
     def open_report(self):
         """The report written last, in the user's web browser."""
@@ -138,15 +149,17 @@ class Menu(QObject):
         for action in self.actions:
             self.iface.removePluginMenu("Lanewright", action)
         self.actions = []
-        if self.section is not None:
-            self.section.remove()
-            self.section = None
+        for dock in (self.section, self.doubts):
+            if dock is not None:
+                dock.remove()
+        self.section = self.doubts = None
         self.manual.forget()
 
-    def open_road_map(self):
+    def open_road_map(self, **values):
+        """The dialog of Road map, with some of its values."""
         import processing
 
-        self.dialog = processing.createAlgorithmDialog("lanewright:roadmap")
+        self.dialog = processing.createAlgorithmDialog("lanewright:roadmap", values)
         if self.dialog is not None:  # QGIS has said why
             self.dialog.show()
 

@@ -17,7 +17,7 @@ from qgis.core import (
 from ..processing_provider.texts import tr
 
 LENGTH = 120.0  # m of street: seconds to make, and long enough for every kind of marking
-LAYERS = ("ROAD_SURFACE", "ROAD_EDGES", "MARKINGS", "MARKING_LINES", "DRIVING_LINES", "CURVE_ELEMENTS")
+LAYERS = ("PASSES", "ROAD_SURFACE", "ROAD_EDGES", "MARKINGS", "MARKING_LINES", "DRIVING_LINES", "CURVE_ELEMENTS")
 
 
 class SampleRun:

@@ -1,19 +1,20 @@
 """Run by QGIS itself (qgis --code): does what a newcomer does, and keeps a picture of each step."""
 
 import os
+import tempfile
 import traceback
 from pathlib import Path
 
 from lanewright.processing_provider.reports import last_report
 from lanewright.processing_provider.texts import tr
-from qgis.core import QgsProject
+from qgis.core import QgsCoordinateTransform, QgsProject
 from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, QRect, Qt, QTimer
 from qgis.PyQt.QtGui import QAction, QGuiApplication, QImage
 from qgis.PyQt.QtWidgets import QDockWidget
 from qgis.utils import iface, plugins
 
 PICTURES = Path(os.environ["LANEWRIGHT_PICTURES"])
-MAPS = ("window_result", "window_section", "window_layout", "window_model")
+MAPS = ("window_result", "window_section", "window_corrections", "window_layout", "window_model")
 SAID = Path(os.environ["LANEWRIGHT_SAID"])
 
 
@@ -132,14 +133,51 @@ def doubts():
     window = iface.mainWindow()
     action_of(tr("Cross-section")).trigger()
     action_of(tr("Next doubtful place")).trigger()
-    needed(ours.tour.place is not None, "no place of the sample is doubtful")
+    places = ours.doubts
+    needed(places.place is not None, "no place of the sample is doubtful")
     dock = ours.section
     window.resizeDocks([dock], [330], Qt.Orientation.Vertical)
     needed(wait(60, lambda: dock.task is None and len(dock.view.points)), f"no points in the section: {dock.view.message}")
     wait(2)
     keep(window, "window_section")
+    corrections(places)
     iface.messageBar().clearWidgets()
     dock.hide()
+    places.hide()
+
+
+def corrections(dock):
+    """Three decisions in the window of doubtful places, and the dialog that makes the map again with them."""
+    folder = Path(tempfile.mkdtemp())
+    dock.ask_for_file = lambda: str(folder / "corrections.gpkg")
+    dock.accept_button.click()
+    wait(1)
+    # a zebra crossing has no edge lines
+    for row, piece in enumerate(dock.place.pieces):
+        dock.list.item(row).setSelected(piece.target == "marking")
+    dock.note.setText("zebra crossing")
+    dock.delete_button.click()
+    wait(1)
+    dock.go(dock.group)
+    line = dock.place.pieces[0].line
+    dock.begin_draw("edge")
+    to_map = QgsCoordinateTransform(dock.place.crs, iface.mapCanvas().mapSettings().destinationCrs(), QgsProject.instance())
+    for share in (0.1, 0.5, 0.9):
+        dock.tool.add(to_map.transform(line.interpolate(share * line.length()).asPoint()))
+    wait(1)
+    dock.tool.finish()
+    dock.go(dock.group, -1)
+    dock.go(dock.group, -1)
+    wait(2)
+    needed(dock.layer is not None and dock.layer.featureCount() >= 3, "the corrections were not kept")
+    keep(iface.mainWindow(), "window_corrections")
+    dock.run_button.click()
+    window = plugins["lanewright"].menu.dialog
+    needed(wait(5, window.isVisible), "the road map dialog did not open for the corrections")
+    values = window.createProcessingParameters()
+    needed(values.get("CORRECTIONS") and values.get("POINT_CLOUDS"), f"the dialog does not have the corrections and point clouds: {values}")
+    say(f"made again from: {sorted(name for name, value in values.items() if value not in (None, '', False))}")
+    window.close()
 
 
 def action_of(title):
@@ -210,8 +248,10 @@ def drive():
     try:
         iface.mainWindow().resize(1380, 860)
         wait(2)
+        wanted = os.environ.get("LANEWRIGHT_STEPS", "").split()
         for step in (menu, toolbox, dialog, sample, doubts, layout, manual, batch, designer):
-            step()
+            if not wanted or step.__name__ in wanted:
+                step()
         say("finished")
     except BaseException:
         say(traceback.format_exc())

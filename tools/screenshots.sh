@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Drives a real QGIS window on a screen of its own (Xvfb) and keeps what it shows in docs/manual/img:
 # the toolbox, the road map dialog, the sample survey's road map, its layout, the model designer.
+# LANEWRIGHT_STEPS="sample doubts" does some of the steps only.
 # Ends with an error when a window does not come up or a layer is missing.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/env.sh"

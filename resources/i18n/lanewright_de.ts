@@ -3949,19 +3949,144 @@
             <translation>Die Datei {name} gibt es nicht.</translation>
         </message>
         <message>
-            <location filename="../../desktop/doubt_tour.py" />
+            <location filename="../../desktop/corrections_layer.py" />
+            <source>{path} holds no layer of corrections. Choose a new name.</source>
+            <translation>{path} enthält keinen Layer mit Korrekturen. Einen neuen Namen wählen.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/corrections_layer.py" />
+            <source>The corrections cannot be kept in {path}: {problem}. Choose another place.</source>
+            <translation>Die Korrekturen können nicht in {path} abgelegt werden: {problem}. Einen anderen Ort wählen.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>Doubtful places</source>
+            <translation>Zweifelhafte Stellen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>What is doubtful here. The buttons are about what is selected.</source>
+            <translation>Was hier zweifelhaft ist. Die Knöpfe gelten dem, was ausgewählt ist.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>Note, kept with the correction</source>
+            <translation>Notiz, wird mit der Korrektur aufbewahrt</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>Accept</source>
+            <translation>Bestätigen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>It is right as it is</source>
+            <translation>Es ist richtig, wie es ist</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>Delete</source>
+            <translation>Löschen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>There is nothing of that kind here</source>
+            <translation>Hier gibt es nichts dergleichen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>Move…</source>
+            <translation>Verschieben…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>Draw where it belongs, within 2 m of where it is</source>
+            <translation>Zeichnen, wo es hingehört, höchstens 2 m von seinem jetzigen Ort</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>Draw</source>
+            <translation>Zeichnen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>Draw what is missing</source>
+            <translation>Zeichnen, was fehlt</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>Take back the last</source>
+            <translation>Letzte zurücknehmen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>Removes the correction that was made last</source>
+            <translation>Entfernt die zuletzt gemachte Korrektur</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>Make the map again…</source>
+            <translation>Karte neu erstellen…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>Opens Road map with these corrections</source>
+            <translation>Öffnet die Straßenkarte mit diesen Korrekturen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>File for the corrections</source>
+            <translation>Datei für die Korrekturen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>Click along the line where it belongs. The right button ends it, Backspace takes a click back, Esc stops.</source>
+            <translation>Entlang der Linie klicken, wo sie hingehört. Die rechte Taste beendet sie, die Rücktaste nimmt einen Klick zurück, Esc bricht ab.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>The place before</source>
+            <translation>Die vorige Stelle</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>The next place</source>
+            <translation>Die nächste Stelle</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>Road edge…</source>
+            <translation>Straßenrand…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>Marking line…</source>
+            <translation>Markierungslinie…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>Lane, in the direction of travel…</source>
+            <translation>Fahrstreifen, in Fahrtrichtung…</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
             <source>Nothing in this road map is doubtful: all of it was measured.</source>
             <translation>Nichts an dieser Straßenkarte ist zweifelhaft: Alles wurde gemessen.</translation>
         </message>
         <message>
-            <location filename="../../desktop/doubt_tour.py" />
-            <source>Place {at} of {count}, road {road}, station {station:.0f} m. {said}</source>
-            <translation>Stelle {at} von {count}, Straße {road}, Station {station:.0f} m. {said}</translation>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>No corrections yet.</source>
+            <translation>Noch keine Korrekturen.</translation>
         </message>
         <message>
-            <location filename="../../desktop/doubt_tour.py" />
-            <source>; and {number} more</source>
-            <translation>; und {number} weitere</translation>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>&lt;b&gt;Place {at} of {count}&lt;/b&gt;, road {road}, station {station:.0f} m</source>
+            <translation>&lt;b&gt;Stelle {at} von {count}&lt;/b&gt;, Straße {road}, Station {station:.0f} m</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/doubt_dock.py" />
+            <source>{count} corrections in {file}. They come into the map when it is made again.</source>
+            <translation>{count} Korrekturen in {file}. Sie kommen in die Karte, wenn sie neu erstellt wird.</translation>
         </message>
         <message>
             <location filename="../../desktop/doubtful.py" />
@@ -4070,8 +4195,8 @@
         </message>
         <message>
             <location filename="../../desktop/menu.py" />
-            <source>Goes along the road map through pieces that were not measured, that are uncertain, or where the boundary methods differ</source>
-            <translation>Geht die Straßenkarte entlang durch Stücke, die nicht gemessen wurden, die unsicher sind oder an denen die Verfahren für die Ränder sich unterscheiden</translation>
+            <source>Goes along the road map through pieces that were not measured, that are uncertain, or where the boundary methods differ, and keeps what you decide there</source>
+            <translation>Geht die Straßenkarte entlang durch Stücke, die nicht gemessen oder unsicher sind oder wo die Randverfahren voneinander abweichen, und bewahrt auf, was Sie dort entscheiden</translation>
         </message>
         <message>
             <location filename="../../desktop/menu.py" />

@@ -6,13 +6,8 @@ from lanewright.core.common.schemas import DRIVING_LINES, ROAD_EDGES
 from lanewright.desktop.doubtful import doubts_of, reason
 from lanewright.desktop.section import Section, clouds_of, crossings, section_at
 from lanewright.desktop.section_view import SectionView
-from lanewright.processing_provider.layers import qgis_fields
-from lanewright.processing_provider.results.attributes import explain_attributes
-from lanewright.processing_provider.results.layer_tree import place_layer
-from lanewright.processing_provider.results.runs import Run
-from qgis.core import QgsFeature, QgsGeometry, QgsProject, QgsVectorLayer
-
-EAST, NORTH = 500_000.0, 5_400_000.0
+from qgis.core import QgsProject
+from road_map_layers import EAST, NORTH, added
 
 
 @pytest.fixture
@@ -20,29 +15,6 @@ def project(qgis_app):
     project = QgsProject()
     yield project
     project.clear()
-
-
-def added(project, output, schema, *rows):
-    """A layer of a road map; rows of (WKT about EAST, NORTH, fields)."""
-    layer = QgsVectorLayer("LineStringZ?crs=EPSG:32650", output, "memory")
-    layer.dataProvider().addAttributes(list(qgis_fields(schema, with_aliases=False)))
-    layer.updateFields()
-    for wkt, row in rows:
-        feature = QgsFeature(layer.fields())
-        geometry = QgsGeometry.fromWkt(wkt)
-        geometry.translate(EAST, NORTH)
-        feature.setGeometry(geometry)
-        for name, value in row.items():
-            feature[name] = value
-        layer.dataProvider().addFeature(feature)
-    layer.updateExtents()
-    explain_attributes(layer, output, schema)
-    run = Run("roadmap", "B12", "B12, 8:00", ("/data/B12/a.laz", "/data/B12/b.laz"))
-    project.addMapLayer(layer, False)
-    root = project.layerTreeRoot()
-    (root.findGroup(run.group) or root.insertGroup(0, run.group)).insertLayer(0, layer)
-    place_layer(layer, project, output, run)
-    return layer
 
 
 def road(project):

@@ -1,0 +1,137 @@
+"""The window of doubtful places, and the corrections that are made in it."""
+
+from types import SimpleNamespace
+
+import pytest
+from lanewright.algorithms.corrections import read_corrections
+from lanewright.core.common.schemas import DRIVING_LINES, LANES, ROAD_EDGES
+from lanewright.desktop.corrections_layer import corrections_layers
+from lanewright.desktop.doubt_dock import DoubtDock
+from lanewright.processing_provider.layers import QgisSource
+from qgis.core import QgsGeometry, QgsPointXY, QgsProject, QgsRectangle
+from qgis.gui import QgsMapCanvas, QgsMessageBar
+from qgis.PyQt.QtWidgets import QMainWindow
+from road_map_layers import EAST, NORTH, added
+
+
+@pytest.fixture
+def window(qgis_app):
+    """A dock beside a map of a road with two doubtful places; of the first, an edge was bridged and a lane inferred."""
+    project = QgsProject.instance()
+    project.clear()
+    piece = lambda at, **row: (f"LINESTRING Z ({at} 0 100, {at + 8} 0 100)", dict(road=0, station_m=float(at), length_m=8.0, **row))  # noqa: E731
+    added(project, "ROAD_EDGES", ROAD_EDGES, piece(80, side="left", status="bridged"), piece(10, side="left", status="bridged"),
+          piece(40, side="left", status="measured"), piece(60, side="left", status="accepted", agree_cm=9.0))
+    added(project, "DRIVING_LINES", DRIVING_LINES, piece(14, lane=1, direction=1, status="inferred", offset_m=1.5))
+    main = QMainWindow()
+    canvas, bar = QgsMapCanvas(main), QgsMessageBar(main)
+    canvas.resize(400, 300)
+    canvas.setDestinationCrs(project.mapLayers()[next(iter(project.mapLayers()))].crs())
+    canvas.setExtent(QgsRectangle(EAST - 10, NORTH - 40, EAST + 110, NORTH + 50))
+    iface = SimpleNamespace(mainWindow=lambda: main, mapCanvas=lambda: canvas, messageBar=lambda: bar, removeDockWidget=main.removeDockWidget,
+                            addDockWidget=main.addDockWidget)
+    dock = DoubtDock(iface)
+    main.show()
+    yield dock
+    dock.remove()
+    project.clear()
+
+
+@pytest.fixture
+def at_first(window, tmp_path):
+    window.ask_for_file = lambda: str(tmp_path / "corrections.gpkg")
+    window.go(QgsProject.instance().layerTreeRoot().findGroup("B12, 8:00"))
+    return window
+
+
+def corrections():
+    layer, = corrections_layers(QgsProject.instance())
+    return [(row["action"], row["target"], row["road"], row["station_m"], geometry.length)
+            for geometry, row in read_corrections(QgisSource(layer, "Corrections"))]
+
+
+def test_it_says_where_it_is_and_what_is_doubtful_there_and_shows_it(at_first):
+    assert "Place 1 of 2" in at_first.where.text() and "station 10 m" in at_first.where.text()
+    assert at_first.list.count() == 2 and len(at_first.bands) == 2
+    assert at_first.iface.mapCanvas().extent().contains(QgsPointXY(EAST + 15, NORTH))
+
+
+def test_it_goes_forward_and_back_and_begins_again_after_the_last(at_first):
+    at_first.go(at_first.group)
+    assert at_first.place.station == 80
+    at_first.go(at_first.group, -1)
+    assert at_first.place.station == 10
+    at_first.go(at_first.group, -1)
+    assert at_first.place.station == 80
+
+
+def test_what_is_accepted_is_kept_in_a_layer_that_road_map_reads_and_the_next_place_comes(at_first):
+    at_first.note.setText("seen from the image")
+    at_first.accept_button.click()
+    assert corrections() == [("accept", "edge", 0, 10.0, pytest.approx(8.0)), ("accept", "lane", 0, 14.0, pytest.approx(8.0))]
+    assert at_first.place.station == 80 and "2 corrections in corrections.gpkg" in at_first.kept.text()
+
+
+def test_only_what_is_selected_is_deleted_and_the_list_says_so(at_first):
+    at_first.list.clearSelection()
+    at_first.list.item(0).setSelected(True)
+    at_first.delete_button.click()
+    assert [(action, target) for action, target, *_ in corrections()] == [("delete", "edge")]
+    assert at_first.place.station == 10 and "→ delete" in at_first.list.item(0).text() and "→" not in at_first.list.item(1).text()
+
+
+def test_who_decides_otherwise_has_one_correction_not_two(at_first):
+    at_first.delete_button.click()
+    at_first.go(at_first.group, -1)
+    at_first.accept_button.click()
+    assert [action for action, *_ in corrections()] == ["accept", "accept"]
+
+
+def test_a_drawn_line_is_kept_with_its_target_and_can_be_taken_back(at_first):
+    at_first.begin_draw("edge")
+    assert at_first.iface.mapCanvas().mapTool() is at_first.tool
+    for x in (20.0, 25.0, 31.0):
+        at_first.tool.add(QgsPointXY(EAST + x, NORTH + 4))
+    at_first.tool.finish()
+    (action, target, *_, length), = corrections()
+    assert (action, target, length) == ("draw", "edge", pytest.approx(11.0))
+    assert at_first.iface.mapCanvas().mapTool() is not at_first.tool
+    at_first.undo_button.click()
+    assert corrections() == [] and not at_first.undo_button.isEnabled()
+
+
+def test_one_piece_is_moved_to_a_line_and_a_line_of_one_click_is_none(at_first):
+    assert not at_first.move_button.isEnabled()
+    at_first.list.clearSelection()
+    at_first.list.item(1).setSelected(True)
+    at_first.move_button.click()
+    at_first.tool.add(QgsPointXY(EAST + 14, NORTH + 1))
+    at_first.tool.finish()
+    assert corrections_layers(QgsProject.instance()) == []
+    at_first.move_button.click()
+    at_first._line_drawn(QgsGeometry.fromPolylineXY([QgsPointXY(EAST + 14, NORTH + 1), QgsPointXY(EAST + 22, NORTH + 1)]))
+    assert [(action, target) for action, target, *_ in corrections()] == [("move", "lane")]
+
+
+def test_who_names_no_file_changes_nothing(at_first):
+    at_first.ask_for_file = lambda: ""
+    at_first.accept_button.click()
+    assert corrections_layers(QgsProject.instance()) == [] and at_first.place.station == 10
+
+
+def test_a_file_that_holds_something_else_is_refused(at_first, tmp_path):
+    other = tmp_path / "other.gpkg"
+    other.write_bytes(b"no database")
+    at_first.ask_for_file = lambda: str(other)
+    at_first.accept_button.click()
+    assert "holds no layer of corrections" in at_first.iface.messageBar().currentItem().text()
+
+
+def test_of_a_lane_the_middle_between_its_borders_is_kept(window):
+    ring = "POLYGON Z ((0 2 1, 10 2 1, 20 2 1, 20 -2 1, 10 -2 1, 0 -2 1, 0 2 1))"
+    layer = added(QgsProject.instance(), "LANES", LANES, (ring, dict(road=0, station_m=0.0, length_m=20.0, status="inferred", lane_id="0.1.1")),
+                  kind="PolygonZ")
+    from lanewright.desktop.doubtful import course_of
+
+    line = course_of(next(layer.getFeatures()).geometry())
+    assert line.length() == pytest.approx(20.0) and line.boundingBox().height() == pytest.approx(0.0, abs=1e-6)
