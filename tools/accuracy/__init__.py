@@ -2,7 +2,7 @@
 
 surveys (what is measured on) → chain (what is run) → judge (how right it is) → figures
 (all numbers of one survey) → page (the document). Beside the steps, the road map as a whole: otherwise (of a street
-and of its variants) → streets (how right it is, by length) → streets_page.
+and of its variants) and poorer (with something lacking) → streets (how right it is, by length) → streets_page, poorer_page.
 """
 
 import sys

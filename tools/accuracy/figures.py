@@ -19,6 +19,7 @@ from .ablations import ABLATIONS
 from .chain import Work, run, set_in
 from .evidence import confidence_figures, evidence_figures
 from .otherwise import street_figures
+from .poorer import poorer_figures
 from .surveys import read_case
 
 DEFAULT = RoadMapSettings()
@@ -32,7 +33,7 @@ def figures_of(folder, quick=False):
     gdal.PushErrorHandler("CPLQuietErrorHandler")
     case = read_case(folder)
     about = dict(name=case.name, kind=case.kind, text=case.text, points=len_of(case.cloud), has=sorted(case.truth.has), steps=case.steps,
-                 streets=street_figures(case, variants=not quick))
+                 streets=street_figures(case, variants=not quick), poorer=poorer_figures(case) if case.poorer and not quick else {})
     lanes = not quick and "driving_lines" in case.truth.has and "refused" not in about["streets"]["as surveyed"]
     if not case.steps and not lanes:
         return about

@@ -18,7 +18,8 @@ FIGURES = {
     "curbs": "curbs found", "curbs_right": "edges right", "corners": "corners and islands found", "pavement": "pavement edges found",
     "paint": "paint found", "paint_right": "paint right",
     "lanes_5": "driving lines, 5 cm", "lanes": "driving lines, 15 cm", "driven_5": "driven lanes, 5 cm", "driven": "driven lanes, 15 cm",
-    "lanes_right": "driving lines right, 15 cm", "directions": "directions right"}
+    "lanes_right": "driving lines right, 15 cm", "directions": "directions right",
+    "edges_sigma": "edges within their sigma", "lanes_sigma": "driving lines within their sigma"}
 
 
 def judged(case, track, edges, paint, lanes):
@@ -38,10 +39,13 @@ def judged(case, track, edges, paint, lanes):
     found = {}
     if "boundaries" in case.truth.has:
         found.update(_boundaries(case.truth, [line for line, row in edges if row.get("part") in (None, "bottom")]))
+        curbs = [line for line, edge, _ in case.truth.edges if edge not in ("pavement", "none")]
+        found["edges_sigma"] = _within_sigma(edges, curbs, CURB, case.truth.area)
     if paint is not None:
         found.update(paint=(paint["found"], paint["found"] + paint["missed"]), paint_right=(paint["right"], paint["right"] + paint["false"]))
     if "driving_lines" in case.truth.has:
         found.update(driving_figures(case.truth, track, [line for line, _ in lanes]))
+        found["lanes_sigma"] = _within_sigma(lanes, case.truth.driving, BROAD, case.truth.area)
     return {name: tuple(map(float, pair)) for name, pair in found.items() if pair[1]}
 
 
@@ -110,6 +114,16 @@ def driving_figures(truth, track, lines):
 def in_a_true_lane(places, off, road):
     """(N,) bool, False for places on the track (a shapely line) where the truth has no lane; `off` m lies the nearest true driving line."""
     return (off <= APART) | (shapely.distance(shapely.points(places), road) >= APART)
+
+
+def _within_sigma(rows, true, near, area):
+    """Places within the sigma that their own line says, and places of lines that say one; only those near a true line count."""
+    inside = count = 0
+    for line, row in rows:
+        if row.get("sigma_m") is not None:
+            off = distance(sampled([line], area)[0], true)
+            inside, count = inside + (off <= row["sigma_m"]).sum(), count + (off <= near).sum()
+    return inside, count
 
 
 def _agree(places, ahead, lines):

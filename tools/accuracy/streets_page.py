@@ -6,6 +6,7 @@ from .tables import number, table
 
 HEAD = ("survey", "curbs", "corners, islands", "pavement edges", "drawn edges right", "markings F1", "driving lines 5 / 15 cm",
         "driven lanes 5 / 15 cm", "miscoding", "directions right")
+CHANGED = "curbs", "pavement edges", "drawn edges right", "markings F1", "driving lines 15 cm", "driven lanes 15 cm", "miscoding", "directions right"
 
 
 def _row(figures):
@@ -51,27 +52,28 @@ def otherwise_section(figures):
         pairs = [(f["streets"]["as surveyed"], f["streets"][name]) for f in figures if name in f["streets"]]
         refused = sum("refused" in after for _, after in pairs)
         pairs = [(before, after) for before, after in pairs if "refused" not in before and "refused" not in after]
-        before, after = (_scores(pooled([pair[k] for pair in pairs])) for k in (0, 1))
-        cells = [_change(b, a) for b, a in zip(before, after)]
+        before, after = (scores(pooled([pair[k] for pair in pairs])) for k in (0, 1))
+        cells = [change(b, a) for b, a in zip(before, after)]
         if name == "driven the other way":
             cells[-1] = "–"
         rows.append([name + (f" (no map of {refused})" if refused else ""), *cells])
-    whole = _scores(pooled([f["streets"]["as surveyed"] for f in figures if "refused" not in f["streets"]["as surveyed"]]))
+    whole = scores(pooled([f["streets"]["as surveyed"] for f in figures if "refused" not in f["streets"]["as surveyed"]]))
     return ("## The same streets surveyed otherwise\n\nEach survey is also mirrored, which makes left-hand traffic of right-hand traffic, "
             "turned, driven the other way and thinned to every second point; the maps are changed back and judged by the same truth. The "
             "first row is pooled over all surveys by length, the others are the change in points. Driven the other way, arrows point "
             f"against the traffic, so directions are not compared.{some}\n\n"
-            + table(["", "curbs", "pavement edges", "drawn edges right", "markings F1", "driving lines 15 cm", "driven lanes 15 cm", "miscoding",
-                     "directions right"], [["**as surveyed**", *(number(value) for value in whole)], *rows]))
+            + table(["", *CHANGED], [["**as surveyed**", *(number(value) for value in whole)], *rows]))
 
 
-def _scores(figures):
+def scores(figures):
+    """What the tables of changes compare, in the order of CHANGED."""
     wrong = percent(figures, "lanes_right")
     return [percent(figures, "curbs"), percent(figures, "pavement"), percent(figures, "curbs_right"), harmonic(figures, "paint", "paint_right"),
             percent(figures, "lanes"), percent(figures, "driven"), None if wrong is None else 100.0 - wrong, percent(figures, "directions")]
 
 
-def _change(before, after):
+def change(before, after):
+    """The cell of a change in points: · where there is none."""
     if before is None or after is None:
         return "–"
     return "·" if abs(after - before) < 0.05 else f"{after - before:+.1f}"
@@ -91,7 +93,7 @@ def evidence_section(figures):
     rows = [["**everything**", *(number(value) for value in whole), ""]]
     for name in EVIDENCE:
         felt = [f["name"] for f in figures if _differs(f["evidence"][""], f["evidence"][name])]
-        rows.append([name, *(_change(before, after) for before, after in zip(whole, scores(name))), ", ".join(felt) or "none"])
+        rows.append([name, *(change(before, after) for before, after in zip(whole, scores(name))), ", ".join(felt) or "none"])
     return ("## What each kind of evidence brings to lines and lanes\n\nLines and lanes are one estimate from many kinds of evidence. Here each "
             "kind is left out alone, everything else as it is; the first row is pooled over the surveys by length, the others are the change "
             "in points. A minus is what the evidence is worth. Evidence that few surveys feel counts there: the last column names those whose "

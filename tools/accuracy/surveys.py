@@ -7,7 +7,7 @@ A survey is a folder with
     truth.gpkg  or  truth/truth.gpkg     what is there: any of the layers in LAYERS
     truth/scanned.tif                    optional: what was seen; paint elsewhere is not judged
     about.json                           optional: {"kind": "real" or "simulated", "text": "what it is", "steps": false where the
-                                         road map is judged as a whole alone}
+                                         road map is judged as a whole alone, "poorer": true where it is also judged with something lacking}
 """
 
 import json
@@ -42,6 +42,7 @@ OTHERS = {
     "crossing": (SampleSettings(scene="crossing"), "four arms with turning lanes, one not driven, two passes"),
     "roundabout": (SampleSettings(scene="roundabout"), "four arms with splitter islands, one not driven, two passes"),
 }
+POORER_SAMPLES = "street", "urban"   # also judged with something lacking
 CELL, SEEN = 0.04, 3   # m; cells about a point of road that count as seen
 
 
@@ -81,7 +82,8 @@ class Truth:
 
 @dataclass
 class Case:
-    """One survey: `kind` is simulated, real or not stated; `steps` says whether the methods of each step are measured too."""
+    """One survey: `kind` is simulated, real or not stated; `steps` says whether the methods of each step are measured
+    too, `poorer` whether it is judged with something lacking."""
 
     name: str
     cloud: Path
@@ -91,6 +93,7 @@ class Case:
     kind: str
     text: str
     steps: bool = True
+    poorer: bool = False
 
 
 def read_case(folder):
@@ -100,7 +103,7 @@ def read_case(folder):
     seen = folder / "truth" / "scanned.tif"
     return Case(folder.name, _cloud(folder), folder / "trajectory.csv", _read_truth(_truth_file(folder)),
                 seen if seen.exists() else None, about.get("kind", "not stated"), about.get("text", ""),
-                about.get("steps", True))
+                about.get("steps", True), about.get("poorer", False))
 
 
 def _read_truth(path):
@@ -169,7 +172,7 @@ def _make_sample(folder, settings, text, steps=True):
     (folder / "truth.gpkg").unlink(missing_ok=True)
     write_layers(folder / "truth.gpkg", dict(boundaries=sample.truth_boundaries, markings=sample.truth_markings,
                                              driving_lines=sample.truth_driving_lines, surface=sample.truth_surface, lanes=sample.truth_lanes))
-    about = dict(kind="simulated", text=f"{settings.length:g} m, {text}", steps=steps)
+    about = dict(kind="simulated", text=f"{settings.length:g} m, {text}", steps=steps, poorer=folder.name in POORER_SAMPLES)
     (folder / "about.json").write_text(json.dumps(about))
 
 

@@ -93,10 +93,11 @@ def _table(curb_points, frame):
     """The curb points of bottoms as a structured array, in map coordinates, sorted by road, side and station."""
     points = curb_points[curb_points.of_main_curb & (curb_points.part == "bottom") & np.isin(curb_points.status, ("measured", "occluded"))]
     table = np.empty(len(points), dtype=[("road", int), ("side", "U5"), ("measured", bool), ("s", float), ("d", float), ("x", float),
-                                         ("y", float), ("z", float), ("height", float), ("chain", int)])
+                                         ("y", float), ("z", float), ("height", float), ("chain", int), ("support", int)])
     places = points.map_places(frame)
     for name, values in dict(road=points.road, side=points.side, measured=points.status == "measured", s=points.station, d=points.offset,
-                             x=places[:, 0], y=places[:, 1], z=places[:, 2], height=np.nan_to_num(points.height), chain=points.chain).items():
+                             x=places[:, 0], y=places[:, 1], z=places[:, 2], height=np.nan_to_num(points.height), chain=points.chain,
+                             support=points.support).items():
         table[name] = values
     return table[np.lexsort((table["d"], table["s"], table["side"], table["road"]))]
 
@@ -209,7 +210,7 @@ def _draw(found, road, side, piece, number, passes):
         found.append(EdgePiece(vertices, road.number, side, "bridged" if bridged[i] else "measured", number, float(rows["s"][0]),
                                float(rows["s"][-1]), float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()),
                                float(np.median(rows["height"])), float(np.sqrt(np.mean(curve.residual[i:j + 1] ** 2))),
-                               sigma=edge_sigma(along, curve.t, curve.residual, passes=passes)))
+                               sigma=edge_sigma(along, curve.t, curve.residual, points["support"], passes=passes)))
     return float(points["s"][0]), float(points["s"][-1])
 
 

@@ -1,9 +1,9 @@
 """How uncertain the place of a road edge is: one sigma across it.
 
-Four things add up as squares: the foot of a curb is found to a share of the point spacing; curb points scatter about the line, and their
-errors go on over metres; towards its ends a line is held from one side only; and passes that were driven apart and laid on each other agree
-on a middle of which nobody knows how far off it is. The shares were found on simulated streets with truth (docs/accuracy.md). What the
-trajectory is off as a whole is not in it, since one pass does not show it.
+Five things add up as squares: how well the foot of a curb is found at all, and how much better with more points on it; curb points scatter
+about the line, and their errors go on over metres; towards its ends a line is held from one side only; and passes that were driven apart
+and laid on each other agree on a middle of which nobody knows how far off it is. The shares were found on simulated streets with truth
+(docs/accuracy.md). What the trajectory is off as a whole is not in it, since one pass does not show it.
 """
 
 from __future__ import annotations
@@ -20,23 +20,26 @@ END_LENGTH = 5.0        # m from its end at which the uncertainty of a line's en
 class EdgeUncertainty:
     """The shares of an edge's uncertainty.
 
-    foot : m, of a curb's foot, where curb points are regular
+    foot : m, of a curb's foot, however many points are on it
+    spacing : m, of the foot by a single laser point; with N points it is found sqrt(N) times better
     scatter : of the RMS of residuals of curb points
     end : m, at the end of a line
     gap : m per m to the nearest curb point
     """
 
     foot: float
+    spacing: float
     scatter: float
     end: float
     gap: float
 
 
-MAIN_EDGE = EdgeUncertainty(foot=0.0018, scatter=0.9, end=0.003, gap=0.0005)
-CURB_RETURN = EdgeUncertainty(foot=0.0045, scatter=1.5, end=0.006, gap=0.0005)   # found in plan, from fewer points
+MAIN_EDGE = EdgeUncertainty(foot=0.0015, spacing=0.06, scatter=0.7, end=0.002, gap=0.0005)
+CURB_RETURN = EdgeUncertainty(foot=0.0045, spacing=0.0, scatter=1.5, end=0.006, gap=0.0005)   # found in plan, from fewer points
 
 
-def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, shares: EdgeUncertainty = MAIN_EDGE, passes: float = 0.0) -> float:
+def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support: np.ndarray | None = None,
+               shares: EdgeUncertainty = MAIN_EDGE, passes: float = 0.0) -> float:
     """One sigma across a piece of an edge, the RMS over places along it.
 
     Parameters
@@ -44,6 +47,7 @@ def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, shares:
     at : (K,) m along the line, where the piece is looked at
     places : (N,) m along the line of all its curb points, rising
     residual : (N,) m, distances of the curb points from the line
+    support : (N,) laser points of each; below 1, or None, where that is unknown
     shares : EdgeUncertainty
     passes : m, one sigma of the middle of the passes, see `RoadFrame.pass_sigma`
 
@@ -52,10 +56,12 @@ def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, shares:
     float, m
     """
     first, last = np.searchsorted(places, at - SCATTER_REACH), np.searchsorted(places, at + SCATTER_REACH, side="right")
-    total = np.append(0.0, np.cumsum(np.square(residual)))
-    scatter = (total[last] - total[first]) / np.maximum(last - first, 1)
+    few = np.zeros(len(places)) if support is None else np.where(support > 0, 1.0 / np.maximum(support, 1), 0.0)
+    scatter, spacing = (np.diff(np.append(0.0, np.cumsum(each))[[first, last]], axis=0)[0] / np.maximum(last - first, 1)
+                        for each in (np.square(residual), few))
     k = np.clip(np.searchsorted(places, at), 1, len(places) - 1)
     gap = np.clip(np.minimum(at - places[k - 1], places[k] - at), 0.0, None)
     end = np.clip(np.minimum(at - places[0], places[-1] - at), 0.0, None)
-    variance = shares.foot**2 + shares.scatter**2 * scatter + shares.end**2 * np.exp(-end / END_LENGTH) + (shares.gap * gap) ** 2 + passes**2
+    variance = (shares.foot**2 + shares.spacing**2 * spacing + shares.scatter**2 * scatter + shares.end**2 * np.exp(-end / END_LENGTH)
+                + (shares.gap * gap) ** 2 + passes**2)
     return float(np.sqrt(variance.mean()))

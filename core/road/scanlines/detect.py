@@ -44,7 +44,8 @@ USUAL_STEP_HEIGHT, USUAL_ANGLE = 0.03, 60.0  # m and degrees of table 1 of the p
 SAME_CURB_DISTANCE = 0.3  # m across within which a sloped face is part of an upright one
 CORNER_BLOCK = 0.5       # m of road per corner of the CORNERS output
 
-_POINT = [("s", float), ("d", float), ("x", float), ("y", float), ("z", float), ("height", float), ("chain", int)]
+_POINT = [("s", float), ("d", float), ("x", float), ("y", float), ("z", float), ("height", float), ("chain", int),
+          ("support", int)]
 
 
 @dataclass(frozen=True)
@@ -337,7 +338,7 @@ def _points(corners, frame):
     measured = corners[corners.status == "measured"]
     points, (x, y, z) = np.empty(len(measured), dtype=_POINT), measured.map_places(frame).T
     for name, values in dict(s=measured.station, d=measured.offset, x=x, y=y, z=z, height=np.nan_to_num(measured.height),
-                             chain=measured.chain).items():
+                             chain=measured.chain, support=measured.support).items():
         points[name] = values
     return without_outliers(points[np.argsort(points["s"], kind="stable")])
 
@@ -367,4 +368,4 @@ def _draw(pieces, points, status, passes, **fields):
         pieces.append(EdgePiece(vertices, status=str(status[i]), station=float(rows["s"][0]), end=float(rows["s"][-1]),
                                 length=float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), height=float(np.median(rows["height"])),
                                 rmse=float(np.sqrt(np.mean(curve.residual[i:j + 1] ** 2))),
-                                sigma=edge_sigma(along, curve.t, curve.residual, passes=passes), **fields))
+                                sigma=edge_sigma(along, curve.t, curve.residual, points["support"], passes=passes), **fields))

@@ -11,12 +11,18 @@ EXACT = np.zeros(len(PLACES))
 
 def test_a_regular_curb_seen_without_scatter_is_as_good_as_its_foot_is_found():
     assert edge_sigma(MIDDLE, PLACES, EXACT) == pytest.approx(MAIN_EDGE.foot, rel=0.02)
-    assert edge_sigma(MIDDLE, PLACES, EXACT, CURB_RETURN) == pytest.approx(CURB_RETURN.foot, rel=0.02)
+    assert edge_sigma(MIDDLE, PLACES, EXACT, shares=CURB_RETURN) == pytest.approx(CURB_RETURN.foot, rel=0.02)
+
+
+def test_a_tenth_of_the_points_makes_it_three_times_as_uncertain():
+    many, few = (edge_sigma(MIDDLE, PLACES, EXACT, np.full(len(PLACES), count)) for count in (200, 20))
+    assert few**2 - MAIN_EDGE.foot**2 == pytest.approx(10 * (many**2 - MAIN_EDGE.foot**2), rel=0.01)
+    assert edge_sigma(MIDDLE, PLACES, EXACT, np.full(len(PLACES), -1)) == edge_sigma(MIDDLE, PLACES, EXACT), "unknown counts add nothing"
 
 
 def test_curb_points_that_scatter_make_it_uncertain_there_and_not_fifty_metres_on():
     rough = np.where(PLACES < 30.0, 0.020, 0.0)
-    assert edge_sigma(np.arange(5.0, 20.0), PLACES, rough) > 0.015
+    assert edge_sigma(np.arange(5.0, 20.0), PLACES, rough) > 0.012
     assert edge_sigma(np.arange(80.0, 90.0), PLACES, rough) < 0.003
 
 
