@@ -6,10 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import shapely
-from scipy.ndimage import binary_closing, grey_closing
+from scipy.ndimage import binary_closing
 
-from ...survey.frame.placement import located
 from .candidates import FAR, Candidates
 from .sections import STATION_STEP
 
@@ -20,10 +18,6 @@ if TYPE_CHECKING:
 
 BIN = 0.2              # m across, of what is seen of the surface and of hatching
 BINS = int(round(2 * FAR / BIN))
-BAR_REACH = 1.6        # m: bars of one hatched area are at most twice as far apart
-BORDER_SPACING = 0.25  # m between places of its border
-HALF_BORDER = 0.06     # m from the outside of its border line to the middle: half of a narrow line
-SHORTEST_AREA = 5.0    # m
 CARRIAGEWAY_DISTANCE = 40.0  # m between the tracks on two carriageways of one road at most
 OWN_ROAD = 6.0         # m: what runs nearer is on this road
 PASS_SPACING = 20      # stations, between the places of a pass at most
@@ -151,65 +145,6 @@ def between_ends(ends: np.ndarray, likely: np.ndarray) -> tuple[np.ndarray, np.n
     left, right = np.where(np.isnan(filled), likely, filled)
     offsets = (np.arange(BINS) + 0.5) * BIN - FAR
     return (offsets < left[:, None]) & (offsets > right[:, None]), filled
-
-
-def hatched_places(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray | None:
-    """(K, BINS) bool, where bars of hatched areas are painted; None where there are none."""
-    rows = np.flatnonzero((markings.road == road) & (markings.kind == "hatch") & np.isfinite(markings.extent[:, 0]))
-    if not len(rows):
-        return None
-    shape = shapely.union_all(shapely.force_2d(markings.outlines.polygons()[rows]))
-    shapely.prepare(shape)
-    first, last, low, high = (markings.extent[rows, k] for k in range(4))
-    near = np.zeros(len(s), bool)
-    for a, b in zip(np.searchsorted(s, first), np.searchsorted(s, last, side="right")):
-        near[a:b] = True
-    offsets = (np.arange(BINS) + 0.5) * BIN - FAR
-    across = np.flatnonzero((offsets >= low.min() - BIN) & (offsets <= high.max() + BIN))
-    found, along = np.zeros((len(s), BINS), bool), np.flatnonzero(near)
-    if len(along) and len(across):
-        at_s, at_d = np.repeat(s[along], len(across)), np.tile(offsets[across], len(along))
-        inside = shapely.contains_xy(shape, *frame.road(road).to_map(at_s, at_d))
-        found[np.ix_(along, across)] = inside.reshape(len(along), len(across))
-    return found
-
-
-def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray:
-    """The outer borders of hatched areas: nobody drives between them, and they bound the lanes beside.
-
-    Parameters
-    ----------
-    markings : MarkingObjects
-    frame : RoadFrame
-    road : number of the road
-    s : (K,) metres, stations
-
-    Returns
-    -------
-    (2 G, K) metres, the left and the right border of each of G areas, NaN where it is not
-    """
-    rows = (markings.road == road) & (markings.kind == "hatch")
-    shapes = shapely.force_2d(markings.outlines.polygons()[rows])
-    shapes = shapes[~shapely.is_empty(shapes)]
-    found = [np.empty((0, len(s)))]
-    for group in shapely.get_parts(shapely.union_all(shapely.buffer(shapes, BAR_REACH))) if len(shapes) else ():
-        x, y = shapely.get_coordinates(shapely.segmentize(shapes[shapely.intersects(shapes, group)], BORDER_SPACING)).T
-        station, d = located(frame, np.full(len(x), road), x, y)
-        at = np.rint((station - s[0]) / STATION_STEP)
-        inside = np.isfinite(at) & (at >= 0) & (at < len(s))
-        at, d = at[inside].astype(int), d[inside]
-        if not len(at) or np.ptp(at) * STATION_STEP < SHORTEST_AREA:
-            continue
-        window = slice(at.min(), at.max() + 1)
-        borders = np.full((2, len(s)), np.nan)
-        for side, sign in enumerate((1.0, -1.0)):
-            outer = np.full(window.stop - window.start, -FAR)
-            np.maximum.at(outer, at - window.start, sign * d)
-            # bars touch the border only at their ends
-            outer = grey_closing(outer, size=int(2 * BAR_REACH / STATION_STEP) + 1, mode="nearest")
-            borders[side, window] = sign * (outer - HALF_BORDER)
-        found.append(borders)
-    return np.concatenate(found)
 
 
 def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, directions: np.ndarray, covered: np.ndarray | None = None,

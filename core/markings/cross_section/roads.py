@@ -10,7 +10,8 @@ import numpy as np
 
 from .candidates import Boundaries, boundary_candidates, gather_boundaries
 from .estimate import RoadEstimate, estimate_road, lane_spans
-from .evidence import between_ends, borders_of_hatching, driven_offsets, evidence_of, hatched_places, other_carriageway, surface_coverage
+from .evidence import between_ends, driven_offsets, evidence_of, other_carriageway, surface_coverage
+from .hatching import borders_of_hatching, hatched_places
 from .sections import STATION_STEP, CrossSections
 from .weights import EstimateWeights
 

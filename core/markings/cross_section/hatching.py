@@ -1,0 +1,106 @@
+"""Hatched areas: where nobody drives, and the borders that bound the lanes beside."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+from scipy.ndimage import grey_closing
+
+from ...survey.frame.placement import located
+from ..objects.classify import LINE_KINDS
+from .candidates import FAR
+from .evidence import BIN, BINS
+from .sections import STATION_STEP
+
+if TYPE_CHECKING:
+    from ...survey.frame.road_frame import RoadFrame
+    from ..objects.marking_objects import MarkingObjects
+
+BAR_REACH = 1.6        # m: bars of one hatched area are at most twice as far apart
+OUTLINE_SPACING = 0.25 # m between places of an outline
+HALF_BORDER = 0.06     # m from the outside of its border line to the middle: half of a narrow line
+SHORTEST_AREA = 5.0    # m
+BORDER_LINE_REACH = 0.5  # m between the ends of bars and the middle of the border line that they lead to: gap, and half of a broad line
+
+
+def hatched_places(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray | None:
+    """(K, BINS) bool, where bars of hatched areas are painted; None where there are none."""
+    rows = np.flatnonzero((markings.road == road) & (markings.kind == "hatch") & np.isfinite(markings.extent[:, 0]))
+    if not len(rows):
+        return None
+    shape = shapely.union_all(shapely.force_2d(markings.outlines.polygons()[rows]))
+    shapely.prepare(shape)
+    first, last, low, high = (markings.extent[rows, k] for k in range(4))
+    near = np.zeros(len(s), bool)
+    for a, b in zip(np.searchsorted(s, first), np.searchsorted(s, last, side="right")):
+        near[a:b] = True
+    offsets = (np.arange(BINS) + 0.5) * BIN - FAR
+    across = np.flatnonzero((offsets >= low.min() - BIN) & (offsets <= high.max() + BIN))
+    found, along = np.zeros((len(s), BINS), bool), np.flatnonzero(near)
+    if len(along) and len(across):
+        at_s, at_d = np.repeat(s[along], len(across)), np.tile(offsets[across], len(along))
+        inside = shapely.contains_xy(shape, *frame.road(road).to_map(at_s, at_d))
+        found[np.ix_(along, across)] = inside.reshape(len(along), len(across))
+    return found
+
+
+def borders_of_hatching(markings: MarkingObjects, frame: RoadFrame, road: int, s: np.ndarray) -> np.ndarray:
+    """The outer borders of hatched areas: nobody drives between them, and they bound the lanes beside.
+
+    A border is the middle of the line that is painted along the ends of the bars; where there is none, the ends themselves.
+
+    Parameters
+    ----------
+    markings : MarkingObjects
+    frame : RoadFrame
+    road : number of the road
+    s : (K,) metres, stations
+
+    Returns
+    -------
+    (2 G, K) metres, the left and the right border of each of G areas, NaN where it is not
+    """
+    here = markings.road == road
+    bars, lines = ([shape for shape in shapely.force_2d(markings.outlines.polygons()[here & kind]) if not shape.is_empty]
+                   for kind in (markings.kind == "hatch", np.isin(markings.kind.astype(str), LINE_KINDS)))
+    found = [np.empty((0, len(s)))]
+    for area in shapely.get_parts(shapely.union_all(shapely.buffer(bars, BAR_REACH))) if bars else ():
+        reach = _reach([bar for bar in bars if area.intersects(bar)], frame, road, s)
+        known = np.flatnonzero(np.isfinite(reach[0]))
+        if not len(known) or np.ptp(known) * STATION_STEP < SHORTEST_AREA:
+            continue
+        window = slice(known[0], known[-1] + 1)
+        borders = np.full((2, len(s)), np.nan)
+        for side, sign in enumerate((1.0, -1.0)):
+            # bars touch the border only at their ends
+            outer = grey_closing(np.where(np.isfinite(reach[side]), sign * reach[side], -FAR)[window],
+                                 size=int(2 * BAR_REACH / STATION_STEP) + 1, mode="nearest")
+            borders[side, window] = sign * (outer - HALF_BORDER)
+        for line in lines:
+            if area.intersects(line):
+                _follow(borders, _reach([line], frame, road, s).mean(axis=0))
+        found.append(borders)
+    return np.concatenate(found)
+
+
+def _reach(shapes, frame, road, s):
+    """(2, K) m, greatest and least offset of outlines at each station, NaN where there are none."""
+    x, y = shapely.get_coordinates(shapely.segmentize(shapes, OUTLINE_SPACING)).T
+    station, d = located(frame, np.full(len(x), road), x, y)
+    at = np.rint((station - s[0]) / STATION_STEP)
+    inside = np.isfinite(at) & (at >= 0) & (at < len(s))
+    at, d = at[inside].astype(int), d[inside]
+    found = np.array([np.full(len(s), -np.inf), np.full(len(s), np.inf)])
+    np.maximum.at(found[0], at, d)
+    np.minimum.at(found[1], at, d)
+    return np.where(np.isfinite(found), found, np.nan)
+
+
+def _follow(borders, middle):
+    """Put borders on the middle of a line that runs along them, (K,) m."""
+    with np.errstate(invalid="ignore"):
+        along = np.abs(borders - middle) < BORDER_LINE_REACH
+    for border, near in zip(borders, along):
+        border[near] = middle[near]

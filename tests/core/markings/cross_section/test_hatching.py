@@ -1,0 +1,47 @@
+"""The borders of hatched areas bound the lanes beside them."""
+
+import numpy as np
+import pytest
+from lanewright.core.common.features import Features
+from lanewright.core.common.schemas import MARKINGS
+from lanewright.core.markings.cross_section.hatching import borders_of_hatching
+from lanewright.core.markings.objects.marking_objects import markings_from_features
+from lined_streets import HEIGHT, Street
+from shapely.geometry import Polygon
+
+S = np.arange(0.0, 120.0, 0.5)
+
+
+def borders(*areas):
+    """(2, K) borders of the one hatched area of a street, painted as (first, last, right, left, class)."""
+    street = Street(vehicle=0.0)
+    layer = Features("PolygonZ", MARKINGS)
+    for first, last, right, left, kind in areas:
+        corners = street.places([first, last, last, first], [right, right, left, left])
+        layer.add(Polygon(np.c_[corners, np.full(4, HEIGHT)]), **{"road": 0, "class": kind, "use": "other" if kind == "hatch" else "keep"})
+    found = borders_of_hatching(markings_from_features(layer, street.frame), street.frame, 0, S)
+    assert found.shape == (2, len(S))
+    return found
+
+
+def bars(right, left):
+    return [(s, s + 0.5, right, left, "hatch") for s in np.arange(40.0, 80.0, 2.0)]
+
+
+def test_the_border_is_the_middle_of_the_line_painted_along_the_bars():
+    # bars end 15 cm before a border line of 12 cm on the left, and on the right reach into the middle of one of 30 cm
+    left, right = borders(*bars(-1.0, 0.85), (35.0, 85.0, 0.94, 1.06, "edge"), (35.0, 85.0, -1.15, -0.85, "edge"))
+    inside = (S > 42.0) & (S < 78.0)
+    np.testing.assert_allclose(left[inside], 1.0, atol=0.01)
+    np.testing.assert_allclose(right[inside], -1.0, atol=0.01)
+
+
+def test_without_a_line_the_ends_of_the_bars_are_the_border():
+    left, right = borders(*bars(-1.0, 1.0))
+    inside = (S > 42.0) & (S < 78.0)
+    assert left[inside] == pytest.approx(0.94, abs=0.01) and right[inside] == pytest.approx(-0.94, abs=0.01)
+
+
+def test_a_lane_line_farther_away_is_no_border():
+    left, _ = borders(*bars(-1.0, 1.0), (35.0, 85.0, 1.9, 2.02, "lane"))
+    assert np.nanmax(left) < 1.0
