@@ -81,8 +81,9 @@ class LaneTrack:
         return float(np.median(self.width[:rows] if head else self.width[-rows:]))
 
     def without_doubtful_ends(self) -> LaneTrack | None:
-        """The track less stretches at its ends that are bridged, where nothing follows, or improbable; None if nothing is left."""
-        known = np.flatnonzero((self.status != BRIDGED) & (self.confidence >= LEAST_CONFIDENCE_OF_END))
+        """The track less stretches at its ends that only led over a gap, or are improbable; None if nothing is left."""
+        led_over = (self.status == BRIDGED) | self.offset & (self.left < 0) & (self.right < 0)
+        known = np.flatnonzero(~led_over & (self.confidence >= LEAST_CONFIDENCE_OF_END))
         return self.part(known[0], known[-1] + 1) if len(known) else None
 
 
