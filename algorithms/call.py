@@ -135,13 +135,17 @@ class Call:
         path = self.file(name)
         return existing_file(path, self.label(name)) if path else ""
 
-    def trajectory(self, name="TRAJECTORY", crs="", heights_needed=True):
-        """The trajectory as the core takes it, from a layer, a table or a file; `crs` overrules what it says."""
+    def trajectory(self, name="TRAJECTORY", crs="", heights_needed=True, columns=""):
+        """The trajectory as the core takes it, from a layer, a table or a file; `crs` and the `columns` of a file overrule what it says."""
         path = trajectory_path(self.parameters.get(name))
         if path is not None:
             from ..core.survey.trajectory.reader import read_trajectory
 
-            return read_trajectory(existing_file(str(path), self.label(name)), crs)
+            return read_trajectory(existing_file(str(path), self.label(name)), crs, columns=columns)
+        if columns.strip():
+            raise RoadExtractionError(
+                tr("Columns are those of a text file; {label} is a layer, whose fields have names. Leave Columns empty, or choose the file.").format(
+                    label=self.label(name)))
         source = self.source(name)
         return None if source is None else read_trajectory_source(source, crs, heights_needed)
 

@@ -109,6 +109,13 @@ class TextSpec(_WithDefault):
 
 
 @dataclass(frozen=True)
+class ColumnsSpec(TextSpec):
+    """Roles of the columns of the table that the input `table` names."""
+
+    table: str = "INPUT"
+
+
+@dataclass(frozen=True)
 class ChoiceSpec(_WithDefault):
     """One of `choices`."""
 

@@ -213,7 +213,7 @@ def imported_trajectory(call, progress):
     from ..core.survey.open_survey import match_clocks
     from ..core.survey.trajectory.reprojection import reproject_trajectory
 
-    trajectory = call.trajectory("INPUT", call.crs("INPUT_CRS"))
+    trajectory = call.trajectory("INPUT", call.crs("INPUT_CRS"), columns=call.string("COLUMNS"))
     headers = read_headers(call.point_clouds()) if call.given("POINT_CLOUDS") else []
     target = call.crs("TARGET_CRS") or next((header.crs for header in headers if header.crs), "")
     if target and not trajectory.crs:

@@ -30,6 +30,7 @@ CLOUD_FILTER = "Point clouds (*.las *.laz *.LAS *.LAZ);;All files (*.*)"
 WIDGETS = f"{__name__.split('.')[0]}.desktop"
 CLOUDS_WIDGET = {"widget_wrapper": {"class": f"{WIDGETS}.cloud_widget.PointCloudsWrapper"}}
 TRAJECTORY_WIDGET = {"widget_wrapper": {"class": f"{WIDGETS}.trajectory_widget.TrajectoryWrapper"}}
+COLUMNS_WIDGET = {"widget_wrapper": {"class": f"{WIDGETS}.columns_widget.ColumnsWrapper"}}
 LAZ_FILTER = "LAZ (*.laz);;LAS (*.las)"
 HTML_FILTER = "HTML (*.html)"
 DECIMALS = 3  # millimetres; QGIS would show six
@@ -96,6 +97,13 @@ def _(spec: specs.ChoiceSpec):
 @_parameter.register
 def _(spec: specs.TextSpec):
     return QgsProcessingParameterString(spec.name, spec.label, spec.value, optional=spec.optional)
+
+
+@_parameter.register
+def _(spec: specs.ColumnsSpec):
+    parameter = QgsProcessingParameterString(spec.name, spec.label, spec.value, optional=spec.optional)
+    parameter.setMetadata(COLUMNS_WIDGET)
+    return parameter
 
 
 @_parameter.register

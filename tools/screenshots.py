@@ -86,6 +86,28 @@ def dialog():
     window.close()
 
 
+def columns():
+    """A trajectory without names in its file: its columns, and what was understood."""
+    import math
+
+    import processing
+
+    path = Path(tempfile.mkdtemp()) / "drive.txt"
+    with open(path, "w", encoding="utf-8") as file:
+        for k in range(4000):
+            bend = k / 2000
+            file.write(f"{518204.0 + k / 50:.3f} {5400000 + 400 * math.sin(bend):.3f} {500000 + 400 * bend:.3f} "
+                       f"{78 + math.sin(k / 300):.3f} {0.4 * math.sin(k / 60):.3f} {0.3 * math.cos(k / 70):.3f} {k % 7}\n")
+    window = processing.createAlgorithmDialog("lanewright:importtrajectory", {"INPUT": str(path), "COLUMNS": "time,y,x,z,roll,pitch,-"})
+    window.resize(1000, 760)
+    window.show()
+    wait(1.5)
+    widget = window.mainWidget().wrappers["COLUMNS"].widget
+    needed(len(widget.boxes) == 7 and "4,000 positions" in widget.told.text(), f"the columns are not shown: {widget.told.text()}")
+    keep(window, "window_columns")
+    window.close()
+
+
 def menu():
     """The plugin menu, opened as by a click, with what the window shows around it."""
     iface.messageBar().clearWidgets()
@@ -249,7 +271,7 @@ def drive():
         iface.mainWindow().resize(1380, 860)
         wait(2)
         wanted = os.environ.get("LANEWRIGHT_STEPS", "").split()
-        for step in (menu, toolbox, dialog, sample, doubts, layout, manual, batch, designer):
+        for step in (menu, toolbox, dialog, columns, sample, doubts, layout, manual, batch, designer):
             if not wanted or step.__name__ in wanted:
                 step()
         say("finished")

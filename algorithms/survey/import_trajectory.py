@@ -2,7 +2,7 @@
 
 from ...core.common.schemas import TRAJECTORY
 from ..algorithm import Algorithm
-from ..parameters import CrsSpec, PointCloudsSpec, TrajectorySpec
+from ..parameters import ColumnsSpec, CrsSpec, PointCloudsSpec, TrajectorySpec
 from ..survey_input import SURVEY_SETTINGS, imported_trajectory
 from ..texts import tr
 from ..trajectory_source import trajectory_features
@@ -15,13 +15,17 @@ class ImportTrajectory(Algorithm):
     SUMMARY = "Reads the driven trajectory from a CSV or TXT file, an Applanix SBET, or a point or line layer."
     HELP = (
         "Columns may come in any order, with or without a header, in degrees or radians. Rows are sorted by time; "
-        "repeated and unusable rows are dropped and counted."
+        "repeated and unusable rows are dropped and counted. The dialog shows what was understood of a file, and lets you assign its columns."
     )
     TAGS = ("trajectory", "sbet", "applanix", "csv", "gps time")
 
     def declare(self):
         self.add(TrajectorySpec("INPUT", tr("Trajectory file or layer"),
                                 tr("A CSV or TXT file, an SBET (.out), or a layer of points or lines with heights.")))
+        self.add(ColumnsSpec(
+            "COLUMNS", tr("Columns"),
+            tr("Of a text file, one word a column from the left: time, x, y, z, roll, pitch, heading, lon, lat, or - for a column that is left out; "
+               "such as time,y,x,z. Empty recognises them by their names, or by their numbers where they have none."), optional=True, value=""))
         self.add(CrsSpec("INPUT_CRS", tr("CRS of the trajectory"),
                          tr("Where the file does not say it. An SBET is in WGS 84 unless another is chosen."), optional=True))
         self.add(CrsSpec(

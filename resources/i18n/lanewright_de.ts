@@ -675,6 +675,11 @@
         </message>
         <message>
             <location filename="../../algorithms/call.py" />
+            <source>Columns are those of a text file; {label} is a layer, whose fields have names. Leave Columns empty, or choose the file.</source>
+            <translation>Spalten gibt es in einer Textdatei; {label} ist ein Layer, dessen Felder Namen haben. Spalten leer lassen oder die Datei wählen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/call.py" />
             <source>{label} would be written over {path}, which is read as {input}: inputs are never changed. Give it another name.</source>
             <translation>„{label}“ würde {path} überschreiben, das als „{input}“ gelesen wird: Eingaben werden nie verändert. Bitte einen anderen Namen wählen.</translation>
         </message>
@@ -3340,8 +3345,8 @@
         </message>
         <message>
             <location filename="../../algorithms/survey/import_trajectory.py" />
-            <source>Columns may come in any order, with or without a header, in degrees or radians. Rows are sorted by time; repeated and unusable rows are dropped and counted.</source>
-            <translation>Spalten dürfen in beliebiger Reihenfolge kommen, mit oder ohne Kopfzeile, in Grad oder Radiant. Zeilen werden nach der Zeit sortiert; wiederholte und unbrauchbare werden weggelassen und gezählt.</translation>
+            <source>Columns may come in any order, with or without a header, in degrees or radians. Rows are sorted by time; repeated and unusable rows are dropped and counted. The dialog shows what was understood of a file, and lets you assign its columns.</source>
+            <translation>Spalten dürfen in beliebiger Reihenfolge stehen, mit oder ohne Kopfzeile, in Grad oder Radiant. Zeilen werden nach der Zeit sortiert; doppelte und unbrauchbare Zeilen fallen weg und werden gezählt. Der Dialog zeigt, was von einer Datei verstanden wurde, und lässt ihre Spalten zuordnen.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/import_trajectory.py" />
@@ -3372,6 +3377,16 @@
             <location filename="../../algorithms/survey/import_trajectory.py" />
             <source>A CSV or TXT file, an SBET (.out), or a layer of points or lines with heights.</source>
             <translation>Eine CSV- oder TXT-Datei, ein SBET (.out) oder ein Layer aus Punkten oder Linien mit Höhen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>Columns</source>
+            <translation>Spalten</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/import_trajectory.py" />
+            <source>Of a text file, one word a column from the left: time, x, y, z, roll, pitch, heading, lon, lat, or - for a column that is left out; such as time,y,x,z. Empty recognises them by their names, or by their numbers where they have none.</source>
+            <translation>Einer Textdatei, ein Wort je Spalte von links: time, x, y, z, roll, pitch, heading, lon, lat oder - für eine Spalte, die wegbleibt; etwa time,y,x,z. Leer werden sie an ihren Namen erkannt oder, wo sie keine haben, an ihren Zahlen.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/import_trajectory.py" />
@@ -3947,6 +3962,101 @@
             <location filename="../../desktop/cloud_widget.py" />
             <source>There is no file {name}.</source>
             <translation>Die Datei {name} gibt es nicht.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>GPS seconds since 1980</source>
+            <translation>GPS-Sekunden seit 1980</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>adjusted GPS seconds</source>
+            <translation>GPS-Sekunden weniger eine Milliarde (adjusted)</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>seconds of the week, most likely</source>
+            <translation>wahrscheinlich Sekunden der Woche</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>seconds of the day or from the start: the point clouds tell</source>
+            <translation>Sekunden des Tages oder ab dem Start: die Punktwolken zeigen es</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>left out</source>
+            <translation>bleibt weg</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>time</source>
+            <translation>Zeit</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>x (east)</source>
+            <translation>x (Ost)</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>y (north)</source>
+            <translation>y (Nord)</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>z (height)</source>
+            <translation>z (Höhe)</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>roll</source>
+            <translation>Rollwinkel (roll)</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>pitch</source>
+            <translation>Nickwinkel (pitch)</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>heading</source>
+            <translation>Kurs (heading)</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>longitude</source>
+            <translation>Länge (Grad)</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>latitude</source>
+            <translation>Breite (Grad)</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>Recognised from the file</source>
+            <translation>Aus der Datei erkannt</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>{count} positions over {length} m, heights {low:.1f} to {high:.1f} m</source>
+            <translation>{count} Positionen über {length} m, Höhen {low:.1f} bis {high:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>no time</source>
+            <translation>keine Zeit</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>{seconds:.0f} s, {speed:.0f} km/h in the median; time: {system}</source>
+            <translation>{seconds:.0f} s, im Median {speed:.0f} km/h; Zeit: {system}</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/columns_widget.py" />
+            <source>Column {number}</source>
+            <translation>Spalte {number}</translation>
         </message>
         <message>
             <location filename="../../desktop/corrections_layer.py" />

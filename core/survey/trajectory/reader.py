@@ -14,11 +14,11 @@ import numpy as np
 from ...common.errors import RoadExtractionError
 from ...io.crs import horizontal_part, parse_crs
 from ...io.text_table import SAMPLE_BYTES, finite_or_nan, read_number_table
-from .columns import ROLES, columns_by_role, find_header, stated_angle_unit
+from .assigned_columns import place_of_roles
+from .columns import ROLES, find_header, stated_angle_unit
 from .drive_checks import HEADING_TOLERANCE, METRES_PER_DEGREE, angle_between, driven_course, geographic_unit
 from .reprojection import reproject_trajectory
 from .trajectory import Trajectory
-from .unnamed_columns import columns_from_numbers
 
 SBET_DOUBLES = 17  # time, lat, lon, height, 3 velocities, roll, pitch, heading, wander angle, 6 more
 WGS84 = "EPSG:4326"
@@ -27,7 +27,7 @@ SECONDS_PER_UNIT = {"milliseconds": 1e-3, "microseconds": 1e-6, "nanoseconds": 1
 MAX_ROLL_RADIANS = 0.15
 
 
-def read_trajectory(path: str | os.PathLike[str], crs: str = "", target_crs: str = "") -> Trajectory:
+def read_trajectory(path: str | os.PathLike[str], crs: str = "", target_crs: str = "", columns: str = "") -> Trajectory:
     """A trajectory from a CSV or text file, with or without header, or an Applanix SBET file.
 
     Parameters
@@ -36,6 +36,7 @@ def read_trajectory(path: str | os.PathLike[str], crs: str = "", target_crs: str
     crs : WKT or "EPSG:n" of its coordinates; by default the one that the file states, and
         WGS 84 for longitude and latitude
     target_crs : WKT or "EPSG:n"; where it is given and the trajectory's CRS is known, the trajectory is reprojected
+    columns : of a text table, as `assigned_columns` takes them; "" recognises them
 
     Returns
     -------
@@ -53,7 +54,10 @@ def read_trajectory(path: str | os.PathLike[str], crs: str = "", target_crs: str
         raise RoadExtractionError(f"There is no file {path}. Check the path of the trajectory.")
     if not path.stat().st_size:
         raise RoadExtractionError(f"{path} is empty. Export the trajectory again.")
-    trajectory = _read_sbet(path, crs) if _is_sbet(path) else _read_text(path, crs)
+    sbet = _is_sbet(path)
+    if sbet and columns.strip():
+        raise RoadExtractionError(f"{path} is an Applanix SBET file, whose columns are always the same. Leave Columns empty.")
+    trajectory = _read_sbet(path, crs) if sbet else _read_text(path, crs, columns)
     return reproject_trajectory(trajectory, target_crs) if target_crs else trajectory
 
 
@@ -95,33 +99,31 @@ def trajectory_from_columns(columns: Mapping[str, Any], crs: str = "", angle_uni
     return Trajectory(time, x, y, columns["z"], roll, pitch, heading, crs=crs, has_time=has_time, notes=tuple(remarks))
 
 
-def _read_text(path, crs):
-    """The trajectory in a table of numbers; columns are recognised by the names above the table, otherwise by the numbers."""
+def _read_text(path, crs, columns):
+    """The trajectory in a table of numbers; columns are those assigned, or recognised by the names above the table, otherwise by the numbers."""
     table = read_number_table(path)
     count = table.values.shape[1]
     names, units = find_header(table.preamble, count)
     notes = []
-    if names:
-        roles = columns_by_role(names)
-        place = {role: names.index(name) for role, name in roles.items()}
-        _check_complete(path, names, place, table.first_row)
+    place = place_of_roles(table, path, columns)
+    if names or columns.strip():
+        _check_complete(path, names or [f"column {k + 1}" for k in range(count)], place, table.first_row)
         stated = [units[place[role]] for role in ("heading", "roll", "pitch") if role in place and units[place[role]]]
         unit = stated[0] if stated else stated_angle_unit(table.preamble)
         _refuse_feet(path, units, place, table.preamble)
     else:
-        place = columns_from_numbers(table.values, path)
         unit = stated_angle_unit(table.preamble)
         notes.append(f"{path.name} has no line of names; recognised by the numbers: "
                      + ", ".join(f"{role} in column {place[role] + 1}" for role in (*ROLES, "lon", "lat") if role in place) + ".")
     if table.dropped:
         notes.append(f"{table.dropped} lines of {path.name} had another number of columns than {count} and were left out.")
-    columns = {role: table.values[:, k] for role, k in place.items()}
+    found = {role: table.values[:, k] for role, k in place.items()}
     if "time" in place:
-        columns["time"] = columns["time"] * SECONDS_PER_UNIT.get(units[place["time"]], 1.0)
+        found["time"] = found["time"] * SECONDS_PER_UNIT.get(units[place["time"]], 1.0)
     if "lon" in place and units[place["lon"]] == "radians":
-        columns["lon"], columns["lat"] = np.degrees(columns["lon"]), np.degrees(columns["lat"])
-    crs = crs or _stated_crs(path, table.preamble, "x" in columns, notes)
-    return trajectory_from_columns(columns, crs, unit, path.name, notes)
+        found["lon"], found["lat"] = np.degrees(found["lon"]), np.degrees(found["lat"])
+    crs = crs or _stated_crs(path, table.preamble, "x" in found, notes)
+    return trajectory_from_columns(found, crs, unit, path.name, notes)
 
 
 def _stated_crs(path, preamble, projected, notes):

@@ -1,0 +1,180 @@
+"""The columns of a trajectory's text file: what was understood, and a table in which they are assigned by hand."""
+
+from __future__ import annotations
+
+import math
+
+from qgis.gui import QgsProcessingGui
+from qgis.PyQt.QtCore import QSignalBlocker, pyqtSignal
+from qgis.PyQt.QtWidgets import QComboBox, QHeaderView, QLabel, QLineEdit, QTableWidget, QTableWidgetItem, QVBoxLayout, QWidget
+
+from ..algorithms.trajectory_source import trajectory_path
+from ..core.common.errors import RoadExtractionError
+from ..processing_provider.texts import tr
+from .dialog_wrapper import DialogWrapper
+
+ROWS = 4            # of the file that are shown
+SKIPPED = "-"
+SYSTEMS = {"gps": tr("GPS seconds since 1980"), "adjusted": tr("adjusted GPS seconds"), "week": tr("seconds of the week, most likely"),
+           "": tr("seconds of the day or from the start: the point clouds tell")}
+ROLE_TITLES = {"": tr("left out"), "time": tr("time"), "x": tr("x (east)"), "y": tr("y (north)"), "z": tr("z (height)"), "roll": tr("roll"),
+               "pitch": tr("pitch"), "heading": tr("heading"), "lon": tr("longitude"), "lat": tr("latitude")}
+
+
+class ColumnsWidget(QWidget):
+    """A line with the roles, the first rows of the file below boxes that set them, and what was understood."""
+
+    changed = pyqtSignal()
+
+    def __init__(self, parent: QWidget | None = None):
+        super().__init__(parent)
+        self.path = ""
+        self.line = QLineEdit()
+        self.line.setPlaceholderText(tr("Recognised from the file"))
+        self.line.setClearButtonEnabled(True)
+        self.line.textChanged.connect(self._text_changed)
+        self.table = QTableWidget()
+        self.table.setEditTriggers(QTableWidget.EditTrigger.NoEditTriggers)
+        self.table.verticalHeader().hide()
+        self.table.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
+        self.told = QLabel()
+        self.told.setWordWrap(True)
+        self.boxes: list[QComboBox] = []
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        for widget in (self.line, self.table, self.told):
+            column.addWidget(widget)
+        self._show_nothing()
+
+    def value(self) -> str:
+        """The roles, as the parameter takes them."""
+        return self.line.text().strip()
+
+    def set_value(self, value: str) -> None:
+        self.line.setText(value or "")
+
+    def show_file(self, path: str) -> None:
+        """Show another file; "" for none. What was assigned belongs to the file before."""
+        if path == self.path:
+            return
+        if self.path:
+            with QSignalBlocker(self.line):
+                self.line.clear()
+        self.path = path
+        self._read()
+
+    def _text_changed(self):
+        self._read()
+        self.changed.emit()
+
+    def _show_nothing(self):
+        self.table.hide()
+        self.told.hide()
+
+    def _read(self):
+        from ..core.survey.trajectory.assigned_columns import columns_of_table, facts_of
+        from ..core.survey.trajectory.reader import read_trajectory
+
+        if not self.path:
+            self._show_nothing()
+            return
+        try:
+            found = columns_of_table(self.path, self.value(), ROWS)
+        except RoadExtractionError as problem:
+            # an SBET has no columns to assign
+            self.table.hide()
+            try:
+                self._say(described(facts_of(read_trajectory(self.path))))
+            except RoadExtractionError:
+                self._say(str(problem), wrong=True)
+            return
+        self._fill(found)
+        try:
+            self._say(described(facts_of(read_trajectory(self.path, columns=self.value()))))
+        except RoadExtractionError as problem:
+            self._say(found.problem or str(problem), wrong=True)
+
+    def _fill(self, found):
+        count = len(found.roles)
+        # while the user writes, words that are not yet whole leave the boxes as they are
+        roles = [box.currentData() for box in self.boxes] if found.problem and len(self.boxes) == count else list(found.roles)
+        self.table.clear()
+        self.table.setColumnCount(count)
+        self.table.setRowCount(1 + len(found.rows))
+        self.table.setHorizontalHeaderLabels([title or tr("Column {number}").format(number=k + 1) for k, title in enumerate(found.titles)])
+        self.boxes = []
+        for k, role in enumerate(roles):
+            box = QComboBox()
+            for name, title in ROLE_TITLES.items():
+                box.addItem(title, name)
+            box.setCurrentIndex(box.findData(role))
+            box.activated.connect(lambda index: self._assigned())
+            self.table.setCellWidget(0, k, box)
+            self.boxes.append(box)
+            for row, values in enumerate(found.rows, start=1):
+                self.table.setItem(row, k, QTableWidgetItem(f"{values[k]:.10g}"))
+        self.table.resizeColumnsToContents()
+        height = self.table.horizontalHeader().sizeHint().height() + sum(self.table.rowHeight(row) for row in range(self.table.rowCount()))
+        self.table.setFixedHeight(height + self.table.horizontalScrollBar().sizeHint().height() + 4)
+        self.table.show()
+
+    def _assigned(self):
+        """Write what the boxes say; a role that was given to another column is taken from its former one."""
+        chosen = self.sender()
+        for box in self.boxes:
+            if box is not chosen and isinstance(chosen, QComboBox) and box.currentData() == chosen.currentData():
+                box.setCurrentIndex(box.findData(""))
+        self.line.setText(",".join(box.currentData() or SKIPPED for box in self.boxes))
+
+    def _say(self, text, wrong=False):
+        self.told.setText(text)
+        self.told.setStyleSheet("color: #b00020" if wrong else "")
+        self.told.show()
+
+
+def described(facts) -> str:
+    """What was understood of a trajectory, in a line or two."""
+    text = tr("{count} positions over {length} m, heights {low:.1f} to {high:.1f} m").format(
+        count=f"{facts.positions:,}", length=f"{facts.length:,.0f}", low=facts.low, high=facts.high)
+    if not math.isfinite(facts.seconds):
+        return text + "; " + tr("no time")
+    return text + "; " + tr("{seconds:.0f} s, {speed:.0f} km/h in the median; time: {system}").format(
+        seconds=facts.seconds, speed=3.6 * facts.speed, system=SYSTEMS[facts.system])
+
+
+class ColumnsWrapper(DialogWrapper):
+    """The widget in QGIS's dialogs; a batch has the line alone."""
+
+    def createWidget(self, **more):
+        if self.dialogType != QgsProcessingGui.WidgetType.Standard:
+            widget = QLineEdit()
+            widget.textChanged.connect(lambda: self.widgetValueHasChanged.emit(self))
+            return widget
+        widget = ColumnsWidget()
+        widget.changed.connect(lambda: self.widgetValueHasChanged.emit(self))
+        return widget
+
+    def postInitialize(self, wrappers):
+        """Follow the input that names the file."""
+        for wrapper in wrappers:
+            if isinstance(self.widget, ColumnsWidget) and wrapper.parameterDefinition().name() == "INPUT":
+                wrapper.widgetValueHasChanged.connect(lambda *changed, wrapper=wrapper: self.follow(wrapper.parameterValue()))
+                self.follow(wrapper.parameterValue())
+
+    def follow(self, value) -> None:
+        """Show the file that an input names; a layer has fields with names."""
+        source = value.source.staticValue() if hasattr(value, "source") and hasattr(value.source, "staticValue") else value
+        path = trajectory_path(source)
+        self.widget.show_file(str(path) if path is not None and path.is_file() else "")
+
+    def setWidgetValue(self, value, context):
+        self.setValue(value)
+
+    def setValue(self, value):
+        if isinstance(self.widget, ColumnsWidget):
+            self.widget.set_value(value or "")
+        else:
+            self.widget.setText(value or "")
+
+    def value(self):
+        return self.widget.value() if isinstance(self.widget, ColumnsWidget) else self.widget.text()
