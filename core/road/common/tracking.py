@@ -29,7 +29,9 @@ MIN_SLOPED_LENGTH = 10.0    # m of a sloped curb: the edge of worn cobbles or of
 MAX_WANDER = 0.008          # m of a sloped curb about its own straight line
 FAINT_GAIN = 0.7            # value of a metre of low or sloped curb, where another may be chosen
 MIN_CURB_LENGTH = 4.0       # m of chains in one line that make a curb
-MAX_CHAIN_GAP = 8.0         # m between chains of one line
+MAX_CHAIN_GAP = 8.0         # m between chains of one line, or
+MAX_STEADY_GAP = 15.0       # m, if their offsets differ by less than
+MAX_STEADY_JUMP = 0.5       # m
 MAX_JOINED_GAP = 2.5        # m along a curb between points, chains or lines that are joined without a sign of something in between
 END_DIRECTION_STEPS = 5     # steps at the end of a chain that give its direction
 MAX_EXTRAPOLATION = 3.0     # m that a chain is continued in its own direction
@@ -270,7 +272,8 @@ def _in_line(steps, before, after):
     a, b = before[-1], after[0]
     gap = steps.s[b] - steps.s[a]
     turn = min(gap, MAX_EXTRAPOLATION) * 0.5 * (_end_directions(steps, before)[1] + _end_directions(steps, after)[0])
-    return gap <= MAX_CHAIN_GAP and abs(steps.u[b] - steps.u[a] - turn) <= 0.15 + 0.15 * gap \
+    jump = abs(steps.u[b] - steps.u[a] - turn)
+    return (gap <= MAX_CHAIN_GAP and jump <= 0.15 + 0.15 * gap or gap <= MAX_STEADY_GAP and jump <= MAX_STEADY_JUMP) \
         and abs(steps.h[b] - steps.h[a]) <= HEIGHT_TOLERANCE + 0.02 * gap
 
 

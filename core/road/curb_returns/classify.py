@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 from ..common.curb_limits import MIN_FAINT_LENGTH
 from ..common.sides import SIDE_SIGNS
 from ..common.tracking import MAX_CHAIN_SCATTER, MAX_JOINED_GAP, MAX_ROAD_ROUGHNESS
+from .free_corners import is_free_corner
 from .steps import PlanSteps
 from .tracking import PlanStepChain, group_lines
 
@@ -31,6 +32,8 @@ MIN_ISLAND_SHARE = 0.6        # share of an island's steps behind which the grou
 MIN_ISLAND_LENGTH = 2.0       # m of lines about one island
 MAX_ISLAND_GAP = 3.0          # m between them
 MIN_ISOLATED_LENGTH = 5.0     # m of a line that belongs to a side street although nothing joins it to the main curb
+MAX_BEHIND_SHARE = 0.25       # share of such a line that may lie behind the main curb, which ends beside its corner
+MAX_SIDE_STREET_TURN = np.radians(35.0)   # of its steps from the direction of such a line
 SIDE_STREET_WIDTHS = (2.5, 16.0)  # m between the two curbs of a side street
 MAX_OPPOSITE_SHIFT = 4.0      # m along the side street by which its two curbs may miss each other
 
@@ -93,7 +96,8 @@ def _chain_scatter(own):
 
 
 def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.ndarray, runs: Sequence[tuple], line: Road,
-                   limits: Mapping[str, SearchLimit], passes: Sequence[Pass]) -> list[CurbReturn]:
+                   limits: Mapping[str, SearchLimit], passes: Sequence[Pass],
+                   elsewhere: Sequence[tuple[np.ndarray, np.ndarray]] = ()) -> list[CurbReturn]:
     """The lines that are curbs, each with its kind and side.
 
     Parameters
@@ -105,6 +109,7 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
     line : Road
     limits : side -> SearchLimit
     passes : of the road
+    elsewhere : (x, y) of the main curbs of other roads, local m
 
     Returns
     -------
@@ -117,22 +122,42 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
     sides: dict[int, str] = {}
     for number, (side, _) in zip(group, runs):
         sides.setdefault(number, side)
-    found, islands = [], []
+    found, islands, free = [], [], []
     for number, chain in zip(group[len(runs):], chains):
         own = steps[chain.steps]
         s, d = line.locate(own.x, own.y)
-        if chain.closed or number not in sides:
-            behind = np.any([sign * d > limits[side](s, 0.0, 0.0) for side, sign in SIDE_SIGNS.items()], axis=0)
-            side = "left" if np.nanmedian(d - np.mean([p.at_station(s)[0] for p in passes], axis=0)) > 0 else "right"
-            if np.mean(np.isfinite(falls[chain.steps]) & ~behind) >= MIN_ISLAND_SHARE:
-                islands.append(CurbReturn(own, s, d, side, "island", chain.closed))
-            elif _length(own.x, own.y) >= MIN_ISOLATED_LENGTH and not behind.any() and np.median(_road_cosine(own, s, line)) < MIN_ROAD_COSINE \
-                    and _has_opposite_curb(own, [steps[c.steps] for c in chains]):
-                # a side street whose corner is hidden
-                found.append(CurbReturn(own, s, d, side, "side_street"))
+        if not chain.closed and number in sides:
+            found += _classify_continuation(own, s, d, sides[number], line, limits[sides[number]], places[:len(runs)])
             continue
-        found += _classify_continuation(own, s, d, sides[number], line, limits[sides[number]], places[:len(runs)])
-    return found + _long_islands(islands)
+        behind = np.any([sign * d > limits[side](s, 0.0, 0.0) for side, sign in SIDE_SIGNS.items()], axis=0)
+        side = "left" if np.nanmedian(d - np.mean([p.at_station(s)[0] for p in passes], axis=0)) > 0 else "right"
+        if np.mean(np.isfinite(falls[chain.steps]) & ~behind) >= MIN_ISLAND_SHARE:
+            islands.append(CurbReturn(own, s, d, side, "island", chain.closed))
+        elif _may_be_side_street(own, s, line, behind, [steps[c.steps] for c in chains]):
+            # a side street whose corner is hidden
+            straight = _straight_part(own)
+            found.append(CurbReturn(own[straight], s[straight], d[straight], side, "side_street"))
+        elif np.mean(behind) <= MAX_BEHIND_SHARE:
+            free.append(CurbReturn(own, s, d, side, "corner"))
+    curbs = [(x, y) for _, (x, y, _) in runs] + list(elsewhere) + [(curb.steps.x, curb.steps.y) for curb in found]
+    return found + [curb for curb in free if is_free_corner(curb.steps, curbs)] + _long_islands(islands)
+
+
+def _may_be_side_street(own, s, line, behind, lines):
+    """Is a line that nothing joins to the main curb the curb of a side street?"""
+    return _length(own.x, own.y) >= MIN_ISOLATED_LENGTH and np.mean(behind) <= MAX_BEHIND_SHARE \
+        and np.median(_road_cosine(own, s, line)) < MIN_ROAD_COSINE and _has_opposite_curb(own, lines)
+
+
+def _straight_part(own):
+    """The longest run of steps, as a slice, in the line's own direction: at its ends it may have caught a wall, or the back of a sidewalk."""
+    along = np.arctan2(-own.nx, own.ny)
+    turn = np.abs((along - np.arctan2(np.median(np.sin(along)), np.median(np.cos(along))) + np.pi) % (2 * np.pi) - np.pi)
+    cuts = np.flatnonzero(np.diff(np.r_[False, turn <= MAX_SIDE_STREET_TURN, False].astype(np.int8)))
+    if not len(cuts):
+        return slice(0, len(own))
+    k = int(np.argmax(cuts[1::2] - cuts[::2]))
+    return slice(int(cuts[2 * k]), int(cuts[2 * k + 1]))
 
 
 def _classify_continuation(own, s, d, side, line, limit, runs):

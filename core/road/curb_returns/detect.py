@@ -8,7 +8,7 @@ again is an island. Any other step does not belong to the road.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -58,10 +58,13 @@ def with_curb_returns(curb_points: CurbPoints, decimation: PointDecimation, sett
     survey, parts = decimation.survey, [curb_points]
     length = dict.fromkeys(KIND_TITLES, 0.0)
     roads = survey.store.roads()
+    mains = {road: _main_curbs(curb_points, survey, road) for road in roads}
+    runs = {road: [(x, y) for _, (x, y, _) in _runs(main, survey.frame.road(road))] for road, (main, _) in mains.items()}
     for i, road in enumerate(roads):
         part = progress.part(i / len(roads), (i + 1) / len(roads))
-        main, chain = _main_curbs(curb_points, survey, road)
-        for number, curb in enumerate(find_curb_returns(decimation, road, main, settings, part), chain):
+        main, chain = mains[road]
+        elsewhere = [run for other in roads if other != road for run in runs[other]]
+        for number, curb in enumerate(find_curb_returns(decimation, road, main, settings, part, elsewhere), chain):
             points = _points_of(survey, road, curb, number)
             length[curb.kind] += points.along[-1]
             parts.append(points)
@@ -94,7 +97,7 @@ def _points_of(survey, road, curb, chain):
 
 
 def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str, np.ndarray], settings: CurbSettings,
-                      progress: Progress = Progress()) -> list[CurbReturn]:
+                      progress: Progress = Progress(), elsewhere: Sequence[tuple[np.ndarray, np.ndarray]] = ()) -> list[CurbReturn]:
     """Corners, side streets and islands of one road.
 
     Parameters
@@ -105,6 +108,7 @@ def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str,
         1 where it was measured and 0 where it is hidden
     settings : CurbSettings
     progress : Progress
+    elsewhere : (x, y) of the main curbs of other roads, local m
 
     Returns
     -------
@@ -123,7 +127,7 @@ def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str,
         return []
     steps, falls, scanner_noise = found
     chains = [c for c in join_chains(link_plan_steps(steps), steps) if is_curb_like(c, steps, scanner_noise, settings)]
-    return classify_curbs(chains, steps, falls, _runs(main, line), line, limits, survey.frame.passes_of(road))
+    return classify_curbs(chains, steps, falls, _runs(main, line), line, limits, survey.frame.passes_of(road), elsewhere)
 
 
 def _join_parts(parts):

@@ -28,6 +28,12 @@ NOSE_RADIUS = 0.6             # m, of that nose
 JOIN_DRIFT = 0.25             # m across per m that two such chains may miss each other, and
 JOIN_TOLERANCE = 0.05         # m in any case
 END_DIRECTION_LENGTH = 0.6    # m at the end of a chain that give its direction
+MAX_STRAIGHT_GAP = 15.0       # m that a straight curb may be dropped or hidden: a crossing, a drive, parked cars
+STRAIGHT_END_LENGTH = 2.0     # m at the end of such a curb that give its direction
+MAX_STRAIGHT_TURN = np.radians(8.0)   # between its two parts
+STRAIGHT_DRIFT = 0.03         # m across per m that they may miss each other, and
+STRAIGHT_TOLERANCE = 0.10     # m in any case
+STRAIGHT_GRADE = 0.01         # m per m that their bottoms may differ besides HEIGHT_TOLERANCE
 MAX_JOIN_OVERLAP = 0.3        # m that two such chains may overlap
 
 
@@ -98,11 +104,7 @@ def _links(steps):
         & (up <= HEIGHT_TOLERANCE + MAX_HEIGHT_GRADE * along)
     a, b, along, across, turn, up = (v[good] for v in (a, b, along, across, turn, up))
     cost = along / 0.3 + (across / PLAN_LINK_TOLERANCE) ** 2 + (turn / TURN_TOLERANCE) ** 2 + (up / HEIGHT_TOLERANCE) ** 2
-    ahead, behind = _cheapest(a, b, cost, count), _cheapest(b, a, cost, count)
-    linked = np.flatnonzero(ahead >= 0)
-    linked = linked[behind[ahead[linked]] == linked]
-    following[linked] = ahead[linked]
-    return following
+    return _mutual(a, b, cost, count)
 
 
 def _cheapest(a, b, cost, count):
@@ -150,7 +152,7 @@ def join_chains(chains: Sequence[PlanStepChain], steps: PlanSteps) -> list[PlanS
 
 
 def group_lines(places: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> np.ndarray:
-    """Which polylines continue each other.
+    """Which polylines continue each other, a short gap apart in any direction or a long one straight on.
 
     Parameters
     ----------
@@ -160,9 +162,12 @@ def group_lines(places: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> 
     -------
     (K,) number of the line to which each belongs
     """
-    following = LineEnds.of(places).successors()
+    ends = LineEnds.of(places)
+    long = np.array([np.hypot(np.diff(x), np.diff(y)).sum() >= STRAIGHT_END_LENGTH for x, y, _ in places])
+    far = LineEnds.of(places, STRAIGHT_END_LENGTH).straight_successors(long)
+    following = np.r_[ends.successors(), far]
     linked = np.flatnonzero(following >= 0)
-    graph = coo_matrix((np.ones(len(linked)), (linked, following[linked])), shape=2 * (len(places),))
+    graph = coo_matrix((np.ones(len(linked)), (linked % len(places), following[linked])), shape=2 * (len(places),))
     return connected_components(graph, directed=False)[1]
 
 
@@ -179,9 +184,29 @@ class LineEnds:
     tails: np.ndarray
 
     @staticmethod
-    def of(places: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> LineEnds:
-        """The ends of polylines (x, y, h)."""
-        return LineEnds(*(np.array([_tip(*(v[::step] for v in place)) for place in places]).reshape(-1, 5) for step in (-1, 1)))
+    def of(places: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]], length: float = END_DIRECTION_LENGTH) -> LineEnds:
+        """The ends of polylines (x, y, h), whose last `length` metres give the directions."""
+        return LineEnds(*(np.array([_tip(x[::step], y[::step], h[::step], length) for x, y, h in places]).reshape(-1, 5) for step in (-1, 1)))
+
+    def straight_successors(self, long: np.ndarray) -> np.ndarray:
+        """The line straight ahead of each, up to MAX_STRAIGHT_GAP away; `long` : (K,) bool, lines long enough for a direction.
+
+        Returns
+        -------
+        (K,) indices, -1 where there is none
+        """
+        count = len(self.heads)
+        if not count:
+            return np.full(count, -1)
+        near = cKDTree(self.tails[:, :2]).sparse_distance_matrix(cKDTree(self.heads[:, :2]), MAX_STRAIGHT_GAP, output_type="ndarray")
+        a, b, gap = near["i"], near["j"], near["v"]
+        tail, head = self.tails[a], self.heads[b]
+        dx, dy = head[:, 0] - tail[:, 0], head[:, 1] - tail[:, 1]
+        turn = np.arccos(np.clip(-(tail[:, 3] * head[:, 3] + tail[:, 4] * head[:, 4]), -1, 1))
+        miss = np.maximum(*(np.abs(dx * end[:, 4] - dy * end[:, 3]) for end in (tail, head)))
+        good = long[a] & long[b] & (a != b) & (dx * tail[:, 3] + dy * tail[:, 4] > 0) & (turn <= MAX_STRAIGHT_TURN) \
+            & (miss <= STRAIGHT_TOLERANCE + STRAIGHT_DRIFT * gap) & (np.abs(head[:, 2] - tail[:, 2]) <= HEIGHT_TOLERANCE + STRAIGHT_GRADE * gap)
+        return _mutual(a[good], b[good], (gap + 10 * miss)[good], count)
 
     def successors(self, nose: float = 0.0) -> np.ndarray:
         """The line whose head continues the tail of each line.
@@ -213,18 +238,23 @@ class LineEnds:
         up = np.abs(head[:, 2] - tail[:, 2])
         good = (a != b) & (along > -MAX_JOIN_OVERLAP) & (across <= JOIN_TOLERANCE + JOIN_DRIFT * np.abs(along)) & (turn <= most) \
             & (up <= HEIGHT_TOLERANCE + MAX_HEIGHT_GRADE * gap)
-        a, b, cost = a[good], b[good], (gap + 2 * across + turn)[good]
-        ahead, behind = _cheapest(a, b, cost, count), _cheapest(b, a, cost, count)
-        linked = np.flatnonzero(ahead >= 0)
-        linked = linked[behind[ahead[linked]] == linked]
-        following[linked] = ahead[linked]
-        return following
+        return _mutual(a[good], b[good], (gap + 2 * across + turn)[good], count)
 
 
-def _tip(x, y, h):
-    """Where a line ends, and the unit vector of its direction there: x, y, h, tx, ty."""
+def _mutual(a, b, cost, count):
+    """(count,) for every a the b of the lowest cost where that has no cheaper a; -1 elsewhere."""
+    following = np.full(count, -1)
+    ahead, behind = _cheapest(a, b, cost, count), _cheapest(b, a, cost, count)
+    linked = np.flatnonzero(ahead >= 0)
+    linked = linked[behind[ahead[linked]] == linked]
+    following[linked] = ahead[linked]
+    return following
+
+
+def _tip(x, y, h, length):
+    """Where a line ends, and the unit vector of its direction over its last metres: x, y, h, tx, ty."""
     back = np.hypot(x - x[-1], y - y[-1])
-    far = np.flatnonzero(back >= END_DIRECTION_LENGTH)
+    far = np.flatnonzero(back >= length)
     # of a curb that bends, its last half metre or so gives the direction
     k = int(far[-1]) if len(far) else 0
     tx, ty = x[-1] - x[k], y[-1] - y[k]

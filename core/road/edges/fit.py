@@ -29,6 +29,7 @@ MAX_EDGE_SKEW = 1.0           # m across per m along of a joined edge
 MAX_EDGE_JUMP = 0.25          # m across that two joined points may differ in any case
 EDGE_VERTEX_SPACING = 0.5     # m between vertices
 MIN_EDGE_LENGTH = 2.0         # m of a piece with curb points
+GAP_SIGMA = 0.0005            # m per m of the longest bridged gap, least noise of the points of a curve across it
 MIN_POINT_SIGMA = 0.001       # m, least noise of a curb point
 
 
@@ -42,7 +43,7 @@ class EdgeSettings:
     fallback_width : m between the edges that are drawn where no curb was found; 0 draws none
     """
 
-    max_gap: float = setting(15.0, 0.0, 100.0, "The longest bridged gap", "m")
+    max_gap: float = setting(25.0, 0.0, 100.0, "The longest bridged gap", "m")
     fallback_width: float = setting(0.0, 2.0, 50.0, "The fallback width", "m", "for none")
 
     def __post_init__(self) -> None:
@@ -160,6 +161,7 @@ class EdgeCurve:
     Parameters
     ----------
     points : (N,) structured array with the fields `x`, `y`, `z`, `d` (m)
+    longest_gap : m that the curve bridges; the longer it is, the stiffer the curve, since the last points before a gap may give a poor direction
 
     Attributes
     ----------
@@ -167,13 +169,13 @@ class EdgeCurve:
     residual : (N,) m, distance in plan of the points from the curve
     """
 
-    def __init__(self, points: np.ndarray):
+    def __init__(self, points: np.ndarray, longest_gap: float = 0.0):
         x, y, z = points["x"], points["y"], points["z"]
         self.middle = np.array([x.mean(), y.mean(), z.mean()])
         x, y, z = x - self.middle[0], y - self.middle[1], z - self.middle[2]
         self.t = np.r_[0.0, np.cumsum(np.maximum(np.hypot(np.diff(x), np.diff(y)), 1e-3))]
         order = min(3, len(x) - 1)
-        across, up = _noise(self.t, points["d"]), _noise(self.t, points["z"])
+        across, up = (max(_noise(self.t, points[name]), GAP_SIGMA * longest_gap) for name in ("d", "z"))
         # the noise across divides between x and y: N points have the sum N sigma²
         self.plan, _ = splprep([x, y], u=self.t, k=order, s=len(x) * across**2)
         self.height = splrep(self.t, z, k=order, s=len(x) * up**2)
@@ -199,7 +201,7 @@ def _noise(t, values):
 def _draw(found, road, side, piece, number, passes):
     """Add the pieces of one edge; returns its (start, end) station."""
     points, bridged = piece
-    curve = EdgeCurve(points)
+    curve = EdgeCurve(points, float(np.diff(points["s"])[bridged].max(initial=0.0)))
     changes = np.flatnonzero(np.diff(bridged.astype(int))) + 1
     bounds = np.r_[0, changes, len(points) - 1]
     for i, j in zip(bounds[:-1], bounds[1:]):

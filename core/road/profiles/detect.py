@@ -16,6 +16,7 @@ from ..common.corners import CurbSteps
 from ..common.curb_limits import CurbLimits
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.decimation import POINTS_PER_LEVEL_CELL, PointDecimation
+from ..common.in_line import with_pieces_in_line
 from ..common.occlusion import HIDDEN_POINT_SPACING, OcclusionGrid
 from ..common.pseudo_scanlines import SPREAD_PROFILES
 from ..common.sides import (
@@ -209,6 +210,7 @@ def _points_of_side(survey, road, side, steps, occlusion, settings):
     track = OutermostTrack(frame, road, sign)
     chains = curb_chains(steps, link_steps(steps, settings.profile_width), settings.profile_width, settings.limits)
     selected = drop_short_curbs(select_along_road(chains, steps, track), chains, steps)
+    selected = with_pieces_in_line(selected, chains, steps, lambda s, u: frame.road(road).to_map(s, sign * u))
     bounds = block_bounds(frame.road(road), *survey.store.span(road), settings.block_length)
     rows = []
     for number, (chain, a, b) in enumerate(selected):

@@ -22,6 +22,7 @@ from ...common.setting import check_limits, setting
 from ...execution.phase import Phase
 from ..common.curb_limits import CurbLimits
 from ..common.curb_points import CurbPoints, curb_points_at
+from ..common.in_line import with_pieces_in_line
 from ..common.occlusion import HIDDEN_POINT_SPACING, MIN_OCCLUDER_HEIGHT, OcclusionGrid
 from ..common.pseudo_scanlines import MIN_SCANNER_NOISE
 from ..common.sides import BLOCK_SECTION_LENGTH, MAX_CURB_OFFSET, SIDE_SIGNS, OutermostTrack, expected_height, join_sections
@@ -268,6 +269,7 @@ def _points_of_side(source, road, side, corners, occlusion, settings, block_leng
     label = link_apart(corners, source.interval, ~corners.sloped)
     chains = curb_chains(corners, label, source.interval, limits)
     stretches = drop_short_curbs(select_along_road(chains, corners, track), chains, corners)
+    stretches = with_pieces_in_line(stretches, chains, corners, lambda s, u: frame.road(road).to_map(s, sign * u))
     edges = block_bounds(frame.road(road), *source.span(road), block_length)
     rows = []
     for number, (chain, a, b) in enumerate(stretches):

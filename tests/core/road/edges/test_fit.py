@@ -81,12 +81,22 @@ def test_a_hidden_gap_is_bridged_and_says_so():
     np.testing.assert_allclose(places(edges)[:, 1], 3.5, atol=0.01)
 
 
-@pytest.mark.parametrize("hidden, gap", [(False, 10.0), (True, 18.0)], ids=["open", "too long"])
+@pytest.mark.parametrize("hidden, gap", [(False, 10.0), (True, 28.0)], ids=["open", "too long"])
 def test_an_opening_and_a_gap_that_is_too_long_break_the_edge(hidden, gap):
     stations = np.r_[np.arange(0, 20, 1.0), np.arange(19 + gap, 60, 1.0)]
     edges = fit_road_edges(curb_points(stations, hidden=np.arange(19.5, 19 + gap, 0.5) if hidden else ()), straight_frame())
     assert [r["status"] for r in edges.rows] == ["measured", "measured"]
     assert edges.rows[0]["end_m"] == pytest.approx(19) and edges.rows[1]["station_m"] == pytest.approx(19 + gap)
+
+
+def test_a_short_piece_of_curb_does_not_bend_the_line_across_a_long_gap():
+    # its three points lie askew by centimetres, which would be decimetres within the gap
+    stations = np.r_[np.arange(0, 20, 1.0), 23.0, 23.3, 23.6, np.arange(40, 60, 1.0)]
+    askew = {23.0: -0.015, 23.6: 0.03}
+    points = curb_points(stations, lambda s: 3.5 + askew.get(round(float(s), 1), 0.0), hidden=np.arange(24.0, 39.6, 0.5), noise=0.003)
+    edges = fit_road_edges(points, straight_frame())
+    assert "bridged" in {row["status"] for row in edges.rows}
+    np.testing.assert_allclose(places(edges)[:, 1], 3.5, atol=0.05)
 
 
 def test_the_user_says_how_long_a_gap_may_be():

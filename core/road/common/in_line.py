@@ -1,0 +1,114 @@
+"""Short pieces of curb in line with the curb before and after them.
+
+A short piece of curb may be anything where it stands alone. Between two stretches of curb that were chosen already, a piece
+of their height that lies on the smooth line through both is the same curb, seen between what hides the rest of it, such as a
+row of parked cars.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.polynomial import Polynomial
+
+from .corners import CurbSteps
+from .tracking import HEIGHT_TOLERANCE, StepChain
+
+LINE_FIT_LENGTH = 10.0      # m of curb before and after a gap that give the line across it
+WEIGHT_LENGTH = 5.0         # m from the gap at which a place counts half
+MIN_BEND_LENGTH = 3.0       # m of curb at an end from which its direction is known
+MAX_LINE_GAP = 50.0         # m between two stretches of one line: a row of parked cars
+IN_LINE_ACROSS = 0.08       # m from that line
+IN_LINE_GRADE = 0.01        # m per m to the nearer end that the bottom may differ besides HEIGHT_TOLERANCE
+MAX_HEIGHT_RATIO = 1.6      # of the height of a piece over that of the curb before and after it
+MIN_PIECE_LENGTH = 0.5      # m
+MIN_PIECE_STEPS = 3
+
+
+def with_pieces_in_line(kept: Sequence[tuple[int, float, float]], chains: Sequence[StepChain], steps: CurbSteps,
+                        to_plan: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]) -> list[tuple[int, float, float]]:
+    """The chosen intervals and, between them, the pieces of other chains that lie in their line.
+
+    Parameters
+    ----------
+    kept : result of `drop_short_curbs`
+    chains : list of StepChain
+    steps : CurbSteps to which they refer
+    to_plan : function, stations and outward offsets in m -> x and y in m
+
+    Returns
+    -------
+    list like `kept`, in order along the road
+    """
+    members = [_between(steps, chains[chain].steps, a - 1e-9, b + 1e-9) for chain, a, b in kept]
+    chosen = np.concatenate(members) if members else np.empty(0, np.int64)
+    found = list(kept)
+    for (_, _, a), (_, b, _) in zip(kept[:-1], kept[1:]):
+        if 2 * MIN_PIECE_LENGTH <= b - a <= MAX_LINE_GAP:
+            before, after = _between(steps, chosen, a - LINE_FIT_LENGTH, a + 1e-9), _between(steps, chosen, b - 1e-9, b + LINE_FIT_LENGTH)
+            found += _pieces_between(before, after, chains, steps, to_plan)
+    return sorted(found, key=lambda part: part[1:])
+
+
+def _between(steps, members, start, end):
+    return members[(steps.s[members] >= start) & (steps.s[members] <= end)]
+
+
+def _pieces_between(before, after, chains, steps, to_plan):
+    """Pieces of chains on the line between two runs of steps; of pieces side by side the one nearest to it."""
+    a, b = steps.s[before].max(), steps.s[after].min()
+    line = GapLine(*(np.array(to_plan(steps.s[end], steps.u[end])) for end in (before, after)))
+    (s0, h0, height0), (s1, h1, height1) = ([np.median(v[end]) for v in (steps.s, steps.h, steps.height)] for end in (before, after))
+    pieces = []
+    for number, chain in enumerate(chains):
+        members = _between(steps, chain.steps, a + 1e-6, b - 1e-6)
+        if len(members) < MIN_PIECE_STEPS or np.ptp(steps.s[members]) < MIN_PIECE_LENGTH:
+            continue
+        s = steps.s[members]
+        share = (s - s0) / (s1 - s0)
+        off = np.abs(line.off(*to_plan(s, steps.u[members]))).max()
+        up = np.abs(steps.h[members] - h0 - share * (h1 - h0)) - IN_LINE_GRADE * np.minimum(s - a, b - s)
+        ratio = np.median(steps.height[members] / (height0 + share * (height1 - height0)))
+        if off <= IN_LINE_ACROSS and up.max() <= HEIGHT_TOLERANCE and 1 / MAX_HEIGHT_RATIO <= ratio <= MAX_HEIGHT_RATIO:
+            pieces.append((off, number, float(s[0]), float(s[-1])))
+    chosen: list[tuple[int, float, float]] = []
+    for _, number, c, d in sorted(pieces):
+        if all(d < other[1] or c > other[2] for other in chosen):
+            chosen.append((number, c, d))
+    return chosen
+
+
+class GapLine:
+    """A polynomial in plan across a gap.
+
+    Parameters
+    ----------
+    before, after : (2, N) and (2, M) m, x and y of the curb on both sides of the gap, in order; those within LINE_FIT_LENGTH
+        of it are used
+    """
+
+    def __init__(self, before: np.ndarray, after: np.ndarray):
+        ends, weights = [], []
+        for part, tip in ((before, before[:, -1:]), (after, after[:, :1])):
+            away = np.hypot(*(part - tip))
+            near = away <= LINE_FIT_LENGTH
+            ends.append(part[:, near])
+            # both ends count alike, however many points each has, and near places more than far ones
+            weight = 1.0 / (1.0 + (away[near] / WEIGHT_LENGTH) ** 2)
+            weights.append(weight / weight.sum())
+        known, (first, last) = np.concatenate(ends, axis=1), (end.mean(1) for end in ends)
+        self.origin, self.along = first, (last - first) / max(np.hypot(*(last - first)), 1e-9)
+        degree = 1 + sum(np.hypot(*(end[:, -1] - end[:, 0])) >= MIN_BEND_LENGTH for end in ends)
+        t, v = self.place(*known)
+        self.line = Polynomial.fit(t, v, degree, w=np.sqrt(np.concatenate(weights)))
+
+    def place(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(N,) m along the chord and left of it."""
+        dx, dy = x - self.origin[0], y - self.origin[1]
+        return dx * self.along[0] + dy * self.along[1], dy * self.along[0] - dx * self.along[1]
+
+    def off(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """(N,) m from the line, left positive."""
+        t, v = self.place(x, y)
+        return v - self.line(t)
