@@ -17,9 +17,10 @@ class CheckMap(Algorithm):
     SUMMARY = "Looks for faults of an OpenDRIVE or Lanelet2 map that other validators pass over, and puts them on the map."
     HELP = ("OpenDRIVE: gaps, kinks and steps between geometries, profiles and linked lanes, wrong lengths, lanes narrower than nothing, borders "
             "that fold back in curves, numbering, types, links that lead nowhere or one way only, lanes that end though the road goes on, roads on "
-            "one another.\n\n"
+            "one another, words, numbers and orders of records that the standard does not have, a geoReference that is none.\n\n"
             "Lanelet2: missing nodes and members, types and tags that no reader knows, borders that cross, swap sides or lie there twice, lanelets "
-            "that meet without sharing their nodes or meet head on.\n\n"
+            "that meet without sharing their nodes or meet head on, nodes that lie aside, rules of traffic that are not whole or that nobody "
+            "obeys.\n\n"
             "A schema validator looks at other things; use both.")
     TAGS = ("OpenDRIVE", "Lanelet2", "HD map", "validation", "topology", "routing")
     LOOKS = {"OUTPUT": "FINDINGS"}

@@ -1040,13 +1040,13 @@
         </message>
         <message>
             <location filename="../../algorithms/export/check_map.py" />
-            <source>OpenDRIVE: gaps, kinks and steps between geometries, profiles and linked lanes, wrong lengths, lanes narrower than nothing, borders that fold back in curves, numbering, types, links that lead nowhere or one way only, lanes that end though the road goes on, roads on one another.</source>
-            <translation>OpenDRIVE: Lücken, Knicke und Stufen zwischen Geometrien, Höhenverläufen und verknüpften Fahrstreifen, falsche Längen, Fahrstreifen schmaler als nichts, Ränder, die in Kurven umschlagen, Nummern, Typen, Verknüpfungen, die nirgendwohin oder nur in eine Richtung führen, Fahrstreifen, die enden, obwohl die Straße weitergeht, Straßen aufeinander.</translation>
+            <source>OpenDRIVE: gaps, kinks and steps between geometries, profiles and linked lanes, wrong lengths, lanes narrower than nothing, borders that fold back in curves, numbering, types, links that lead nowhere or one way only, lanes that end though the road goes on, roads on one another, words, numbers and orders of records that the standard does not have, a geoReference that is none.</source>
+            <translation>OpenDRIVE: Lücken, Knicke und Stufen zwischen Geometrien, Höhenverläufen und verknüpften Fahrstreifen, falsche Längen, Fahrstreifen schmaler als nichts, Ränder, die in Kurven umschlagen, Nummern, Typen, Verknüpfungen, die nirgendwohin oder nur in eine Richtung führen, Fahrstreifen, die enden, obwohl die Straße weitergeht, Straßen aufeinander, Wörter, Zahlen und Reihenfolgen, die der Standard nicht kennt, eine geoReference, die keine ist.</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/check_map.py" />
-            <source>Lanelet2: missing nodes and members, types and tags that no reader knows, borders that cross, swap sides or lie there twice, lanelets that meet without sharing their nodes or meet head on.</source>
-            <translation>Lanelet2: fehlende Knoten und Mitglieder, Typen und Tags, die kein Leser kennt, Ränder, die sich kreuzen, vertauscht oder doppelt sind, Lanelets, die sich treffen, ohne ihre Knoten zu teilen, oder gegeneinander führen.</translation>
+            <source>Lanelet2: missing nodes and members, types and tags that no reader knows, borders that cross, swap sides or lie there twice, lanelets that meet without sharing their nodes or meet head on, nodes that lie aside, rules of traffic that are not whole or that nobody obeys.</source>
+            <translation>Lanelet2: fehlende Knoten und Mitglieder, Typen und Tags, die kein Leser kennt, Ränder, die sich kreuzen, vertauscht oder doppelt sind, Lanelets, die sich treffen, ohne ihre Knoten zu teilen, oder gegeneinander führen, Knoten, die abseits liegen, Verkehrsregeln, die nicht vollständig sind oder die niemand befolgt.</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/check_map.py" />

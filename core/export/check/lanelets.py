@@ -9,16 +9,21 @@ import shapely
 
 from ...common.progress import Progress
 from ..lanelet.model import Lanelet, LaneletMap, Way
-from ..lanelet.routing import LaneletNetwork
+from ..lanelet.routing import LaneletNetwork, same_way
 from .findings import Findings, metres
+from .rules import NO_BORDERS, YES_OR_NO, add_rule_findings, participant_tags, way_tags
 
 LEAST_LANE_WIDTH, MOST_LANE_WIDTH = 0.5, 30.0   # m: beyond them a border belongs to another lane; areas of junctions are wide
 NEAR_NODES = 0.001        # m between two nodes of a way that are one place
+SPIKE_TURN = 2.6          # rad: a border that turns back
+SPIKE_SIDE, SPIKE_REST = 1.2, 0.35   # rad of turn at a node that lies aside, and that remains of it with those at its neighbours
+SPIKE_RISE, SPIKE_SLOPE = 0.3, 0.5   # m and share of the distance to both neighbours that a node lies above or below them
+MOST_SPIKES = 20          # of one way
 JOIN_DISTANCE = 0.3       # m within which an end was meant to be the next lanelet's beginning
 TWIN_DISTANCE = 0.02      # m between two ways that are one border
 JOIN_ANGLE = 0.7          # rad between lanelets that may follow each other
-USUAL_SHARE = 0.9         # of at least ten lanelets, which show the habit of a map of drawing borders
-YES_OR_NO = ("yes", "no", "true", "false", "1", "0")
+USUAL_SHARE = 0.9         # of the lanelets, which show the habit of a map of drawing borders
+LEAST_HABIT = 10          # lanelets that are a habit
 WAY_TYPES = ("line_thin", "line_thick", "curbstone", "virtual", "road_border", "guard_rail", "wall", "fence", "stop_line", "pedestrian_marking",
              "zebra_marking", "zebra", "bike_marking", "keepout", "arrow", "symbol", "traffic_sign", "traffic_light", "light_bulbs", "gate", "door",
              "trajectory", "rail", "pole", "post", "building", "centerline", "pedestrian_path", "jersey_barrier", "marking", "zig-zag", "structure")
@@ -27,6 +32,7 @@ CURB_SUBTYPES = ("high", "low", "lowered", "rolled")
 LANELET_SUBTYPES = ("road", "highway", "play_street", "emergency_lane", "bus_lane", "bicycle_lane", "exit", "walkway", "shared_walkway", "crosswalk",
                     "stairs", "road_shoulder", "parking", "pedestrian_lane")
 LOCATIONS = ("urban", "nonurban", "private")
+WALKED = ("crosswalk", "walkway", "stairs")
 
 
 def check_lanelets(whole: LaneletMap, places: np.ndarray, crs: str = "", progress: Progress = Progress()) -> Findings:
@@ -46,6 +52,7 @@ def check_lanelets(whole: LaneletMap, places: np.ndarray, crs: str = "", progres
     check = _LaneletCheck(whole, places, Findings(crs=crs))
     for kind, id, line in whole.twice:
         check.findings.add("id twice", f"{kind} {id}", f"Line {line}: there is another {kind} of this id.", np.zeros(3))
+    check.numbering()
     check.heights()
     for way in whole.ways.values():
         check.way(way)
@@ -54,6 +61,7 @@ def check_lanelets(whole: LaneletMap, places: np.ndarray, crs: str = "", progres
         check.lanelet(lanelet)
     for relation in whole.others.values():
         check.members(relation)
+    add_rule_findings(whole, check.findings, check.place_of)
     progress.report(0.6)
     check.sides()
     check.joints()
@@ -74,6 +82,21 @@ class _LaneletCheck:
         rows = self.whole.rows(way)
         return self.places[rows[0]] if len(rows) else np.zeros(3)
 
+    def numbering(self) -> None:
+        """Ids and tags that other programs read otherwise."""
+        whole = self.whole
+        for kind, ids in (("node", whole.node_ids), ("way", whole.ways), ("relation", [*whole.lanelets, *whole.others])):
+            low = [int(id) for id in ids if id <= 0]
+            if low:
+                self.findings.add("id not positive", f"{kind} {low[0]}", f"{len(low)} ids of a {kind} are 0 or below.", np.zeros(3))
+        for kind, id, key in whole.tags_twice:
+            self.findings.add("id twice", f"{kind} {id}", f"It has the tag {key} more than once.", np.zeros(3))
+        known = np.isfinite(whole.local).all(1)
+        if known.any() and not known.all():
+            row = int(np.flatnonzero(known != (known.mean() > 0.5))[0])
+            self.findings.add("local coordinates", f"node {whole.node_ids[row]}",
+                              f"{int(known.sum())} of {len(known)} nodes have local_x and local_y.", self.places[row])
+
     def heights(self) -> None:
         missing = ~np.isfinite(self.whole.heights)
         if missing.any() and not missing.all():
@@ -93,7 +116,13 @@ class _LaneletCheck:
             if len(near):
                 self.findings.add("repeated node", name, f"Nodes {self.whole.node_ids[rows[near[0]]]} and {self.whole.node_ids[rows[near[0] + 1]]} "
                                                          "lie at one place.", self.places[rows[near[0]]])
+        if way.id in self.borders and len(rows) > 2:
+            self._spikes(name, rows)
+        for text in way_tags(way):
+            self.findings.add("way tag", name, text, place)
         kind, subtype = way.tags.get("type", ""), way.tags.get("subtype", "")
+        if way.id in self.borders and kind in NO_BORDERS:
+            self.findings.add("way type", name, f"It is the border of a lanelet and a {kind}.", place)
         if way.id in self.borders or kind:
             allowed = LINE_SUBTYPES if kind in ("line_thin", "line_thick") else CURB_SUBTYPES if kind == "curbstone" else ()
             if kind not in WAY_TYPES:
@@ -101,29 +130,52 @@ class _LaneletCheck:
             elif allowed and subtype not in allowed:
                 self.findings.add("way subtype", name, f"The subtype of the {kind} is {subtype!r}.", place)
 
+    def _spikes(self, name: str, rows: np.ndarray) -> None:
+        """Nodes that a border leaves and comes back from."""
+        line = self.places[rows]
+        step = np.diff(line, axis=0)
+        run = np.maximum(np.hypot(*step[:, :2].T), NEAR_NODES)
+        heading = np.arctan2(step[:, 1], step[:, 0])
+        turn = (np.diff(heading) + np.pi) % (2 * np.pi) - np.pi
+        back = np.abs(turn) > SPIKE_TURN
+        if len(turn) > 2:   # out at one node, back at the next but one
+            around = np.abs(np.convolve(turn, np.ones(3), mode="valid"))
+            out = (np.abs(turn[1:-1]) > SPIKE_SIDE) & (around < SPIKE_REST) & (turn[1:-1] * turn[:-2] < 0) & (turn[1:-1] * turn[2:] < 0)
+            back[1:-1] |= out & (np.minimum(np.abs(turn[:-2]), np.abs(turn[2:])) > SPIKE_REST)
+        rise = step[:, 2]
+        up = (np.abs(rise[:-1]) > SPIKE_RISE) & (np.abs(rise[1:]) > SPIKE_RISE) & (rise[:-1] * rise[1:] < 0)
+        up &= (np.abs(rise[:-1]) > SPIKE_SLOPE * run[:-1]) & (np.abs(rise[1:]) > SPIKE_SLOPE * run[1:])
+        for found, what in ((back, "to the side"), (up, "up or down")):
+            for k in np.flatnonzero(found)[:MOST_SPIKES]:
+                self.findings.add("spike", name, f"Node {self.whole.node_ids[rows[k + 1]]} lies {what} of those beside it.", line[k + 1])
+
     def members(self, relation: Lanelet) -> bool:
         """Whether all members are there."""
         missing = [(kind, id) for found in relation.members.values() for kind, id in found if id not in self.known.get(kind, ())]
         for kind, id in missing:
-            self.findings.add("missing member", f"relation {relation.id}", f"There is no {kind} {id}.", self._place(relation))
+            self.findings.add("missing member", f"relation {relation.id}", f"There is no {kind} {id}.", self.place_of(relation))
         return not missing
 
-    def _place(self, relation):
+    def place_of(self, relation: Lanelet) -> np.ndarray:
+        """Where a relation begins."""
         ways = [self.whole.ways[id] for found in relation.members.values() for kind, id in found if kind == "way" and id in self.whole.ways]
         return next((self.at(way) for way in ways if len(self.whole.rows(way))), np.zeros(3))
 
     def lanelet(self, lanelet: Lanelet) -> None:
-        name, place, tags = f"lanelet {lanelet.id}", self._place(lanelet), lanelet.tags
+        name, place, tags = f"lanelet {lanelet.id}", self.place_of(lanelet), lanelet.tags
         whole = self.members(lanelet)
         for role in ("left", "right"):
-            if len(lanelet.members.get(role, ())) != 1:
-                self.findings.add("border missing", name, f"It has {len(lanelet.members.get(role, ()))} members {role}.", place)
+            found = lanelet.members.get(role, ())
+            if len(found) != 1 or found[0][0] != "way":
+                has = " and ".join(kind for kind, _ in found) or "nothing"
+                self.findings.add("border missing", name, f"It has {has} as {role}; one way is needed.", place)
+        if len(lanelet.members.get("centerline", ())) > 1:
+            self.findings.add("centre line", name, f"It has {len(lanelet.members['centerline'])} centre lines.", place)
         for key, allowed, needed in (("subtype", LANELET_SUBTYPES, True), ("location", LOCATIONS, False), ("one_way", YES_OR_NO, False)):
             if (needed or key in tags) and tags.get(key) not in allowed:
                 self.findings.add("lanelet tag", name, f"{key} is {tags.get(key, '')!r}.", place)
-        for key, value in tags.items():
-            if key.startswith("participant:") and value not in YES_OR_NO:
-                self.findings.add("lanelet tag", name, f"{key} is {value!r}.", place)
+        for text in participant_tags(tags, tags.get("subtype") in WALKED):
+            self.findings.add("lanelet tag", name, text, place)
         if "speed_limit" in tags and not _is_speed(tags["speed_limit"]):
             self.findings.add("lanelet tag", name, f"speed_limit is {tags['speed_limit']!r}.", place)
         if whole and lanelet.id in self.network.left:
@@ -147,6 +199,8 @@ class _LaneletCheck:
             area = shapely.make_valid(shapely.polygons(np.concatenate([shapely.get_coordinates(left), shapely.get_coordinates(right)[::-1]])))
             if not shapely.buffer(area, 0.01).covers(shapely.linestrings(self.places[rows][:, :2])):
                 self.findings.add("centre line outside", name, "The centre line leaves the lanelet.", place)
+            if not same_way(self.places[rows], self.places[self.network.left[lanelet.id]]):
+                self.findings.add("centre line", name, "The centre line runs against it.", place)
 
     def sides(self) -> None:
         """Left and right by the habit of the map: a border runs with the traffic, unless it is the left one of both directions."""
@@ -158,10 +212,13 @@ class _LaneletCheck:
             if self.network.reversed_right[id] or self.network.reversed_left[id] and not shared:
                 odd.append(id)
         known = len(self.network.left)
+        if known >= LEAST_HABIT and len(odd) >= USUAL_SHARE * known:
+            self.findings.add("sides swapped", f"{len(odd)} lanelets", "Nearly all borders run against their lanelets: left and right, or latitude "
+                                                                      "and longitude, are swapped.", self.place_of(self.whole.lanelets[odd[0]]))
         if len(odd) <= (1 - USUAL_SHARE) * known:
             for id in odd:
                 self.findings.add("sides swapped", f"lanelet {id}", "Its borders run against it, unlike those of the other lanelets.",
-                                  self._place(self.whole.lanelets[id]))
+                                  self.place_of(self.whole.lanelets[id]))
 
     def joints(self) -> None:
         """Ends of lanelets that meet: they share their nodes and are driven on."""
@@ -190,7 +247,14 @@ class _LaneletCheck:
         return float(np.arctan2(d[1], d[0]))
 
     def twins(self) -> None:
-        """Borders that lie on each other and are two ways."""
+        """Borders that lie on each other and are two ways, and lanelets between the same borders."""
+        between: dict[tuple[int | None, int | None], int] = {}
+        for id in self.network.left:
+            key = self.whole.lanelets[id].way("left"), self.whole.lanelets[id].way("right")
+            if key in between:
+                self.findings.add("two at one place", f"lanelets {between[key]} and {id}", "They have the same borders.",
+                                  self.place_of(self.whole.lanelets[id]))
+            between.setdefault(key, id)
         ways = [self.whole.ways[id] for id in sorted(self.borders) if id in self.whole.ways and len(self.whole.rows(self.whole.ways[id])) > 1]
         lines = [shapely.linestrings(self.places[self.whole.rows(way)][:, :2]) for way in ways]
         if not lines:

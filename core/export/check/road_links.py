@@ -78,6 +78,9 @@ class _Links:
     def junctions(self) -> None:
         reached = {(junction.id, connection.connecting) for junction in self.whole.junctions for connection in junction.connections}
         for road in self.whole.roads:
+            for end in ("start", "end") if road.junction in self.known else ():
+                if road.link(end) is None:
+                    self.findings.add("road link", f"road {road.id}, {end}", "It lies in a junction and leads nowhere.", self.place(road, end))
             if road.junction != "-1" and (road.junction, road.id) not in reached:
                 self.findings.add("unused junction road", f"road {road.id}", f"Junction {road.junction} has no connection to it.",
                                   self.place(road, "start"))
@@ -124,17 +127,18 @@ class _Links:
         for end in ("start", "end"):
             own = self._end(key, end)
             touching = self.network.touching(key, end)
+            ways = [other for other, _ in touching if (known := self.network.lane(other)) is not None and known.type in DRIVEN_TYPES]
             for other, there in touching:
                 target = self.network.lane(other)
-                if target is None:
-                    self.findings.add("lane link", name, f"At its {end} there is no lane {other[2]} of road {other[0]}.", own[0])
+                if target is None or not other[2]:   # lane 0 is a line
+                    self.findings.add("lane link", name, f"At its {end} there is no such lane {other[2]} of road {other[0]}.", own[0])
                     continue
                 self._joined(name, key, end, own, other, there, target, driven)
             inside = 0 <= key[1] + (1 if end == "end" else -1) < len(road.sections)
-            if driven and not touching and (key, end) not in self.touched and self._width(own) > LEAST_LANE:
+            if driven and not ways and (touching or (key, end) not in self.touched) and self._width(own) > LEAST_LANE:
                 leaves = (end == "end") == (way > 0)
                 if inside or self._road_goes_on(road, end):
-                    self.findings.add("dead end" if leaves else "no way in", name, f"At its {end} it is linked to no lane.", own[0])
+                    self.findings.add("dead end" if leaves else "no way in", name, f"At its {end} it is linked to no driven lane.", own[0])
 
     def _road_goes_on(self, road, end):
         """Whether the road of a driven lane is linked to anything that is there."""

@@ -5,12 +5,15 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
+from ...common.errors import RoadExtractionError
 from ...common.progress import Progress
+from ..map_crs import metric_wkt
 from ..opendrive.geometry import Cubics
 from ..opendrive.model import DRIVEN_TYPES, MARK_TYPES, ROAD_LANE_TYPES, MapRoad, OpenDriveMap
 from ..opendrive.surface import RoadSurface
 from .findings import Findings, metres
 from .road_links import check_links
+from .statements import statements
 
 MAX_GAP_IN_ROAD = 0.01       # m: simulators of wheels feel more
 MAX_KINK = 0.01              # rad between two geometries of one road
@@ -18,6 +21,7 @@ MAX_LENGTH_ERROR = 0.01     # m between the s of a geometry and the length befor
 MAX_HEIGHT_STEP = 0.02       # m within a road
 MAX_WIDTH_STEP = 0.02        # m of a border within a road
 LEAST_OVERLAP = 0.3          # share of the smaller of two roads that lies on the other
+FARTHEST_BOUND = 50.0        # m by which roads may reach beyond the bounds of the header
 FOLD_STEP = 1.0              # m between the places at which borders are held against the curvature
 
 
@@ -47,6 +51,7 @@ def check_opendrive(whole: OpenDriveMap, crs: str = "", progress: Progress = Pro
         report.sections(road)
         report.objects(road)
         progress.report(0.6 * (count + 1) / len(whole.roads))
+    report.statements()
     report.overlaps()
     check_links(whole, report.findings)
     progress.report(1.0)
@@ -66,6 +71,24 @@ class _RoadCheck:
             at = np.array([min(max(s, 0.0), road.plan.length)])
             place = self.whole.placed(np.c_[road.plan.at(at)[0], road.elevation.at(at)])[0]
         self.findings.add(fault, element, text, place)
+
+    def statements(self) -> None:
+        """What the file says that the format does not have, and whether its header fits the roads."""
+        if self.whole.tree is not None:
+            for fault, element, text, road, s in statements(self.whole.tree):
+                self.add(fault, element, text, self.whole.road(road), s)
+        if self.whole.reference:
+            try:
+                metric_wkt(self.whole.reference, "The map")
+            except RoadExtractionError as problem:
+                self.add("reference", "header", str(problem), None, 0.0)
+        if self.whole.bounds is not None and self.whole.roads:
+            west, south, east, north = self.whole.bounds
+            places = np.concatenate([road.plan.at(np.array([0.0, road.plan.length]))[0] for road in self.whole.roads])
+            outside = (places < np.array([west, south]) - FARTHEST_BOUND) | (places > np.array([east, north]) + FARTHEST_BOUND)
+            if (east > west or north > south) and outside.any():
+                x, y = places[np.flatnonzero(outside.any(1))[0]]
+                self.add("bounds", "header", f"A road begins or ends at x {x:.1f}, y {y:.1f}, outside of them.", None, 0.0)
 
     def plan(self, road: MapRoad) -> None:
         name, along, last = f"road {road.id}", 0.0, None

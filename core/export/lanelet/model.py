@@ -41,6 +41,7 @@ class LaneletMap:
     ways, lanelets, others : by id; others are the remaining relations, such as regulatory elements
     twice : ids that were there more than once
     tags : of the file, such as those of MetaInfo
+    tags_twice : (kind of element, id, key) of tags that an element has more than once
     """
 
     node_ids: np.ndarray = field(default_factory=lambda: np.empty(0, np.int64))
@@ -51,6 +52,7 @@ class LaneletMap:
     lanelets: dict[int, Lanelet] = field(default_factory=dict)
     others: dict[int, Lanelet] = field(default_factory=dict)
     twice: list[tuple[str, int, int]] = field(default_factory=list)
+    tags_twice: list[tuple[str, int, str]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.row_of = {int(id): k for k, id in enumerate(self.node_ids)}

@@ -39,6 +39,7 @@ def read_lanelet2(path: str, progress: Progress = Progress()) -> LaneletMap:
 def lanelets_of(root: XmlElement) -> LaneletMap:
     """The map of the element <osm>."""
     ids, places, local, twice, ways = [], [], [], [], {}
+    tags_twice: list[tuple[str, int, str]] = []
     lanelets: dict[int, Lanelet] = {}
     others: dict[int, Lanelet] = {}
     seen = set()
@@ -46,6 +47,9 @@ def lanelets_of(root: XmlElement) -> LaneletMap:
         if element.tag not in ("node", "way", "relation") or element.get("action") == "delete":
             continue
         id, tags = _id(element, "id"), _tags(element)
+        if element.children and len(tags) < (count := sum(child.tag == "tag" for child in element.children)):
+            keys = [child.get("k") for child in element.all("tag")]
+            tags_twice += [(element.tag, id, key) for key in tags if keys.count(key) > 1][:count]
         if (element.tag, id) in seen:
             twice.append((element.tag, id, element.line))
             continue
@@ -64,7 +68,7 @@ def lanelets_of(root: XmlElement) -> LaneletMap:
     places_array = np.array(places, float).reshape(-1, 3)
     _check_degrees(places_array, ids)
     return LaneletMap(np.array(ids, np.int64), places_array[:, :2], places_array[:, 2], np.array(local, float).reshape(-1, 2), ways, lanelets,
-                      others, twice)
+                      others, twice, tags_twice)
 
 
 def _id(element, name):

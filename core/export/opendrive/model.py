@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..xml_tree import XmlElement
 from .geometry import Cubics, PlanView
 
 ROAD_LANE_TYPES = ("none", "driving", "stop", "shoulder", "biking", "sidewalk", "border", "restricted", "parking", "bidirectional", "median",
@@ -123,7 +124,8 @@ class OpenDriveMap:
     """A whole file.
 
     version : (major, minor); reference : text of geoReference; offset : x, y, z, heading added to coordinates
-    problems : (line, text) of what the reader passed over
+    problems : (line, text) of what the reader passed over; bounds : west, south, east, north of the header, None where it has none
+    tree : the file's elements, for what the map has no place for; None where it was not read
     """
 
     version: tuple[int, int] = (1, 7)
@@ -133,6 +135,8 @@ class OpenDriveMap:
     roads: list[MapRoad] = field(default_factory=list)
     junctions: list[Junction] = field(default_factory=list)
     problems: list[tuple[int, str]] = field(default_factory=list)
+    bounds: tuple[float, float, float, float] | None = None
+    tree: XmlElement | None = field(default=None, repr=False)
 
     def road(self, id: str) -> MapRoad | None:
         """The road of an id, None where there is none."""

@@ -41,13 +41,15 @@ def read_opendrive(path: str, progress: Progress = Progress()) -> OpenDriveMap:
 
 def opendrive_of(root: XmlElement) -> OpenDriveMap:
     """The map of the element <OpenDRIVE>."""
-    found = OpenDriveMap()
+    found = OpenDriveMap(tree=root)
     header = root.find("header")
     if header is None:
         found.problems.append((root.line, "there is no <header>."))
     else:
         found.version = (int(header.number("revMajor", 1.0)), int(header.number("revMinor", 0.0)))
         found.name = header.get("name")
+        sides = [header.number(name, 0.0) for name in ("west", "south", "east", "north") if name in header.attributes]
+        found.bounds = (sides[0], sides[1], sides[2], sides[3]) if len(sides) == 4 else None
         reference, offset = header.find("geoReference"), header.find("offset")
         found.reference = reference.text if reference is not None else ""
         if offset is not None:

@@ -8,6 +8,7 @@ from ..xml_tree import XmlElement, xml_text
 from .geometry import Cubics, PlanElement
 from .model import LaneSection, MapLane, MapRoad, OpenDriveMap, RoadMark
 
+FILLED_BY_PAINT = 8  # of version 1: from there on outlines may be filled by paint
 SOLID_LENGTH = 1.0   # m: a stripe without gaps is repeated from any length on
 
 
@@ -24,7 +25,7 @@ def opendrive_text(whole: OpenDriveMap, vendor: str = "Lanewright") -> str:
     x, y, z, heading = whole.offset
     header.add("offset", x=x, y=y, z=z, hdg=heading)
     for road in whole.roads:
-        root.append(_road(road))
+        root.append(_road(road, whole.version[1]))
     for junction in whole.junctions:
         element = root.add("junction", id=junction.id, name=junction.name, type="default")
         for connection in junction.connections:
@@ -35,7 +36,7 @@ def opendrive_text(whole: OpenDriveMap, vendor: str = "Lanewright") -> str:
     return xml_text(root)
 
 
-def _road(road: MapRoad) -> XmlElement:
+def _road(road: MapRoad, minor: int) -> XmlElement:
     element = XmlElement("road", {"name": road.name, "length": float(road.length), "id": road.id, "junction": road.junction, "rule": road.rule})
     if road.predecessor or road.successor:
         link = element.add("link")
@@ -56,7 +57,7 @@ def _road(road: MapRoad) -> XmlElement:
     if road.objects:
         objects = element.add("objects")
         for item in road.objects:
-            _add_object(objects, item)
+            _add_object(objects, item, minor)
     for code, value in road.data.items():
         element.add("userData", code=code, value=value)
     return element
@@ -121,10 +122,10 @@ def _add_mark(lane: XmlElement, mark: RoadMark) -> None:
             kind.add("line", length=dash, space=gap, tOffset=t if mark.apart else 0.0, sOffset=0.0, width=mark.width)
 
 
-def _add_object(objects: XmlElement, item: dict) -> None:
+def _add_object(objects: XmlElement, item: dict, minor: int) -> None:
     element = objects.add("object", id=item["id"], type=item["type"], name=item["name"], s=item["s"], t=item["t"], zOffset=item["zOffset"],
                           orientation=item["orientation"], length=item["length"], width=item["width"], hdg=item["hdg"])
-    outline = element.add("outlines").add("outline", id=0, fillType="paint", outer="true", closed="true")
+    outline = element.add("outlines").add("outline", id=0, fillType="paint" if minor >= FILLED_BY_PAINT else None, outer="true", closed="true")
     for number, (s, t, dz) in enumerate(item["corners"]):
         outline.add("cornerRoad", id=number, s=s, t=t, dz=dz, height=0.0)
 
