@@ -21,6 +21,7 @@ from .markings.fit_marking_lines import FitMarkingLines
 from .markings.intensity_image import IntensityImage
 from .markings.remove_outliers import RemoveOutliers
 from .overlay.georeference_image import GeoreferenceImage
+from .overlay.propose_control_points import ProposeControlPoints
 from .road.boundaries_from_scanlines import BoundariesFromScanlines
 from .road.detect_boundaries import DetectBoundaries
 from .road.detect_curbs import DetectCurbs
@@ -62,6 +63,7 @@ ALGORITHMS = (
     AssessBoundaries,
     AssessMarkings,
     AssessDrivingLines,
+    ProposeControlPoints,
     GeoreferenceImage,
 )
 

@@ -56,6 +56,7 @@ LOOKS = {
     "RESIDUALS": ("residuals", 90),
     "FINDINGS": ("findings", 92),
     "UAV_GCPS": ("control_points", 89),
+    "CONTROL_POINTS": ("proposed_points", 89),
 }
 TABLES = 5  # tables lie below what is drawn
 

@@ -72,6 +72,8 @@ def stages(folder):
                                      OUTPUT=at("a_d.gpkg"))
     made["georeferenceimage"] = run("georeferenceimage", IMAGE=sample["UAV_IMAGE"], GCPS=sample["UAV_GCPS"], ORDER=2, OUTPUT=at("ortho.tif"),
                                     RESIDUALS=at("residuals.gpkg"))
+    made["proposecontrolpoints"] = run("proposecontrolpoints", IMAGE=sample["UAV_IMAGE"], INTENSITY_IMAGE=image["INTENSITY_IMAGE"],
+                                       CONTROL_POINTS=at("proposed.gpkg"))
     made["image"] = image["INTENSITY_IMAGE"]
     return made
 
@@ -106,6 +108,7 @@ DRAWN = {
     "assessboundaries": ([("OUTPUT", "ASSESSED_LINES")], True, False),
     "assessmarkings": ([("OUTPUT", "ASSESSED_POLYGONS")], True, True),
     "assessdrivinglines": ([("OUTPUT", "ASSESSED_LINES")], True, False),
+    "proposecontrolpoints": (["CONTROL_POINTS"], True, False),
     "georeferenceimage": (["RESIDUALS", ("OUTPUT", "ORTHOIMAGE")], False, False),
 }
 

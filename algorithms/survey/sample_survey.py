@@ -89,8 +89,8 @@ class SampleSurvey(Algorithm):
             self.add_sink(name, label, geometry=geometry, optional=True)
         self.add_raster(
             "UAV_IMAGE", tr("UAV image"),
-            tr("What a UAV sees of the first 150 m: a TIFF of 4 cm pixels without a place on the map, with the distortion of its camera. "
-               "Georeference image finds its place. "
+            tr("What a UAV sees of the first 150 m: a TIFF of 4 cm pixels without a place on the map, with the distortion of its camera and "
+               "the position tags of a drone. Propose control points and Georeference image find its place. "
                "There is none of motorway, serpentine, crossing and roundabout."), optional=True, by_default=False)
         self.add_sink("UAV_GCPS", tr("Ground control points of the UAV image"), geometry="PointZ", optional=True, by_default=False,
                       fields=CONTROL_POINTS)

@@ -97,6 +97,10 @@ RESIDUALS = [Field("point", str, "Point"), Field("role", str, "Role (control/che
 CONTROL_POINTS = [Field("point", str, "Point"), Field("role", str, "Role (control/check)"),
                   Field("pixel", float, "Pixel"), Field("line", float, "Line, downwards"),
                   Field("kind", str, "What was pointed at")]
+PROPOSED_POINTS = [Field("point", str, "Point"), Field("accepted", int, "Accepted (1/0)"),
+                   Field("score", float, "Likeness of the two cut-outs (0 to 1)"),
+                   Field("residual", float, "Distance from where the other pairs place it (m)"), Field("why", str, "Why it is not accepted"),
+                   Field("pixel", float, "Pixel"), Field("line", float, "Line, downwards"), Field("role", str, "Role (control/check)")]
 TRAJECTORY = [Field("time", float, "Time (s)"), Field("roll", float, "Roll (°)"), Field("pitch", float, "Pitch (°)"),
               Field("heading", float, "Heading (°, clockwise from grid north)"), PASS, ROAD, STATION]
 ESTIMATED_TRAJECTORY = [*TRAJECTORY, Field("sigma_m", float, "Uncertainty of the place, one sigma (m)"),

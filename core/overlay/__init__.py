@@ -1,5 +1,7 @@
 """UAV images, georeferenced with ground control points.
 
+Control points are given, or proposed from paint that the intensity image shows too.
+
 In: an image and ground control points. Out: a polynomial, its residuals, and the image resampled onto the map.
 """
 
@@ -8,6 +10,8 @@ from ..lazy import public
 __getattr__, __all__ = public(__name__, {
     "control_points": ("ControlPoints", "read_control_points"),
     "georeference": ("GeoreferenceSettings", "Georeferencing", "residual_vectors"),
+    "position_tags": ("PositionTags", "read_position_tags"),
+    "rough_place": ("RoughPlace",),
     "source_image": ("SourceImage", "open_image"),
     "warp": ("draw_image",),
 })

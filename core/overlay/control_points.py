@@ -31,7 +31,7 @@ COLUMN_ALIASES = {
     "northing": "mapy northing north n geoy worldy utmn ymap yworld hochwert hw".split(),
     "height": "mapz z h geoz height elevation elev altitude alt".split(),
     "name": "name point id pointid label gcp gcpname gcpid number no nr".split(),
-    "enable": "enable enabled active use used".split(),
+    "enable": "enable enabled active use used accepted".split(),
     "role": "role type".split(),
     "check": "check ischeck checkpoint".split(),
 }

@@ -1,7 +1,8 @@
 """The simulated street as a UAV sees it, and its ground control points.
 
 The image shows asphalt, paint, sidewalks, grass, and cars and trees with their shadows. It has no position on the map,
-because that is the task of georeferencing. Its pixels follow a known distortion, with noise and the blur of a lens.
+because that is the task of georeferencing, only the tags of a drone that knows about where it hung. Its pixels follow a
+known distortion, with noise and the blur of a lens.
 Control points are corners of markings, and signalised plates beside the road.
 """
 
@@ -20,6 +21,7 @@ from ..common.progress import Progress
 from ..common.schemas import CONTROL_POINTS
 from ..io.gdal_errors import gdal_exceptions
 from .camera import GROUND_PIXEL, Camera
+from .camera_tags import camera_tags
 from .parts.materials import LABEL
 from .parts.obstacles import Car, Crown, Post
 from .streets.street import Scene
@@ -266,7 +268,7 @@ def _within(x, y, at_x, at_y, reach):
 
 @gdal_exceptions()
 def write_uav_image(survey: SampleSurvey, path: str | os.PathLike[str], progress: Progress | None = None) -> None:
-    """Write the UAV image of a simulated survey, an RGB TIFF without a position on the map.
+    """Write the UAV image of a simulated survey, an RGB TIFF without a position on the map, with position tags.
 
     Parameters
     ----------
@@ -289,6 +291,9 @@ def write_uav_image(survey: SampleSurvey, path: str | os.PathLike[str], progress
     try:
         dataset = gdal.GetDriverByName("GTiff").Create(str(unfinished), camera.width, camera.height, 3, gdal.GDT_Byte, [
             "TILED=YES", f"BLOCKXSIZE={_TILE}", f"BLOCKYSIZE={_TILE}", "COMPRESS=JPEG", "JPEG_QUALITY=92", "PHOTOMETRIC=YCBCR"])
+        tags = camera_tags(camera, survey.settings.origin, survey.crs)
+        if tags:
+            dataset.SetMetadata([tags], "xml:XMP")
         for column in range(0, camera.width, _TILE):
             progress.report(column / camera.width)
             width = min(_TILE, camera.width - column)

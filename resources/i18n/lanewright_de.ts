@@ -2774,6 +2774,156 @@
             <translation>Prüfpunkte: {count}, RMSE {rmse:.3f} m.</translation>
         </message>
         <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>Propose control points</source>
+            <translation>Passpunkte vorschlagen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>Finds the same paint in a UAV image and in the intensity image, as control points for Georeference image.</source>
+            <translation>Findet dieselbe Farbe in einem UAV-Bild und im Intensitätsbild, als Passpunkte für „Bild georeferenzieren“.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>The image needs a rough position: two given points, or a world file, or the position tags of the drone, or the size of its pixels. The paint of both images is laid over each other, the distortion of the camera followed, and about every corner of paint (ends of dashes, arrows, bars, stop lines) the two cut-outs are compared.</source>
+            <translation>Das Bild braucht eine ungefähre Lage: zwei gegebene Punkte, eine World-Datei, die Positionsangaben der Drohne oder die Größe seiner Pixel. Die Farbe beider Bilder wird übereinandergelegt, der Verzeichnung der Kamera gefolgt, und um jede Ecke von Farbe (Enden von Strichen, Pfeile, Balken, Haltlinien) werden die beiden Ausschnitte verglichen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>A pair is accepted by default where its cut-outs look alike, nothing beside it looks the same, and the other pairs place it where it is. Where the paint repeats so that the whole image fits elsewhere as well, no pair is accepted and a warning says so. Look through the pairs in the report, and set the field accepted in the table where you think otherwise: 1 is used by Georeference image, 0 is not.</source>
+            <translation>Ein Paar ist zunächst angenommen, wo seine Ausschnitte sich gleichen, nichts daneben genauso aussieht und die anderen Paare es an dieselbe Stelle legen. Wo sich die Farbe so wiederholt, dass das ganze Bild auch anderswo passt, wird kein Paar angenommen, und eine Warnung sagt es. Die Paare im Bericht durchsehen und in der Tabelle das Feld accepted ändern, wo man anderer Meinung ist: 1 verwendet „Bild georeferenzieren“, 0 nicht.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>The pairs tell how well the image fits the point cloud, not how well either fits the ground. They lie on the road, so that the image is reliable there and less so beside it. Sun, shadow and dark paint do no harm; paint renewed between the two surveys does.</source>
+            <translation>Die Paare sagen, wie gut das Bild zur Punktwolke passt, nicht wie gut eines von beiden auf dem Boden liegt. Sie liegen auf der Straße, dort ist das Bild verlässlich und daneben weniger. Sonne, Schatten und dunkle Farbe schaden nicht; zwischen beiden Aufnahmen erneuerte Farbe schadet.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>control points</source>
+            <translation>Passpunkte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>matching</source>
+            <translation>Zuordnung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>registration</source>
+            <translation>Registrierung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>Pixel size of the image on the ground (m)</source>
+            <translation>Pixelgröße des Bildes am Boden (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>Roughly, to a tenth; 0 takes it from the image's position, or from the height and focal length in its tags. With it alone the whole intensity image is searched, in every direction.</source>
+            <translation>Ungefähr, auf ein Zehntel; 0 nimmt sie aus der Lage des Bildes oder aus Höhe und Brennweite in seinen Angaben. Mit ihr allein wird das ganze Intensitätsbild in jeder Richtung abgesucht.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>How far the rough position may be off (m)</source>
+            <translation>Wie weit die ungefähre Lage falsch sein darf (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>Larger finds images with poor tags, takes longer, and meets more places that look alike on a road of equal dashes.</source>
+            <translation>Mehr findet Bilder mit schlechten Angaben, dauert länger und trifft auf einer Straße mit gleichen Strichen mehr Stellen, die gleich aussehen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>Largest distance from the other pairs (m)</source>
+            <translation>Größter Abstand von den anderen Paaren (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>A pair is accepted where the others place it, to so much. Larger keeps pairs of an oblique image that a polynomial follows badly.</source>
+            <translation>Ein Paar wird angenommen, wo die anderen es auf so viel genau hinlegen. Mehr behält Paare eines schrägen Bildes, dem ein Polynom schlecht folgt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>Smallest likeness of two cut-outs (0-1)</source>
+            <translation>Kleinste Ähnlichkeit zweier Ausschnitte (0-1)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>Correlation, 1 for the same picture. Lower accepts worn paint and shadows, higher only what looks the same.</source>
+            <translation>Korrelation, 1 bei gleichem Bild. Weniger nimmt abgenutzte Farbe und Schatten an, mehr nur, was gleich aussieht.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>Most pairs that are accepted (points)</source>
+            <translation>Höchstens angenommene Paare (Punkte)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>They are spread over the image. Half as many doubtful ones are listed besides.</source>
+            <translation>Sie werden über das Bild verteilt. Halb so viele zweifelhafte werden daneben aufgeführt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>Pairs proposed</source>
+            <translation>Vorgeschlagene Paare</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>Pairs accepted</source>
+            <translation>Angenommene Paare</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>RMSE of the accepted pairs, each left out in turn (m)</source>
+            <translation>RMSE der angenommenen Paare, jedes der Reihe nach weggelassen (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>Pixel of the image on the ground (m)</source>
+            <translation>Pixel des Bildes am Boden (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>Turn of the image, from its rows to east (°)</source>
+            <translation>Drehung des Bildes, von seinen Zeilen nach Osten (°)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>TIFF, JPEG, PNG or any other raster that looks straight down, of up to 500 m of ground.</source>
+            <translation>TIFF, JPEG, PNG oder ein anderes Raster, senkrecht aufgenommen, bis 500 m Gelände.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>As Intensity image and Road map write it.</source>
+            <translation>Wie „Intensitätsbild“ und „Straßenkarte“ es schreiben.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>Two rough points</source>
+            <translation>Zwei ungefähre Punkte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>Where the image has no position: a layer with the fields pixel and line of two or more points far apart, right to some metres.</source>
+            <translation>Wo das Bild keine Lage hat: ein Layer mit den Feldern pixel und line von zwei oder mehr weit auseinander liegenden Punkten, auf einige Meter richtig.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>As Georeference image takes them.</source>
+            <translation>Wie „Bild georeferenzieren“ sie nimmt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>The image is looked for by {source}.</source>
+            <translation>Das Bild wird gesucht nach: {source}.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/overlay/propose_control_points.py" />
+            <source>{accepted} of {count} pairs accepted, RMSE {rmse:.3f} m, each left out in turn.</source>
+            <translation>{accepted} von {count} Paaren angenommen, RMSE {rmse:.3f} m, jedes der Reihe nach weggelassen.</translation>
+        </message>
+        <message>
             <location filename="../../algorithms/parameters.py" />
             <source>{label} ({name}) is {value}; it must be a number from {least:g} to {most:g}.</source>
             <translation>{label} ({name}) ist {value}; es muss eine Zahl von {least:g} bis {most:g} sein.</translation>
@@ -3705,8 +3855,8 @@
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />
-            <source>What a UAV sees of the first 150 m: a TIFF of 4 cm pixels without a place on the map, with the distortion of its camera. Georeference image finds its place. There is none of motorway, serpentine, crossing and roundabout.</source>
-            <translation>Was ein UAV von den ersten 150 m sieht: ein TIFF mit 4-cm-Pixeln ohne Lage auf der Karte, mit der Verzeichnung seiner Kamera. „Bild georeferenzieren“ findet seine Lage. Von motorway, serpentine, crossing und roundabout gibt es keines.</translation>
+            <source>What a UAV sees of the first 150 m: a TIFF of 4 cm pixels without a place on the map, with the distortion of its camera and the position tags of a drone. Propose control points and Georeference image find its place. There is none of motorway, serpentine, crossing and roundabout.</source>
+            <translation>Was ein UAV von den ersten 150 m sieht: ein TIFF mit Pixeln von 4 cm ohne Lage auf der Karte, mit der Verzeichnung seiner Kamera und den Positionsangaben einer Drohne. „Passpunkte vorschlagen“ und „Bild georeferenzieren“ finden seine Lage. Von motorway, serpentine, crossing und roundabout gibt es keines.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />
@@ -5335,6 +5485,26 @@
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
+            <source>Accepted (1/0)</source>
+            <translation>Angenommen (1/0)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Likeness of the two cut-outs (0 to 1)</source>
+            <translation>Ähnlichkeit der beiden Ausschnitte (0 bis 1)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Distance from where the other pairs place it (m)</source>
+            <translation>Abstand von da, wo die anderen Paare es hinlegen (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Why it is not accepted</source>
+            <translation>Warum es nicht angenommen ist</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
             <source>Time (s)</source>
             <translation>Zeit (s)</translation>
         </message>
@@ -5622,6 +5792,11 @@
             <location filename="../../resources/styles/markings.qml" />
             <source>Other paint</source>
             <translation>Andere Farbe</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/proposed_points.qml" />
+            <source>Not accepted</source>
+            <translation>Nicht angenommen</translation>
         </message>
         <message>
             <location filename="../../resources/styles/residuals.qml" />
