@@ -38,7 +38,7 @@ translations: setup ## new texts into resources/i18n/*.ts for the translators, a
 models: setup ## the graphical models, after an algorithm gained or lost a parameter
 	@tools/make_model.sh
 
-test-hdmap: setup ## exported HD maps read by asam-qc, pyxodr, lanelet2 and ezdxf, which it installs into build/hdmap/
+test-hdmap: setup ## exported HD maps read by asam-qc, pyxodr, lanelet2, carla and ezdxf, which it installs into build/hdmap/
 	@tools/test_hdmap.sh
 
 test-cluster: setup ## phases on a real Dask cluster on this computer, from PyPI into build/cluster/

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+STEP = 0.1   # m between the places of a lane that is driven along
+
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests" / "streets"))
 
@@ -41,6 +43,7 @@ def main():
             draft.map.reference = reference_of_crs(lanes.crs)
             (folder / f"{name}_{version}.xodr").write_text(opendrive_text(draft.map), encoding="utf-8")
         expected["borders"] = borders(folder / f"{name}_1.7.xodr")
+        expected["driven"] = driven_lanes(folder / f"{name}_1.7.xodr")
         lanelets = draft_lanelets(source)
         (folder / f"{name}.osm").write_text(lanelet2_text(lanelets, to_degrees(lanelets.nodes, lanes.crs)), encoding="utf-8")
         expected["lanelets"] = len(lanelets.lanelets)
@@ -65,6 +68,30 @@ def borders(path):
             for lane in section.lanes:
                 if lane:
                     found.append([road.id, number, lane, surface.borders(number, lane, s, offsets)[1][:, :2].tolist()])
+    return found
+
+
+def driven_lanes(path):
+    """Every driven lane of a section as our own reader has it: its road and number, stations along the road, way it is driven (1 along), middle
+    [[x, y, z], ...] in the file's coordinates, and the (road, number) of the lanes that follow it."""
+    from lanewright.core.export.opendrive.model import DRIVEN_TYPES
+    from lanewright.core.export.opendrive.network import LaneNetwork, travel
+    from lanewright.core.export.opendrive.reader import read_opendrive
+    from lanewright.core.export.opendrive.surface import RoadSurface
+
+    whole = read_opendrive(str(path))
+    network, found = LaneNetwork(whole), []
+    for road in whole.roads:
+        surface = RoadSurface(road)
+        for number, section in enumerate(road.sections):
+            first, last = section.s, road.section_end(number)
+            s = np.linspace(first, last - 1e-6, max(int((last - first) / STEP), 1) + 1)
+            offsets = surface.offsets(number, s)
+            for id, lane in section.lanes.items():
+                if id and lane.type in DRIVEN_TYPES:
+                    middle = sum(surface.borders(number, id, s, offsets)) / 2
+                    found.append({"road": int(road.id), "lane": id, "way": travel(road, id), "s": s.tolist(), "middle": middle.tolist(),
+                                  "following": sorted({(int(key[0]), key[2]) for key in network.following((road.id, number, id))})})
     return found
 
 
