@@ -10,7 +10,7 @@ from qgis.PyQt.QtWidgets import QComboBox, QHeaderView, QLabel, QLineEdit, QTabl
 
 from ..algorithms.trajectory_source import trajectory_path
 from ..core.common.errors import RoadExtractionError
-from ..processing_provider.texts import tr
+from ..processing_provider.texts import told, tr
 from .dialog_wrapper import DialogWrapper
 
 ROWS = 4            # of the file that are shown
@@ -86,13 +86,13 @@ class ColumnsWidget(QWidget):
             try:
                 self._say(described(facts_of(read_trajectory(self.path))))
             except RoadExtractionError:
-                self._say(str(problem), wrong=True)
+                self._say(told(str(problem)), wrong=True)
             return
         self._fill(found)
         try:
             self._say(described(facts_of(read_trajectory(self.path, columns=self.value()))))
         except RoadExtractionError as problem:
-            self._say(found.problem or str(problem), wrong=True)
+            self._say(told(found.problem or str(problem)), wrong=True)
 
     def _fill(self, found):
         count = len(found.roles)

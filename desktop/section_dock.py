@@ -24,7 +24,7 @@ from ..core.common.parallel import cancellation_scope
 from ..core.common.progress import Progress
 from ..core.survey.las.near import points_near
 from ..processing_provider.results.layer_tree import road_maps
-from ..processing_provider.texts import tr
+from ..processing_provider.texts import told, tr
 from .section import HALF_WIDTH, Section, clouds_of, crossings, layers_of, section_at
 from .section_view import SectionView
 
@@ -137,7 +137,7 @@ class SectionDock(QDockWidget):
             return
         self.task = None
         if error is not None or found is None:
-            self.view.show_section(np.empty((0, 3)), [], str(error) if isinstance(error, RoadExtractionError) else tr("No points were read."))
+            self.view.show_section(np.empty((0, 3)), [], told(str(error)) if isinstance(error, RoadExtractionError) else tr("No points were read."))
             return
         self._kept, self._kept_at = found["points"], place
         self._draw()

@@ -16,7 +16,7 @@ from .dependencies import missing_packages
 from .parameters import qgis_parameter
 from .progress import FeedbackProgress
 from .results.run_table import note_run
-from .texts import tr
+from .texts import told, tr
 
 ICONS = Path(__file__).resolve().parents[1] / "resources" / "icons"
 
@@ -104,7 +104,7 @@ class LanewrightAlgorithm(QgsProcessingAlgorithm):
             note_run(self.declaration, call.survey, began, results)
             return results, ""
         except RoadExtractionError as error:
-            failure = str(error)
+            failure = told(str(error))
         except Cancelled:
             failure = tr("Cancelled")
         note_run(self.declaration, call.survey, began, failure=failure)

@@ -22,6 +22,7 @@ from qgis.core import (
 )
 
 from ..algorithms import parameters as specs
+from ..algorithms.choice_words import choice_word
 from ..algorithms.vector_source import KIND_OF, LINE, POINT, POLYGON
 
 # fileFilter is enforced and case-sensitive, and `extension=` accepts one suffix only
@@ -30,6 +31,7 @@ CLOUD_FILTER = "Point clouds (*.las *.laz *.LAS *.LAZ);;All files (*.*)"
 WIDGETS = f"{__name__.split('.')[0]}.desktop"
 CLOUDS_WIDGET = {"widget_wrapper": {"class": f"{WIDGETS}.cloud_widget.PointCloudsWrapper"}}
 TRAJECTORY_WIDGET = {"widget_wrapper": {"class": f"{WIDGETS}.trajectory_widget.TrajectoryWrapper"}}
+CHOICE_WIDGET = {"widget_wrapper": {"class": f"{WIDGETS}.choice_widget.ChoiceWrapper"}}  # in other languages than English
 COLUMNS_WIDGET = {"widget_wrapper": {"class": f"{WIDGETS}.columns_widget.ColumnsWrapper"}}
 LAZ_FILTER = "LAZ (*.laz);;LAS (*.las)"
 HTML_FILTER = "HTML (*.html)"
@@ -70,7 +72,7 @@ def _parameter(spec):
 def _(spec: specs.SettingSpec):
     kind, default = spec.kind(), spec.default
     if kind == "choice":
-        return QgsProcessingParameterEnum(spec.name, spec.label, list(spec.choices), defaultValue=default, usesStaticStrings=True)
+        return _choice(spec, default)
     if kind == "flag":
         return QgsProcessingParameterBoolean(spec.name, spec.label, default)
     if kind == "text":
@@ -84,6 +86,13 @@ def _(spec: specs.SettingSpec):
     return parameter
 
 
+def _choice(spec, default):
+    parameter = QgsProcessingParameterEnum(spec.name, spec.label, list(spec.choices), defaultValue=default, usesStaticStrings=True)
+    if any(choice_word(choice) != choice for choice in spec.choices):
+        parameter.setMetadata(CHOICE_WIDGET)
+    return parameter
+
+
 @_parameter.register
 def _(spec: specs.FlagSpec):
     return QgsProcessingParameterBoolean(spec.name, spec.label, spec.value)
@@ -91,7 +100,7 @@ def _(spec: specs.FlagSpec):
 
 @_parameter.register
 def _(spec: specs.ChoiceSpec):
-    return QgsProcessingParameterEnum(spec.name, spec.label, list(spec.choices), defaultValue=spec.value, usesStaticStrings=True)
+    return _choice(spec, spec.value)
 
 
 @_parameter.register

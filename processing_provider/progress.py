@@ -3,6 +3,7 @@
 from ..algorithms.progress import time_left
 from ..core.common.errors import Cancelled
 from ..core.common.progress import Progress, RemainingTime
+from .texts import told
 
 
 class FeedbackProgress(Progress):
@@ -24,7 +25,7 @@ class FeedbackProgress(Progress):
             self.feedback.setProgressText(time_left(left))
 
     def info(self, text):
-        self.feedback.pushInfo(text)
+        self.feedback.pushInfo(told(text))
 
     def warn(self, text):
-        self.feedback.pushWarning(text)
+        self.feedback.pushWarning(told(text))

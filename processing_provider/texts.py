@@ -6,11 +6,14 @@ from qgis.core import QgsApplication
 from qgis.PyQt.QtCore import QCoreApplication, QTranslator
 
 from ..algorithms.texts import set_translation, tr
+from .core_messages import CoreMessages
 
-__all__ = ["install_translator", "remove_translator", "tr"]
+__all__ = ["install_translator", "remove_translator", "told", "tr"]
 
 CONTEXT = "Lanewright"
 TRANSLATIONS = Path(__file__).resolve().parents[1] / "resources" / "i18n"
+
+_core = CoreMessages({})
 
 
 def _translate(text):
@@ -31,7 +34,9 @@ def install_translator(locale=""):
 
     Labels stand in classes and tables, so this comes before those are imported.
     """
+    global _core
     language = (locale or chosen_language())[:2]
+    _core = CoreMessages.load(TRANSLATIONS / f"core_{language}.json", tr)
     translator = QTranslator()
     if not translator.load(str(TRANSLATIONS / f"lanewright_{language}.qm")):
         return None
@@ -39,6 +44,13 @@ def install_translator(locale=""):
     return translator
 
 
+def told(message):
+    """What the core says, in the user's language."""
+    return _core.told(message)
+
+
 def remove_translator(translator):
+    global _core
+    _core = CoreMessages({})
     if translator is not None:
         QCoreApplication.removeTranslator(translator)

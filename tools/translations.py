@@ -2,10 +2,12 @@
 
 The usual chain: this finds the texts (Qt's own lupdate reads no Python, and pylupdate no texts that stand in
 a class), Qt Linguist or any editor translates the .ts, lrelease makes the .qm that QGIS loads. Texts that were
-translated keep their translation; those that are gone go.
+translated keep their translation; those that are gone go. What the core says stands in core_*.json, English and translation
+side by side, with {} for numbers and names in the same order.
 """
 
 import ast
+import json
 import sys
 import xml.etree.ElementTree as ET
 from pathlib import Path
@@ -18,6 +20,7 @@ SCHEMAS = ROOT / "core" / "common" / "schemas.py"
 CONTEXT = "Lanewright"
 FOLDERS = ("algorithms", "processing_provider", "desktop")
 # Texts that stand in a class or a table and are translated where they are shown
+FEWEST_LETTERS = 8  # of a sentence of the core: what is shorter would be found in anything
 IN_A_CLASS = {"TITLE", "SUMMARY", "HELP", "GROUP", "TAGS", "GROUPS"}
 
 
@@ -77,6 +80,50 @@ def aliases():
             yield from constants(node.args[2])
 
 
+def core_messages():
+    """The sentences of the core that reach a user: errors, warnings, log, titles of stages; {} stands for a number or name."""
+    found = {}
+    for path in sorted((ROOT / "core").rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            said = said_in(node)
+            text = template_of(said) if said is not None else None
+            if text and len(text.replace("{}", "").strip(" .")) >= FEWEST_LETTERS:
+                found[text] = path.relative_to(ROOT).as_posix()
+    return found
+
+
+def said_in(node):
+    """The argument of a call that a user reads, None of any other node."""
+    if not isinstance(node, ast.Call):
+        return None
+    name = node.func.id if isinstance(node.func, ast.Name) else node.func.attr if isinstance(node.func, ast.Attribute) else ""
+    owner = node.func.value.id if isinstance(node.func, ast.Attribute) and isinstance(node.func.value, ast.Name) else ""
+    told = name in ("RoadExtractionError", "info", "warn") or name == "append" and owner in ("notes", "remarks")
+    arguments = node.args[:1] if told else node.args[1:2] if name == "run" and owner == "stages" else []
+    return arguments[0] if arguments else None
+
+
+def template_of(node):
+    """A text with {} for what is put in; None of what is no text."""
+    if isinstance(node, ast.Constant):
+        return node.value if isinstance(node.value, str) else None
+    if isinstance(node, ast.JoinedStr):
+        return "".join(part.value if isinstance(part, ast.Constant) else "{}" for part in node.values)
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+        parts = template_of(node.left), template_of(node.right)
+        return None if parts == (None, None) else "".join("{}" if part is None else part for part in parts)
+    return None
+
+
+def update_core(language):
+    """Bring the sentences of the core in one language up to date; how many there are and how many lack a translation."""
+    path = FOLDER / f"core_{language}.json"
+    known = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    found = {text: known.get(text, "") for text in core_messages()}
+    path.write_text(json.dumps(found, ensure_ascii=False, indent=1) + "\n", encoding="utf-8")
+    return len(found), sum(not target for target in found.values())
+
+
 def update(language, found):
     """Bring one .ts up to date; how many texts it has and how many lack a translation."""
     path = FOLDER / f"lanewright_{language}.ts"
@@ -112,6 +159,8 @@ def main():
     for language in languages:
         total, missing = update(language, found)
         print(f"{language}: {total} texts, {missing} without translation")
+        total, missing = update_core(language)
+        print(f"{language}: {total} sentences of the core, {missing} without translation")
 
 
 if __name__ == "__main__":

@@ -694,6 +694,251 @@
             <translation>beim Schreiben</translation>
         </message>
         <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>automatic</source>
+            <translation>automatisch</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>gps</source>
+            <translation>GPS (seit 1980)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>adjusted</source>
+            <translation>GPS weniger eine Milliarde</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>week</source>
+            <translation>Woche</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>day</source>
+            <translation>Tag</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>street</source>
+            <translation>Straße</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>rural</source>
+            <translation>Landstraße</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>urban</source>
+            <translation>Stadt</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>one-lane</source>
+            <translation>ein Fahrstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>wide-lane</source>
+            <translation>breiter Fahrstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>no-centre-line</source>
+            <translation>ohne Mittellinie</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>hatched-island</source>
+            <translation>Sperrflächeninsel</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>motorway</source>
+            <translation>Autobahn</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>serpentine</source>
+            <translation>Serpentine</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>crossing</source>
+            <translation>Kreuzung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>roundabout</source>
+            <translation>Kreisverkehr</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>intensity</source>
+            <translation>Intensität</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>rgb</source>
+            <translation>Helligkeit der Farben</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>profiles</source>
+            <translation>Profile</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>scanlines</source>
+            <translation>Scanlinien</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>both</source>
+            <translation>beide</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>linear</source>
+            <translation>linear</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>logarithmic</source>
+            <translation>logarithmisch</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>multi-threshold</source>
+            <translation>mehrere Schwellen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>intensity-peaks</source>
+            <translation>Intensitätsspitzen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>point-segments</source>
+            <translation>Punktsegmente</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>all</source>
+            <translation>alle</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>windows</source>
+            <translation>Fenster</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>neutral</source>
+            <translation>neutral</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>china</source>
+            <translation>China</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>germany</source>
+            <translation>Deutschland</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>japan</source>
+            <translation>Japan</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>united-states</source>
+            <translation>Vereinigte Staaten</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>line</source>
+            <translation>Gerade</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>circle</source>
+            <translation>Kreis</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>ellipse</source>
+            <translation>Ellipse</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>clothoid</source>
+            <translation>Klothoide</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>polynomial</source>
+            <translation>Polynom</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>b-spline</source>
+            <translation>B-Spline</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>right</source>
+            <translation>rechts</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>left</source>
+            <translation>links</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>nonurban</source>
+            <translation>außerorts</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>half-width</source>
+            <translation>halbe Breite</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>total-width</source>
+            <translation>ganze Breite</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>draw</source>
+            <translation>zeichnen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>leave-out</source>
+            <translation>weglassen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>bilinear</source>
+            <translation>bilinear</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>nearest</source>
+            <translation>nächster</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>cubic</source>
+            <translation>kubisch</translation>
+        </message>
+        <message>
             <location filename="../../algorithms/cloud_files.py" />
             <source>{label}: the folder {name} holds no LAS or LAZ file.</source>
             <translation>{label}: Im Ordner {name} liegt keine LAS- oder LAZ-Datei.</translation>
@@ -2045,11 +2290,6 @@
         </message>
         <message>
             <location filename="../../algorithms/markings/correct_intensity.py" />
-            <source>intensity</source>
-            <translation>Intensität</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/markings/correct_intensity.py" />
             <source>range correction</source>
             <translation>Entfernungskorrektur</translation>
         </message>
@@ -2302,16 +2542,6 @@
             <location filename="../../algorithms/markings/fit_marking_lines.py" />
             <source>curve fitting</source>
             <translation>Kurvenanpassung</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/markings/fit_marking_lines.py" />
-            <source>circle</source>
-            <translation>Kreis</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/markings/fit_marking_lines.py" />
-            <source>clothoid</source>
-            <translation>Klothoide</translation>
         </message>
         <message>
             <location filename="../../algorithms/markings/fit_marking_lines.py" />
@@ -2587,11 +2817,6 @@
             <location filename="../../algorithms/overlay/georeference_image.py" />
             <source>georeferencer</source>
             <translation>Georeferenzierung</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/overlay/georeference_image.py" />
-            <source>polynomial</source>
-            <translation>Polynom</translation>
         </message>
         <message>
             <location filename="../../algorithms/overlay/georeference_image.py" />
@@ -4730,16 +4955,6 @@
         </message>
         <message>
             <location filename="../../processing_provider/results/attributes.py" />
-            <source>left</source>
-            <translation>links</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>right</source>
-            <translation>rechts</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
             <source>bottom</source>
             <translation>unten</translation>
         </message>
@@ -4787,11 +5002,6 @@
             <location filename="../../processing_provider/results/attributes.py" />
             <source>move</source>
             <translation>verschieben</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>draw</source>
-            <translation>zeichnen</translation>
         </message>
         <message>
             <location filename="../../processing_provider/results/attributes.py" />
