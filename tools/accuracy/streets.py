@@ -122,7 +122,7 @@ def _within_sigma(rows, true, near, area):
     for line, row in rows:
         if row.get("sigma_m") is not None:
             off = distance(sampled([line], area)[0], true)
-            inside, count = inside + (off <= row["sigma_m"]).sum(), count + (off <= near).sum()
+            inside, count = inside + (off <= min(row["sigma_m"], near)).sum(), count + (off <= near).sum()
     return inside, count
 
 

@@ -20,7 +20,8 @@ from ...curves.robust import MAD_TO_SIGMA
 from ..store.records import COORDINATE_SCALE, to_units
 from ..store.section_store import SectionStore
 from .corrections import CORRECTION_STEP, PassCorrections
-from .register import AXES, MAX_OFFSET, WINDOW_LENGTH, PassOffsets, pass_offsets
+from .register import AXES, PassOffsets, pass_offsets
+from .remaining import remaining_places, said_of_places
 
 MOVED_COLUMNS = "x", "y", "z", "s", "d"
 AGREEMENT_PLAN, AGREEMENT_HEIGHT = 0.020, 0.007    # m: a road stays as measured if nine tenths of its offsets are less
@@ -48,9 +49,9 @@ def adjust_passes(survey: Any, progress: Progress = Progress()) -> None:
         apart = _disagree(offsets)
         if (sigma := pass_sigma(offsets)) is not None:
             survey.frame.pass_sigma[road] = sigma
-        if apart:
-            moves.update(solve_corrections(offsets))
-        _report_offsets(road, offsets, apart, progress)
+        found = solve_corrections(offsets) if apart else {}
+        moves.update(found)
+        _report_offsets(road, offsets, found, progress)
     if moves:
         _replace_points(survey, _map_corrections(survey.frame, moves), progress.part(0.5, 1.0))
 
@@ -127,9 +128,9 @@ def _disagree(offsets):
     return any(len(values) and np.percentile(values, 90) > least for values, least in zip(_separations(offsets), (AGREEMENT_PLAN, AGREEMENT_HEIGHT)))
 
 
-def _report_offsets(road, offsets, moved, progress):
-    """Log the offsets; warn where they are too large for drift."""
-    if moved:
+def _report_offsets(road, offsets, found, progress):
+    """Log the offsets, and warn of places where passes still differ after the corrections found."""
+    if found:
         plan, up = (f"{100 * np.median(v):.1f} cm (at most {100 * v.max():.1f})" if len(v) else "an unknown distance" for v in _separations(offsets))
         progress.info(f"Road {road}: its passes lay {plan} beside and {up} above each other, as navigation drifts between two drives. "
                      "They were laid on each other, each moved by its share.")
@@ -137,11 +138,8 @@ def _report_offsets(road, offsets, moved, progress):
         plan, up = (100 * np.percentile(v, 90) for v in _separations(offsets))
         progress.info(f"Road {road}: nine tenths of its passes lie within {plan:.1f} cm beside and {up:.1f} cm above each other; "
                      "they stay as they were measured.")
-    beyond = WINDOW_LENGTH * sum(pair.beyond for pair in offsets)
-    if beyond:
-        progress.warn(f"Road {road}: along {beyond:.0f} m its passes seem to lie more than {100 * MAX_OFFSET:.0f} cm apart, which is too far to lay "
-                      "them on each other: curbs and lines may be doubled there. Adjust the trajectories of the drives to each other, or "
-                      "process the files of each drive by itself.")
+    if warning := said_of_places(road, remaining_places(offsets, found)):
+        progress.warn(warning)
 
 
 def _map_corrections(frame, found):

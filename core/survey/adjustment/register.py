@@ -8,7 +8,7 @@ measured, such as vehicles, do not correlate and have no effect.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import cv2
@@ -20,6 +20,8 @@ from ...common.progress import Progress
 from .corrections import CORRECTION_STEP
 
 AXES = "along", "left", "up"
+PLAN_AXES = AXES[:2]
+MIN_COUPLED_OFFSET = 0.02   # m along or across, less than which shifts the other by less than the noise of an offset
 CHANNELS = "steps", "paint"
 CHANNEL_SCALE = {"steps": 1e4, "paint": 64.0}  # units per m, and per standard deviation of intensity
 WINDOW_LENGTH = CORRECTION_STEP          # m of road compared at a time, counted from station 0
@@ -51,7 +53,7 @@ class PassOffsets:
     one, other : pass numbers
     stations : (N,) middles of the windows, m
     along, left, up : (N,) metres, NaN where unknown
-    beyond : number of windows in which the offset seems to exceed MAX_OFFSET
+    far : (K,) middles of the windows in which the offset seems to exceed MAX_OFFSET
     """
 
     one: int
@@ -60,7 +62,13 @@ class PassOffsets:
     along: np.ndarray
     left: np.ndarray
     up: np.ndarray
-    beyond: int
+    far: np.ndarray
+
+    def everywhere(self, axis: str) -> np.ndarray:
+        """(N,) metres along an axis, interpolated where unknown; 0 where nothing is known."""
+        values = getattr(self, axis)
+        known = np.isfinite(values)
+        return np.interp(self.stations, self.stations[known], values[known]) if known.any() else np.zeros(len(values))
 
 
 class _Strips:
@@ -133,6 +141,9 @@ def _height_offset(one, other, lag):
 def pass_offsets(survey: Any, road: int, progress: Progress = Progress()) -> list[PassOffsets]:
     """Offsets between the passes over a road, each with the next one there.
 
+    Oblique bars, as of hatched areas, look moved along where they were moved across, and the other way round. So where passes lie apart, the
+    larger of the two offsets is taken out before the other is measured, and then, if that is large too, the other way round.
+
     Parameters
     ----------
     survey : Survey with times
@@ -146,8 +157,29 @@ def pass_offsets(survey: Any, road: int, progress: Progress = Progress()) -> lis
     start, end = survey.store.span(road)
     windows = [number for number in range(int(np.floor(start / WINDOW_LENGTH)), int(np.ceil(end / WINDOW_LENGTH)))
                if _several_passes(survey.frame.passes_of(road), number * WINDOW_LENGTH, (number + 1) * WINDOW_LENGTH)]
+    found = _remaining_offsets(survey, road, windows, [], progress.part(0.0, 1.0 / 3.0))
+    larger, smaller = sorted(PLAN_AXES, key=lambda axis: _usual_size(found, axis), reverse=True)
+    for k, (taken, measured) in enumerate(((larger, smaller), (smaller, larger)), start=1):
+        if _usual_size(found, taken) <= MIN_COUPLED_OFFSET:
+            break
+        moved = [replace(pair, **{axis: pair.everywhere(axis) if axis == taken else np.zeros(len(pair.stations)) for axis in PLAN_AXES})
+                 for pair in found]
+        again = _remaining_offsets(survey, road, windows, moved, progress.part(k / 3.0, (k + 1) / 3.0))
+        found = [replace(before, **{measured: getattr(now, measured)}) for before, now in zip(found, again)]
+    return found
+
+
+def _usual_size(offsets, axis):
+    """Median distance of passes along an axis, m, of the pair that is farthest apart."""
+    return max((float(np.median(np.abs(pair.everywhere(axis)))) for pair in offsets), default=0.0)
+
+
+def _remaining_offsets(survey, road, windows, taken, progress):
+    """PassOffsets of each pair of passes, measured after the second of a pair was moved by the offsets `taken`, if any."""
+    moves = {(pair.one, pair.other): {int(station // WINDOW_LENGTH): move for station, *move in zip(pair.stations, pair.along, pair.left)}
+             for pair in taken}
     seen: dict[tuple[int, int], list] = {}
-    for number, found in zip(windows, ordered_map(lambda number: _window_evidence(survey, road, number), windows, progress)):
+    for number, found in zip(windows, ordered_map(lambda number: _window_evidence(survey, road, number, moves), windows, progress)):
         for pair, evidence in found.items():
             seen.setdefault(pair, []).append((number, *evidence))
     return [_combine_windows(pair, evidence) for pair, evidence in sorted(seen.items())]
@@ -158,8 +190,11 @@ def _several_passes(passes, start, end):
     return sum(p.span[0] < end and p.span[1] > start for p in passes) > 1
 
 
-def _window_evidence(survey, road, number):
-    """{(one, other): (correlation sums across, correlation sums along, height offset)} of a window, each pass with the next."""
+def _window_evidence(survey, road, number, moves):
+    """{(one, other): (correlation sums across, correlation sums along, height offset)} of a window, each pass with the next.
+
+    moves : {(one, other): {window: (along, left) by which the other is moved before}}
+    """
     points = survey.window(road, number * WINDOW_LENGTH, (number + 1) * WINDOW_LENGTH)
     nodes = number * WINDOW_LENGTH + np.arange(int(WINDOW_LENGTH / ROW_CELL) + 1) * ROW_CELL
     s, d = points.s, points.d
@@ -167,15 +202,22 @@ def _window_evidence(survey, road, number):
     near = np.flatnonzero((np.abs(d) < STRIP_HALF_WIDTH) & (h > MIN_CELL_HEIGHT) & (h < MAX_CELL_HEIGHT))
     owner, s, d, h = points.pass_number.take(near), s[near] - number * WINDOW_LENGTH, d[near] + STRIP_HALF_WIDTH, h[near]
     intensity = points.intensity.take(near).astype(float)
-    strips = []
-    for numbers in np.unique(owner).tolist():
-        own = np.flatnonzero(owner == numbers)
-        if len(own) > MIN_SHARED_CELLS:
-            sides = [_Strips(fine[own], coarse[own], h[own], intensity[own], (round(width / ROW_CELL), round(length / LAG_CELL)))
-                     for fine, coarse, length, width in ((d, s, 2 * STRIP_HALF_WIDTH, WINDOW_LENGTH), (s, d, WINDOW_LENGTH, 2 * STRIP_HALF_WIDTH))]
-            strips.append((numbers, *sides))
-    return {(one[0], other[0]): (_correlation_sums(one[1], other[1]), _correlation_sums(one[2], other[2]), _height_offset(one[1], other[1], 0))
-            for one, other in zip(strips[:-1], strips[1:])}
+
+    def strips(own, along=0.0, left=0.0):
+        """_Strips across and along of the points of a pass, moved."""
+        places, offsets = s[own] + along, d[own] + left
+        return [_Strips(fine, coarse, h[own], intensity[own], (round(width / ROW_CELL), round(length / LAG_CELL)))
+                for fine, coarse, length, width in ((offsets, places, 2 * STRIP_HALF_WIDTH, WINDOW_LENGTH),
+                                                    (places, offsets, WINDOW_LENGTH, 2 * STRIP_HALF_WIDTH))]
+
+    rows = {one: own for one in np.unique(owner).tolist() if len(own := np.flatnonzero(owner == one)) > MIN_SHARED_CELLS}
+    still, found = {one: strips(own) for one, own in rows.items()}, {}
+    for one, other in zip(list(rows)[:-1], list(rows)[1:]):
+        move = moves.get((one, other), {}).get(number)
+        across, lengthwise = strips(rows[other], *move) if move is not None else still[other]
+        found[one, other] = (_correlation_sums(still[one][0], across), _correlation_sums(still[one][1], lengthwise),
+                             _height_offset(still[one][0], across, 0))
+    return found
 
 
 def _combine_windows(pair, evidence):
@@ -192,7 +234,7 @@ def _combine_windows(pair, evidence):
     total = _pool(numbers, known.astype(float))
     up = np.where(total > 0.5, _pool(numbers, np.nan_to_num(rises)) / np.maximum(total, 1e-9), np.nan)
     stations = (numbers + 0.5) * WINDOW_LENGTH
-    return PassOffsets(*pair, stations, along, left, up, int(np.count_nonzero(far)))
+    return PassOffsets(*pair, stations, along, left, up, stations[far])
 
 
 def _pool(numbers, values):

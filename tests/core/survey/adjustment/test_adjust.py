@@ -109,6 +109,16 @@ def test_stop_lines_tell_how_far_drives_lie_apart_along_the_street():
     np.testing.assert_allclose(offsets.along[known], -0.06, atol=0.02)
 
 
+@pytest.mark.parametrize(("east", "left"), [(0.0, 0.12), (0.12, 0.0), (0.0, 0.20)])
+def test_oblique_bars_of_a_hatched_area_do_not_turn_an_offset_across_into_one_along(east, left):
+    hatched = lambda x, y: (np.mod(x - 1.5 * y, 3.0) < 0.6) & (np.abs(y) < 1.2) | (np.abs(np.abs(y) - 2.8) < 0.08)  # noqa: E731
+    survey = twice(east=east, left=left, paint=hatched, section=FLAT)
+    offsets, = pass_offsets(survey, 0)
+    for found, true in ((offsets.along, -east), (offsets.left, -left)):
+        assert np.isfinite(found).sum() >= 4
+        np.testing.assert_allclose(found[np.isfinite(found)], true, atol=0.015)
+
+
 def test_a_bare_plain_tells_nothing_of_the_place():
     survey = twice(left=0.05, section=FLAT)
     offsets, = pass_offsets(survey, 0)
@@ -126,7 +136,7 @@ def test_drives_half_a_metre_apart_are_warned_of_and_not_moved():
     store = survey.store
     adjust_passes(survey, heard)
     assert survey.store is store
-    assert "more than 30 cm" in heard.warned[0]
+    assert "more than 30 cm" in heard.warned[0] and "0 to 80 m" in heard.warned[0]
 
 
 @pytest.mark.slow
@@ -140,7 +150,7 @@ def test_the_fit_does_not_depend_on_where_sections_are_cut():
 def test_of_three_drives_each_is_moved_by_its_share():
     stations = np.arange(5.0, 200.0, 10.0)
     nothing = np.zeros(len(stations))
-    offsets = [PassOffsets(0, 1, stations, nothing, nothing + 0.03, nothing, 0), PassOffsets(1, 2, stations, nothing, nothing + 0.03, nothing, 0)]
+    offsets = [PassOffsets(*pair, stations, nothing, nothing + 0.03, nothing, nothing[:0]) for pair in ((0, 1), (1, 2))]
     moved = solve_corrections(offsets)
     for number, left in ((0, -0.03), (1, 0.0), (2, 0.03)):
         np.testing.assert_allclose(moved[number][1][1], left, atol=0.001)
@@ -151,5 +161,5 @@ def test_one_offset_out_of_line_moves_nothing_by_much():
     nothing = np.zeros(len(stations))
     left = nothing + 0.02
     left[9] = 0.28
-    moved = solve_corrections([PassOffsets(0, 1, stations, nothing, left, nothing, 0)])
+    moved = solve_corrections([PassOffsets(0, 1, stations, nothing, left, nothing, nothing[:0])])
     np.testing.assert_allclose(moved[1][1][1] - moved[0][1][1], 0.02, atol=0.012)
