@@ -17,6 +17,7 @@ from ..common.curb_points import CurbPoints
 from ..common.occlusion import HIDDEN_POINT_SPACING
 from ..common.tracking import MAX_JOINED_GAP
 from .curb_returns import curb_return_lines, draw_curb_returns
+from .dropped_corners import dropped_corners
 from .road_edges import EdgePiece, RoadEdges, joined_pieces
 from .uncertainty import edge_sigma
 
@@ -79,6 +80,7 @@ def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSett
             if settings.fallback_width:
                 lines = _draw_fallback(found, frame, road, side, drawn, settings.fallback_width, lines)
         lines = draw_curb_returns(found, road.number, returns.get(road.number, []), lines, frame.pass_sigma.get(road.number, 0.0))
+    found += dropped_corners(found, frame, lines)
     edges = joined_pieces(found, frame, curb_points.crs)
     length = {status: edges.length[edges.status == status].sum() for status in ("measured", "bridged")}
     if len(edges):

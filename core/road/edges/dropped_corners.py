@@ -1,0 +1,137 @@
+"""Corners where the curb is dropped for a crossing: arcs between the ends of edges that bend towards each other.
+
+At a crossing the curb is lowered to a centimetre or two, which no scan shows as a step. The edge of the road goes on there all the
+same: around a corner it leaves the one curb along its tangent, bends evenly, and meets the other along its tangent. A gap between
+two ends that point straight at each other may as well be the mouth of a street, and stays open.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...survey.frame.placement import COORDINATE_DECIMALS
+from ...survey.frame.road_frame import RoadFrame
+from .road_edges import EdgePiece
+
+MAX_DROPPED_GAP = 8.0         # m of dropped curb around a corner
+MIN_DROPPED_GAP = 0.3         # m
+MIN_ARC_TURN, MAX_ARC_TURN = np.radians(12.0), np.radians(100.0)   # from end to end
+MIN_TURN_SHARE = 0.15         # of that turn at either end of the chord; half of it on a circle, less where one end is straight
+END_TURN_TOLERANCE = np.radians(2.0)
+BEND_LENGTH = 3.0             # m at the end of an edge that tell how it bends
+MIN_BEND_TURN = np.radians(8.0)   # within this length: the end belongs to a corner
+MAX_RADIUS_RATIO = 2.5        # of the arc across the gap over the bend at its end, and the other way
+DIRECTION_LENGTH = 1.0        # m at the end of an edge that give its direction
+MAX_END_STEP, MAX_END_GRADE = 0.03, 0.08   # m, and m per m, that both ends may differ in height
+MEETING_DISTANCE = 0.05             # m within which two ends meet
+ARC_VERTEX_SPACING = 0.25     # m
+
+
+@dataclass
+class _End:
+    """The end of a piece of edge: place (3,), unit vector out of the piece, radians turned to the left over its last metres, their length."""
+
+    piece: EdgePiece
+    place: np.ndarray
+    out: np.ndarray
+    turn: float
+    length: float
+
+
+def dropped_corners(pieces: Sequence[EdgePiece], frame: RoadFrame, number: int) -> list[EdgePiece]:
+    """Arcs across dropped corners, as pieces of status bridged and kind corner.
+
+    Parameters
+    ----------
+    pieces : measured and bridged edges of all roads
+    frame : RoadFrame
+    number : of the first new line
+    """
+    lines = [(piece, _uphill_right(piece)) for piece in pieces if piece.kind != "island" and piece.status != "inferred" and piece.part == "bottom"]
+    tails, heads = ([_end(piece, line[::step]) for piece, line in lines] for step in (1, -1))
+    places = np.array([end.place[:2] for end in tails + heads]).reshape(-1, 2)
+    free = [(np.hypot(*(places - place).T) <= MEETING_DISTANCE).sum() == 1 for place in places]
+    found = []
+    for i, tail in enumerate(tails):
+        for j, head in enumerate(heads):
+            if i != j and free[i] and free[len(tails) + j] and _is_corner(tail, head):
+                found.append((float(np.hypot(*(head.place - tail.place)[:2])), i, j))
+    arcs: list[EdgePiece] = []
+    used: set[tuple[str, int]] = set()
+    for _, i, j in sorted(found):
+        if not used & {("tail", i), ("head", j)}:
+            used |= {("tail", i), ("head", j)}
+            arcs.append(_arc(tails[i], heads[j], frame, number + len(arcs)))
+    return arcs
+
+
+def _uphill_right(piece):
+    """(V, 3) the vertices of a piece, in the direction that has the sidewalk on its right."""
+    # main edges run along the road, all others have it there already
+    return piece.vertices[::-1] if piece.kind == "main" and piece.side == "left" else piece.vertices
+
+
+def _end(piece, line):
+    """The last vertex of a line as _End."""
+    away = np.hypot(*(line[:, :2] - line[-1, :2]).T)
+
+    def back(length):
+        far = np.flatnonzero(away >= length)
+        return int(far[-1]) if len(far) else 0
+
+    near, first = back(DIRECTION_LENGTH), back(BEND_LENGTH)
+    out = line[-1, :2] - line[near, :2]
+    middle = line[(first + len(line) - 1) // 2, :2]
+    before, after = middle - line[first, :2], line[-1, :2] - middle
+    # the turn between the chords of both halves is half of that from end to end
+    turn = 2.0 * _angle(before, after) if min(np.hypot(*before), np.hypot(*after)) > 0.2 else 0.0
+    # on an arc the chord to the end lags behind the tangent by half of its turn
+    length = max(float(np.hypot(*before) + np.hypot(*after)), 1e-9)
+    lag = 0.5 * turn * min(float(np.hypot(*out)) / length, 1.0)
+    unit = out / max(np.hypot(*out), 1e-9)
+    unit = np.array([unit[0] * np.cos(lag) - unit[1] * np.sin(lag), unit[0] * np.sin(lag) + unit[1] * np.cos(lag)])
+    return _End(piece, line[-1], unit, turn, length)
+
+
+def _angle(a, b):
+    """Radians from one vector to another, to the left positive."""
+    return float(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b))
+
+
+def _is_corner(tail, head):
+    """Do two ends bend towards each other about the sidewalk, which lies right of the way from tail to head?"""
+    chord = head.place - tail.place
+    gap = float(np.hypot(*chord[:2]))
+    if not MIN_DROPPED_GAP <= gap <= MAX_DROPPED_GAP or abs(chord[2]) > MAX_END_STEP + MAX_END_GRADE * gap:
+        return False
+    first, last = -_angle(tail.out, chord[:2]), -_angle(chord[:2], -head.out)
+    turn = first + last
+    if not MIN_ARC_TURN <= turn <= MAX_ARC_TURN or min(first, last) < MIN_TURN_SHARE * turn - END_TURN_TOLERANCE:
+        return False
+    radius = 0.5 * gap / np.sin(0.5 * turn)
+    # seen from its own piece a head bends the other way
+    for bend, length in ((-tail.turn, tail.length), (head.turn, head.length)):
+        if bend >= MIN_BEND_TURN and 1 / MAX_RADIUS_RATIO <= radius * bend / length <= MAX_RADIUS_RATIO:
+            return True
+    return False
+
+
+def _arc(tail, head, frame, number):
+    """The piece of edge from a tail to a head: a cubic with the tangents of both, as long as those of a circle."""
+    chord = head.place - tail.place
+    gap = float(np.hypot(*chord[:2]))
+    turn = -_angle(tail.out, chord[:2]) - _angle(chord[:2], -head.out)
+    handle = 4.0 / 3.0 * np.tan(0.25 * turn) * 0.5 * gap / np.sin(0.5 * turn)
+    t = np.linspace(0.0, 1.0, int(np.ceil(gap / ARC_VERTEX_SPACING)) + 1)[:, None]
+    a, b = tail.place[:2], head.place[:2]
+    plan = (1 - t) ** 3 * a + 3 * (1 - t) ** 2 * t * (a + handle * tail.out) + 3 * (1 - t) * t**2 * (b + handle * head.out) + t**3 * b
+    vertices = np.round(np.c_[plan, tail.place[2] + t * chord[2]], COORDINATE_DECIMALS)
+    vertices[0], vertices[-1] = tail.place, head.place
+    piece = tail.piece
+    s, _ = frame.road(piece.road).locate(*(vertices[:, :2] - frame.origin[:2]).T)
+    s = s[np.isfinite(s)] if np.isfinite(s).any() else np.array([piece.end])
+    return EdgePiece(vertices, piece.road, piece.side, "bridged", number, float(s.min()), float(s.max()),
+                     float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()), kind="corner")
