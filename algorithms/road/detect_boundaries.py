@@ -26,6 +26,9 @@ PLANE_SETTINGS = tuple(replace(spec, advanced=True) for spec in SCANLINE_SETTING
 class DetectBoundaries(Algorithm):
     ID, TITLE, GROUP = "detectboundaries", "Detect road boundaries", "Road"
     SUMMARY = "Road edges straight from the point clouds, by profiles, by scanlines or by both."
+    HELP = ("Where there is no curb the edge of the pavement is drawn: where asphalt ends at gravel, grass or a ditch, which are rougher, brighter, "
+            "higher or lower than the road before them. The field edge tells the two apart (curb, pavement). Where nothing separates the "
+            "road from what lies beside it, no edge is made up.")
     TAGS = ("curb", "kerb", "road edge", "boundary", "scanline")
 
     def declare(self):
@@ -47,5 +50,5 @@ class DetectBoundaries(Algorithm):
                                     call.settings(PLANE_SETTINGS))
         survey = open_survey_of(call, progress.part(0.0, 0.5))
         found = find_curb_points(survey, settings, progress.part(0.5, 0.95))
-        boundaries = draw_boundaries(found, survey.frame, call.settings(EDGE_SETTINGS), progress.part(0.95, 1.0))
+        boundaries = draw_boundaries(found, survey.frame, call.settings(EDGE_SETTINGS), progress.part(0.95, 1.0), survey)
         call.layer("ROAD_EDGES", edges_to_features(boundaries.edges, survey.frame))

@@ -23,6 +23,9 @@ CURB_KIND = Field("kind", str, "Kind (main/corner/side_street/island)")
 RMSE = Field("rmse_m", float, "RMSE of the fit (m)")
 SIGMA = Field("sigma_m", float, "Uncertainty across, one sigma (m)")
 
+# curb: a step; dropped: a low one where one drives over; pavement: where asphalt ends without a curb
+EDGE = Field("edge", str, "Edge (curb/dropped/pavement)")
+
 # station_m of a line is where it starts, end_m where it ends, along the road
 END = Field("end_m", float, "End station (m)")
 
@@ -31,7 +34,7 @@ CURB_POINTS = [ROAD, NEAREST_PASS, SIDE, STATUS, STATION, OFFSET, HEIGHT, PART,
                Field("residual_m", float, "Residual (m)"),
                Field("support", int, "Supporting points")]
 ROAD_EDGES = [ROAD, NEAREST_PASS, SIDE, STATUS, STATION, END, HEIGHT, PART, AGREE, LENGTH, RMSE, SIGMA,
-              CURB_KIND, Field("chain", int, "Chain along the curb")]
+              CURB_KIND, EDGE, Field("chain", int, "Chain along the curb")]
 SCANLINES = [ROAD, PASS, Field("scanner", int, "Scanner"), STATION, LENGTH, Field("interval_m", float, "Interval of the planes (m)")]
 ROAD_SURFACE = [ROAD, STATUS, STATION, END, Field("area_m2", float, "Area (m²)"), Field("points", int, "Road points")]
 MARKINGS = [ROAD, Field("cluster", int, "Cluster"), Field("class", str, "Class"), Field("use", str, "Use (keep/other)"),

@@ -183,7 +183,8 @@ def _map_of(survey, image_path, settings, stages, corrections):
         check_fits(*_span(survey), settings.image)
     found = stages.run("curbs", "Detecting curbs …", find_curb_points, survey, settings.boundaries)
     survey.executor.release()
-    boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, found, survey.frame, settings.edges)
+    boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, found, survey.frame, settings.edges,
+                            survey=survey)
     edges = correct_edges(boundaries.edges, survey.frame, wanted)
     road_points, surface = stages.run("surface", "Extracting the road surface …", extract_road_surface, survey, edges, settings.surface)
     facts = dict(files=len(survey.files), scanners=len(survey.scanners), passes=len(survey.frame.passes),

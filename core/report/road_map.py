@@ -107,11 +107,11 @@ def _road(page, road_map):
     page.heading("Road edges and surface")
     edges, surface = road_map.edges, road_map.surface
     if len(edges):
-        page.table(("Curb", "Side", "Status", "Length (m)", SIGMA_TITLE),
-                   _totals_with_sigma(edges.length, edges.sigma, edges.kind, edges.side, edges.status))
+        page.table(("Edge", "Where", "Side", "Status", "Length (m)", SIGMA_TITLE),
+                   _totals_with_sigma(edges.length, edges.sigma, edges.what, edges.kind, edges.side, edges.status))
         page.note(SIGMA_NOTE)
     else:
-        page.text("No curb was found along this road, so no edge line was drawn.")
+        page.text("Neither a curb nor an edge of the pavement was found along this road, so no edge line was drawn.")
     if road_map.boundary_differences is not None:
         _agreement(page, road_map)
     page.table(("Status of the surface", "Area (m²)"), _totals(surface.area, surface.status))

@@ -19,6 +19,7 @@ from .scanlines.candidates import GAP_FILL_REACH
 from .scanlines.detect import ScanlineBoundarySettings, curbs_from_scanlines
 from .scanlines.section_planes import ScanlineSettings
 from .scanlines.source import SurveyScanlines
+from .surface.pavement_lines import with_pavement_edges
 
 if TYPE_CHECKING:
     from ..survey.frame.road_frame import RoadFrame
@@ -125,8 +126,8 @@ def _better_points(found, frame):
 
 
 def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: EdgeSettings = EdgeSettings(),
-                    progress: Progress = Progress()) -> RoadBoundaries:
-    """Edges through the curb points of one method, or of two that check each other.
+                    progress: Progress = Progress(), survey: Survey | None = None) -> RoadBoundaries:
+    """Edges through the curb points of one method, or of two that check each other, and edges of the pavement where there is no curb.
 
     With both methods, the one that measures better is drawn at every place
     (`select_curb_points`), and `agree` of every piece says how far apart they lie.
@@ -137,11 +138,20 @@ def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: Ed
     frame : RoadFrame
     settings : EdgeSettings
     progress : Progress
+    survey : Survey, in which edges of the pavement are looked for; None leaves them out
 
     Returns
     -------
     RoadBoundaries
     """
+    boundaries = _drawn(found, frame, settings, progress)
+    if survey is not None:
+        boundaries.edges = with_pavement_edges(survey, boundaries.edges, settings, progress=progress)
+    return boundaries
+
+
+def _drawn(found, frame, settings, progress):
+    """The edges at curbs alone."""
     if "both" not in found:
         points, = found.values()
         return RoadBoundaries(points, fit_road_edges(points, frame, settings, progress))

@@ -3360,6 +3360,11 @@
         </message>
         <message>
             <location filename="../../algorithms/road/detect_boundaries.py" />
+            <source>Where there is no curb the edge of the pavement is drawn: where asphalt ends at gravel, grass or a ditch, which are rougher, brighter, higher or lower than the road before them. The field edge tells the two apart (curb, pavement). Where nothing separates the road from what lies beside it, no edge is made up.</source>
+            <translation>Wo kein Bordstein ist, wird der Rand der Fahrbahnbefestigung gezeichnet: wo der Asphalt an Schotter, Gras oder einem Graben endet, die rauer, heller, höher oder tiefer sind als die Straße davor. Das Feld edge unterscheidet beides (curb, pavement). Wo nichts die Straße von dem trennt, was neben ihr liegt, wird kein Rand erfunden.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/road/detect_boundaries.py" />
             <source>road edge</source>
             <translation>Fahrbahnrand</translation>
         </message>
@@ -5195,6 +5200,11 @@
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
+            <source>Edge (curb/dropped/pavement)</source>
+            <translation>Rand (curb/dropped/pavement)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
             <source>End station (m)</source>
             <translation>Endstation (m)</translation>
         </message>
@@ -6022,6 +6032,16 @@
             <location filename="../../resources/styles/residuals.qml" />
             <source>Disabled point</source>
             <translation>Abgeschalteter Punkt</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/road_edges.qml" />
+            <source>Edge of the pavement, no curb</source>
+            <translation>Rand der Befestigung, kein Bordstein</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/road_edges.qml" />
+            <source>Edge of the pavement, bridged</source>
+            <translation>Rand der Befestigung, überbrückt</translation>
         </message>
         <message>
             <location filename="../../resources/styles/road_surface.qml" />

@@ -75,6 +75,13 @@ def test_curbs_are_told_by_side_and_by_what_was_measured(qgis_app, name, status)
     assert len(left) == len(right) == 1 and left != right
 
 
+def test_edges_of_the_pavement_look_unlike_curbs(qgis_app):
+    layer = layer_of("LineStringZ", ROAD_EDGES)
+    apply_style(layer, STYLES / "road_edges.qml")
+    colours = {drawn.value(): drawn.symbol().color().name() for drawn in layer.renderer().categories()}
+    assert colours["pavement measured"] == colours["pavement bridged"] not in {colours["left measured"], colours["right measured"]}
+
+
 def test_the_legend_speaks_the_language_of_the_user(qgis_app):
     german = install_translator("de")
     try:
@@ -135,7 +142,7 @@ def test_a_geopackage_made_without_a_window_opens_styled_and_with_aliases(qgis_a
         embed_style(output, dest, "Road edges", ROAD_EDGES)
     layer = QgsVectorLayer(f"{path}|layername=edges", "edges", "ogr")
     assert layer.listStylesInDatabase()[2] == ["default"]
-    assert layer.renderer().categories()[-1].value() == "right inferred"
+    assert layer.renderer().categories()[-1].value() == "pavement bridged"
     assert layer.attributeAlias(layer.fields().lookupField("station_m")) == "Station (m)"
 
 

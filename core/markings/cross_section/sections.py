@@ -71,8 +71,8 @@ def sections_of_lines(lines: PaintedLines) -> dict[int, CrossSections]:
 
 
 def sections_of_edges(edges: RoadEdges) -> dict[int, CrossSections]:
-    """CrossSections of the main road edges, by road number."""
-    main = np.flatnonzero(edges.kind == "main")
+    """CrossSections of the curbs along the road, by road number; where the pavement ends without one, the road surface ends."""
+    main = np.flatnonzero((edges.kind == "main") & edges.of_curb)
     return cross_sections(edges.course.take(main), edges.edge[main], edges.kind[main], np.full(len(main), "", object),
                           edges.status[main] != "bridged")
 

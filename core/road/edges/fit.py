@@ -86,7 +86,7 @@ def fit_road_edges(curb_points: CurbPoints, frame: RoadFrame, settings: EdgeSett
     if len(edges):
         progress.info(f"Road edges: {length['measured']:.0f} m measured, {length['bridged']:.0f} m bridged.")
     else:
-        progress.warn("No curb was found along this road, so there are no road edges. A verge is not a curb; a lower minimum curb "
+        progress.warn("No curb was found along this road, so there are no road edges at curbs. A verge is not a curb; a lower minimum curb "
                       "height finds low curbs, and an assumed road width draws edges without curbs.")
     progress.report(1.0)
     return edges

@@ -21,7 +21,7 @@ from ...survey.frame.placement import COORDINATE_DECIMALS, as_written, known
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
 
-EDGE_FIELDS = dict(nearest_pass=NEAREST_PASS.name, side="side", status="status", part="part", kind="kind", chain="chain", station="station_m",
+EDGE_FIELDS = dict(nearest_pass=NEAREST_PASS.name, side="side", status="status", part="part", kind="kind", what="edge", chain="chain", station="station_m",
                    end="end_m", height="height_m", length="length_m", rmse="rmse_m", sigma="sigma_m", agree="agree_cm")
 
 EDGE_DECIMALS = dict(station=3, end=3, height=3, length=3, rmse=4, sigma=4, agree=1)   # of numbers in the layer
@@ -33,7 +33,7 @@ class EdgePiece:
 
     vertices : (V, 3) x, y and z in map coordinates
     road : number
-    side, status, part, kind : as in RoadEdges
+    side, status, part, kind, what : as in RoadEdges
     chain : number of the line; its pieces share it
     station, end, height, length, rmse, sigma : metres, as in RoadEdges
     """
@@ -50,6 +50,7 @@ class EdgePiece:
     rmse: float = np.nan
     part: str = "bottom"
     kind: str = "main"
+    what: str = "curb"
     agree: float = np.nan
     sigma: float = np.nan
 
@@ -64,6 +65,7 @@ class RoadEdges:
     status : (E,) str objects, measured, bridged, inferred
     part : (E,) str objects, bottom or top
     kind : (E,) str objects: main for the road's own edges; corner, side_street and island for what leads away from it or stands in it
+    what : (E,) str objects: curb, dropped, or pavement where the pavement ends without a curb
     chain : (E,) int, the pieces of one line share it
     station, end : (E,) metres along the road
     height, length, rmse : (E,) metres: of the curb, along the line in plan, of the curb points from the line
@@ -81,6 +83,7 @@ class RoadEdges:
     status: np.ndarray
     part: np.ndarray
     kind: np.ndarray
+    what: np.ndarray
     chain: np.ndarray
     station: np.ndarray
     end: np.ndarray
@@ -105,9 +108,27 @@ class RoadEdges:
         """(E,) bool: does the edge belong to a curb along the road?"""
         return self.kind == "main"
 
+    @property
+    def of_curb(self) -> np.ndarray:
+        """(E,) bool: is the edge a curb, not an edge of the pavement alone?"""
+        return self.what != "pavement"
+
     def take(self, rows: np.ndarray) -> RoadEdges:
         """Some of the pieces, by their numbers."""
         return replace(self, **{name: getattr(self, name)[rows] for name in EDGE_COLUMNS}, course=self.course.take(rows))
+
+    def and_pieces(self, pieces: Sequence[EdgePiece], frame: RoadFrame) -> RoadEdges:
+        """These edges and further pieces, whose chains are numbered on."""
+        if not pieces:
+            return self
+        more = joined_pieces(pieces, frame, self.crs)
+        columns = {name: np.concatenate([getattr(self, name), getattr(more, name)]) for name in EDGE_COLUMNS}
+        columns["edge"] = np.arange(len(self) + len(more))
+        columns["chain"][len(self):] += max(self.chain.max(initial=-1), -1) + 1
+        course = FrameLines(*(np.concatenate([getattr(self.course, name), getattr(more.course, name)]) if name != "start" else
+                              np.append(self.course.start, self.course.start[-1] + more.course.start[1:])
+                              for name in ("road", "start", "x", "y", "z", "s", "d")))
+        return RoadEdges(**columns, course=course, crs=self.crs)
 
     def map_lines(self, frame: RoadFrame) -> np.ndarray:
         """(E,) shapely lines with Z in map coordinates, as the layer holds them."""
@@ -123,7 +144,7 @@ class RoadEdges:
 
 EDGE_COLUMNS = tuple(one.name for one in fields(RoadEdges) if one.name not in ("course", "crs"))
 EDGE_TYPES: dict[str, type] = {**dict.fromkeys(EDGE_COLUMNS, float), **dict.fromkeys(("edge", "nearest_pass", "chain"), int),
-                          **dict.fromkeys(("side", "status", "part", "kind"), object)}
+                          **dict.fromkeys(("side", "status", "part", "kind", "what"), object)}
 
 
 def joined_pieces(pieces: Sequence[EdgePiece], frame: RoadFrame, crs: str = "") -> RoadEdges:
@@ -177,8 +198,8 @@ def edges_from_features(features: Features, frame: RoadFrame) -> RoadEdges:
 
     Parameters
     ----------
-    features : Features with lines in map coordinates; fields may be missing. Rows without `kind` are main edges, rows without
-        `status` are measured; a row without `road` belongs to the road that most of its vertices are nearest to
+    features : Features with lines in map coordinates; fields may be missing. Rows without `kind` are main edges, without `edge`
+        curbs and without `status` measured; a row without `road` belongs to the road that most of its vertices are nearest to
     frame : RoadFrame
 
     Returns
@@ -196,5 +217,5 @@ def edges_from_features(features: Features, frame: RoadFrame) -> RoadEdges:
 
 def _missing(attribute):
     """What stands for a field that a layer does not have."""
-    texts = dict(side="", status="measured", part="bottom", kind="main")
+    texts = dict(side="", status="measured", part="bottom", kind="main", what="curb")
     return texts[attribute] if attribute in texts else -1 if EDGE_TYPES[attribute] is int else np.nan

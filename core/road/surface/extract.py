@@ -6,7 +6,7 @@ and between the limits of the road belong to its surface.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,9 +19,9 @@ from ...survey.frame.road_frame import CORRIDOR
 from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.road_points import RoadPoints
 from .ground_grid import ROW_LENGTH, GroundCells, ground_cells
-from .limits import edge_offsets
+from .limits import PAVEMENT_INSET, edge_offsets
 from .outline import outlines
-from .pavement_edge import SurfaceProfiles, grown_offsets
+from .pavement_edge import GrownLimit, SurfaceProfiles, grown_limit
 from .region_growing import follow_road, smooth_road
 from .road_points import OBSTACLE_SQUARE, covered_by_obstacles, points_on_road
 from .road_surface import SurfaceOutlines
@@ -68,6 +68,7 @@ class Carriageway:
     right, left : (R,) m, offsets of its limits; NaN in rows without road
     right_bounded, left_bounded : (R,) bool, rows in which a measured or bridged edge is the limit
     tolerance : m above or below the height
+    grown : {side: GrownLimit} of the sides on which edges are missing
     """
 
     cells: GroundCells
@@ -78,6 +79,7 @@ class Carriageway:
     right_bounded: np.ndarray
     left_bounded: np.ndarray
     tolerance: float
+    grown: dict[str, GrownLimit] = field(default_factory=dict)
 
 
 def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, settings: SurfaceSettings = SurfaceSettings(),
@@ -169,17 +171,18 @@ def find_carriageway(survey: Survey, road: int, edges: RoadEdges | None, setting
         return None
     height = smooth_road(followed, cells)
     tracks = np.array([p.at_station(stations)[0] for p in survey.frame.passes_of(road)])
-    limits = {}
+    limits, grown = {}, {}
     for side, sign, track in (("left", 1.0, tracks.max(axis=0)), ("right", -1.0, tracks.min(axis=0))):
         offset, known = measured[side]
         if np.isnan(offset).any():
-            grown = grown_offsets(SurfaceProfiles.joined(profiles), cells, height - prior[:, None], sign, track, settings.max_width)
-            offset = np.where(np.isnan(offset), grown, offset)
+            grown[side] = grown_limit(SurfaceProfiles.joined(profiles), cells, height - prior[:, None], sign, track, settings.max_width)
+            offset = np.where(np.isnan(offset), grown[side].offset - sign * PAVEMENT_INSET, offset)
         limits[side] = offset, known
     there = _has_road(followed.ground, cells.offsets) & (limits["left"][0] > limits["right"][0] + MIN_SURFACE_WIDTH)
     tolerance = float(np.clip(TOLERANCE_FLOOR + TOLERANCE_SIGMAS * followed.noise, 0.0, settings.height_tolerance))
     return Carriageway(cells, height, followed.ground, np.where(there, limits["right"][0], np.nan),
-                       np.where(there, limits["left"][0], np.nan), limits["right"][1], limits["left"][1], tolerance)
+                       np.where(there, limits["left"][0], np.nan), limits["right"][1], limits["left"][1], tolerance,
+                       grown)
 
 
 def _has_road(ground, offsets):

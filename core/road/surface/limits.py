@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from ..edges.road_edges import RoadEdges
 
 MAX_OPENING = 30.0       # m of missing edge that is closed by a straight line
+PAVEMENT_INSET = 0.05    # m: on a road that is too wide, verge is extracted as paint
 EDGE_CONTINUATION = 5.0  # m by which the offset of an edge holds before its first and after its last vertex
 
 
@@ -26,27 +27,32 @@ def edge_offsets(edges: RoadEdges | None, road: int, stations: np.ndarray) -> di
     -------
     dict of side (left, right) to (offset, measured): `offset` is (N,) m, NaN where there is no edge;
     `measured` is (N,) bool, True where a measured or bridged edge gives the offset. It is False for inferred
-    edges and for closed openings.
+    edges and for closed openings. Edges of the pavement count where there is no curb, PAVEMENT_INSET inwards.
     """
     found = {}
     for side, sign in (("left", 1.0), ("right", -1.0)):
         offset = np.full(len(stations), np.nan)
         measured = np.zeros(len(stations), bool)
-        for s, d, status in () if edges is None else _lines_of(edges, road, side):
+        for s, d, status in () if edges is None else _lines_of(edges, road, side, edges.of_curb):
             inside = (stations >= s[0]) & (stations <= s[-1])
             here = np.interp(stations, s, d)
             # of two parallel lines the outer one is the limit of the road
             take = inside & ~(sign * offset > sign * here)
             offset[take] = here[take]
             measured[take] = status != "inferred"
-        found[side] = _continued(stations, offset), measured
+        offset = _continued(stations, offset)
+        for s, d, _ in () if edges is None else _lines_of(edges, road, side, ~edges.of_curb):
+            take = np.isnan(offset) & (stations >= s[0]) & (stations <= s[-1])
+            offset[take] = np.interp(stations[take], s, d) - sign * PAVEMENT_INSET
+            measured[take] = True
+        found[side] = offset, measured
     return found
 
 
-def _lines_of(edges, road, side):
-    """(stations, offsets, status) of the main edges of one side, by station."""
+def _lines_of(edges, road, side, wanted):
+    """(stations, offsets, status) of those main edges of one side that are wanted, by station."""
     course = edges.course
-    for k in np.flatnonzero((edges.road == road) & (edges.side == side) & (edges.part == "bottom") & edges.of_main_curb):
+    for k in np.flatnonzero((edges.road == road) & (edges.side == side) & (edges.part == "bottom") & edges.of_main_curb & wanted):
         s, d = course.s[course.line(k)], course.d[course.line(k)]
         good = np.isfinite(s)
         s, d = s[good], d[good]

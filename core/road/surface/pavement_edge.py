@@ -27,9 +27,11 @@ ROUGHNESS_FACTOR, ROUGHNESS_FLOOR = 1.6, 0.0025  # times the roughness of the ro
 MIN_TILT_CHANGE = 0.10       # m per m: change of tilt at which a bank or a ditch begins
 MAX_EMPTY_GROUND_CELLS = 5   # consecutive cells without points at which the road ends,
 MAX_BLIND_CELLS = 12         # unless at most so many are empty and road follows: the blind zone beside the vehicle
-EDGE_INSET = 0.05            # m subtracted from the edge: on a road that is too wide, verge is extracted as paint
+OBSTACLE_HEIGHT = 0.25       # m above the road of a cell that hides the road behind it, such as the side of a car,
+OBSTACLE_CELLS = 5           # where road follows within so many cells
 MIN_AGREEING_SHARE = 0.7     # of the cells ahead that must show the change
 MAX_MISS = 1.5               # m by which a profile may miss the edge and say so, farther is no worse
+BLIND_SHARE = 0.3            # of the miss of a limit farther out than a profile that ends where nothing was measured
 WIDENING_COST = 1.5            # m of misses that a change of the edge by 1 m must save: three profiles (6 m) in a row
 LARGEST_WIDENING_COST = 3.0    # m of misses that any change must save: a street joins over at least five profiles (10 m)
 
@@ -98,13 +100,30 @@ class SurfaceProfiles:
             for name in self.NAMES))
 
 
-def grown_offsets(profiles: SurfaceProfiles, cells: GroundCells, above: np.ndarray, sign: int | float, track: np.ndarray,
-                  max_width: float) -> np.ndarray:
-    """Offsets of the limit of the road on a side without an edge.
+@dataclass(frozen=True)
+class GrownLimit:
+    """The limit of a road on a side without an edge, on R rows.
+
+    offset : (R,) m, of the edge of the pavement
+    shown : (R,) bool, whether it was measured as an edge; where it is not, the road ends there for want of better
+    likely : (R,) bool, whether it is rather an edge than not
+    hidden : (R,) bool, whether nothing was measured right behind it
+    """
+
+    offset: np.ndarray
+    shown: np.ndarray
+    likely: np.ndarray
+    hidden: np.ndarray
+
+
+def grown_limit(profiles: SurfaceProfiles, cells: GroundCells, above: np.ndarray, sign: int | float, track: np.ndarray,
+                max_width: float) -> GrownLimit:
+    """The limit of the road on a side without an edge.
 
     Every profile is searched outward from the track. The ground changes where, over 0.4 m, it is off the height of the
     road, tilts away, or is rougher than the road before it. The path along the road that most profiles agree with is
-    the limit. A strip of another brightness before it (gravel along the asphalt) does not belong to the road either.
+    the limit. Where nothing was measured beyond, the limit may lie farther out. A strip of another brightness before the change
+    (gravel along the asphalt) does not belong to the road either.
 
     Parameters
     ----------
@@ -117,25 +136,33 @@ def grown_offsets(profiles: SurfaceProfiles, cells: GroundCells, above: np.ndarr
 
     Returns
     -------
-    (R,) m, offsets
+    GrownLimit
     """
     stations = cells.stations
+    nowhere = np.zeros(len(stations), bool)
     rows = replace(profiles, height=profiles.height - _at(above, cells, profiles.stations, profiles.offsets)).side(sign)
     pooled = rows.pooled()
     beside = sign * np.interp(pooled.stations, stations, track)
-    changes = np.array([HalfProfile(pooled.offsets, pooled.height[k], pooled.rough[k]).change(at, max_width) for k, at in enumerate(beside)])
+    halves = [HalfProfile(pooled.offsets, pooled.height[k], pooled.rough[k]) for k in range(len(beside))]
+    changes = np.array([half.change(at, max_width) for half, at in zip(halves, beside)])
     known = np.flatnonzero(changes >= 0)
     if not len(known):
-        return track + sign * max_width
-    changes = np.interp(rows.stations, pooled.stations[known], _agreed(changes[known], len(pooled.offsets)))
-    edge = rows.offsets[0] + (pavement_limits(rows, changes) - 0.5) * PROFILE_COLUMN - EDGE_INSET
-    return sign * np.minimum(np.interp(stations, rows.stations, edge), sign * track + max_width)
+        return GrownLimit(track + sign * max_width, nowhere, nowhere, ~nowhere)
+    blind = np.array([half.blind_from(change) for half, change in zip(halves, changes)])
+    changes = np.interp(rows.stations, pooled.stations[known], _agreed(changes[known], blind[known], len(pooled.offsets)))
+    found = pavement_limits(rows, changes)
+    outward = np.interp(stations, rows.stations, rows.offsets[0] + (found.cell - 0.5) * PROFILE_COLUMN)
+    row = np.clip(np.searchsorted(rows.stations + 0.5 * PROFILE_ROW, stations), 0, len(rows.stations) - 1)
+    farthest = sign * track + max_width
+    return GrownLimit(sign * np.minimum(outward, farthest), found.shown[row] & (outward < farthest),
+                      found.likely[row] & (outward < farthest), found.hidden[row])
 
 
-def _agreed(changes, cells):
+def _agreed(changes, blind, cells):
     """(P,) cell at which the ground changes, along the path that most profiles agree with."""
-    miss = np.abs(np.arange(cells + 1) - changes[:, None]) * PROFILE_COLUMN
-    return cheapest_path(np.minimum(miss, MAX_MISS), WIDENING_COST * PROFILE_COLUMN, LARGEST_WIDENING_COST)
+    miss = (np.arange(cells + 1) - changes[:, None]) * PROFILE_COLUMN
+    cost = np.minimum(np.abs(miss), MAX_MISS)
+    return cheapest_path(np.where(blind[:, None] & (miss > 0), BLIND_SHARE * cost, cost), WIDENING_COST * PROFILE_COLUMN, LARGEST_WIDENING_COST)
 
 
 def _at(grid, cells, stations, offsets):
@@ -159,7 +186,10 @@ class HalfProfile:
     """
 
     def __init__(self, u: np.ndarray, off: np.ndarray, rough: np.ndarray):
-        self.u, self.off, self.rough = u, off, rough
+        low = np.isfinite(off) & (np.abs(off) < MAX_HEIGHT_DEVIATION)
+        follows = np.convolve(low, np.ones(OBSTACLE_CELLS), "full")[OBSTACLE_CELLS:]
+        hides = (off > OBSTACLE_HEIGHT) & (np.append(follows, 0.0) > 0)
+        self.u, self.off, self.rough = u, np.where(hides, np.nan, off), rough
 
     def change(self, beside: float, max_width: float) -> int:
         """The first cell of other ground, or the one at the largest width; -1 where nothing was measured before it.
@@ -186,6 +216,10 @@ class HalfProfile:
             if self._differs(k, ahead, uneven):
                 return k
         return stop
+
+    def blind_from(self, k: int) -> bool:
+        """Whether nothing was measured in the cells from cell k on."""
+        return 0 <= k < len(self.off) and bool(np.isnan(self.off[k:k + MAX_EMPTY_GROUND_CELLS]).all())
 
     def _road_behind(self, k, uneven):
         """The first cell behind a blind zone that begins at cell k, or 0 where no road follows.
@@ -231,7 +265,11 @@ class HalfProfile:
         if a.sum() < 4 or b.sum() < 5 or not a[0]:
             return False
         line = np.polyfit(self.u[inner][b], before[b], 1)
+        outward = self.u[k:k + 6][a]
+        off = after[a] - np.polyval(line, outward)
         # the bank begins farther out
-        if abs(after[0] - np.polyval(line, self.u[k])) < 0.5 * MIN_TILT_CHANGE * PROFILE_COLUMN + UNEVENNESS_FACTOR * uneven:
+        if abs(off[0]) < 0.5 * MIN_TILT_CHANGE * PROFILE_COLUMN + UNEVENNESS_FACTOR * uneven:
             return False
-        return abs(np.polyfit(self.u[k:k + 6][a], after[a], 1)[0] - line[0]) > MIN_TILT_CHANGE
+        # most cells, not a single one beside an obstacle
+        most = np.median(off / (outward - self.u[k] + 0.5 * PROFILE_COLUMN))
+        return min(abs(most), abs(np.polyfit(outward, off, 1)[0])) > MIN_TILT_CHANGE

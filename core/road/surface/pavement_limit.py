@@ -2,11 +2,13 @@
 
 Single returns scatter more than gravel and asphalt differ, and a strip of gravel lies as level and smooth as the road. So
 rows are averaged along the edge, and height, roughness and brightness of every cell are compared with those of the road,
-continued by their trend across it. Paint lies on the road.
+continued by their trend across it; how much the cells of the road differ themselves decides how much is too much. Paint lies
+on the road.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,10 +21,11 @@ if TYPE_CHECKING:
 
 ROAD_CELLS = 20              # cells of road from which its look is continued: 2 m
 INNER_CELLS, OUTER_CELLS = 12, 10  # cells inside and outside the place where the ground changes in which the limit is searched
-NEAREST_BEFORE, FARTHEST_BEFORE = 2, 8  # cells before a cell from which its brightness is continued
+NEAREST_BEFORE, FARTHEST_BEFORE = 2, 6  # cells before a cell from which its look is continued: a strip of gravel may be three cells wide
 AVERAGED_ROWS = 3            # rows either side that are averaged: 7 m of road
 MIN_SIGMA_SHARE = 0.5        # of the scatter of single points that averages differ anyway: worn and patched asphalt
-ROUGH_SIGMA = 0.25           # of the logarithm of roughness, that averages differ anyway
+ROUGH_SIGMA = 0.25           # of the logarithm of roughness, that averages differ anyway within 2 m of road,
+NEAR_ROUGH_SIGMA, NEAR_CELLS = 0.12, 10  # and that they differ from those just before; cells of road that tell whether it is more
 HEIGHT_SIGMA = 0.008         # m that averages lie off the height of the road anyway
 MAX_SIGMAS = 2.8             # sigmas by which any of the three may be off: a cell of other ground weighs as much as one of road
 OTHER_SIGMAS = 2.0           # sigmas from which a cell is rather not road
@@ -32,11 +35,30 @@ MIN_PAINT_SIGMAS = 2.0       # scatters of single points by which paint is brigh
 PAINT_SHARE = 0.5            # and this share of the contrast of the paint on this side
 MAX_USUAL_SHARE = 2.0        # times that scatter, of the upper quantile, beyond which brightness says nothing: the road was scanned from two sides
 GROSS_SIGMAS = 3.0           # of that scatter
+ELSEWHERE_QUANTILE = 0.75    # of the brightness of the road, that tells what is grossly darker
 LINE_CELLS = 2, 3, 4         # cells from a cell of a line to road on both of its sides: lines are up to 0.3 m wide
-LIMIT_SHIFT_COST, LARGEST_LIMIT_SHIFT_COST = 6.0, 60.0  # that a change of the limit by a cell, and any change, must save
+CELLS_INSIDE, CELLS_OUTSIDE = 8, 4  # cells beside a limit that show it: an edge line covers four of those inside at most,
+SHOWN_COST = 2.0             # by costs of this sum outside and its negative inside: as much as two sure cells
+LIMIT_SHIFT_COST, LARGEST_LIMIT_SHIFT_COST = 5.0, 60.0  # that a change of the limit by a cell, and any change, must save
 
 
-def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> np.ndarray:
+@dataclass(frozen=True)
+class PavementLimits:
+    """Where the pavement ends on P rows of one side.
+
+    cell : (P,) cells, not necessarily whole
+    shown : (P,) bool, whether road before and other ground behind it were measured
+    likely : (P,) bool, whether rather so than not
+    hidden : (P,) bool, whether nothing was measured right behind it
+    """
+
+    cell: np.ndarray
+    shown: np.ndarray
+    likely: np.ndarray
+    hidden: np.ndarray
+
+
+def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> PavementLimits:
     """Where the pavement ends near the change of ground.
 
     Parameters
@@ -46,28 +68,53 @@ def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> np.ndarray:
 
     Returns
     -------
-    (P,) cells, as `change`
+    PavementLimits
     """
     whole = np.rint(change).astype(np.int64)
     # cells along the edge, so that rows can be averaged where it bends away from the reference line
-    at = whole[:, None] + np.arange(-ROAD_CELLS - INNER_CELLS, OUTER_CELLS)
+    at = whole[:, None] + np.arange(-ROAD_CELLS - INNER_CELLS, OUTER_CELLS + CELLS_OUTSIDE)
     there = (at >= 0) & (at < rows.height.shape[1])
     unpainted = np.where(_painted(rows, change), np.nan, rows.brightness)
     height, rough, brightness, scatter = (_around(np.where(there, np.take_along_axis(values, np.clip(at, 0, values.shape[1] - 1), 1), np.nan))
                                           for values in (rows.height, rows.rough, unpainted, rows.scatter))
-    scatter = known_median(scatter[:, :ROAD_CELLS], 1)[:, None]
-    brighter, darker = _off_trend(brightness, scatter)
-    usual, most = (_quantile(brighter[:, :ROAD_CELLS], share) / sigmas for share, sigmas in zip(USUAL_QUANTILES, USUAL_SIGMAS))
-    off = np.fmax(np.abs(height - known_median(height[:, :ROAD_CELLS], 1)[:, None]) / HEIGHT_SIGMA,
-                  np.log(np.maximum(rough, 1e-4) / known_median(rough[:, :ROAD_CELLS], 1)[:, None]) / ROUGH_SIGMA)
-    bright = np.where(most < MAX_USUAL_SHARE * scatter, brighter / np.fmax(MIN_SIGMA_SHARE * scatter, usual), 0.0)
+    off, measured = _unlike_road(height, rough, brightness, known_median(scatter[:, :ROAD_CELLS], 1)[:, None])
+    costs = np.where(measured, np.nan_to_num(np.clip(off, 0.0, MAX_SIGMAS) ** 2 - OTHER_SIGMAS ** 2), 0.0) / 2
+    # cell by cell outward, the cost of counting all cells before it as road
+    total = np.concatenate([np.zeros((len(costs), 1)), np.cumsum(costs[:, ROAD_CELLS:-CELLS_OUTSIDE], axis=1)], axis=1)
+    limit = _along(total, whole)
+    beside = np.clip(limit, 0, INNER_CELLS + OUTER_CELLS)[:, None] + ROAD_CELLS + np.arange(-CELLS_INSIDE, CELLS_OUTSIDE)
+    near = np.take_along_axis(costs, beside, 1)
+    # in the row itself, not in the average
+    place = np.clip(np.take_along_axis(at, beside[:, CELLS_INSIDE:], 1), 0, rows.height.shape[1] - 1)
+    hidden = np.isnan(np.take_along_axis(rows.height, place, 1)).all(1)
+    inside, outside = near[:, :CELLS_INSIDE].sum(1), near[:, CELLS_INSIDE:].sum(1)
+    likely = (inside < 0.0) & (outside > 0.0) & ~hidden
+    return PavementLimits(limit - INNER_CELLS + change, likely & (inside <= -SHOWN_COST) & (outside >= SHOWN_COST), likely, hidden)
+
+
+def _unlike_road(height, rough, brightness, scatter):
+    """(P, K) sigmas by which cells differ from the road before them, and whether they were measured."""
+    road = np.arange(height.shape[1]) < ROAD_CELLS
+    # what is grossly darker than the road was scanned from elsewhere, such as the strip beside the vehicle that the scanner hardly sees
+    elsewhere = (_quantile(brightness[:, road], ELSEWHERE_QUANTILE) - brightness > GROSS_SIGMAS * scatter) \
+        & (np.arange(height.shape[1]) < ROAD_CELLS + INNER_CELLS)
+    rough, brightness = (np.where(elsewhere, np.nan, values) for values in (np.log(np.maximum(rough, 1e-4)), brightness))
+    brighter, near_brighter, darker = _off_trend(brightness, scatter)
+    usual, most = (_quantile(brighter[:, road], share) / sigmas for share, sigmas in zip(USUAL_QUANTILES, USUAL_SIGMAS))
+    sigma = np.fmax(MIN_SIGMA_SHARE * scatter, usual)
+    bright = np.where(most < MAX_USUAL_SHARE * scatter, brighter / sigma, 0.0)
+    rougher = _before(rough)[0]
+    usual = _quantile(np.abs(rougher[:, ROAD_CELLS - NEAR_CELLS:ROAD_CELLS]), USUAL_QUANTILES[0]) / USUAL_SIGMAS[0]
+    # verge is rougher and brighter; what is rougher and darker was scanned from elsewhere
+    rougher = np.where(near_brighter < -sigma, 0.0, rougher / np.fmax(NEAR_ROUGH_SIGMA, usual))
+    off = np.fmax(np.abs(height - known_median(height[:, road], 1)[:, None]) / HEIGHT_SIGMA,
+                  (rough - known_median(rough[:, road], 1)[:, None]) / ROUGH_SIGMA)
     # hardly any ground is darker than asphalt: what is, was scanned from elsewhere. What is unpainted in no row is painted,
     # and paint lies on the road
     off = np.fmax(off, np.where(darker > GROSS_SIGMAS * scatter, OTHER_SIGMAS, bright))
-    costs = np.nan_to_num(np.clip(off, 0.0, MAX_SIGMAS) ** 2 - OTHER_SIGMAS ** 2)[:, ROAD_CELLS:] / 2
-    # cell by cell outward, the cost of counting all cells before it as road
-    total = np.concatenate([np.zeros((len(costs), 1)), np.cumsum(costs, axis=1)], axis=1)
-    return _along(total, whole) - INNER_CELLS + change
+    # of two that are both off by chance the sum is off by one more
+    off = np.fmax(off, np.sqrt(np.fmax(np.fmax(rougher, 0.0) ** 2 + np.fmax(bright, 0.0) ** 2 - 1.0, 0.0)))
+    return off, np.isfinite(height)
 
 
 def _along(total, whole):
@@ -84,21 +131,29 @@ def _around(values):
     return known_median(np.lib.stride_tricks.sliding_window_view(padded, 2 * AVERAGED_ROWS + 1, axis=0), 2)
 
 
-def _off_trend(values, scatter):
-    """By how much every cell is off the brightness of the road, continued by its trend across, and darker than the road farther in.
+def _before(values):
+    """By how much every cell is off the values just before it, continued by their trend across, and off the trend alone.
 
-    Median slopes and levels, to which paint does not contribute (Theil and Sen). The level is that of the cells just before.
-    Where that differs grossly from the road farther in, they were scanned from elsewhere, and either level may continue.
+    Median slopes and levels, to which paint does not contribute (Theil and Sen).
     """
     road = values[:, :ROAD_CELLS]
     i, j = np.triu_indices(ROAD_CELLS, 4)
-    slope = np.nan_to_num(known_median((road[:, j] - road[:, i]) / (j - i), 1))[:, None] * np.arange(values.shape[1])
-    level = np.pad(values - slope, ((0, 0), (FARTHEST_BEFORE, 0)), constant_values=np.nan)
+    off = values - np.nan_to_num(known_median((road[:, j] - road[:, i]) / (j - i), 1))[:, None] * np.arange(values.shape[1])
+    level = np.pad(off, ((0, 0), (FARTHEST_BEFORE, 0)), constant_values=np.nan)
     before = np.lib.stride_tricks.sliding_window_view(level, FARTHEST_BEFORE - NEAREST_BEFORE + 1, axis=1)[:, :values.shape[1]]
-    off = values - slope
-    near, far = known_median(before, 2), known_median(off[:, :ROAD_CELLS], 1)[:, None]
-    elsewhere = np.abs(near - far) > GROSS_SIGMAS * scatter
-    return np.where(elsewhere, np.fmin(np.abs(off - near), np.abs(off - far)), np.abs(off - near)), far - off
+    return off - known_median(before, 2), off
+
+
+def _off_trend(values, scatter):
+    """By how much every cell is off the brightness of the road, brighter than the cells before it, and darker than the road farther in.
+
+    The level of the road is that of the cells just before. Where that differs grossly from the road farther in, they were
+    scanned from elsewhere, and either level may continue.
+    """
+    nearer, off = _before(values)
+    far = known_median(off[:, :ROAD_CELLS], 1)[:, None]
+    elsewhere = np.abs(off - nearer - far) > GROSS_SIGMAS * scatter
+    return np.where(elsewhere, np.fmin(np.abs(nearer), np.abs(off - far)), np.abs(nearer)), nearer, far - off
 
 
 def _painted(rows, change):

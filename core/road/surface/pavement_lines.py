@@ -1,0 +1,148 @@
+"""Edges of the pavement as lines: where a road without a curb was seen to end, smoothed along the road.
+
+A line is drawn where road inside and other ground outside were measured; where something hides both, it is bridged as curbs are.
+Where nothing tells the pavement from what lies beside it, there is no line.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.interpolate import splev, splrep
+from scipy.ndimage import uniform_filter1d
+
+from ...common.progress import Progress
+from ..edges.fit import EDGE_VERTEX_SPACING, MAX_EDGE_JUMP, MIN_HIDDEN_SHARE, EdgeSettings
+from ..edges.road_edges import EdgePiece, RoadEdges
+from .extract import Carriageway, SurfaceSettings, find_carriageway
+from .ground_grid import COLUMN_WIDTH, ROW_LENGTH
+from .limits import edge_offsets
+from .pavement_edge import PROFILE_COLUMN
+
+if TYPE_CHECKING:
+    from ...survey.frame.road_frame import RoadFrame
+    from ...survey.open_survey import Survey
+
+AGREEING_LENGTH = 7.0       # m of road of which most must show the edge
+MIN_PAVEMENT_LENGTH = 10.0  # m of a line: rows are averages of 7 m, so a shorter one is a single observation
+MAX_ROW_JUMP = 0.5          # m across from one row to the next at which a line ends: a street joins
+MAX_BRIDGED_SKEW = 0.15     # m across per m along of a gap, beside MAX_EDGE_JUMP: tapers widen by 1 in 10 and less
+MIN_LIKELY_SHARE = 0.5      # of a gap in which the edge is rather there than not, for the line to go on as measured
+CELL_SIGMA = PROFILE_COLUMN / np.sqrt(12.0)  # m, of a place that is known to a cell
+
+
+def with_pavement_edges(survey: Survey, edges: RoadEdges, settings: EdgeSettings = EdgeSettings(), surface: SurfaceSettings = SurfaceSettings(),
+                        progress: Progress = Progress()) -> RoadEdges:
+    """The edges and, where there is no curb, edges of the pavement.
+
+    Parameters
+    ----------
+    survey : Survey
+    edges : RoadEdges, of curbs
+    settings : EdgeSettings, of which `max_gap` counts
+    surface : SurfaceSettings
+    progress : Progress
+
+    Returns
+    -------
+    RoadEdges, the given ones first; the others have `what` pavement and no height
+    """
+    pieces: list[EdgePiece] = []
+    roads = survey.store.roads()
+    for k, road in enumerate(roads):
+        carriageway = find_carriageway(survey, road, edges, surface, progress.part(k / len(roads), (k + 1) / len(roads)))
+        if carriageway is not None:
+            pieces += pavement_pieces(survey.frame, road, carriageway, edges, settings.max_gap, len(pieces))
+    if pieces:
+        length = {status: sum(piece.length for piece in pieces if piece.status == status) for status in ("measured", "bridged")}
+        progress.info(f"Edges of the pavement without a curb: {length['measured']:.0f} m measured, {length['bridged']:.0f} m bridged.")
+    return edges.and_pieces(pieces, survey.frame)
+
+
+def pavement_pieces(frame: RoadFrame, road: int, carriageway: Carriageway, edges: RoadEdges, max_gap: float, chain: int = 0) -> list[EdgePiece]:
+    """Edges of the pavement of one road.
+
+    Parameters
+    ----------
+    frame : RoadFrame
+    road : number of the road
+    carriageway : Carriageway found with the edges
+    edges : RoadEdges, where which of a side have an offset nothing is drawn
+    max_gap : m, the longest bridged gap
+    chain : number of the first line
+
+    Returns
+    -------
+    list of EdgePiece, along the road, side by side
+    """
+    found: list[EdgePiece] = []
+    stations = carriageway.cells.stations
+    there = np.isfinite(carriageway.left) & np.isfinite(carriageway.right)
+    curbs = edge_offsets(edges, road, stations)
+    for side, grown in carriageway.grown.items():
+        free = there & np.isnan(curbs[side][0])
+        agreeing = uniform_filter1d((grown.shown & free).astype(float), int(AGREEING_LENGTH / ROW_LENGTH) | 1, mode="constant")
+        for runs in _lines(free & (agreeing > 0.5), free & grown.likely, free & (grown.likely | grown.hidden), grown.offset, max_gap):
+            found += _drawn(frame, road, side, carriageway, grown.offset, runs, chain + len(found))
+    return found
+
+
+def _lines(shown, likely, possible, offset, max_gap):
+    """[[(first, last + 1), …], …] rows of runs that are joined to lines; what lies between the runs of a line is bridged."""
+    broken = np.abs(np.diff(offset)) > MAX_ROW_JUMP
+    cuts = np.flatnonzero((shown[1:] != shown[:-1]) | broken) + 1
+    bounds = np.r_[0, cuts, len(shown)]
+    runs = [(int(a), int(b)) for a, b in zip(bounds[:-1], bounds[1:]) if shown[a]]
+    lines: list[list[tuple[int, int]]] = []
+    for run in runs:
+        last = lines[-1][-1] if lines else (0, -len(offset))
+        gap = slice(last[1], run[0])
+        if not lines or not _go_on(offset, gap, max_gap) or not possible[gap].mean() >= MIN_HIDDEN_SHARE:
+            lines.append([run])
+        elif likely[gap].mean() >= MIN_LIKELY_SHARE:
+            lines[-1][-1] = (last[0], run[1])
+        else:
+            lines[-1].append(run)
+    return [line for line in lines if sum(b - a for a, b in line) * ROW_LENGTH >= MIN_PAVEMENT_LENGTH]
+
+
+def _go_on(offset, gap, max_gap):
+    """Whether a line may go on after a gap of rows."""
+    length = (gap.stop - gap.start) * ROW_LENGTH
+    return 0 < length <= max_gap and abs(offset[gap.stop] - offset[gap.start - 1]) <= MAX_EDGE_JUMP + MAX_BRIDGED_SKEW * length
+
+
+def _drawn(frame, road, side, carriageway, offset, runs, chain):
+    """The pieces of one line."""
+    stations = carriageway.cells.stations
+    rows = np.concatenate([np.arange(a, b) for a, b in runs])
+    # least squares with the noise of a place; as many rows as differ
+    curve = splrep(stations[rows], offset[rows], w=np.full(len(rows), 1.0 / CELL_SIGMA), s=len(rows))
+    residual = offset[rows] - splev(stations[rows], curve)
+    pieces = []
+    for k, (a, b) in enumerate(runs):
+        if k:
+            pieces.append(("bridged", stations[runs[k - 1][1] - 1], stations[a]))
+        pieces.append(("measured", stations[a], stations[b - 1]))
+    found = []
+    passes = frame.pass_sigma.get(road, 0.0)
+    for status, start, end in pieces:
+        s = np.linspace(start, end, max(int(np.ceil((end - start) / EDGE_VERTEX_SPACING)), 1) + 1)
+        d = splev(s, curve) if status == "measured" else np.interp(s, [start, end], splev([start, end], curve))
+        vertices = np.c_[frame.to_map(road, s, d, _height(carriageway, s, d))]
+        near = (stations[rows] >= start) & (stations[rows] <= end)
+        rmse = float(np.sqrt(np.mean(residual[near] ** 2)))
+        found.append(EdgePiece(vertices, road, side, status, chain, float(start), float(end), float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()),
+                               rmse=rmse, what="pavement", sigma=float(np.sqrt(CELL_SIGMA**2 + rmse**2 + passes**2))))
+    return found
+
+
+def _height(carriageway, s, d):
+    """(N,) m, local z of the road at its edge."""
+    cells = carriageway.cells
+    row = np.clip(s / ROW_LENGTH - cells.first_row - 0.5, 0, len(carriageway.height) - 1)
+    column = np.clip(np.floor(d / COLUMN_WIDTH).astype(int) - cells.first_column, 0, carriageway.height.shape[1] - 1)
+    i = np.minimum(row.astype(int), len(carriageway.height) - 2)
+    low, high = carriageway.height[i, column], carriageway.height[i + 1, column]
+    return low + (row - i) * (high - low)

@@ -1,0 +1,157 @@
+"""Edges of the pavement: on streets without a curb the known verge is found and drawn, and nothing where there is none."""
+
+import numpy as np
+import pytest
+from lanewright.core.common.features import Features
+from lanewright.core.common.schemas import ROAD_EDGES
+from lanewright.core.road.edges.fit import EdgeSettings
+from lanewright.core.road.edges.road_edges import edges_from_features, edges_to_features
+from lanewright.core.road.surface.extract import extract_road_surface
+from lanewright.core.road.surface.pavement_lines import with_pavement_edges
+from lanewright.core.survey.frame.road_frame import build_frame
+from lanewright.core.survey.open_survey import Survey
+from lanewright.core.survey.store.records import SURVEY_POINT, to_units
+from lanewright.core.survey.store.section_store import SectionStore
+from lanewright.core.survey.trajectory.trajectory import Trajectory
+
+LENGTH, SENSOR, REACH, EAST, NORTH = 60.0, 2.0, 12.0, 500_000.0, 5_400_000.0
+HALF = 3.5     # m, half the asphalt
+GRAVEL = 0.3   # m, strip of gravel between asphalt and grass
+
+
+def half_of(s):
+    """Half the asphalt of a street that stays as wide as it is."""
+    return np.full_like(s, HALF)
+
+
+def street(half=half_of, verge=True, keep=None, extra=None, backwards=False, shuffled=False, density=300, seed=5):
+    """A straight street along y = 0 of asphalt up to `half` of the station, then a strip of gravel, then grass; or asphalt throughout.
+
+    Scatter of heights and returned intensity are those of the three; `keep` : of s and d, False where nothing was scanned
+    """
+    rng = np.random.default_rng(seed)
+    along = np.linspace(0.0, LENGTH, 601)
+    east = (LENGTH - along if backwards else along) + EAST
+    frame = build_frame(Trajectory(1000 + along / 10, east, np.full(601, NORTH), np.full(601, 100.0 + SENSOR)))
+    count = int(density * (LENGTH + 8) * 2 * REACH)
+    x, y = rng.uniform(-4, LENGTH + 4, count), rng.uniform(-REACH, REACH, count)
+    beyond = np.abs(y) - half(x)
+    ground = np.digitize(beyond, [0.0, GRAVEL]) if verge else np.zeros(count, int)
+    z = rng.normal(0.0, np.array([0.003, 0.006, 0.02])[ground])
+    grey = np.array([1000.0, 1150.0, 1400.0])[ground] * rng.lognormal(0.0, 0.1, count)
+    if keep is not None:
+        seen = keep(x, y)
+        x, y, z, grey = x[seen], y[seen], z[seen], grey[seen]
+    if extra is not None:
+        x, y, z, grey = (np.r_[a, b] for a, b in zip((x, y, z, grey), extra))
+    if shuffled:
+        order = rng.permutation(len(x))
+        x, y, z, grey = x[order], y[order], z[order], grey[order]
+    places = frame.to_local(x + EAST, y + NORTH)
+    records = np.zeros(len(x), SURVEY_POINT)
+    s, d = frame.road(0).locate(*places)
+    records["x"], records["y"], records["z"], records["s"], records["d"] = map(to_units, (*places, z + 100 - frame.origin[2], s, d))
+    records["time"] = 1000 + np.clip(LENGTH - x if backwards else x, 0, LENGTH) / 10
+    records["intensity"] = np.rint(grey)
+    store = SectionStore(SURVEY_POINT, 20.0)
+    store.append(0, records[np.argsort(s, kind="stable")] if not shuffled else records)
+    return Survey([], frame, store, "", {0: SENSOR}, None, [0], True, True)
+
+
+def no_edges(survey):
+    return edges_from_features(Features("LineStringZ", list(ROAD_EDGES)), survey.frame)
+
+
+def found(survey, **settings):
+    return with_pavement_edges(survey, no_edges(survey), EdgeSettings(**settings))
+
+
+def on_map(edges, survey):
+    """[(status, (V, 2) m along and across the street)] of edges."""
+    return [(edges.status[k], np.c_[edges.course.x[edges.course.line(k)] + survey.frame.origin[0] - EAST,
+                                    edges.course.y[edges.course.line(k)] + survey.frame.origin[1] - NORTH]) for k in range(len(edges))]
+
+
+def covered(edges, survey, side, half=half_of, within=0.2):
+    """Share of the asphalt's edge on one side, 1 left of the street's direction or -1, along which a line lies within some metres."""
+    s = np.arange(2.0, LENGTH - 2.0, 0.25)
+    right = np.zeros(len(s), bool)
+    for _, places in on_map(edges, survey):
+        if np.sign(places[0, 1]) != side:
+            continue
+        order = np.argsort(places[:, 0])
+        off = np.interp(s, places[order, 0], np.abs(places[order, 1]), left=np.nan, right=np.nan) - half(s)
+        right |= np.abs(off) <= within
+    return right.mean()
+
+
+@pytest.mark.parametrize("options", [{}, {"backwards": True}, {"shuffled": True}, {"density": 120}])
+def test_where_asphalt_ends_at_gravel_the_edge_of_the_pavement_is_drawn(options):
+    survey = street(**options)
+    edges = found(survey)
+    assert set(edges.what) == {"pavement"} and set(edges.kind) == {"main"} and set(edges.status) == {"measured"}
+    assert np.isnan(edges.height).all() and (edges.sigma > 0).all()
+    assert min(covered(edges, survey, 1), covered(edges, survey, -1)) >= 0.95
+
+
+def test_asphalt_as_far_as_one_sees_has_no_edge():
+    survey = street(verge=False)
+    assert len(found(survey)) == 0
+
+
+def test_where_the_road_widens_in_a_bend_its_edge_is_followed():
+    def half(s):
+        return HALF + np.interp(s, [10, 24, 36, 50], [0.0, 1.6, 1.6, 0.0])
+
+    survey = street(half)
+    edges = found(survey)
+    assert min(covered(edges, survey, 1, half), covered(edges, survey, -1, half)) >= 0.95
+
+
+@pytest.mark.parametrize("away", [0.5, 1.0])
+def test_a_guard_rail_beyond_the_pavement_does_not_pull_its_edge(away):
+    rng = np.random.default_rng(2)
+    rail = rng.uniform(0, LENGTH, 6000), np.full(6000, HALF + away) + rng.normal(0, 0.01, 6000), rng.uniform(0.45, 0.75, 6000), np.full(6000, 4000.0)
+    survey = street(extra=rail)
+    assert covered(found(survey), survey, 1) >= 0.95
+
+
+def test_behind_a_vehicle_the_edge_is_bridged_and_says_so():
+    hidden = 25.0, 35.0
+    survey = street(keep=lambda s, d: ~((s > hidden[0]) & (s < hidden[1]) & (d > 2.6)))
+    lines = on_map(found(survey), survey)
+    bridged = [places for status, places in lines if status == "bridged"]
+    assert len(bridged) == 1 and bridged[0][:, 0].min() == pytest.approx(hidden[0], abs=1.0) and bridged[0][:, 0].max() == pytest.approx(hidden[1], abs=1.0)
+    assert np.abs(bridged[0][:, 1] - HALF).max() <= 0.2
+    assert "bridged" not in found(survey, max_gap=5.0).status
+
+
+def test_a_curb_stays_what_it_is_and_the_pavement_ends_on_the_other_side_alone():
+    survey = street()
+    drawn = found(survey)
+    left = edges_to_features(drawn.take(np.flatnonzero(drawn.side == "left")), survey.frame)
+    for row in left.rows:
+        row["edge"] = "curb"
+    curbs = edges_from_features(left, survey.frame)
+    both = with_pavement_edges(survey, curbs)
+    assert both.side[both.what == "curb"].tolist() == ["left"] * len(curbs) and set(both.side[both.what == "pavement"]) == {"right"}
+    assert len(set(both.chain)) == 2
+
+
+def test_the_surface_ends_just_inside_the_edge_of_the_pavement_and_counts_as_measured():
+    survey = street()
+    points, surface = extract_road_surface(survey, found(survey))
+    d = points.all_points().d
+    assert HALF - 0.15 < np.percentile(d, 99.9) <= HALF + 0.02 and -HALF - 0.02 <= np.percentile(d, 0.1) < -HALF + 0.15
+    assert surface.area[surface.status == "measured"].sum() > 0.8 * surface.area.sum()
+
+
+def test_written_and_read_again_an_edge_of_the_pavement_is_one():
+    survey = street()
+    edges = found(survey)
+    layer = edges_to_features(edges, survey.frame)
+    assert set(layer.column("edge")) == {"pavement"}
+    assert edges_from_features(layer, survey.frame).what.tolist() == edges.what.tolist()
+    for row in layer.rows:
+        del row["edge"]
+    assert set(edges_from_features(layer, survey.frame).what) == {"curb"}
