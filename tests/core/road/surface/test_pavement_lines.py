@@ -121,7 +121,8 @@ def test_behind_a_vehicle_the_edge_is_bridged_and_says_so():
     survey = street(keep=lambda s, d: ~((s > hidden[0]) & (s < hidden[1]) & (d > 2.6)))
     lines = on_map(found(survey), survey)
     bridged = [places for status, places in lines if status == "bridged"]
-    assert len(bridged) == 1 and bridged[0][:, 0].min() == pytest.approx(hidden[0], abs=1.0) and bridged[0][:, 0].max() == pytest.approx(hidden[1], abs=1.0)
+    assert len(bridged) == 1
+    assert (bridged[0][:, 0].min(), bridged[0][:, 0].max()) == pytest.approx(hidden, abs=1.0)
     assert np.abs(bridged[0][:, 1] - HALF).max() <= 0.2
     assert "bridged" not in found(survey, max_gap=5.0).status
 
