@@ -21,8 +21,8 @@ from ...survey.frame.placement import COORDINATE_DECIMALS, as_written, known
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
 
-EDGE_FIELDS = dict(nearest_pass=NEAREST_PASS.name, side="side", status="status", part="part", kind="kind", what="edge", chain="chain", station="station_m",
-                   end="end_m", height="height_m", length="length_m", rmse="rmse_m", sigma="sigma_m", agree="agree_cm")
+EDGE_FIELDS = dict(nearest_pass=NEAREST_PASS.name, side="side", status="status", part="part", kind="kind", what="edge", chain="chain",
+                   station="station_m", end="end_m", height="height_m", length="length_m", rmse="rmse_m", sigma="sigma_m", agree="agree_cm")
 
 EDGE_DECIMALS = dict(station=3, end=3, height=3, length=3, rmse=4, sigma=4, agree=1)   # of numbers in the layer
 

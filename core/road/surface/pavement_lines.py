@@ -133,8 +133,9 @@ def _drawn(frame, road, side, carriageway, offset, runs, chain):
         vertices = np.c_[frame.to_map(road, s, d, _height(carriageway, s, d))]
         near = (stations[rows] >= start) & (stations[rows] <= end)
         rmse = float(np.sqrt(np.mean(residual[near] ** 2)))
-        found.append(EdgePiece(vertices, road, side, status, chain, float(start), float(end), float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum()),
-                               rmse=rmse, what="pavement", sigma=float(np.sqrt(CELL_SIGMA**2 + rmse**2 + passes**2))))
+        length = float(np.hypot(*np.diff(vertices[:, :2], axis=0).T).sum())
+        found.append(EdgePiece(vertices, road, side, status, chain, float(start), float(end), length, rmse=rmse,
+                               what="pavement", sigma=float(np.sqrt(CELL_SIGMA**2 + rmse**2 + passes**2))))
     return found
 
 
