@@ -15,6 +15,7 @@ from .doubt_dock import DoubtDock
 from .layout_dialog import LayoutDialog, road_map_groups, shown_layers
 from .manual import ManualWindow
 from .map_layout import road_map_layout
+from .overlay.pairs_dialog import PairsDialog
 from .sample_run import SampleRun
 from .section import clouds_of
 from .section_dock import SectionDock
@@ -31,7 +32,7 @@ class Menu(QObject):
         self.iface = iface
         self.actions = []
         self.dialog = self.layout_dialog = self.designer = None  # kept, or Python would collect the open windows
-        self.section = self.doubts = None
+        self.section = self.doubts = self.pairs = None
         self.sample = SampleRun(iface)
         self.manual = ManualWindow(iface.mainWindow())
         theme = QgsApplication.getThemeIcon
@@ -44,6 +45,8 @@ class Menu(QObject):
                   "or where the boundary methods differ, and keeps what you decide there"), theme("/mActionZoomNext.svg"))
         self._add(tr("Cross-section"), self.open_section, tr("Points and lines of the road where you click in the map"),
                   theme("/mActionElevationProfile.svg"))
+        self._add(tr("Control points from paint"), self.open_pairs, tr("Places UAV images on the map: the same paint in each and in the intensity "
+                  "image, side by side to accept or refuse"), QIcon(str(ICON.parent / "icons" / "proposecontrolpoints.svg")))
         self._add(tr("Open the last report"), self.open_report, tr("The report of the run that ended last"), theme("/mIconHtml.svg"))
         self._add(tr("Table of the runs"), self.open_table, tr("Lengths, shares measured, warnings, seconds and failures of all runs since QGIS "
                   "was started"), theme("/mActionOpenTable.svg"))
@@ -103,6 +106,13 @@ class Menu(QObject):
             self.section = SectionDock(self.iface)
         return self.section
 
+    def open_pairs(self):
+        """The window that places UAV images by paint; what was found in it is there again when it is opened again."""
+        if self.pairs is None:
+            self.pairs = PairsDialog(self.iface)
+        self.pairs.show()
+        self.pairs.raise_()
+
     def next_doubt(self):
         """Pan to the next doubtful place of the newest road map, and say what is doubtful there."""
         groups = road_maps(QgsProject.instance().layerTreeRoot())
@@ -153,6 +163,10 @@ class Menu(QObject):
             if dock is not None:
                 dock.remove()
         self.section = self.doubts = None
+        if self.pairs is not None:
+            self.pairs.close()
+            self.pairs.deleteLater()
+            self.pairs = None
         self.manual.forget()
 
     def open_road_map(self, **values):

@@ -14,7 +14,7 @@ from qgis.PyQt.QtWidgets import QDockWidget
 from qgis.utils import iface, plugins
 
 PICTURES = Path(os.environ["LANEWRIGHT_PICTURES"])
-MAPS = ("window_result", "window_section", "window_corrections", "window_layout", "window_model")
+MAPS = ("window_result", "window_section", "window_corrections", "window_layout", "window_model", "window_pairs")
 SAID = Path(os.environ["LANEWRIGHT_SAID"])
 
 
@@ -202,6 +202,28 @@ def corrections(dock):
     window.close()
 
 
+def pairs():
+    """The UAV image of the sample survey and the intensity image of its road map: pairs of cut-outs, accepted and refused."""
+    from lanewright.core.sample.orthophoto import write_uav_image
+    from lanewright.core.sample.survey import make_sample_survey
+
+    path = Path(tempfile.mkdtemp()) / "flight_0031.tif"
+    write_uav_image(make_sample_survey(), path)
+    action_of(tr("Control points from paint")).trigger()
+    window = plugins["lanewright"].menu.pairs
+    window.add([str(path)])
+    window.propose()
+    needed(wait(240, lambda: window._run is None), "the control points took longer than 240 s")
+    needed(window.images[0].order == 2, f"too few pairs were accepted: {window.images[0].summary()}")
+    say(window.images[0].summary())
+    window.pairs.scrollToBottom()  # the doubtful ones come last
+    keep(window, "window_pairs")
+    window.place()
+    needed(wait(240, lambda: window._run is None), "the image took longer than 240 s")
+    needed(any(layer.source().endswith("_map.tif") for layer in QgsProject.instance().mapLayers().values()), "the image is not on the map")
+    window.close()
+
+
 def action_of(title):
     return next(action for action in plugins["lanewright"].menu.actions if action.text() == title)
 
@@ -271,7 +293,7 @@ def drive():
         iface.mainWindow().resize(1380, 860)
         wait(2)
         wanted = os.environ.get("LANEWRIGHT_STEPS", "").split()
-        for step in (menu, toolbox, dialog, columns, sample, doubts, layout, manual, batch, designer):
+        for step in (menu, toolbox, dialog, columns, sample, doubts, pairs, layout, manual, batch, designer):
             if not wanted or step.__name__ in wanted:
                 step()
         say("finished")

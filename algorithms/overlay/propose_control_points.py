@@ -50,8 +50,8 @@ class ProposeControlPoints(Algorithm):
             "corner of paint (ends of dashes, arrows, bars, stop lines) the two cut-outs are compared.\n\n"
             "A pair is accepted by default where its cut-outs look alike, nothing beside it looks the same, and the other pairs place it "
             "where it is. Where the paint repeats so that the whole image fits elsewhere as well, no pair is accepted and a warning says so. "
-            "Look through the pairs in the report, and set the field accepted in the table where you think otherwise: 1 is used by Georeference "
-            "image, 0 is not.\n\n"
+            "Look through the pairs with Control points from paint in the Lanewright menu, in the report, or in the table: points whose field "
+            "accepted is 1 are used by Georeference image, others are not.\n\n"
             "The pairs tell how well the image fits the point cloud, not how well either fits the ground. They lie on the road, so that the "
             "image is reliable there and less so beside it. Sun, shadow and dark paint do no harm; paint renewed between the two surveys does.")
     TAGS = ("UAV", "drone", "GCP", "control points", "matching", "registration", "orthoimage", "georeferencer")

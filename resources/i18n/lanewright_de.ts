@@ -3015,8 +3015,8 @@
         </message>
         <message>
             <location filename="../../algorithms/overlay/propose_control_points.py" />
-            <source>A pair is accepted by default where its cut-outs look alike, nothing beside it looks the same, and the other pairs place it where it is. Where the paint repeats so that the whole image fits elsewhere as well, no pair is accepted and a warning says so. Look through the pairs in the report, and set the field accepted in the table where you think otherwise: 1 is used by Georeference image, 0 is not.</source>
-            <translation>Ein Paar ist zunächst angenommen, wo seine Ausschnitte sich gleichen, nichts daneben genauso aussieht und die anderen Paare es an dieselbe Stelle legen. Wo sich die Farbe so wiederholt, dass das ganze Bild auch anderswo passt, wird kein Paar angenommen, und eine Warnung sagt es. Die Paare im Bericht durchsehen und in der Tabelle das Feld accepted ändern, wo man anderer Meinung ist: 1 verwendet „Bild georeferenzieren“, 0 nicht.</translation>
+            <source>A pair is accepted by default where its cut-outs look alike, nothing beside it looks the same, and the other pairs place it where it is. Where the paint repeats so that the whole image fits elsewhere as well, no pair is accepted and a warning says so. Look through the pairs with Control points from paint in the Lanewright menu, in the report, or in the table: points whose field accepted is 1 are used by Georeference image, others are not.</source>
+            <translation>Ein Paar ist zunächst angenommen, wo seine Ausschnitte sich gleichen, nichts daneben genauso aussieht und die anderen Paare es an dieselbe Stelle legen. Wo sich die Farbe so wiederholt, dass das ganze Bild auch anderswo passt, wird kein Paar angenommen, und eine Warnung sagt es. Die Paare mit „Passpunkte aus Farbe“ im Menü Lanewright durchsehen, im Bericht oder in der Tabelle: Punkte, deren Feld accepted 1 ist, verwendet „Bild georeferenzieren“, andere nicht.</translation>
         </message>
         <message>
             <location filename="../../algorithms/overlay/propose_control_points.py" />
@@ -4700,6 +4700,16 @@
         </message>
         <message>
             <location filename="../../desktop/menu.py" />
+            <source>Control points from paint</source>
+            <translation>Passpunkte aus Farbe</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/menu.py" />
+            <source>Places UAV images on the map: the same paint in each and in the intensity image, side by side to accept or refuse</source>
+            <translation>Bringt UAV-Bilder auf die Karte: dieselbe Farbe in jedem und im Intensitätsbild, nebeneinander zum Annehmen oder Ablehnen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/menu.py" />
             <source>Open the last report</source>
             <translation>Letzten Bericht öffnen</translation>
         </message>
@@ -4759,6 +4769,116 @@
             <translation>Seit dem Start von QGIS ist nichts gelaufen.</translation>
         </message>
         <message>
+            <location filename="../../desktop/overlay/image_pairs.py" />
+            <source>not looked for yet</source>
+            <translation>noch nicht gesucht</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/image_pairs.py" />
+            <source>{accepted} of {count} pairs accepted</source>
+            <translation>{accepted} von {count} Paaren angenommen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/image_pairs.py" />
+            <source>{residual:.1f} cm off</source>
+            <translation>{residual:.1f} cm daneben</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/image_pairs.py" />
+            <source>{number}: likeness {score:.2f}, {away}</source>
+            <translation>{number}: Ähnlichkeit {score:.2f}, {away}</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/image_pairs.py" />
+            <source>looks different</source>
+            <translation>sieht anders aus</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/image_pairs.py" />
+            <source>repeats nearby</source>
+            <translation>wiederholt sich daneben</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/image_pairs.py" />
+            <source>does not fit the others</source>
+            <translation>passt nicht zu den anderen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/image_pairs.py" />
+            <source>all of it fits elsewhere too</source>
+            <translation>alles passt auch anderswo</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/image_pairs.py" />
+            <source>Control points of {image}</source>
+            <translation>Passpunkte von {image}</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/image_pairs.py" />
+            <source>, RMSE {rmse:.1f} cm, each left out in turn</source>
+            <translation>, RMSE {rmse:.1f} cm, jedes der Reihe nach weggelassen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/pairs_dialog.py" />
+            <source>as the image says</source>
+            <translation>wie das Bild sagt</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/pairs_dialog.py" />
+            <source>Pixel size of the image on the ground</source>
+            <translation>Pixelgröße des Bildes am Boden</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/pairs_dialog.py" />
+            <source>Add images, choose the intensity image, and let control points be proposed.</source>
+            <translation>Bilder hinzufügen, das Intensitätsbild wählen und Passpunkte vorschlagen lassen.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/pairs_dialog.py" />
+            <source>Georeference the images</source>
+            <translation>Bilder georeferenzieren</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/pairs_dialog.py" />
+            <source>Add images…</source>
+            <translation>Bilder hinzufügen …</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/pairs_dialog.py" />
+            <source>Images</source>
+            <translation>Bilder</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/pairs_dialog.py" />
+            <source>Accept the selected</source>
+            <translation>Ausgewählte annehmen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/pairs_dialog.py" />
+            <source>Refuse the selected</source>
+            <translation>Ausgewählte ablehnen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/pairs_dialog.py" />
+            <source>Left the image, right the intensity image. A tick accepts a pair, a double click shows it on the map.</source>
+            <translation>Links das Bild, rechts das Intensitätsbild. Ein Haken nimmt ein Paar an, ein Doppelklick zeigt es auf der Karte.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/pairs_dialog.py" />
+            <source>Images of a flight</source>
+            <translation>Bilder einer Befliegung</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/pairs_dialog.py" />
+            <source>All files</source>
+            <translation>Alle Dateien</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/pairs_dialog.py" />
+            <source>cancelled</source>
+            <translation>abgebrochen</translation>
+        </message>
+        <message>
             <location filename="../../desktop/sample_run.py" />
             <source>The sample survey is being made and mapped; its layers appear when they are ready.</source>
             <translation>Die Beispielvermessung wird erzeugt und kartiert; ihre Layer erscheinen, sobald sie fertig sind.</translation>
@@ -4777,11 +4897,6 @@
             <location filename="../../desktop/sample_run.py" />
             <source>The sample survey was not mapped: {reason}</source>
             <translation>Die Beispielvermessung wurde nicht kartiert: {reason}</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/sample_run.py" />
-            <source>cancelled</source>
-            <translation>abgebrochen</translation>
         </message>
         <message>
             <location filename="../../desktop/section_dock.py" />

@@ -1,0 +1,1 @@
+"""Windows for images below the road map."""

@@ -1,0 +1,309 @@
+"""A window that places UAV images by paint: images in, pairs of cut-outs to accept or refuse, georeferenced images out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from qgis.core import (
+    QgsApplication,
+    QgsCoordinateTransform,
+    QgsCsException,
+    QgsMapLayerProxyModel,
+    QgsProcessingAlgRunnerTask,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
+    QgsProcessingOutputLayerDefinition,
+    QgsProject,
+    QgsRectangle,
+)
+from qgis.gui import QgsMapLayerComboBox
+from qgis.PyQt.QtCore import QSize, Qt
+from qgis.PyQt.QtGui import QBrush, QColor, QIcon
+from qgis.PyQt.QtWidgets import (
+    QAbstractItemView,
+    QDialog,
+    QDoubleSpinBox,
+    QFileDialog,
+    QFormLayout,
+    QHBoxLayout,
+    QLabel,
+    QListView,
+    QListWidget,
+    QListWidgetItem,
+    QProgressBar,
+    QPushButton,
+    QSplitter,
+    QVBoxLayout,
+    QWidget,
+)
+
+from ...core.common.errors import RoadExtractionError
+from ...processing_provider.texts import tr
+from .image_pairs import GAP, GREEN, RED, SIDE, ImagePairs, pair_text
+
+IMAGES = "*.tif *.tiff *.jpg *.jpeg *.png *.TIF *.TIFF *.JPG *.JPEG *.PNG"
+NEAR = 6.0      # m of ground about a pair that the map zooms to
+_ID = Qt.ItemDataRole.UserRole
+
+
+class PairsDialog(QDialog):
+    """The window; `images` are its ImagePairs."""
+
+    def __init__(self, iface):
+        super().__init__(iface.mainWindow())
+        self.setWindowTitle(tr("Control points from paint"))
+        self.setWindowFlag(Qt.WindowType.WindowMaximizeButtonHint)
+        self.iface = iface
+        self.images: list[ImagePairs] = []
+        self._waiting: list = []
+        self._run = None  # (task, context, feedback) of what is running: QGIS keeps no reference to them
+        self._filling = False
+        self._build()
+        self.resize(1160, 740)
+
+    def _build(self):
+        self.list = QListWidget()
+        self.list.setWordWrap(True)
+        self.list.currentRowChanged.connect(lambda row: self._show_pairs())
+        add, remove = QPushButton(tr("Add images…")), QPushButton(tr("Remove"))
+        add.clicked.connect(lambda checked=False: self.add(self.ask_for_images()))
+        remove.clicked.connect(lambda checked=False: self._remove())
+        self.intensity = QgsMapLayerComboBox()
+        self.intensity.setFilters(QgsMapLayerProxyModel.Filter.RasterLayer)
+        self.intensity.layerChanged.connect(lambda layer: self._show_pairs())
+        self._prefer_intensity()
+        self.size = QDoubleSpinBox()
+        self.size.setRange(0.0, 1.0)
+        self.size.setDecimals(3)
+        self.size.setSingleStep(0.005)
+        self.size.setSuffix(" m")
+        self.size.setSpecialValueText(tr("as the image says"))
+        self.rough = QgsMapLayerComboBox()
+        self.rough.setFilters(QgsMapLayerProxyModel.Filter.PointLayer)
+        self.rough.setAllowEmptyLayer(True)
+        self.rough.setLayer(None)
+        self.propose_button = QPushButton(tr("Propose control points"))
+        self.propose_button.clicked.connect(lambda checked=False: self.propose())
+        form = QFormLayout()
+        form.setRowWrapPolicy(QFormLayout.RowWrapPolicy.WrapAllRows)
+        form.addRow(tr("Intensity image"), self.intensity)
+        form.addRow(tr("Pixel size of the image on the ground"), self.size)
+        form.addRow(tr("Two rough points"), self.rough)
+        left = QWidget()
+        column = QVBoxLayout(left)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(QLabel(tr("Images")))
+        column.addWidget(self.list, 1)
+        column.addLayout(_row(add, remove))
+        column.addLayout(form)
+        column.addWidget(self.propose_button)
+        self.pairs = QListWidget()
+        self.pairs.setViewMode(QListView.ViewMode.IconMode)
+        self.pairs.setResizeMode(QListView.ResizeMode.Adjust)
+        self.pairs.setMovement(QListView.Movement.Static)
+        self.pairs.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
+        self.pairs.setIconSize(QSize(2 * SIDE + GAP, SIDE))
+        self.pairs.setSpacing(6)
+        self.pairs.itemChanged.connect(self._ticked)
+        self.pairs.itemDoubleClicked.connect(self._zoom)
+        self.told = QLabel(tr("Add images, choose the intensity image, and let control points be proposed."))
+        self.told.setWordWrap(True)
+        accept, refuse = QPushButton(tr("Accept the selected")), QPushButton(tr("Refuse the selected"))
+        accept.clicked.connect(lambda checked=False: self.accept_selected(True))
+        refuse.clicked.connect(lambda checked=False: self.accept_selected(False))
+        self.place_button = QPushButton(tr("Georeference the images"))
+        self.place_button.clicked.connect(lambda checked=False: self.place())
+        self.bar = QProgressBar()
+        self.bar.hide()
+        right = QWidget()
+        column = QVBoxLayout(right)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(QLabel(tr("Left the image, right the intensity image. A tick accepts a pair, a double click shows it on the map.")))
+        column.addWidget(self.pairs, 1)
+        column.addWidget(self.told)
+        column.addWidget(self.bar)
+        column.addLayout(_row(accept, refuse, None, self.place_button))
+        parts = QSplitter()
+        parts.addWidget(left)
+        parts.addWidget(right)
+        parts.setSizes([250, 910])
+        QVBoxLayout(self).addWidget(parts)
+        self._enable()
+
+    def _prefer_intensity(self):
+        """Choose the intensity image of the last road map, where there is one."""
+        for layer in QgsProject.instance().mapLayers().values():
+            if "intensity" in Path(layer.source()).stem.lower() or layer.name().startswith(tr("Intensity image")):
+                self.intensity.setLayer(layer)
+
+    # -- images -----------------------------------------------------------------------------------
+
+    def ask_for_images(self) -> list[str]:
+        """The files that the user chooses."""
+        return QFileDialog.getOpenFileNames(self, tr("Images of a flight"), "", f"{tr('Images')} ({IMAGES});;{tr('All files')} (*.*)")[0]
+
+    def add(self, paths: list[str]) -> None:
+        """Add images to the list."""
+        known = {one.path for one in self.images}
+        for path in paths:
+            if path not in known:
+                self.images.append(ImagePairs(path))
+                self.list.addItem("")
+        self._tell()
+        if self.list.currentRow() < 0 and self.images:
+            self.list.setCurrentRow(0)
+
+    def _remove(self):
+        row = self.list.currentRow()
+        if row >= 0 and self._run is None:
+            del self.images[row]
+            self.list.takeItem(row)
+            self._tell()
+
+    @property
+    def current(self) -> ImagePairs | None:
+        """The image whose pairs are shown."""
+        row = self.list.currentRow()
+        return self.images[row] if 0 <= row < len(self.images) else None
+
+    def _tell(self):
+        """The state of every image in the list, that of the current one below its pairs."""
+        for row, one in enumerate(self.images):
+            self.list.item(row).setText(f"{one.name}\n{one.summary()}")
+        if self.current is not None:
+            self.told.setText(f"{self.current.name}: {self.current.summary()}")
+        self._enable()
+
+    def _enable(self):
+        idle = self._run is None
+        self.propose_button.setEnabled(idle and bool(self.images) and self.intensity.currentLayer() is not None)
+        self.place_button.setEnabled(idle and any(one.order for one in self.images))
+        self.bar.setVisible(not idle)
+
+    # -- pairs ------------------------------------------------------------------------------------
+
+    def _show_pairs(self):
+        self._filling = True
+        self.pairs.clear()
+        one, intensity = self.current, self.intensity.currentLayer()
+        if one is not None and intensity is not None and one.layer is not None:
+            try:
+                pictures = one.pictures(intensity.source())
+            except RoadExtractionError as problem:
+                pictures = []
+                self.told.setText(str(problem))
+            for row, picture in zip(one.rows(), pictures):
+                item = QListWidgetItem(QIcon(picture), "")
+                item.setData(_ID, row.id())
+                item.setFlags(item.flags() | Qt.ItemFlag.ItemIsUserCheckable)
+                self.pairs.addItem(item)
+        self._filling = False
+        self._label()
+
+    def _label(self):
+        """Text, tick and colour of every pair, from the layer."""
+        self._filling = True
+        rows = {row.id(): row for row in self.current.rows()} if self.current is not None else {}
+        for number in range(self.pairs.count()):
+            item = self.pairs.item(number)
+            row = rows.get(item.data(_ID))
+            if row is not None:
+                item.setText(pair_text(row))
+                item.setCheckState(Qt.CheckState.Checked if row["accepted"] else Qt.CheckState.Unchecked)
+                item.setForeground(QBrush(QColor(GREEN if row["accepted"] else RED)))
+        self._filling = False
+        self._tell()
+
+    def _ticked(self, item):
+        if not self._filling and self.current is not None:
+            self.current.accept([item.data(_ID)], item.checkState() == Qt.CheckState.Checked)
+            self._label()
+
+    def accept_selected(self, accepted: bool) -> None:
+        """Accept or refuse the pairs that are selected."""
+        ids = [item.data(_ID) for item in self.pairs.selectedItems()]
+        if ids and self.current is not None:
+            self.current.accept(ids, accepted)
+            self._label()
+
+    def _zoom(self, item):
+        layer = self.current.layer if self.current is not None else None
+        if layer is None:
+            return
+        at = layer.getFeature(item.data(_ID)).geometry().asPoint()
+        canvas = self.iface.mapCanvas()
+        around = QgsRectangle(at.x() - NEAR, at.y() - NEAR, at.x() + NEAR, at.y() + NEAR)
+        try:
+            canvas.setExtent(QgsCoordinateTransform(layer.crs(), canvas.mapSettings().destinationCrs(),
+                                                    QgsProject.instance()).transformBoundingBox(around))
+        except QgsCsException:
+            return
+        canvas.refresh()
+
+    # -- runs -------------------------------------------------------------------------------------
+
+    def propose(self) -> None:
+        """Look for pairs in every image that has none yet, one image after the other."""
+        inputs = {"INTENSITY_IMAGE": self.intensity.currentLayer().id(), "PIXEL_SIZE": self.size.value()}
+        if self.rough.currentLayer() is not None:
+            inputs["ROUGH_POINTS"] = self.rough.currentLayer().id()
+        output = {"CONTROL_POINTS": QgsProcessingOutputLayerDefinition("TEMPORARY_OUTPUT", QgsProject.instance())}
+        self._waiting = [("proposecontrolpoints", one, {"IMAGE": one.path, **inputs, **output}) for one in self.images if one.layer is None]
+        self._next()
+
+    def place(self) -> None:
+        """Georeference every image that has enough accepted pairs, and put it into the project."""
+        self._waiting = [("georeferenceimage", one, {
+            "IMAGE": one.path, "GCPS": one.layer.id(), "ORDER": one.order,
+            "OUTPUT": QgsProcessingOutputLayerDefinition(_free_name(one.path), QgsProject.instance())}) for one in self.images if one.order]
+        self._next()
+
+    def _next(self):
+        if not self._waiting:
+            self._run = None
+            self._show_pairs()
+            return
+        name, one, inputs = self._waiting.pop(0)
+        algorithm = QgsApplication.processingRegistry().createAlgorithmById(f"lanewright:{name}")
+        context, feedback = QgsProcessingContext(), QgsProcessingFeedback(False)
+        context.setProject(QgsProject.instance())
+        context.setFeedback(feedback)
+        feedback.progressChanged.connect(lambda share: self.bar.setValue(int(share)))
+        task = QgsProcessingAlgRunnerTask(algorithm, inputs, context, feedback)
+        task.executed.connect(lambda ok, results: self._ended(algorithm, one, inputs, ok, results))
+        self._run = task, context, feedback
+        self.bar.setValue(0)
+        self.told.setText(f"{one.name}: {algorithm.displayName()}…")
+        self._enable()
+        QgsApplication.taskManager().addTask(task)
+
+    def _ended(self, algorithm, one, inputs, ok, results):
+        from processing.gui.Postprocessing import handleAlgorithmResults
+
+        _, context, feedback = self._run
+        if ok:
+            handleAlgorithmResults(algorithm, context, feedback, inputs)
+            layer = QgsProject.instance().mapLayer(results.get("CONTROL_POINTS", ""))
+            if layer is not None:
+                one.found(layer)
+        elif "CONTROL_POINTS" in inputs:
+            said = feedback.textLog().strip().splitlines()
+            one.failed_because(said[-1] if said else tr("cancelled"))
+        self._next()
+
+
+def _row(*widgets):
+    row = QHBoxLayout()
+    for widget in widgets:
+        if widget is None:
+            row.addStretch()
+        else:
+            row.addWidget(widget)
+    return row
+
+
+def _free_name(path):
+    """A GeoTIFF beside the image that is not there yet."""
+    image = Path(path)
+    names = (image.with_name(f"{image.stem}_map{number}.tif") for number in ("", *range(2, 1000)))
+    return str(next(name for name in names if not name.exists()))
