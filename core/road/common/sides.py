@@ -52,9 +52,23 @@ class OutermostTrack:
 def work_sections(survey: Survey, road: int, width: float) -> list[tuple[int, int]]:
     """(first, last + 1) profile numbers of the sections of a road, about WORK_SECTION_LENGTH each; `width` is m of road per profile."""
     start, end = survey.store.span(road)
-    first, last = int(np.floor(start / width)), int(np.ceil(end / width))
-    count = max(int(np.ceil((end - start) / WORK_SECTION_LENGTH)), 1)
-    bounds = np.unique(np.rint(np.linspace(first, last, count + 1)).astype(int))
+    return fixed_sections(int(np.floor(start / width)), int(np.ceil(end / width)), width)
+
+
+def fixed_sections(first: int, last: int, width: float) -> list[tuple[int, int]]:
+    """Profiles or planes of a road in sections that are cut from station 0, so that two surveys with the same stations have the same ones.
+
+    Parameters
+    ----------
+    first, last : number of the first one, and of the last one + 1
+    width : m from one to the next
+
+    Returns
+    -------
+    list of (first, last + 1), each about WORK_SECTION_LENGTH long, those at the ends shorter
+    """
+    length = max(int(round(WORK_SECTION_LENGTH / width)), 1)
+    bounds = np.unique(np.r_[first, np.arange(first // length + 1, -(-last // length)) * length, last])
     return [(int(a), int(b)) for a, b in zip(bounds[:-1], bounds[1:])]
 
 

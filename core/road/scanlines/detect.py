@@ -25,7 +25,7 @@ from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.in_line import with_pieces_in_line
 from ..common.occlusion import HIDDEN_POINT_SPACING, MIN_OCCLUDER_HEIGHT, OcclusionGrid
 from ..common.pseudo_scanlines import MIN_SCANNER_NOISE
-from ..common.sides import BLOCK_SECTION_LENGTH, MAX_CURB_OFFSET, SIDE_SIGNS, OutermostTrack, expected_height, join_sections
+from ..common.sides import MAX_CURB_OFFSET, SIDE_SIGNS, OutermostTrack, expected_height, fixed_sections, join_sections
 from ..common.tracking import curb_chains, drop_short_curbs, link_apart, select_along_road
 from ..edges.fit import EDGE_VERTEX_SPACING, MAX_EDGE_JUMP, MAX_EDGE_SKEW, MIN_EDGE_LENGTH, MIN_HIDDEN_SHARE, EdgeCurve, without_outliers
 from ..edges.road_edges import EdgePiece, RoadEdges, joined_pieces
@@ -125,7 +125,8 @@ def curbs_from_scanlines(source: SurveyScanlines | LayerScanlines, settings: Sca
 def _corners_of_road(source, road, settings, progress):
     """Corners of each side, merged over passes and scanners where they agree, and what was measured beside the road."""
     interval = source.interval
-    sections = _sections(*source.span(road), interval)
+    start, end = source.span(road)
+    sections = fixed_sections(int(np.floor(start / interval)), int(np.ceil(end / interval)) + 1, interval)
     first, last = sections[0][0], sections[-1][1]
     occlusion = {side: OcclusionGrid(interval, first, last - first, MAX_CURB_OFFSET) for side in SIDE_SIGNS}
     phase = Phase(corners_of_section, source, (road, settings), lambda section: source.stretch(road, *(k * interval for k in section)),
@@ -180,14 +181,6 @@ def corners_of_section(source: SurveyScanlines | LayerScanlines, section: tuple[
         for side, corners in _corners(lines, heights, rows, interval, candidates, settings):
             found[side].append(corners)
     return {side: merged_corners(parts) for side, parts in found.items() if parts}, occlusion
-
-
-def _sections(start, end, interval):
-    """The section planes of a road in parts of about 20 m: list of (first, last + 1) numbers."""
-    first, last = int(np.floor(start / interval)), int(np.ceil(end / interval)) + 1
-    count = max(int(np.ceil((end - start) / BLOCK_SECTION_LENGTH)), 1)
-    bounds = np.unique(np.rint(np.linspace(first, last, count + 1)).astype(int))
-    return [(int(a), int(b)) for a, b in zip(bounds[:-1], bounds[1:])]
 
 
 def _level_beside(source, road, number, stations):

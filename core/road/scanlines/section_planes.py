@@ -21,7 +21,7 @@ from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ...execution.phase import Phase
 from ...survey.lattice.scan_lattice import ScanLattice, find_lattice, scanner_runs
-from ..common.sides import BLOCK_SECTION_LENGTH
+from ..common.sides import fixed_sections
 from .from_points import MIN_SLICE_LENGTH, point_scanlines
 from .mesh import MAX_EDGE, MAX_LINES_AHEAD, MAX_RIB, PlaneVertices, Ribs, increasing, plane_order, ribs_of, scanner_lines, slanting_edges
 from .scanlines import Scanlines
@@ -132,11 +132,12 @@ def all_scanlines(survey: Survey, road: int, settings: ScanlineSettings = Scanli
     if lattice is None:
         lattice = find_lattice(survey, settings.rotation_frequency)
     start, end = survey.store.span(road)
-    bounds = np.linspace(start, end, max(int(np.ceil((end - start) / BLOCK_SECTION_LENGTH)), 1) + 1)
+    interval = settings.interval
+    sections = fixed_sections(int(np.floor(start / interval)), int(np.ceil(end / interval)) + 1, interval)
 
     phase = Phase(scanlines_of_section, survey, (road, settings, lattice), lambda section: survey.stretch(road, *section),
                   lambda section: survey.store.points_between(road, *section), Scanlines.join)
-    yield from survey.executor.run(phase, list(zip(bounds[:-1].tolist(), bounds[1:].tolist())), progress)
+    yield from survey.executor.run(phase, [(a * interval, b * interval) for a, b in sections], progress)
 
 
 def scanlines_of_section(survey: Survey, section: tuple[float, float], road: int, settings: ScanlineSettings, lattice: ScanLattice) -> Scanlines:
