@@ -116,7 +116,7 @@ class Cluster:
             work.submit(parts)
             for part in parts:
                 while not part.done:
-                    progress.report(sum(one.done for one in parts) / len(parts))
+                    progress.report(work.done / len(parts))
                     work.take()
                 result = work.result(part)
                 if not keep:
@@ -152,7 +152,7 @@ class _Work:
 
     def __init__(self, cluster, phase, shipped):
         self.cluster, self.client, self.phase, self.shipped = cluster, cluster.client, phase, shipped
-        self.code, self.pending, self.lost_since = code_digest(), {}, None
+        self.code, self.pending, self.lost_since, self.done = code_digest(), {}, None, 0
         self.ready: queue.SimpleQueue = queue.SimpleQueue()
 
     def submit(self, parts):
@@ -191,9 +191,13 @@ class _Work:
         if "code" in answer:
             raise RoadExtractionError("A worker that came later has another Lanewright than this computer. Install this one there.")
         raise_answer(answer, self.phase, part.item, "A worker of the cluster")
-        part.done = True
+        self._finish(part)
         if part.whole is not None and all(half.done for half in part.whole.halves):
             self._join(part.whole)
+
+    def _finish(self, part):
+        part.done = True
+        self.done += part.whole is None
 
     def _failed(self, part, error):
         if type(error).__name__ != "KilledWorker":
@@ -214,7 +218,7 @@ class _Work:
         write_plain(part.file, self.phase.join([self.result(half) for half in part.halves]), self.cluster.folder)
         for half in part.halves:
             half.file.unlink(missing_ok=True)
-        part.done = True
+        self._finish(part)
 
     def result(self, part):
         """The result of a part that is done."""
