@@ -10,7 +10,7 @@ __getattr__, __all__ = public(__name__, {
     "fit_of_export": ("Misses", "border_misses", "driving_line_misses"),
     "map_layers": ("MapLayers", "MapLine"),
     "painted_objects": ("stop_lines", "walked_crossings"),
-    "shared_borders": ("SharedBorders", "share_borders", "with_shared_borders"),
+    "shared_borders": ("SharedBorders", "meet_lanes", "share_borders", "with_shared_borders"),
     "sources": ("RoadMapSource", "checked"),
     "surface_heights": ("with_surface_heights",),
     "xml_tree": ("XmlElement", "read_xml", "xml_text"),

@@ -35,12 +35,41 @@ class SharedBorders:
 
 def with_shared_borders(source: RoadMapSource) -> RoadMapSource:
     """A road map whose lanes share their borders, with a note for the user where one was moved by more than a line is wide."""
-    found = share_borders(source.lanes)
+    found = share_borders(meet_lanes(source.lanes))
     notes = list(source.notes)
     if found.moved > TOLD_MOVE:
         notes.append(f"Maps have one border between two lanes: facing borders, as of a double line, were led along their middle, moved by up to "
                      f"{found.moved:.2f} m.")
     return replace(source, lanes=found.lanes, gaps=found.gaps, notes=notes)
+
+
+def meet_lanes(lanes: Lanes) -> Lanes:
+    """Lanes whose connectors begin and end at the corners of the lanes that they join, where they miss them by less than WIDEST_DOUBLE.
+
+    The last metres of a connector, SHARED_FADE or half of it, follow its end.
+    """
+    row_of = {name: k for k, name in enumerate(lanes.lane_id)}
+    left, right = lanes.left.copy(), lanes.right.copy()
+    for k, names in enumerate(lanes.successors):
+        for j in (row_of[name] for name in names if name in row_of):
+            for one, other, at_end in ((k, j, True), (j, k, False)):
+                if lanes.type[one] != "connector" or lanes.type[other] == "connector":
+                    continue
+                rows = np.arange(lanes.start[one], lanes.start[one + 1])
+                here, there = (rows[-1], lanes.start[other]) if at_end else (rows[0], lanes.start[other + 1] - 1)
+                for side in (left, right):
+                    away = side[there] - side[here]
+                    if SAME_VERTEX < np.hypot(*away[:2]) < WIDEST_DOUBLE or SAME_VERTEX > np.hypot(*away[:2]) and away[2]:
+                        side[rows] += _fading(side[rows], at_end)[:, None] * away
+    return replace(lanes, left=left, right=right)
+
+
+def _fading(line, at_end):
+    """(n,) share from 0 to 1 that a line's places have of what its end is moved."""
+    along = np.append(0.0, np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T)))
+    away = along[-1] - along if at_end else along
+    share = np.clip(1 - away / max(min(SHARED_FADE, along[-1] / 2), 1e-6), 0.0, 1.0)
+    return share**2 * (3 - 2 * share)
 
 
 def share_borders(lanes: Lanes) -> SharedBorders:

@@ -38,7 +38,7 @@ WORDS = {
 # (tag, attribute) -> (least, most, whether the least itself is allowed)
 RANGES = {
     ("roadMark", "width"): NOT_NEGATIVE, ("line", "length"): POSITIVE, ("line", "space"): NOT_NEGATIVE, ("line", "width"): NOT_NEGATIVE,
-    ("object", "length"): NOT_NEGATIVE, ("object", "width"): NOT_NEGATIVE, ("object", "height"): NOT_NEGATIVE, ("object", "radius"): NOT_NEGATIVE,
+    ("object", "length"): POSITIVE, ("object", "width"): POSITIVE, ("object", "height"): NOT_NEGATIVE, ("object", "radius"): NOT_NEGATIVE,
     ("signal", "s"): NOT_NEGATIVE, ("superelevation", "a"): (-PI_HALF, PI_HALF, True), ("width", "a"): (-1.0, 50.0, True),
 }
 NEEDED_ATTRIBUTES = {"object": ("id", "s", "t"), "signal": ("id", "s", "t"), "lane": ("id", "type"), "connection": ("id",)}

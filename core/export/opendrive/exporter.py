@@ -154,11 +154,12 @@ class _Drafting:
         lost = sum(1 for one in inside for cell in one.cells if not cell.direction)
         if lost:
             self.notes.append(f"{lost} pieces that nobody drives lie within junctions, where OpenDRIVE has no place for them.")
+        for cell in ways:   # all run with their traffic
+            if cell.direction < 0:
+                Slice([cell]).turned()
         for way in end_to_end(ways):
             # what comes from nowhere or leads nowhere is no way through
-            through = bool(way[0].before) and bool(way[-1].after)
-            strip = [Slice([cell]) for cell in way]
-            found.append(([one.turned() for one in strip[::-1]] if way[0].direction < 0 else strip, through))
+            found.append(([Slice([cell]) for cell in way], bool(way[0].before) and bool(way[-1].after)))
         return found
 
     def road(self, strip: list[Slice], number: int, single: bool) -> DraftRoad:

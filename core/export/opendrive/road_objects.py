@@ -16,6 +16,7 @@ SAMPLES = 1.0          # m between places of reference lines that objects are he
 FARTHEST = 25.0        # m from a reference line
 SIMPLER = 0.02         # m by which an outline may be straightened
 STOP_LINE_HALF = 0.15  # m, half of the breadth of a stop line whose outline is not known
+THINNEST = 0.01        # m of an object's length and width at the least: the format has none of 0
 NAME_OF_CLASS = {"hatch": ("roadMark", "hatched area"), "arrow": ("roadMark", "arrow")}
 
 
@@ -60,9 +61,18 @@ def _places(roads: list[MapRoad]) -> tuple[shapely.STRtree, np.ndarray, np.ndarr
 
 
 def _object(number: int, kind: str, name: str, corners: np.ndarray, road: MapRoad, near: float) -> dict[str, Any]:
+    """The attributes of an object; its outline is told along the road, or beside its own place where it reaches beyond the road's end."""
     s, t = feet(road.plan, corners[:, :2], np.full(len(corners), near))
-    s = np.clip(s, 0.0, road.length)
-    height = corners[:, 2] - road.elevation.at(s)
-    return {"id": str(number), "type": kind, "subtype": "", "name": name, "orientation": "none", "s": float(s.mean()), "t": float(t.mean()),
-            "zOffset": 0.0, "length": float(np.ptp(s)), "width": float(np.ptp(t)), "hdg": 0.0, "height": 0.0,
-            "corners": np.c_[s, t, np.round(height, 4)], "local": False}
+    at, aside = float(np.clip(s.mean(), 0.0, road.length)), float(t.mean())
+    local = bool(s.min() < 0.0 or s.max() > road.length)
+    if local:
+        (place,), (heading,), _ = road.plan.at(np.array([at]))
+        way = np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])
+        u, v = ((corners[:, :2] - place) @ way).T
+        outline = np.c_[u, v - aside, corners[:, 2] - road.elevation.at(at)]
+    else:
+        outline = np.c_[s, t, corners[:, 2] - road.elevation.at(s)]
+    outline[:, 2] = np.round(outline[:, 2], 4)
+    length, width = (max(float(size), THINNEST) for size in np.ptp(outline[:, :2], axis=0))
+    return {"id": str(number), "type": kind, "subtype": "", "name": name, "orientation": "none", "s": at, "t": aside, "zOffset": 0.0,
+            "length": length, "width": width, "hdg": 0.0, "height": 0.0, "corners": outline, "local": local}

@@ -107,8 +107,9 @@ def _reach(strip, index, guide):
 def _reference(points, tolerance, ends, turn_tolerance, reach):
     """The reference line; a border with a corner is cut short by it, and the lane offset has the rest."""
     # to meet other roads squarely matters more than to lie on the border, and no border may fold back in a curve
-    for guide in (points, *(_smoothed(points, width) for width in SMOOTHER)):
-        for headings in (ends, (None, None)):
+    guides = [points, *(_smoothed(points, width) for width in SMOOTHER)]
+    for headings in (ends, (None, None)):
+        for guide in guides:
             for loose in LOOSER:
                 plan = fit_reference(guide, loose * tolerance, headings, turn_tolerance)
                 if plan is not None and not _folds(plan, points, reach):

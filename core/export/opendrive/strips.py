@@ -261,7 +261,7 @@ def strips_of(slices: list[Slice], breaks: set[tuple[int, int]]) -> list[list[Sl
 
 
 def end_to_end(cells: list[Cell]) -> list[list[Cell]]:
-    """Single lanes that follow each other without a fork, each such row along the road's direction."""
+    """Single lanes, all in the direction of travel, that follow each other without a fork."""
     known = {id(cell) for cell in cells}
 
     def beyond(cell: Cell, ahead: bool) -> Cell | None:

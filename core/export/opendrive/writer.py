@@ -126,8 +126,9 @@ def _add_object(objects: XmlElement, item: dict, minor: int) -> None:
     element = objects.add("object", id=item["id"], type=item["type"], name=item["name"], s=item["s"], t=item["t"], zOffset=item["zOffset"],
                           orientation=item["orientation"], length=item["length"], width=item["width"], hdg=item["hdg"])
     outline = element.add("outlines").add("outline", id=0, fillType="paint" if minor >= FILLED_BY_PAINT else None, outer="true", closed="true")
-    for number, (s, t, dz) in enumerate(item["corners"]):
-        outline.add("cornerRoad", id=number, s=s, t=t, dz=dz, height=0.0)
+    tag, names = ("cornerLocal", ("u", "v", "z")) if item["local"] else ("cornerRoad", ("s", "t", "dz"))
+    for number, corner in enumerate(item["corners"]):
+        outline.append(XmlElement(tag, {"id": number} | dict(zip(names, corner)) | {"height": 0.0}))
 
 
 def _round(value: float) -> float:

@@ -170,6 +170,23 @@ def test_crossings_and_stop_lines_are_objects_where_they_lie(tmp_path):
     np.testing.assert_allclose(np.ptp(crosswalk["corners"][:, :2], axis=0), [4, 6.5], atol=0.01)
 
 
+@pytest.mark.parametrize("version", ["1.7", "1.8"])
+def test_a_crossing_beyond_the_end_of_its_road_keeps_its_size_and_place(tmp_path, version):
+    markings, line = Features("PolygonZ", MARKINGS), Axis(((60.0, 0.0, 0.0),), 0.0, 0.0, 0.4)
+    for t in np.arange(-3.0, 3.1, 1.0):
+        markings.add(shapely.polygons(line.at([-5, -1, -1, -5], [t - 0.25, t - 0.25, t + 0.25, t + 0.25])), **{"class": "zebra"})
+    scene = LaneScene()
+    scene.add(line, 0.0, -3.5, **kinds())
+    scene.add(line, 3.5, 0.0, lane=2, direction=-1, **kinds())
+    _, whole = exported(tmp_path, scene.lanes(), OpenDriveSettings(version=version), markings=markings)
+    assert not check_opendrive(whole).found
+    crosswalk, = whole.roads[0].objects
+    assert crosswalk["local"] and crosswalk["s"] == 0
+    np.testing.assert_allclose(np.ptp(crosswalk["corners"][:, :2], axis=0), [4, 6.5], atol=0.01)
+    np.testing.assert_allclose(crosswalk["corners"][:, 0].mean(), -3.0, atol=0.01)
+    assert (crosswalk["length"], crosswalk["width"]) == pytest.approx((4, 6.5), abs=0.01)
+
+
 def test_the_false_origin_and_the_reference_bring_the_map_back_to_its_place(tmp_path):
     draft, whole = exported(tmp_path, street())
     assert np.abs(whole.roads[0].plan.at(np.array([0.0]))[0]).max() < 200 and whole.offset[0] % 100 == 0

@@ -10,9 +10,9 @@ from lanewright.core.export.opendrive.exporter import draft_opendrive
 from lanewright.core.export.opendrive.layers import layers_of_opendrive
 from lanewright.core.export.opendrive.reader import read_opendrive
 from lanewright.core.export.opendrive.writer import opendrive_text
-from lanewright.core.export.shared_borders import SHARED_FADE, share_borders, with_shared_borders
+from lanewright.core.export.shared_borders import SHARED_FADE, meet_lanes, share_borders, with_shared_borders
 from lanewright.core.export.sources import RoadMapSource, checked
-from made_lanes import CRS, Axis, LaneScene, double_line, kinds, parting, street
+from made_lanes import CRS, Axis, LaneScene, crossing, double_line, kinds, parting, street
 from map_files import written
 
 
@@ -102,6 +102,19 @@ def test_where_lanes_part_there_is_a_junction_with_a_way_for_each(tmp_path):
     again = layers_of_opendrive(whole).lanes
     led = {(names[id], names[other]) for id, others in zip(again.lane_id, again.successors) for other in others if names[id] != names[other]}
     assert led == {(id, other) for id, others in zip(lanes.lane_id, lanes.successors) for other in others}
+
+
+@pytest.mark.parametrize("off", [0.05, 0.3])
+def test_a_connector_begins_and_ends_where_its_lanes_do(tmp_path, off):
+    lanes = crossing()
+    aside = np.repeat(lanes.type == "connector", np.diff(lanes.start))[:, None] * np.array([off, off / 2, 0.0])
+    missed = replace(lanes, left=lanes.left + aside, right=lanes.right + aside)
+    met = meet_lanes(missed)
+    np.testing.assert_allclose(met.left[lanes.start[:-1]], lanes.left[lanes.start[:-1]], atol=1e-9)
+    np.testing.assert_allclose(met.right[lanes.start[1:] - 1], lanes.right[lanes.start[1:] - 1], atol=1e-9)
+    _, _, whole = exported(tmp_path, missed)
+    assert "gap at a link" in check_opendrive(read_opendrive(written(tmp_path, opendrive_text(draft_opendrive(RoadMapSource(missed)).map)))).counts()
+    assert "gap at a link" not in check_opendrive(whole).counts()
 
 
 def test_a_corner_in_the_middle_line_folds_no_lane(tmp_path):

@@ -125,6 +125,7 @@ STATED = [
     ("street", "value", "an object of unknown type", things(thing(type="zebra"))),
     ("street", "value", "an object without s", things(thing(s=None))),
     ("street", "value", "an object of negative length", things(thing(length="-3"))),
+    ("street", "value", "an object without length", things(thing(length="0"))),
     ("street", "id twice", "an object twice", things(thing(), thing())),
     ("street", "value", "an outline of two corners", things(thing(inside=f'<outlines><outline id="0">{CORNERS}</outline></outlines>'))),
     ("street", "lane link", "an object on lanes that are not there", things(thing(inside='<validity fromLane="-9" toLane="-7"/>'))),
