@@ -10,7 +10,7 @@ import numpy as np
 from ..common.progress import Progress
 from ..countries.catalogue import country
 from ..markings.cross_section.roads import EstimatedRoad, estimate_roads
-from ..markings.cross_section.sections import STATION_STEP, CrossSections, sections_of_edges, sections_of_lines
+from ..markings.cross_section.sections import STATION_STEP, CrossSections, sections_of_edges, sections_of_lines, sections_of_pavement
 from ..markings.lines.painted_lines import PaintedLines
 from ..markings.objects.marking_objects import MarkingObjects
 from ..road.edges.road_edges import RoadEdges
@@ -63,7 +63,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     arcs: list[dict[str, Any]] = []
     areas: list[dict[str, Any]] = []
     lanes: dict[int, RoadLanes] = {}
-    curbs = sections_of_edges(edges) if edges is not None else None
+    curbs, pavement = (sections_of_edges(edges), sections_of_pavement(edges)) if edges is not None else (None, {})
     estimates = estimate_roads(sections_of_lines(marking_lines), frame, settings.lane_width or country(settings.country).usual_lane,
                                settings.traffic_side, curbs, markings, road_points, width_asked=bool(settings.lane_width))
     progress.report(0.4)
@@ -82,7 +82,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
             sigma = lane_sigma(track, course, s[track.first:track.last + 1], frame.roads[number], frame.pass_sigma.get(number, 0.0))
             rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(track, track.direction, course, elements, one.lines, z, sigma)]
             arcs += [dict(row, road=number, lane=lane) for row in _lane_curves(track.direction, elements)]
-        areas += lane_areas(one, curbs.get(number) if curbs else None, tracks, heights, frame, number)
+        areas += lane_areas(one, curbs.get(number) if curbs else None, tracks, heights, frame, number, pavement.get(number))
         lanes[number] = RoadLanes(s, tracks, heights)
         progress.report(0.4 + 0.6 * (count + 1) / len(estimates.roads))
     areas += connectors_between_roads(lanes, frame, areas)

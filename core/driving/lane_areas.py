@@ -12,6 +12,7 @@ from .centreline import status_pieces, without_short_status
 from .connectors import NEXT_LANE_GAP, NO_BORDER, connectors_on_road
 from .lane_track import LANE_STATUS, LaneTrack
 from .lanes_layer import Lanes
+from .shoulders import shoulders
 
 if TYPE_CHECKING:
     from ..markings.cross_section.roads import EstimatedRoad
@@ -21,8 +22,8 @@ KIND_OF_BORDER = {LANE_LINE: "lane", CENTRE_LINE: "centre", EDGE_LINE: "edge", O
 
 
 def lane_areas(road: EstimatedRoad, curbs: CrossSections | None, tracks: list[LaneTrack], heights: list[np.ndarray], frame: RoadFrame,
-               number: int) -> list[dict[str, Any]]:
-    """The rows of Lanes of one road: its lanes by piece, and connectors along the drive where lanes end and begin again.
+               number: int, pavement: CrossSections | None = None) -> list[dict[str, Any]]:
+    """The rows of Lanes of one road: its lanes by piece, connectors along the drive where lanes end and begin again, and shoulders.
 
     Parameters
     ----------
@@ -32,6 +33,7 @@ def lane_areas(road: EstimatedRoad, curbs: CrossSections | None, tracks: list[La
     heights : local z along each track
     frame : RoadFrame
     number : of the road
+    pavement : CrossSections of the edges of the pavement without a curb, or None
     """
     rows = []
     for lane, (track, z) in enumerate(zip(tracks, heights), start=1):
@@ -41,6 +43,10 @@ def lane_areas(road: EstimatedRoad, curbs: CrossSections | None, tracks: list[La
             if part.stop - part.start >= 2:
                 rows.append(_area(road, curbs, track, part, z, frame, number) | dict(lane=lane, status=LANE_STATUS[code]))
     rows += connectors_on_road(road.lines.s, tracks, heights, frame, number)
+    if pavement is not None:
+        lanes = max((row["lane"] for row in rows), default=0)
+        borders = [_sides(road, track, slice(0, len(track)), z, frame, number) for track, z in zip(tracks, heights)]
+        rows += [row | dict(lane=lane) for lane, row in enumerate(shoulders(road, tracks, borders, pavement, frame, number), start=lanes + 1)]
     names: dict[int, int] = {}
     for row in rows:
         names[row["lane"]] = names.get(row["lane"], 0) + 1
@@ -49,8 +55,8 @@ def lane_areas(road: EstimatedRoad, curbs: CrossSections | None, tracks: list[La
     return rows
 
 
-def _area(road, curbs, track, part, z, frame, number):
-    """One piece of a lane: its borders as they are seen in the direction of travel."""
+def _sides(road, track, part, z, frame, number):
+    """The left and the right border of part of a lane along the road, (N, 3) local metres each."""
     columns = np.arange(track.first, track.last + 1)[part]
     s, d, half = road.lines.s[columns], track.d[part], track.width[part] / 2
     sides = []
@@ -59,13 +65,21 @@ def _area(road, curbs, track, part, z, frame, number):
         painted = (row >= 0) & (row < len(road.lines.d))
         own = np.where(painted, road.lines.z[np.where(painted, row, 0), columns], np.nan) if len(road.lines.d) else np.full(len(s), np.nan)
         sides.append(np.c_[x, y, np.where(np.isfinite(own), own, z[part])])
+    return sides
+
+
+def _area(road, curbs, track, part, z, frame, number):
+    """One piece of a lane: its borders as they are seen in the direction of travel."""
+    columns = np.arange(track.first, track.last + 1)[part]
+    s, d = road.lines.s[columns], track.d[part]
+    sides = _sides(road, track, part, z, frame, number)
     about = [_border(road, curbs, rows[part], uses[part], columns)
              for rows, uses in ((track.left, track.left_use), (track.right, track.right_use))]
     if track.direction < 0:
         sides, about = [side[::-1] for side in sides[::-1]], about[::-1]
     return dict(road=number, type="driving", direction=track.direction, left=sides[0], right=sides[1], about=about,
                 confidence=float(track.confidence[part].mean()), station=float(s[0]), end=float(s[-1]), first=float(d[0]), last=float(d[-1]),
-                width=float(np.median(2 * half)))
+                width=float(np.median(track.width[part])))
 
 
 def _border(road, curbs, rows, separates, columns):
@@ -95,7 +109,7 @@ def follow(rows: list[dict[str, Any]]) -> None:
         way = row["direction"]
         at, d = (row["end"], row["last"]) if way > 0 else (row["station"], row["first"])
         row["successors"] = tuple(
-            other["lane_id"] for other in rows if other is not row and other["direction"] == way
+            other["lane_id"] for other in rows if way and other is not row and other["direction"] == way
             and -STATION_STEP <= way * ((other["station"] if way > 0 else other["end"]) - at) <= NEXT_LANE_GAP
             and abs((other["first"] if way > 0 else other["last"]) - d) < max(row["width"], other["width"]) / 2)
 

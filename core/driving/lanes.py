@@ -63,20 +63,20 @@ def _rank(track):
 
 
 def _appended(track, part):
-    """A track and the part that follows it; of the two the one whose place is less sure is moved to meet the other.
+    """A track and the part that follows it; of the two the one whose place is less sure is moved to meet the other, and takes its width.
 
-    It is moved as far as it is less sure: a stretch between two that are sure ends in both.
+    It is moved as far as it is less sure: a stretch between two that are sure ends in both. A border that is a line in both stays on it.
     """
-    step = track.d[-1] - part.d[0]
+    step, wider = track.d[-1] - part.d[0], track.width[-1] - part.width[0]
     before, after = _rank(track), _rank(part)
     if after[0] < before[-1] or after[0] == before[-1] < BETWEEN_LINES:
         end = _first(after > after[0])
         share = 1.0 if end is None else np.clip(1 - np.arange(len(part)) / end, 0, None)
-        part = replace(part, d=part.d + step * share)
+        part = replace(part, d=part.d + step * share, width=part.width + wider * share)
     elif after[0] > before[-1]:
         end = _first(before[::-1] > before[-1])
         share = 1.0 if end is None else np.clip(1 - np.arange(len(track)) / end, 0, None)[::-1]
-        track = replace(track, d=track.d - step * share)
+        track = replace(track, d=track.d - step * share, width=track.width - wider * share)
     return track.followed_by(part)
 
 

@@ -72,7 +72,16 @@ def sections_of_lines(lines: PaintedLines) -> dict[int, CrossSections]:
 
 def sections_of_edges(edges: RoadEdges) -> dict[int, CrossSections]:
     """CrossSections of the curbs along the road, by road number; where the pavement ends without one, the road surface ends."""
-    main = np.flatnonzero((edges.kind == "main") & edges.of_curb)
+    return _main_edges(edges, edges.of_curb)
+
+
+def sections_of_pavement(edges: RoadEdges) -> dict[int, CrossSections]:
+    """CrossSections of the edges of the pavement without a curb, by road number."""
+    return _main_edges(edges, ~edges.of_curb)
+
+
+def _main_edges(edges, wanted):
+    main = np.flatnonzero((edges.kind == "main") & wanted)
     return cross_sections(edges.course.take(main), edges.edge[main], edges.kind[main], np.full(len(main), "", object),
                           edges.status[main] != "bridged")
 

@@ -1,0 +1,98 @@
+"""Shoulders: the paved strips between the edge line of the outermost lane and the edge of the pavement."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..markings.cross_section.sections import STATION_STEP, CrossSections
+from ..markings.cross_section.weights import EDGE_LINE
+from .lane_track import LaneTrack
+
+if TYPE_CHECKING:
+    from ..markings.cross_section.roads import EstimatedRoad
+    from ..survey.frame.road_frame import RoadFrame
+
+STRIP_WIDTH = 0.3, 4.0       # m of a strip at any place: the widest paved shoulders are 12 ft (AASHTO, A Policy on Geometric Design, 4.4.2)
+LEAST_SHOULDER = 1.0         # m, median: what is narrower is the marginal strip of the carriageway (0.5 to 0.75 m, RAA)
+SHORTEST_SHOULDER = 10.0     # m
+
+
+def shoulders(road: EstimatedRoad, tracks: list[LaneTrack], borders: list[list[np.ndarray]], pavement: CrossSections, frame: RoadFrame,
+              number: int) -> list[dict[str, Any]]:
+    """Areas between the edge lines of lanes and the edges of the pavement beside them.
+
+    Where a curb bounds the road the strip beside the line may be for parking, cycling or nothing, so it is not named.
+
+    Parameters
+    ----------
+    road : EstimatedRoad
+    tracks : list of LaneTrack
+    borders : the left and the right border of each track along the road, (N, 3) local metres each
+    pavement : CrossSections of the edges of the pavement without a curb
+    frame : RoadFrame
+    number : of the road
+
+    Returns
+    -------
+    rows of Lanes without numbers, left and right along the road; each has the vertices of the lane beside it
+    """
+    s, lines = road.lines.s, road.lines
+    at = np.rint((s - pavement.s[0]) / STATION_STEP).astype(int)
+    known = (at >= 0) & (at < len(pavement.s))
+    at = np.clip(at, 0, len(pavement.s) - 1)
+    rows = []
+    for track, sides in zip(tracks, borders):
+        columns = np.arange(track.first, track.last + 1)
+        for sign, own, use, border in ((1, track.left, track.left_use, sides[0]), (-1, track.right, track.right_use, sides[1])):
+            inner = track.d + sign * track.width / 2
+            away = sign * (np.where(known[columns], pavement.d[:, at[columns]], np.nan) - inner)
+            away = np.where((away >= STRIP_WIDTH[0]) & (away <= STRIP_WIDTH[1]), away, np.inf)
+            nearest = np.argmin(away, axis=0)
+            width = away[nearest, np.arange(len(columns))]
+            wide = np.isfinite(width) & (use == EDGE_LINE) & (own >= 0) & (own < len(lines.d)) & ~_taken(tracks, track, inner, sign)
+            for a, b in _runs(wide):
+                if (b - a - 1) * STATION_STEP < SHORTEST_SHOULDER or np.median(width[a:b]) < LEAST_SHOULDER:
+                    continue
+                part, edge = slice(a, b), nearest[a:b]
+                places = at[columns[part]]
+                x, y = frame.roads[number].to_map(s[columns[part]], inner[part] + sign * width[part])
+                z = pavement.z[edge, places]
+                outer = np.c_[x, y, np.where(np.isfinite(z), z, border[part, 2])]
+                seen = bool(pavement.seen[edge, places].mean() > 0.5)
+                middle = inner[part] + sign * width[part] / 2
+                drawn = lines.drawn[own[part], columns[part]]
+                about = [(f"line {_usual(lines.number[own[part], columns[part]])}", "edge", lines.names[_usual(drawn)]),
+                         (f"edge {_usual(pavement.number[edge, places])}", "pavement", "")]
+                sides = [border[part], outer]
+                rows.append(dict(
+                    road=number, type="shoulder", direction=0, left=sides[sign > 0], right=sides[sign < 0], about=about[::-sign],
+                    status="measured" if seen else "inferred", confidence=float(track.confidence[part].mean()), station=float(s[columns[a]]),
+                    end=float(s[columns[b - 1]]), first=float(middle[0]), last=float(middle[-1]), width=float(np.median(width[part]))))
+    return rows
+
+
+def _usual(numbers):
+    """The most frequent of some numbers, those below 0 left out; 0 where there are no others."""
+    known = numbers[numbers >= 0]
+    return int(np.bincount(known).argmax()) if len(known) else 0
+
+
+def _taken(tracks, own, inner, sign):
+    """(N,) bool, where another lane lies on the far side of a border of this one."""
+    found = np.zeros(len(own), bool)
+    for other in tracks:
+        a, b = max(own.first, other.first), min(own.last, other.last)
+        if other is own or a > b:
+            continue
+        here, there = slice(a - own.first, b - own.first + 1), slice(a - other.first, b - other.first + 1)
+        apart = sign * (other.d[there] - inner[here])
+        found[here] |= (apart > 0) & (apart < STRIP_WIDTH[1] + other.width[there] / 2)
+    return found
+
+
+def _runs(mask):
+    """(begin, end) of stretches of True, end exclusive."""
+    cuts = np.flatnonzero(np.diff(np.r_[False, mask, False].astype(int)))
+    return list(zip(cuts[::2].tolist(), cuts[1::2].tolist()))
