@@ -7,14 +7,14 @@ from pathlib import Path
 
 from lanewright.processing_provider.reports import last_report
 from lanewright.processing_provider.texts import tr
-from qgis.core import QgsCoordinateTransform, QgsProject
+from qgis.core import QgsCoordinateTransform, QgsPointXY, QgsProject
 from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, QRect, Qt, QTimer
 from qgis.PyQt.QtGui import QAction, QGuiApplication, QImage
 from qgis.PyQt.QtWidgets import QDockWidget
 from qgis.utils import iface, plugins
 
 PICTURES = Path(os.environ["LANEWRIGHT_PICTURES"])
-MAPS = ("window_result", "window_section", "window_corrections", "window_layout", "window_model", "window_pairs")
+MAPS = ("window_result", "window_section", "window_corrections", "window_layout", "window_model", "window_pairs", "window_two_points")
 SAID = Path(os.environ["LANEWRIGHT_SAID"])
 
 
@@ -212,6 +212,17 @@ def pairs():
     action_of(tr("Control points from paint")).trigger()
     window = plugins["lanewright"].menu.pairs
     window.add([str(path)])
+    window.point()
+    asked = window.two_points
+    # the zebra crossing, the arrows
+    for view, places in zip(asked.views, (((0.25, 0.5), (0.71, 0.46)), ((0.48, 0.22), (0.6, 0.7)))):
+        wait(2)
+        for across, up in places:
+            extent = view.extent()
+            asked.point_at(view, QgsPointXY(extent.xMinimum() + across * extent.width(), extent.yMinimum() + up * extent.height()))
+    needed(asked.layer is not None, "the two points were not taken")
+    keep(asked, "window_two_points")
+    asked.reject()
     window.propose()
     needed(wait(240, lambda: window._run is None), "the control points took longer than 240 s")
     needed(window.images[0].order == 2, f"too few pairs were accepted: {window.images[0].summary()}")

@@ -32,11 +32,13 @@ class ImagePairs:
     ----------
     path : of the image
     failed : why no pairs were found, "" where none were looked for or some were found
+    rough : layer of two points that say roughly where it lies, None where none were given
     """
 
     def __init__(self, path: str):
         self.path = path
         self.failed = ""
+        self.rough: QgsVectorLayer | None = None
         self._layer = ""
 
     @property
@@ -52,6 +54,10 @@ class ImagePairs:
         """Take the layer that "Propose control points" made."""
         self._layer, self.failed = layer.id(), ""
         layer.setName(tr("Control points of {image}").format(image=Path(self.path).stem))
+
+    def lies_about(self, rough: QgsVectorLayer) -> None:
+        """Take two rough points; pairs found before are forgotten."""
+        self.rough, self._layer, self.failed = rough, "", ""
 
     def failed_because(self, reason: str) -> None:
         self._layer, self.failed = "", reason
@@ -96,7 +102,7 @@ class ImagePairs:
             return self.failed
         rows = self.rows()
         if not rows:
-            return tr("not looked for yet")
+            return tr("not looked for yet") if self.rough is None else tr("two points given, not looked for yet")
         residuals = [row["residual"] for row in rows if row["accepted"] and row["residual"] not in (None, NULL)]
         said = tr("{accepted} of {count} pairs accepted").format(accepted=sum(bool(row["accepted"]) for row in rows), count=len(rows))
         if residuals:

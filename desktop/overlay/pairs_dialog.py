@@ -40,6 +40,7 @@ from qgis.PyQt.QtWidgets import (
 from ...core.common.errors import RoadExtractionError
 from ...processing_provider.texts import tr
 from .image_pairs import GAP, GREEN, RED, SIDE, ImagePairs, pair_text
+from .two_points_dialog import TwoPointsDialog
 
 IMAGES = "*.tif *.tiff *.jpg *.jpeg *.png *.TIF *.TIFF *.JPG *.JPEG *.PNG"
 NEAR = 6.0      # m of ground about a pair that the map zooms to
@@ -58,6 +59,7 @@ class PairsDialog(QDialog):
         self._waiting: list = []
         self._run = None  # (task, context, feedback) of what is running: QGIS keeps no reference to them
         self._filling = False
+        self.two_points: TwoPointsDialog | None = None
         self._build()
         self.resize(1160, 740)
 
@@ -78,17 +80,15 @@ class PairsDialog(QDialog):
         self.size.setSingleStep(0.005)
         self.size.setSuffix(" m")
         self.size.setSpecialValueText(tr("as the image says"))
-        self.rough = QgsMapLayerComboBox()
-        self.rough.setFilters(QgsMapLayerProxyModel.Filter.PointLayer)
-        self.rough.setAllowEmptyLayer(True)
-        self.rough.setLayer(None)
+        self.rough_button = QPushButton(tr("Two points by hand…"))
+        self.rough_button.setToolTip(tr("Where the chosen image says nothing of its position: two places clicked in it and in the intensity image"))
+        self.rough_button.clicked.connect(lambda checked=False: self.point())
         self.propose_button = QPushButton(tr("Propose control points"))
         self.propose_button.clicked.connect(lambda checked=False: self.propose())
         form = QFormLayout()
         form.setRowWrapPolicy(QFormLayout.RowWrapPolicy.WrapAllRows)
         form.addRow(tr("Intensity image"), self.intensity)
         form.addRow(tr("Pixel size of the image on the ground"), self.size)
-        form.addRow(tr("Two rough points"), self.rough)
         left = QWidget()
         column = QVBoxLayout(left)
         column.setContentsMargins(0, 0, 0, 0)
@@ -96,7 +96,7 @@ class PairsDialog(QDialog):
         column.addWidget(self.list, 1)
         column.addLayout(_row(add, remove))
         column.addLayout(form)
-        column.addWidget(self.propose_button)
+        column.addLayout(_row(self.rough_button, self.propose_button))
         self.pairs = QListWidget()
         self.pairs.setViewMode(QListView.ViewMode.IconMode)
         self.pairs.setResizeMode(QListView.ResizeMode.Adjust)
@@ -126,7 +126,7 @@ class PairsDialog(QDialog):
         parts = QSplitter()
         parts.addWidget(left)
         parts.addWidget(right)
-        parts.setSizes([250, 910])
+        parts.setSizes([270, 890])
         QVBoxLayout(self).addWidget(parts)
         self._enable()
 
@@ -177,6 +177,7 @@ class PairsDialog(QDialog):
     def _enable(self):
         idle = self._run is None
         self.propose_button.setEnabled(idle and bool(self.images) and self.intensity.currentLayer() is not None)
+        self.rough_button.setEnabled(idle and self.current is not None and self.intensity.currentLayer() is not None)
         self.place_button.setEnabled(idle and any(one.order for one in self.images))
         self.bar.setVisible(not idle)
 
@@ -245,11 +246,28 @@ class PairsDialog(QDialog):
     def propose(self) -> None:
         """Look for pairs in every image that has none yet, one image after the other."""
         inputs = {"INTENSITY_IMAGE": self.intensity.currentLayer().id(), "PIXEL_SIZE": self.size.value()}
-        if self.rough.currentLayer() is not None:
-            inputs["ROUGH_POINTS"] = self.rough.currentLayer().id()
         output = {"CONTROL_POINTS": QgsProcessingOutputLayerDefinition("TEMPORARY_OUTPUT", QgsProject.instance())}
-        self._waiting = [("proposecontrolpoints", one, {"IMAGE": one.path, **inputs, **output}) for one in self.images if one.layer is None]
+        self._waiting = [("proposecontrolpoints", one, {"IMAGE": one.path, "ROUGH_POINTS": one.rough, **inputs, **output})
+                         for one in self.images if one.layer is None]
         self._next()
+
+    def point(self) -> None:
+        """Ask for two points of the chosen image."""
+        try:
+            self.two_points = TwoPointsDialog(self.current.path, self.intensity.currentLayer(), self)
+        except RoadExtractionError as problem:
+            self.told.setText(str(problem))
+            return
+        one, dialog = self.current, self.two_points
+        dialog.finished.connect(lambda result: self._pointed(one, dialog, result))
+        dialog.open()
+
+    def _pointed(self, one, dialog, result):
+        if result == QDialog.DialogCode.Accepted:
+            one.lies_about(dialog.layer)
+            self._show_pairs()
+        self.two_points = None
+        dialog.deleteLater()
 
     def place(self) -> None:
         """Georeference every image that has enough accepted pairs, and put it into the project."""

@@ -4775,6 +4775,11 @@
         </message>
         <message>
             <location filename="../../desktop/overlay/image_pairs.py" />
+            <source>two points given, not looked for yet</source>
+            <translation>zwei Punkte gegeben, noch nicht gesucht</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/image_pairs.py" />
             <source>{accepted} of {count} pairs accepted</source>
             <translation>{accepted} von {count} Paaren angenommen</translation>
         </message>
@@ -4822,6 +4827,16 @@
             <location filename="../../desktop/overlay/pairs_dialog.py" />
             <source>as the image says</source>
             <translation>wie das Bild sagt</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/pairs_dialog.py" />
+            <source>Two points by hand…</source>
+            <translation>Zwei Punkte von Hand …</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/pairs_dialog.py" />
+            <source>Where the chosen image says nothing of its position: two places clicked in it and in the intensity image</source>
+            <translation>Wo das gewählte Bild nichts über seine Lage sagt: zwei Stellen, in ihm und im Intensitätsbild angeklickt</translation>
         </message>
         <message>
             <location filename="../../desktop/overlay/pairs_dialog.py" />
@@ -4877,6 +4892,26 @@
             <location filename="../../desktop/overlay/pairs_dialog.py" />
             <source>cancelled</source>
             <translation>abgebrochen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/two_points_dialog.py" />
+            <source>Two points in both images</source>
+            <translation>Zwei Punkte in beiden Bildern</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/two_points_dialog.py" />
+            <source>Begin again</source>
+            <translation>Neu beginnen</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/two_points_dialog.py" />
+            <source>Good: the places may be off by some metres.</source>
+            <translation>Gut: die Stellen dürfen einige Meter falsch sein.</translation>
+        </message>
+        <message>
+            <location filename="../../desktop/overlay/two_points_dialog.py" />
+            <source>Click two places far apart in the image on the left, and the same two in the same order in the intensity image on the right. The wheel comes nearer. In the image: {seen}, in the intensity image: {known}.</source>
+            <translation>Zwei weit auseinander liegende Stellen im Bild links anklicken und dieselben zwei in derselben Reihenfolge im Intensitätsbild rechts. Das Rad geht näher heran. Im Bild: {seen}, im Intensitätsbild: {known}.</translation>
         </message>
         <message>
             <location filename="../../desktop/sample_run.py" />

@@ -1,15 +1,16 @@
 """The window that places UAV images by paint."""
 
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from lanewright.desktop.overlay.pairs_dialog import PairsDialog
 from paint_from_above import Ground, Overhead, about, street
-from qgis.core import QgsProject, QgsRasterLayer
+from qgis.core import QgsPointXY, QgsProject, QgsRasterLayer
 from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, Qt
-from qgis.PyQt.QtWidgets import QMainWindow
+from qgis.PyQt.QtWidgets import QDialogButtonBox, QMainWindow
 
 CAMERA = Overhead(turn=0.2, width=1500, height=500)
 
@@ -42,7 +43,9 @@ def window(provider, flight):
     dialog = PairsDialog(SimpleNamespace(mainWindow=lambda: main, mapCanvas=lambda: canvas))
     yield dialog
     dialog.close()
+    canvas.stopRendering()
     project.clear()
+    QCoreApplication.processEvents()
 
 
 def finished(window):
@@ -113,3 +116,35 @@ def test_a_layer_that_was_taken_out_of_the_project_is_looked_for_anew(proposed):
     QgsProject.instance().removeMapLayer(proposed.images[0].layer.id())
     assert proposed.images[0].rows() == [] and proposed.images[0].order == 0
     assert "not looked for" in proposed.images[0].summary()
+
+
+def test_an_image_that_says_nothing_is_placed_by_two_clicks_in_each_image(window, flight, tmp_path):
+    bare = tmp_path / "bare.png"
+    bare.write_bytes(Path(flight[0][0]).read_bytes())
+    window.add([str(bare)])
+    window.point()
+    asked = window.two_points
+    photo, known = asked.views
+    ok = asked.buttons.button(QDialogButtonBox.StandardButton.Ok)
+    for pixel, line, off in ((80.0, 260.0, 0.8), (1420.0, 240.0, -0.7)):
+        assert not ok.isEnabled()
+        asked.point_at(photo, QgsPointXY(asked.photo.extent().xMinimum() + pixel, asked.photo.extent().yMaximum() - line))
+        east, north = (float(value[0]) for value in CAMERA.to_map(np.array([pixel]), np.array([line])))
+        asked.point_at(known, QgsPointXY(east + off, north + off))
+    assert ok.isEnabled() and len(asked.marks) == 4
+    asked.accept()
+    assert "two points given" in window.list.item(0).text()
+    window.propose()
+    finished(window)
+    assert window.images[0].order and window.images[0].failed == ""
+
+
+def test_points_can_be_begun_again(window, flight):
+    window.add(flight[0][:1])
+    window.point()
+    asked = window.two_points
+    asked.point_at(asked.views[0], asked.photo.extent().center())
+    asked.begin()
+    assert asked.layer is None and not asked.marks and "image: 0" in asked.told.text()
+    asked.reject()
+    assert window.two_points is None and window.images[0].rough is None
