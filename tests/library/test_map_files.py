@@ -5,9 +5,10 @@ import os
 import fiona
 import made_lanes
 import pytest
+import shapely
 from lanewright.core.common.errors import RoadExtractionError
 from lanewright.library import run
-from map_files import geometry, lanelet_street, opendrive, road, written
+from map_files import geometry, lanelet_street, opendrive, road, street_section, written
 
 
 def test_an_opendrive_file_becomes_layers_that_the_assessment_takes(tmp_path):
@@ -109,3 +110,58 @@ def test_lanes_are_written_for_cad(tmp_path, kind, name):
 def test_a_name_that_belongs_to_another_format_is_refused(tmp_path):
     with pytest.raises(RoadExtractionError, match="FORMAT is landxml"):
         run("exportcad", LANES=lane_layer(tmp_path, made_lanes.street()), FORMAT="landxml", OUTPUT=tmp_path / "map.dxf")
+
+
+def spoilt_layer(folder, what):
+    """A layer of lanes that is none, and other layers."""
+    from lanewright.core.common.features import Features
+    from lanewright.core.common.schemas import LANES, ROAD_EDGES
+    from lanewright.core.driving.lanes_layer import lanes_to_features
+    from lanewright.library.layer_files import write_layer
+
+    lanes = lanes_to_features(made_lanes.street())
+    others = {}
+    if what == "no field":
+        lanes = Features("PolygonZ", tuple(field for field in LANES if field.name != "successors"), lanes.geometries, lanes.rows, lanes.crs)
+    if what == "degrees":
+        lanes = Features("PolygonZ", LANES, lanes.geometries, lanes.rows, "EPSG:4326")
+    if what == "one line":
+        lanes.geometries[0] = shapely.Polygon(shapely.get_coordinates(lanes.geometries[0], include_z=True)[[0, 1, 2]])
+    if what == "another survey":
+        edges = Features("LineStringZ", ROAD_EDGES, crs=lanes.crs)
+        edges.add(shapely.linestrings([[400000, 5500000, 0], [400010, 5500000, 0]]), road=1, height_m=0.12)
+        write_layer(str(folder / "edges.gpkg"), "", edges, lambda: None)
+        others["ROAD_EDGES"] = folder / "edges.gpkg"
+    write_layer(str(folder / "lanes.gpkg"), "", lanes, lambda: None)
+    if what == "no heights":
+        with fiona.open(folder / "lanes.gpkg") as layer:
+            flat = [(shapely.geometry.mapping(shapely.force_2d(shapely.geometry.shape(one["geometry"]))), dict(one["properties"])) for one in layer]
+            schema, crs = {**layer.schema, "geometry": "Polygon"}, layer.crs_wkt
+        os.remove(folder / "lanes.gpkg")
+        with fiona.open(folder / "lanes.gpkg", "w", driver="GPKG", schema=schema, crs_wkt=crs) as layer:
+            layer.writerecords([{"type": "Feature", "geometry": shape, "properties": row} for shape, row in flat])
+    return {"LANES": folder / "lanes.gpkg", **others}
+
+
+@pytest.mark.parametrize("algorithm, name", [("exportopendrive", "map.xodr"), ("exportlanelet2", "map.osm"), ("exportcad", "map.dxf")])
+@pytest.mark.parametrize("what, said", [("no heights", "height|Z"), ("no field", "successors"), ("degrees", "degrees|geographic|metres"),
+                                        ("one line", "vertices"), ("another survey", "do not lie where the lanes are")])
+def test_what_cannot_be_exported_is_refused_in_one_sentence_and_nothing_is_written(tmp_path, algorithm, name, what, said):
+    layers = spoilt_layer(tmp_path, what)
+    there = sorted(os.listdir(tmp_path))
+    with pytest.raises(RoadExtractionError, match=said) as refused:
+        run(algorithm, OUTPUT=tmp_path / name, REPORT=tmp_path / "report.html", **layers)
+    assert sorted(os.listdir(tmp_path)) == there and "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("algorithm", ["checkhdmap", "importopendrive"])
+def test_a_road_as_long_as_the_earth_is_wide_costs_no_memory(tmp_path, algorithm):
+    path = tmp_path / "map.xodr"
+    path.write_text(opendrive([road(geometry(0, 0, 0, 0, 9e8), 9e8, "1", lanes=street_section(0))]))
+    with pytest.raises(RoadExtractionError, match="longer than 200 km"):
+        run(algorithm, INPUT=path, **{"OUTPUT" if algorithm == "checkhdmap" else "LANES": tmp_path / "layer.gpkg"})
+    many = [road(geometry(0, 0, 10 * k, 0, 150e3), 150e3, str(k), lanes=street_section(0)) for k in range(1, 9)]
+    path.write_text(opendrive(many))
+    with pytest.raises(RoadExtractionError, match="1,200 km long; at most 1,000 km"):
+        run(algorithm, INPUT=path, **{"OUTPUT" if algorithm == "checkhdmap" else "LANES": tmp_path / "layer.gpkg"})
+    assert sorted(os.listdir(tmp_path)) == ["map.xodr"]

@@ -12,6 +12,7 @@ from .model import Connection, Junction, LaneSection, MapLane, MapRoad, OpenDriv
 
 XODR_KIND = "an OpenDRIVE file"
 MARK_WIDTH = 0.12    # m, where a road mark has none
+LONGEST_ROAD, LONGEST_MAP = 200_000.0, 1_000_000.0   # m of one road, and of all: more is no map but a file that shall fill the memory
 
 
 def read_opendrive(path: str, progress: Progress = Progress()) -> OpenDriveMap:
@@ -36,6 +37,10 @@ def read_opendrive(path: str, progress: Progress = Progress()) -> OpenDriveMap:
     if not found.roads:
         why = f" Line {found.problems[0][0]}: {found.problems[0][1]}" if found.problems else ""
         raise RoadExtractionError(f"{path} has no road that can be read.{why} Choose a file with roads and their geometry.")
+    length = sum(road.plan.length for road in found.roads)
+    if length > LONGEST_MAP:
+        raise RoadExtractionError(f"The roads of {path} are {length / 1000:,.0f} km long; at most {LONGEST_MAP / 1000:,.0f} km are read at once. "
+                                  "Export the map again, or in parts.")
     return found
 
 
@@ -69,6 +74,8 @@ def _road(element, problems):
     elements = [_geometry(child) for child in (plan.all("geometry") if plan is not None else ())]
     if not elements:
         raise RoadExtractionError("it has no geometry.")
+    if sum(abs(one.length) for one in elements) > LONGEST_ROAD:
+        raise RoadExtractionError(f"it is longer than {LONGEST_ROAD / 1000:g} km.")
     profile, lateral, lanes = element.find("elevationProfile"), element.find("lateralProfile"), element.find("lanes")
     road = MapRoad(
         element.get("id"), element.number("length"), PlanView(tuple(elements)), element.get("name"), element.get("junction", "-1"),
