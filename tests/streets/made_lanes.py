@@ -167,6 +167,35 @@ def crossing(arm=40.0, half=12.0, width=3.5):
     return scene.lanes()
 
 
+def roundabout(arms=4, radius=16.0, width=4.5, arm=40.0, mouth=0.45):
+    """Arms of two lanes meet a ring driven anticlockwise; connectors lead into it, out of it, and past every arm."""
+    scene, number = LaneScene(), 10
+    angles = 2 * np.pi * np.arange(arms) / arms
+    inner, outer = radius - width / 2, radius + width / 2
+
+    def ring(first, last):
+        steps = np.linspace(first, last, max(int(round((last - first) * radius)), 8) + 1)
+        return [np.c_[r * np.cos(steps), r * np.sin(steps), np.zeros(len(steps))] + ORIGIN for r in (inner, outer)]
+    none = dict(type="connector", left_kind="none", right_kind="none", left_pattern="", right_pattern="", status="inferred", confidence=0.6)
+    lines = []
+    for road, angle in enumerate(angles, start=2):
+        x, y = (outer + 12.0 + arm) * np.array([np.cos(angle), np.sin(angle)])
+        line = Axis(((arm, 0.0, 0.0),), x, y, angle + np.pi)
+        lines.append(line)
+        scene.add(line, 0.0, -3.5, lane=1, road=road, **kinds())
+        scene.add(line, 3.5, 0.0, lane=2, road=road, direction=-1, **kinds())
+        scene.piece(*ring(angle + mouth, angle + 2 * np.pi / arms - mouth), road=1, lane=1, piece=road - 1)
+    for road, (angle, line) in enumerate(zip(angles, lines), start=2):
+        scene.piece(*ring(angle - mouth, angle + mouth), road=1, lane=number, **none)
+        before, after = ([side[at] for side in ring(*way)] for at, way in ((-1, (angle - 1.0, angle - mouth)), (0, (angle + mouth, angle + 1.0))))
+        ends = [line.at([arm], [t])[0] for t in (0.0, -3.5)]
+        scene.piece(*(hermite(a, b, angle + np.pi, angle + mouth + np.pi / 2) for a, b in zip(ends, after)), road=road, lane=number + 1, **none)
+        ends = [line.at([arm], [t])[0] for t in (0.0, 3.5)]
+        scene.piece(*(hermite(a, b, angle - mouth + np.pi / 2, angle) for a, b in zip(before, ends)), road=1, lane=number + 2, **none)
+        number += 3
+    return scene.lanes()
+
+
 def hermite(first, last, way_in, way_out, count=25):
     """A smooth line from place to place with given headings."""
     u = np.linspace(0, 1, count)[:, None]

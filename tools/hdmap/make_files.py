@@ -15,11 +15,12 @@ from plugin_package import load  # noqa: E402
 
 
 def scenes():
-    from made_lanes import crossing, double_line, parting, s_curve, split, street, widening
+    from made_lanes import crossing, double_line, parting, roundabout, s_curve, split, street, widening
 
     return {"street": street(cut=30.0), "left_hand": street(side="left", cut=30.0), "arc": street(((100.0, 1 / 40, 1 / 40),)),
             "crowned": s_curve(slope=0.02, crown=0.025), "tilted": s_curve(slope=0.02, crossfall=0.02), "widening": widening(), "split": split(),
-            "crossing": crossing(), "double_line": double_line(), "parting": parting()}
+            "crossing": crossing(), "double_line": double_line(), "parting": parting(),
+            "roundabout": roundabout()}
 
 
 def main():

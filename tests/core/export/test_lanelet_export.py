@@ -12,11 +12,11 @@ from lanewright.core.export.lanelet.layers import layers_of_lanelets, node_place
 from lanewright.core.export.lanelet.reader import read_lanelet2
 from lanewright.core.export.lanelet.writer import lanelet2_text, to_degrees
 from lanewright.core.export.sources import RoadMapSource, checked
-from made_lanes import CRS, ORIGIN, Axis, LaneScene, crossing, kinds, s_curve, split, street, widening
+from made_lanes import CRS, ORIGIN, Axis, LaneScene, crossing, kinds, roundabout, s_curve, split, street, widening
 from map_files import written
 
 SCENES = {"street": lambda: street(cut=30.0), "left-hand street": lambda: street(side="left", cut=30.0),
-          "curves": lambda: s_curve(slope=0.02, crown=0.025), "widening": widening, "split": split, "crossing": crossing}
+          "curves": lambda: s_curve(slope=0.02, crown=0.025), "widening": widening, "split": split, "crossing": crossing, "roundabout": roundabout}
 
 
 def exported(folder, lanes, local=False, settings=LaneletSettings(), **layers):

@@ -17,12 +17,12 @@ from lanewright.core.export.opendrive.reader import read_opendrive
 from lanewright.core.export.opendrive.reference_line import fit_reference, polynomial_reference
 from lanewright.core.export.opendrive.writer import opendrive_text
 from lanewright.core.export.sources import RoadMapSource, checked
-from made_lanes import CRS, Axis, LaneScene, crossing, kinds, s_curve, split, street, widening
+from made_lanes import CRS, Axis, LaneScene, crossing, kinds, roundabout, s_curve, split, street, widening
 from map_files import written
 
 SCENES = {"street": lambda: street(cut=30.0), "left-hand street": lambda: street(side="left", cut=30.0),
           "crowned curves": lambda: s_curve(slope=0.02, crown=0.025), "tilted curves": lambda: s_curve(slope=0.02, crossfall=0.02),
-          "widening": widening, "split": split, "crossing": crossing}
+          "widening": widening, "split": split, "crossing": crossing, "roundabout": roundabout}
 
 
 def exported(folder, lanes, settings=OpenDriveSettings(), **layers):
@@ -66,6 +66,23 @@ def test_from_every_arm_of_a_crossing_a_route_leads_to_every_other(tmp_path):
     for id in (id for id in lanes.lane_id if names[id].endswith(".1.1")):
         reached = {names[last] for middle in follows[id] for last in follows[middle]}
         assert reached == {f"{road}.2.1" for road in range(1, 5)} - {f"{names[id][0]}.2.1"}
+
+
+@pytest.mark.parametrize("arms", [3, 4])
+def test_from_every_arm_of_a_roundabout_a_route_leads_to_every_arm(tmp_path, arms):
+    lanes = roundabout(arms)
+    draft, whole = exported(tmp_path, lanes)
+    assert not check_opendrive(whole).found
+    names = {f"{road}.{lane}.{section}": name for (road, section, lane), name in lane_names(draft).items()}
+    again = layers_of_opendrive(whole).lanes
+    follows = dict(zip(again.lane_id, again.successors))
+    for id in (id for id in again.lane_id if names[id] in {f"{road}.1.1" for road in range(2, arms + 2)}):
+        reached, open_ends = {id}, [id]
+        while open_ends:
+            more = set(follows[open_ends.pop()]) - reached
+            reached |= more
+            open_ends += more
+        assert {names[one] for one in reached} >= {f"{road}.2.1" for road in range(2, arms + 2)}
 
 
 def test_a_road_that_goes_straight_on_past_a_side_road_has_a_way_through_the_junction(tmp_path):
