@@ -6119,6 +6119,41 @@
             <translation>Erschlossen</translation>
         </message>
         <message>
+            <location filename="../../resources/styles/lanes.qml" />
+            <source>Driving lane</source>
+            <translation>Fahrstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/lanes.qml" />
+            <source>Connector over a junction</source>
+            <translation>Verbindung über eine Kreuzung</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/lanes.qml" />
+            <source>Shoulder</source>
+            <translation>Seitenstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/lanes.qml" />
+            <source>Bicycle lane</source>
+            <translation>Radfahrstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/lanes.qml" />
+            <source>Parking</source>
+            <translation>Parkstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/lanes.qml" />
+            <source>Hatched area</source>
+            <translation>Sperrfläche</translation>
+        </message>
+        <message>
+            <location filename="../../resources/styles/lanes.qml" />
+            <source>Median</source>
+            <translation>Mittelstreifen</translation>
+        </message>
+        <message>
             <location filename="../../resources/styles/marking_lines.qml" />
             <source>Solid</source>
             <translation>Durchgezogen</translation>

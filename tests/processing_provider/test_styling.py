@@ -6,6 +6,7 @@ from lanewright.core.common.schemas import (
     CONTROL_POINTS,
     CROSS_SECTIONS,
     DRIVING_LINES,
+    LANES,
     MARKING_LINES,
     MARKINGS,
     PROPOSED_POINTS,
@@ -14,6 +15,7 @@ from lanewright.core.common.schemas import (
     ROADSIDE,
     ROADSIDE_OBJECTS,
 )
+from lanewright.core.driving.lanes_layer import LANE_TYPES
 from lanewright.processing_provider.embedded_style import embed_style
 from lanewright.processing_provider.layers import qgis_fields
 from lanewright.processing_provider.results.runs import Run
@@ -27,6 +29,7 @@ KINDS = {
     "MARKINGS": ("PolygonZ", MARKINGS),
     "MARKING_LINES": ("LineStringZ", MARKING_LINES),
     "DRIVING_LINES": ("LineStringZ", DRIVING_LINES),
+    "LANES": ("PolygonZ", LANES),
     "RESIDUALS": ("LineStringZ", RESIDUALS),
     "UAV_GCPS": ("PointZ", CONTROL_POINTS),
     "CONTROL_POINTS": ("PointZ", PROPOSED_POINTS),
@@ -80,6 +83,13 @@ def test_edges_of_the_pavement_look_unlike_curbs(qgis_app):
     apply_style(layer, STYLES / "road_edges.qml")
     colours = {drawn.value(): drawn.symbol().color().name() for drawn in layer.renderer().categories()}
     assert colours["pavement measured"] == colours["pavement bridged"] not in {colours["left measured"], colours["right measured"]}
+
+
+def test_every_type_of_lane_has_a_look_of_its_own(qgis_app):
+    layer = layer_of("PolygonZ", LANES)
+    apply_style(layer, STYLES / "lanes.qml")
+    colours = {drawn.value(): drawn.symbol().color().name() for drawn in layer.renderer().categories()}
+    assert set(colours) == set(LANE_TYPES) and len(set(colours.values())) == len(LANE_TYPES)
 
 
 def test_the_legend_speaks_the_language_of_the_user(qgis_app):
