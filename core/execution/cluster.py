@@ -20,7 +20,7 @@ from ..common.errors import RoadExtractionError
 from ..common.parallel import POLL_INTERVAL
 from ..common.progress import Progress
 from . import cluster_task
-from .cluster_connection import check_versions, check_workers, client_of, wait_for_workers
+from .cluster_connection import all_paused, check_versions, check_workers, client_of, wait_for_workers
 from .phase import Phase, name_of
 from .plain import read_plain, write_plain
 from .tasks import ShippedPhase, raise_answer
@@ -30,6 +30,7 @@ BEAT_TIME = 2.0         # s between two signs of life of the caller
 CALLER_LOST = 300.0     # s without one after which workers remove the caller's folder; a computer may be suspended for a while
 SCHEDULER_LOST = 15.0   # s without a connection to the scheduler after which the run ends
 CLOSE_TIME = 5.0        # s for the last tasks to let go of the folder
+PAUSED_TIME = 20.0      # s without a result after which is looked whether memory makes all workers pause: they may do so for ever
 RESULT_TIME = 30.0      # s until a result written by another machine is seen here: network file systems remember that it was not there
 
 
@@ -153,6 +154,7 @@ class _Work:
     def __init__(self, cluster, phase, shipped):
         self.cluster, self.client, self.phase, self.shipped = cluster, cluster.client, phase, shipped
         self.code, self.pending, self.lost_since, self.done = code_digest(), {}, None, 0
+        self.heard, self.paused = time.monotonic(), False
         self.ready: queue.SimpleQueue = queue.SimpleQueue()
 
     def submit(self, parts):
@@ -173,6 +175,7 @@ class _Work:
         except queue.Empty:
             self._check_scheduler()
             return
+        self.heard, self.paused = time.monotonic(), False
         if future.key not in self.pending:
             return
         part, future, item = self.pending.pop(future.key)
@@ -186,7 +189,7 @@ class _Work:
 
     def _answered(self, part, answer):
         if "memory" in answer:
-            self._halve(part, "ran out of memory")
+            self._halve(part)
             return
         if "code" in answer:
             raise RoadExtractionError("A worker that came later has another Lanewright than this computer. Install this one there.")
@@ -202,14 +205,14 @@ class _Work:
     def _failed(self, part, error):
         if type(error).__name__ != "KilledWorker":
             raise error
-        self._halve(part, "ended")
+        self._halve(part)
 
-    def _halve(self, part, what):
+    def _halve(self, part):
         """Send the halves of a part at which workers end; refuse where it is half already, or cannot be halved."""
         first, last = part.item if self.phase.join else (0, 0)
         if part.whole is not None or last - first < 2:
-            raise RoadExtractionError(f"Workers of the cluster {what} while they worked on {self.phase.place(part.item)}; usually their memory is "
-                                      "too small. Start fewer of them on each machine, or with a higher --memory-limit.")
+            raise RoadExtractionError(f"Workers of the cluster ended or ran out of memory while they worked on {self.phase.place(part.item)}; "
+                                      "usually their memory is too small. Start fewer of them on each machine, or with a higher --memory-limit.")
         middle = (first + last) // 2
         part.halves = tuple(_Part(half, self.cluster.new_file(), part.size, part) for half in ((first, middle), (middle, last)))
         self.submit(part.halves)
@@ -230,14 +233,28 @@ class _Work:
     def _check_scheduler(self):
         if self.client.status == "running":
             self.lost_since = None
+            self._check_workers()
             return
         self.lost_since = self.lost_since or time.monotonic()
         if self.client.status == "closed" or time.monotonic() - self.lost_since > SCHEDULER_LOST:
             raise self._lost()
 
+    def _check_workers(self):
+        """Refuse to wait for workers that all pause, and go on doing so."""
+        if time.monotonic() - self.heard < PAUSED_TIME:
+            return
+        paused = all_paused(self.client)
+        if paused and self.paused:
+            raise RoadExtractionError(f"All workers of the cluster pause during {self.phase.function.__name__}, since their memory is nearly full. "
+                                      "Start them with a higher --memory-limit.")
+        self.paused, self.heard = paused, time.monotonic()
+
     def _lost(self):
-        advice = "Run again with the same WORK_FOLDER: what is finished is kept there." if self.cluster.named else "Run again, or without SCHEDULER."
-        return RoadExtractionError(f"The connection to the Dask scheduler was lost while {self.phase.function.__name__} was at work. {advice}")
+        during = self.phase.function.__name__
+        if self.cluster.named:
+            return RoadExtractionError(f"The connection to the Dask scheduler was lost while {during} was at work. Run again with the same "
+                                       "WORK_FOLDER: what is finished is kept there.")
+        return RoadExtractionError(f"The connection to the Dask scheduler was lost while {during} was at work. Run again, or without SCHEDULER.")
 
     def end(self):
         """Leave nothing to do."""

@@ -163,10 +163,12 @@ def check_workers(client: Any, folder: Path, word: str, named: bool, progress: P
             raise RoadExtractionError(f"The worker {worker} has another {PACKAGE} than this computer, although maybe of the same version. Install "
                                       f"this one there: {INSTALL}, or pip install . in its folder.")
         if found["problem"]:
-            raise RoadExtractionError(
-                f"The worker {worker} cannot use the folder {folder}: {found['problem']}. "
-                + ("Choose a WORK_FOLDER that all machines see under the same path and may write to." if named else
-                   "Where workers are on other computers, or belong to another user, WORK_FOLDER must name a folder that all of them see."))
+            problem = found["problem"]
+            if named:
+                raise RoadExtractionError(f"The worker {worker} cannot use the folder {folder}: {problem}. Choose a WORK_FOLDER that all machines "
+                                          "see under the same path and may write to.")
+            raise RoadExtractionError(f"The worker {worker} cannot use the folder {folder}: {problem}. Where workers are on other computers, or "
+                                      "belong to another user, WORK_FOLDER must name a folder that all of them see.")
         if 0 < found["memory"] < LEAST_MEMORY:
             progress.warn(f"The worker {worker} may take {found['memory'] / 2**20:.0f} MiB of memory; a dense survey needs about "
                           f"{LEAST_MEMORY / 2**20:.0f}. Start it with a higher --memory-limit if workers end.")
@@ -178,6 +180,16 @@ def check_workers(client: Any, folder: Path, word: str, named: bool, progress: P
     if failures is not None and failures > 1:
         progress.warn(f"The scheduler lets {failures + 1} workers end at one stretch of road before it says so. Start it with the variable "
                       "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES=1.")
+
+
+def all_paused(client: Any) -> bool:
+    """Whether every worker pauses because its memory is nearly full."""
+    try:
+        found = client.scheduler_info(n_workers=-1)
+    # of versions that tell of all anyway
+    except TypeError:
+        found = client.scheduler_info()
+    return all(worker.get("status") == "paused" for worker in found["workers"].values())
 
 
 def _allowed_failures(client):

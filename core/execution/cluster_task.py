@@ -14,6 +14,7 @@ from typing import Any
 from uuid import uuid4
 
 from ..common.errors import Cancelled
+from ..common.memory import trim_heap
 from ..common.parallel import cancellation_scope
 from ..common.progress import Progress
 from .tasks import Tasks
@@ -74,7 +75,10 @@ def do(phase: str, item: str, result: str, code: str) -> dict[str, str]:
         return {"code": code_digest()}
     _watch(str(Path(phase).parent))
     with cancellation_scope(_WhileWanted(Path(phase))):
-        return _tasks.answer(Path(phase), Path(item), Path(result))
+        answer = _tasks.answer(Path(phase), Path(item), Path(result))
+    # a worker whose memory seems full pauses
+    trim_heap()
+    return answer
 
 
 class _WhileWanted(Progress):

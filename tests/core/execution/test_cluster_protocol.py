@@ -5,14 +5,14 @@ The real one, with a scheduler and workers, is that of `make test-cluster`.
 
 import builtins
 import threading
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 
 import pytest
 from curbed_streets import parked_car, street, survey_of
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.parallel import check_cancelled
 from lanewright.core.common.progress import Progress
-from lanewright.core.execution import cluster_task
+from lanewright.core.execution import cluster, cluster_task
 from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.cluster import Cluster
 from lanewright.core.execution.cluster_connection import check_address, client_of, is_loopback
@@ -129,6 +129,17 @@ def test_a_phase_that_cannot_be_halved_is_named_at_once():
 
 
 lengths_of = survey_of.__globals__["build_frame"]   # any function of core: it is never called
+
+
+def test_workers_that_all_pause_for_ever_are_not_waited_for(monkeypatch):
+    monkeypatch.setattr(cluster, "PAUSED_TIME", 0.3)
+    client = StandIn()
+    client.submit = lambda *_, key, **__: StandInFuture(key, Future())
+    client.scheduler_info = lambda n_workers: dict(workers=dict(one=dict(status="paused"), other=dict(status="paused")))
+    executor = Cluster(client)
+    with pytest.raises(RoadExtractionError, match="All workers of the cluster pause.*memory-limit"):
+        list(executor.run(Phase(lengths_of, survey_of(street())), [(0, 8)]))
+    executor.close()
 
 
 def test_the_largest_sections_begin():
