@@ -107,7 +107,7 @@ class GrownLimit:
     offset : (R,) m, of the edge of the pavement
     shown : (R,) bool, whether it was measured as an edge; where it is not, the road ends there for want of better
     likely : (R,) bool, whether it is rather an edge than not
-    hidden : (R,) bool, whether nothing was measured right behind it
+    hidden : (R,) bool, whether hardly anything was measured right behind it
     """
 
     offset: np.ndarray

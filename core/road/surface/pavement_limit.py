@@ -38,6 +38,9 @@ GROSS_SIGMAS = 3.0           # of that scatter
 ELSEWHERE_QUANTILE = 0.75    # of the brightness of the road, that tells what is grossly darker
 LINE_CELLS = 2, 3, 4         # cells from a cell of a line to road on both of its sides: lines are up to 0.3 m wide
 CELLS_INSIDE, CELLS_OUTSIDE = 8, 4  # cells beside a limit that show it: an edge line covers four of those inside at most,
+GROUND_CELLS, MIN_GROUND_CELLS = 6, 4  # cells beyond a limit, and how many of them are ground: behind a wall or a parked car none is
+MAX_GROUND_HEIGHT = 0.25     # m above or below the road, of ground beside it
+MIN_MEASURED_CELLS = 2       # of those outside; with fewer what lies there is hidden
 SHOWN_COST = 2.0             # by costs of this sum outside and its negative inside: as much as two sure cells
 LIMIT_SHIFT_COST, LARGEST_LIMIT_SHIFT_COST = 5.0, 60.0  # that a change of the limit by a cell, and any change, must save
 
@@ -49,7 +52,7 @@ class PavementLimits:
     cell : (P,) cells, not necessarily whole
     shown : (P,) bool, whether road before and other ground behind it were measured
     likely : (P,) bool, whether rather so than not
-    hidden : (P,) bool, whether nothing was measured right behind it
+    hidden : (P,) bool, whether hardly anything was measured right behind it
     """
 
     cell: np.ndarray
@@ -72,7 +75,7 @@ def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> PavementLimits
     """
     whole = np.rint(change).astype(np.int64)
     # cells along the edge, so that rows can be averaged where it bends away from the reference line
-    at = whole[:, None] + np.arange(-ROAD_CELLS - INNER_CELLS, OUTER_CELLS + CELLS_OUTSIDE)
+    at = whole[:, None] + np.arange(-ROAD_CELLS - INNER_CELLS, OUTER_CELLS + GROUND_CELLS)
     there = (at >= 0) & (at < rows.height.shape[1])
     unpainted = np.where(_painted(rows, change), np.nan, rows.brightness)
     height, rough, brightness, scatter = (_around(np.where(there, np.take_along_axis(values, np.clip(at, 0, values.shape[1] - 1), 1), np.nan))
@@ -80,16 +83,20 @@ def pavement_limits(rows: SurfaceProfiles, change: np.ndarray) -> PavementLimits
     off, measured = _unlike_road(height, rough, brightness, known_median(scatter[:, :ROAD_CELLS], 1)[:, None])
     costs = np.where(measured, np.nan_to_num(np.clip(off, 0.0, MAX_SIGMAS) ** 2 - OTHER_SIGMAS ** 2), 0.0) / 2
     # cell by cell outward, the cost of counting all cells before it as road
-    total = np.concatenate([np.zeros((len(costs), 1)), np.cumsum(costs[:, ROAD_CELLS:-CELLS_OUTSIDE], axis=1)], axis=1)
+    total = np.concatenate([np.zeros((len(costs), 1)), np.cumsum(costs[:, ROAD_CELLS:-GROUND_CELLS], axis=1)], axis=1)
     limit = _along(total, whole)
-    beside = np.clip(limit, 0, INNER_CELLS + OUTER_CELLS)[:, None] + ROAD_CELLS + np.arange(-CELLS_INSIDE, CELLS_OUTSIDE)
-    near = np.take_along_axis(costs, beside, 1)
+    beside = np.clip(limit, 0, INNER_CELLS + OUTER_CELLS)[:, None] + ROAD_CELLS + np.arange(-CELLS_INSIDE, GROUND_CELLS)
+    with np.errstate(invalid="ignore"):
+        ground = np.take_along_axis(np.abs(height) < MAX_GROUND_HEIGHT, beside, 1)
+    near, beside = (values[:, :CELLS_INSIDE + CELLS_OUTSIDE] for values in (np.where(ground, np.take_along_axis(costs, beside, 1), 0.0), beside))
+    goes_on = ground[:, CELLS_INSIDE:].sum(1) >= MIN_GROUND_CELLS
     # in the row itself, not in the average
     place = np.clip(np.take_along_axis(at, beside[:, CELLS_INSIDE:], 1), 0, rows.height.shape[1] - 1)
-    hidden = np.isnan(np.take_along_axis(rows.height, place, 1)).all(1)
+    known = np.isfinite(np.take_along_axis(rows.height, place, 1)).sum(1)
     inside, outside = near[:, :CELLS_INSIDE].sum(1), near[:, CELLS_INSIDE:].sum(1)
-    likely = (inside < 0.0) & (outside > 0.0) & ~hidden
-    return PavementLimits(limit - INNER_CELLS + change, likely & (inside <= -SHOWN_COST) & (outside >= SHOWN_COST), likely, hidden)
+    likely = (inside < 0.0) & (outside > 0.0) & (known > 0) & goes_on
+    return PavementLimits(limit - INNER_CELLS + change, likely & (inside <= -SHOWN_COST) & (outside >= SHOWN_COST), likely,
+                          known < MIN_MEASURED_CELLS)
 
 
 def _unlike_road(height, rough, brightness, scatter):

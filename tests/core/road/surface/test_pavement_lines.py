@@ -116,6 +116,14 @@ def test_a_guard_rail_beyond_the_pavement_does_not_pull_its_edge(away):
     assert covered(found(survey), survey, 1) >= 0.95
 
 
+@pytest.mark.parametrize("foot", [3.0, HALF])
+def test_the_foot_of_a_wall_and_a_row_of_parked_cars_are_no_edges_of_the_pavement(foot):
+    rng = np.random.default_rng(3)
+    wall = rng.uniform(0, LENGTH, 20000), np.full(20000, foot) + rng.normal(0, 0.01, 20000), rng.uniform(0.0, 2.0, 20000), np.full(20000, 1500.0)
+    survey = street(verge=False, keep=lambda s, d: d < foot, extra=wall)
+    assert "left" not in found(survey).side
+
+
 def test_behind_a_vehicle_the_edge_is_bridged_and_says_so():
     hidden = 25.0, 35.0
     survey = street(keep=lambda s, d: ~((s > hidden[0]) & (s < hidden[1]) & (d > 2.6)))
