@@ -23,7 +23,7 @@ from .proposal import Proposal, ProposalSettings
 
 _CORNERS = 400          # corners looked for
 _CANDIDATES = 4         # places of the search that are followed up
-_SAME = 1.0             # m at all corners of paint, within which two placements are one
+_SAME = 0.6             # m at most corners of paint, within which two placements are one; bars of a crossing lie a metre apart
 AMBIGUOUS = "all of it fits elsewhere too"
 
 
@@ -151,7 +151,8 @@ def _corners_on_map(placement, image):
 
 
 def _same(one, other, x, y):
-    return bool(np.hypot(*one.metres(x, y, *other.pixels(x, y)).T).max() < _SAME)
+    # of most corners: those beyond the photo are extrapolated
+    return bool(np.median(np.hypot(*one.metres(x, y, *other.pixels(x, y)).T)) < _SAME)
 
 
 def _shift(one, other, image):

@@ -39,6 +39,7 @@ def test_pairs_lie_where_the_camera_saw_them(tmp_path, surveyed, camera):
     assert found.accepted.sum() >= 25
     assert off.max() < 0.05 and np.sqrt(np.mean(off**2)) < 0.02
     assert found.rmse < 0.03
+    assert np.hypot(found.rival.dx, found.rival.dy) > 0.5 and found.rival.margin >= 1.0
     assert np.exp(1j * found.turn) == pytest.approx(np.exp(1j * camera.turn), abs=0.02)
 
 
