@@ -13,7 +13,8 @@ os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 from plugin_package import ROOT, load
 
 PAGES = ROOT / "docs" / "manual"
-WRITTEN_BY_HAND = ("first_survey", "corrections", "models", "hd_maps", "headless", "large_surveys", "troubleshooting")
+WRITTEN_BY_HAND = ("first_survey", "corrections", "models", "hd_maps", "hd_map_opendrive", "hd_map_lanelet2", "hd_map_cad", "headless",
+                   "large_surveys", "troubleshooting")
 KINDS = {
     "multilayer": "files", "file": "file", "source": "vector layer", "raster": "raster", "crs": "CRS", "number": "number",
     "enum": "choice", "boolean": "yes or no", "string": "text", "sink": "vector layer", "fileDestination": "file",
