@@ -20,6 +20,7 @@ from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.road_points import RoadPoints
 from .ground_grid import ROW_LENGTH, GroundCells, ground_cells
 from .limits import PAVEMENT_INSET, edge_offsets
+from .openings import cells_driven, opened_limits, street_ground
 from .outline import outlines
 from .pavement_edge import GrownLimit, SurfaceProfiles, grown_limit
 from .region_growing import follow_road, smooth_road
@@ -90,7 +91,7 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
     track of the vehicle outward; parked cars, people and islands are not at this height. Where a side has no
     edge, the surface ends where the ground stops being a road (a step, another slope, rougher or differently
     bright ground), at most `max_width` from the track. An opening of up to 30 m in an edge is closed by a
-    straight line.
+    straight line; where a side street joins there, the surface goes on into it as far as its ground was scanned.
 
     Parameters
     ----------
@@ -171,18 +172,33 @@ def find_carriageway(survey: Survey, road: int, edges: RoadEdges | None, setting
         return None
     height = smooth_road(followed, cells)
     tracks = np.array([p.at_station(stations)[0] for p in survey.frame.passes_of(road)])
-    limits, grown = {}, {}
+    limits, grown, closed = {}, {}, {}
     for side, sign, track in (("left", 1.0, tracks.max(axis=0)), ("right", -1.0, tracks.min(axis=0))):
         offset, known = measured[side]
+        closed[side] = np.isfinite(offset) & ~known
         if np.isnan(offset).any():
             grown[side] = grown_limit(SurfaceProfiles.joined(profiles), cells, height - prior[:, None], sign, track, settings.max_width)
             offset = np.where(np.isnan(offset), grown[side].offset - sign * PAVEMENT_INSET, offset)
         limits[side] = offset, known
+    limits = _with_mouths(limits, closed, tracks, cells, followed.ground, cells_driven(survey.frame, road, cells), settings.max_width)
     there = _has_road(followed.ground, cells.offsets) & (limits["left"][0] > limits["right"][0] + MIN_SURFACE_WIDTH)
     tolerance = float(np.clip(TOLERANCE_FLOOR + TOLERANCE_SIGMAS * followed.noise, 0.0, settings.height_tolerance))
     return Carriageway(cells, height, followed.ground, np.where(there, limits["right"][0], np.nan),
                        np.where(there, limits["left"][0], np.nan), limits["right"][1], limits["left"][1], tolerance,
                        grown)
+
+
+def _with_mouths(limits, closed, tracks, cells, ground, driven, max_width):
+    """The limits of both sides, farther out where a side street joins through an opening of the edge."""
+    street = street_ground(cells, ground, limits["right"][0], limits["left"][0])
+    found = {}
+    for side, sign, track in (("left", 1.0, tracks.max(axis=0)), ("right", -1.0, tracks.min(axis=0))):
+        offset, bounded = limits[side]
+        outward = slice(None) if sign > 0 else slice(None, None, -1)
+        opened = opened_limits(sign * offset, closed[side], cells.height[:, outward], street[:, outward],
+                               sign * cells.offsets[outward], sign * track + max_width, driven[:, outward])
+        found[side] = sign * opened, bounded
+    return found
 
 
 def _has_road(ground, offsets):

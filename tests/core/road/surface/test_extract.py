@@ -275,12 +275,22 @@ def test_an_edge_on_one_side_only_bounds_that_side_and_the_other_is_grown():
     assert {row["status"] for row in surface.rows} == {"grown"}
 
 
-def test_across_the_mouth_of_a_side_street_the_road_keeps_its_line():
-    mouth = lambda s, d: np.where((np.abs(d) > 4) & ~((d > 4) & (s > 25) & (s < 35)), 0.12, 0.0)
-    points, surface = taken(survey(mouth), road_edges(left=((0, 24), (36, LENGTH))))
-    assert 3.9 < width_seen(points, 26, 34)[1] < 4.01
+def mouth(width):
+    """A curb opened over `width` metres about station 30 on the left; the ground goes on through it without a step."""
+    return lambda s, d: np.where((np.abs(d) > 4) & ~((d > 4) & (np.abs(s - 30) < width / 2)), 0.12, 0.0)
+
+
+def test_a_side_street_is_road_as_far_as_it_was_scanned_and_the_sidewalks_on_its_sides_are_not():
+    points, surface = taken(survey(mouth(10)), road_edges(left=((0, 25), (35, LENGTH))))
+    assert width_seen(points, 26, 34)[1] > 11.5
+    assert not np.any((points.d > 4.05) & (np.abs(points.s - 30) > 5.3))
     middle = [row["status"] for row in surface.rows if row["station_m"] < 30 < row["end_m"]]
     assert middle == ["grown"]
+
+
+def test_across_a_driveway_the_road_keeps_its_line():
+    points, _ = taken(survey(mouth(5)), road_edges(left=((0, 27), (33, LENGTH))))
+    assert 3.9 < width_seen(points, 28, 32)[1] < 4.01
 
 
 def test_every_point_says_how_far_the_road_reaches_on_its_side():
