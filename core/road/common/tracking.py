@@ -29,8 +29,8 @@ MIN_SLOPED_LENGTH = 10.0    # m of a sloped curb: the edge of worn cobbles or of
 MAX_WANDER = 0.008          # m of a sloped curb about its own straight line
 FAINT_GAIN = 0.7            # value of a metre of low or sloped curb, where another may be chosen
 MIN_CURB_LENGTH = 4.0       # m of chains in one line that make a curb
-MAX_CHAIN_GAP = 8.0         # m between chains of one line, or
-MAX_STEADY_GAP = 15.0       # m, if their offsets differ by less than
+MAX_CHAIN_GAP = 8.0         # m between chains of one line
+MAX_STEADY_GAP = 15.0       # m between a curb and a piece of it, if their offsets differ by less than
 MAX_STEADY_JUMP = 0.5       # m
 MAX_JOINED_GAP = 2.5        # m along a curb between points, chains or lines that are joined without a sign of something in between
 END_DIRECTION_STEPS = 5     # steps at the end of a chain that give its direction
@@ -242,7 +242,8 @@ def drop_short_curbs(selected: Sequence[tuple[int, float, float]], chains: Seque
                      steps: CurbSteps) -> list[tuple[int, float, float]]:
     """Selected intervals that make a curb: intervals in line with each other cover MIN_CURB_LENGTH together, faint ones MIN_FAINT_LENGTH.
 
-    A curb between parked cars is seen in pieces; a piece with nothing in line with it may be anything.
+    A curb between parked cars is seen in pieces; a piece with nothing in line with it may be anything. A piece farther away, up to
+    MAX_STEADY_GAP, belongs to what is a curb by itself.
 
     Parameters
     ----------
@@ -254,27 +255,31 @@ def drop_short_curbs(selected: Sequence[tuple[int, float, float]], chains: Seque
     -------
     list like `selected`
     """
-    groups: list[list[tuple[int, float, float]]] = []
-    last = None
-    for chain, a, b in selected:
-        members = chains[chain].steps
-        members = members[(steps.s[members] >= a) & (steps.s[members] <= b)]
-        if last is None or not _in_line(steps, last, members):
-            groups.append([])
-        groups[-1].append((chain, a, b))
-        last = members
-    return [part for group in groups for part in group if sum(b - a for _, a, b in group) >= (
-        MIN_FAINT_LENGTH if all(chains[chain].low or chains[chain].sloped for chain, _, _ in group) else MIN_CURB_LENGTH)]
+    if not selected:
+        return []
+    members = [chains[chain].steps[(steps.s[chains[chain].steps] >= a) & (steps.s[chains[chain].steps] <= b)] for chain, a, b in selected]
+    group, steady = np.zeros(len(selected), int), np.zeros(len(selected), bool)
+    for k in range(1, len(selected)):
+        near, steady[k] = _in_line(steps, members[k - 1], members[k])
+        group[k] = group[k - 1] + (not near)
+    length = np.bincount(group, [b - a for _, a, b in selected])
+    upright = np.bincount(group, [not (chains[chain].low or chains[chain].sloped) for chain, _, _ in selected]) > 0
+    curb = length >= np.where(upright, MIN_CURB_LENGTH, MIN_FAINT_LENGTH)
+    # from one group to the next, along the road and back
+    for order in (range(1, len(selected)), range(len(selected) - 1, 0, -1)):
+        for k in order:
+            if steady[k] and curb[group[k - 1]] != curb[group[k]]:
+                curb[group[k - 1:k + 1]] = True
+    return [part for part, number in zip(selected, group) if curb[number]]
 
 
 def _in_line(steps, before, after):
-    """Does one run of steps continue the other?"""
+    """Does one run of steps continue the other a short gap away, and does it do so steadily a longer one away?"""
     a, b = before[-1], after[0]
     gap = steps.s[b] - steps.s[a]
     turn = min(gap, MAX_EXTRAPOLATION) * 0.5 * (_end_directions(steps, before)[1] + _end_directions(steps, after)[0])
-    jump = abs(steps.u[b] - steps.u[a] - turn)
-    return (gap <= MAX_CHAIN_GAP and jump <= 0.15 + 0.15 * gap or gap <= MAX_STEADY_GAP and jump <= MAX_STEADY_JUMP) \
-        and abs(steps.h[b] - steps.h[a]) <= HEIGHT_TOLERANCE + 0.02 * gap
+    jump, level = abs(steps.u[b] - steps.u[a] - turn), abs(steps.h[b] - steps.h[a]) <= HEIGHT_TOLERANCE + 0.02 * gap
+    return level and gap <= MAX_CHAIN_GAP and jump <= 0.15 + 0.15 * gap, level and gap <= MAX_STEADY_GAP and jump <= MAX_STEADY_JUMP
 
 
 def _end_directions(steps, members):
