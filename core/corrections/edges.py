@@ -29,7 +29,7 @@ class _Edges(LineKind):
         blank = dict(road=correction.road, side="left" if correction.offset > 0 else "right", chain=free, station=correction.station,
                      end=correction.station, length=0.0)
         # the two methods say nothing of a place that they did not find
-        piece = dict(blank if like is None else like, status=DRAWN, agree=np.nan, rmse=np.nan)
+        piece = dict(blank if like is None else like, status=DRAWN, agree=np.nan, rmse=np.nan, sigma=np.nan)
         return self.with_columns(self.with_stations(piece, places), places)
 
 

@@ -49,7 +49,7 @@ class _DrivingLines(LineKind):
                      end=correction.station, width=self.lane_width)
         places = _in_direction(self.frame, correction, places, way)
         fit = fit_curve(places[:, 0], places[:, 1])
-        piece = dict(blank if like is None else like, source="drawn", status=DRAWN, confidence=SURE, curve=fit.curve, rmse=np.nan,
+        piece = dict(blank if like is None else like, source="drawn", status=DRAWN, confidence=SURE, curve=fit.curve, rmse=np.nan, sigma=np.nan,
                      offset=correction.offset, places=places)
         return self.with_stations(dict(piece, drawn_by=correction), places)
 
