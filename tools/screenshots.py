@@ -1,6 +1,7 @@
 """Run by QGIS itself (qgis --code): does what a newcomer does, and keeps a picture of each step."""
 
 import os
+import sys
 import tempfile
 import traceback
 from pathlib import Path
@@ -8,49 +9,15 @@ from pathlib import Path
 from lanewright.processing_provider.reports import last_report
 from lanewright.processing_provider.texts import tr
 from qgis.core import QgsCoordinateTransform, QgsPointXY, QgsProject
-from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, QRect, Qt, QTimer
-from qgis.PyQt.QtGui import QAction, QGuiApplication, QImage
+from qgis.PyQt.QtCore import QRect, Qt, QTimer
+from qgis.PyQt.QtGui import QAction, QGuiApplication
 from qgis.PyQt.QtWidgets import QDockWidget
 from qgis.utils import iface, plugins
 
-PICTURES = Path(os.environ["LANEWRIGHT_PICTURES"])
-MAPS = ("window_result", "window_section", "window_corrections", "window_layout", "window_model", "window_pairs", "window_two_points")
-SAID = Path(os.environ["LANEWRIGHT_SAID"])
+sys.path.insert(0, str(Path(os.environ["LANEWRIGHT_ROOT"]) / "tools"))
 
-
-def say(text):
-    with open(SAID, "a", encoding="utf-8") as file:
-        file.write(text + "\n")
-
-
-def wait(seconds, until=lambda: False):
-    """Let the window live for so long, or until something is so; whether it was."""
-    clock = QElapsedTimer()
-    clock.start()
-    while clock.elapsed() < 1000 * seconds:
-        QCoreApplication.processEvents()
-        if until():
-            return True
-    return until()
-
-
-def keep(widget, name):
-    wait(0.7)
-    save(widget.grab(), name)
-
-
-def save(picture, name):
-    assert not picture.isNull(), name
-    image = picture.toImage()
-    if name not in MAPS:  # 256 colours do for windows, and a manual travels in the plugin's zip
-        image = image.convertToFormat(QImage.Format.Format_Indexed8, Qt.ImageConversionFlag.ThresholdDither | Qt.ImageConversionFlag.AvoidDither)
-    image.save(str(PICTURES / f"{name}.png"))
-    say(f"{name}.png {picture.width()} x {picture.height()}")
-
-
-def needed(condition, what):
-    if not condition:
-        raise AssertionError(what)
+from window import keep, needed, save, say, wait  # noqa: E402
+from window_tasks import database, orthoimage, own_survey  # noqa: E402
 
 
 def toolbox():
@@ -304,7 +271,7 @@ def drive():
         iface.mainWindow().resize(1380, 860)
         wait(2)
         wanted = os.environ.get("LANEWRIGHT_STEPS", "").split()
-        for step in (menu, toolbox, dialog, columns, sample, doubts, pairs, layout, manual, batch, designer):
+        for step in (menu, toolbox, dialog, columns, sample, doubts, pairs, layout, manual, batch, designer, own_survey, orthoimage, database):
             if not wanted or step.__name__ in wanted:
                 step()
         say("finished")

@@ -9,7 +9,7 @@ cd "$LANEWRIGHT_ROOT"
 command -v Xvfb >/dev/null || { echo "Install xvfb first: apt install xvfb" >&2; exit 2; }
 pictures="${1:-$LANEWRIGHT_ROOT/docs/manual/img}"
 mkdir -p "$pictures"
-export LANEWRIGHT_PICTURES="$pictures" QT_QPA_PLATFORM=xcb LANG="${LANEWRIGHT_LANG:-en_US.UTF-8}"
+export LANEWRIGHT_ROOT LANEWRIGHT_PICTURES="$pictures" QT_QPA_PLATFORM=xcb LANG="${LANEWRIGHT_LANG:-en_US.UTF-8}"
 rm -f "$LANEWRIGHT_BUILD/screenshots.txt"
 export LANEWRIGHT_SAID="$LANEWRIGHT_BUILD/screenshots.txt"
 # A profile of its own: what is clicked here stays out of the other tools' profile

@@ -1,0 +1,47 @@
+"""What the scripts that drive a QGIS window share: waiting, pictures, and saying how far they are."""
+
+import os
+from pathlib import Path
+
+from qgis.PyQt.QtCore import QCoreApplication, QElapsedTimer, Qt
+from qgis.PyQt.QtGui import QImage
+
+PICTURES = Path(os.environ["LANEWRIGHT_PICTURES"])
+MAPS = ("window_result", "window_orthoimage", "window_database", "window_section", "window_corrections", "window_layout", "window_model",
+        "window_pairs", "window_two_points")
+SAID = Path(os.environ["LANEWRIGHT_SAID"])
+
+
+def say(text):
+    with open(SAID, "a", encoding="utf-8") as file:
+        file.write(text + "\n")
+
+
+def wait(seconds, until=lambda: False):
+    """Let the window live for so long, or until something is so; whether it was."""
+    clock = QElapsedTimer()
+    clock.start()
+    while clock.elapsed() < 1000 * seconds:
+        QCoreApplication.processEvents()
+        if until():
+            return True
+    return until()
+
+
+def keep(widget, name):
+    wait(0.7)
+    save(widget.grab(), name)
+
+
+def save(picture, name):
+    assert not picture.isNull(), name
+    image = picture.toImage()
+    if name not in MAPS:  # 256 colours do for windows, and a manual travels in the plugin's zip
+        image = image.convertToFormat(QImage.Format.Format_Indexed8, Qt.ImageConversionFlag.ThresholdDither | Qt.ImageConversionFlag.AvoidDither)
+    image.save(str(PICTURES / f"{name}.png"))
+    say(f"{name}.png {picture.width()} x {picture.height()}")
+
+
+def needed(condition, what):
+    if not condition:
+        raise AssertionError(what)
