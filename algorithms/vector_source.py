@@ -45,7 +45,7 @@ def read_features(source, schema, geometry_type):
     """A layer as Features; fields are matched by name, the layer's further fields are left out.
 
     Multi-part geometries become one row a part. Raises RoadExtractionError where a
-    field is missing, the geometry is of another kind, or carries no heights.
+    field that is needed is missing, the geometry is of another kind, or carries no heights.
     """
     import shapely
 
@@ -55,7 +55,7 @@ def read_features(source, schema, geometry_type):
     result = Features(geometry_type, list(schema), crs=source.crs)
     # scanlines run straight up a wall, which seen from above is no valid line
     for wkb, values in source.rows(measures=measured, check_validity=not measured):
-        row = {column.name: None if values[place] is None else column.type(values[place]) for column, place in zip(schema, index)}
+        row = {column.name: None if place is None or values[place] is None else column.type(values[place]) for column, place in zip(schema, index)}
         if geometry_type == "None":
             result.add(None, **row)
             continue
@@ -77,11 +77,11 @@ def read_features(source, schema, geometry_type):
 
 
 def _columns(source, schema):
-    """Places of the schema's fields among those of the layer; the case of names does not matter."""
+    """Places of the schema's fields among those of the layer, None for a field that is not needed; the case of names does not matter."""
     place = {name.lower(): k for k, name in reversed(list(enumerate(source.names)))}
     place.update({name: k for k, name in enumerate(source.names)})
     found = [place.get(column.name, place.get(column.name.lower())) for column in schema]
-    missing = [column.name for column, k in zip(schema, found) if k is None]
+    missing = [column.name for column, k in zip(schema, found) if k is None and column.needed]
     if missing:
         raise RoadExtractionError(
             tr("{label} lacks the field(s) {fields}. Use the layer that Lanewright wrote.").format(

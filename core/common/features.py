@@ -17,11 +17,13 @@ class Field:
     name : at most 10 characters
     type : int, float or str
     alias : the name spelled out, with its unit
+    needed : False where a layer that is read may lack it, such as one that an earlier version wrote; its values are None then
     """
 
     name: str
     type: type
     alias: str = ""
+    needed: bool = True
 
 
 @dataclass

@@ -9,7 +9,7 @@ PASS = Field("pass", int, "Pass")
 NEAREST_PASS = Field("pass", int, "Pass that drove nearest")
 SIDE = Field("side", str, "Side (left/right)")
 STATUS = Field("status", str, "Status")
-CONFIDENCE = Field("confidence", float, "Confidence (0 to 1)")
+CONFIDENCE = Field("confidence", float, "Confidence (0 to 1)", needed=False)
 STATION = Field("station_m", float, "Station (m)")
 OFFSET = Field("offset_m", float, "Offset, left positive (m)")
 HEIGHT = Field("height_m", float, "Height (m)")
@@ -21,10 +21,10 @@ RADIUS = Field("radius_m", float, "Radius (m)")
 # main: along the road; corner, side_street: leads away from it; island: stands in it
 CURB_KIND = Field("kind", str, "Kind (main/corner/side_street/island)")
 RMSE = Field("rmse_m", float, "RMSE of the fit (m)")
-SIGMA = Field("sigma_m", float, "Uncertainty across, one sigma (m)")
+SIGMA = Field("sigma_m", float, "Uncertainty across, one sigma (m)", needed=False)
 
 # curb: a step; dropped: a low one where one drives over; pavement: where asphalt ends without a curb
-EDGE = Field("edge", str, "Edge (curb/dropped/pavement)")
+EDGE = Field("edge", str, "Edge (curb/dropped/pavement)", needed=False)
 
 # station_m of a line is where it starts, end_m where it ends, along the road
 END = Field("end_m", float, "End station (m)")

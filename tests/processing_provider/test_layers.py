@@ -149,3 +149,15 @@ def test_no_format_is_given_aliases_it_would_complain_of(tmp_path, qgis_app, nam
     sink, _ = QgsProcessingUtils.createFeatureSink(str(path), context, fields, WKB_TYPES["LineStringZ"], UTM)
     assert sink is not None and not [text for text in warnings if "liases" in text or "omments" in text]
     assert not keeps_aliases(None)
+
+
+def test_a_layer_of_an_earlier_version_may_lack_what_was_not_known_then(qgis_app):
+    layer = edge_layer("LineStringZ", [column for column in ROAD_EDGES if column.name not in ("sigma_m", "edge")])
+    from qgis.core import QgsFeature, QgsGeometry
+
+    feature = QgsFeature(layer.fields())
+    feature.setAttribute("road", 2)
+    feature.setGeometry(QgsGeometry.fromWkt("LineStringZ(0 0 1, 10 0 1)"))
+    layer.dataProvider().addFeatures([feature])
+    (_, row), = read_features(QgisSource(layer, "Road edges"), ROAD_EDGES, "LineStringZ")
+    assert row["road"] == 2 and row["sigma_m"] is None and row["edge"] is None
