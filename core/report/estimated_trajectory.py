@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..survey.estimation.estimate import WAYS
 from .figures import Chart
 from .page import Page
 
@@ -23,7 +24,7 @@ def estimated_trajectory_report(found: EstimatedTrajectory) -> str:
     for note in found.notes:
         page.warning(note)
     track = found.trajectory
-    page.facts((("Way", "from the rays of the mirrors" if found.method == "rays" else "from the density of the points"),
+    page.facts((("Way", f"from {WAYS[found.method]}"),
                 ("Positions", len(track)), ("Length", f"{found.length:.1f} m"),
                 ("Time", f"{track.time[0]:.3f} to {track.time[-1]:.3f} s" if track.has_time else "none"),
                 ("Refers to", "the middle of the scanners" if len(found.scanners) > 1 else "the scanner"),

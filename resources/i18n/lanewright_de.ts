@@ -3660,6 +3660,11 @@
         </message>
         <message>
             <location filename="../../algorithms/survey/estimate_trajectory.py" />
+            <source>Heads of many beams that turn about an upright axis are known by their turns: their place is that from which every return lies in the direction of its time. Their height above the road is then a usual one, known to 0.5 m.</source>
+            <translation>Köpfe mit vielen Strahlen, die sich um eine aufrechte Achse drehen, erkennt man an ihren Umdrehungen: ihr Ort ist der, von dem aus jeder Messpunkt in der Richtung seiner Zeit liegt. Ihre Höhe über der Straße ist dann eine übliche, auf 0,5 m bekannt.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/survey/estimate_trajectory.py" />
             <source>Without gps_time, or where no mirror is seen to turn, the track follows the density of the points: it is rough, half a metre off and with a height known to 0.3 m, and says so. Airborne, terrestrial and handheld clouds are refused.</source>
             <translation>Ohne gps_time, oder wo kein Spiegel zu erkennen ist, der sich dreht, folgt die Spur der Punktdichte: Sie ist grob, einen halben Meter ungenau und in der Höhe auf 0,3 m bekannt, und es wird gesagt. Wolken aus der Luft, vom Stativ und aus der Hand werden abgelehnt.</translation>
         </message>

@@ -22,12 +22,14 @@ from .kinds import refuse_airborne, refuse_handheld, refuse_terrestrial
 from .poses import YAW, Poses
 from .ridge import FIRST_HEIGHT, ridge_of
 from .samples import MAX_GAP_IN_DRIVE, UNKNOWN_SCANNER, Samples, read_samples
+from .turning_head import HEAD_HEIGHT, HEAD_HEIGHT_SIGMA, turning_heads
 
 ROW_SPACING = 0.02         # s between the positions written: a third of a metre on a motorway
 MAX_SIGMA = 0.3            # m: a position that is known less well is not written
 LEAST_SIGMA = 0.002        # m: what calibration leaves, however many returns agree
 DENSITY_SIGMA, DENSITY_HEIGHT_SIGMA = 0.5, 0.3   # m, of a track by density alone
 READ, TRACKED = 0.4, 0.55  # of the work
+WAYS = {"rays": "the rays of the mirrors", "turns": "the turns of a many-beam head", "density": "the density of the points, which is rough"}
 
 
 @dataclass
@@ -36,7 +38,7 @@ class EstimatedTrajectory:
 
     trajectory : Trajectory of the middle of the scanners
     sigma, sigma_height : (N,) m, standard deviation of the place on the map and of the height
-    method : "rays" of mirrors, or "density" of points alone, which is rough
+    method : "rays" of mirrors, "turns" of a many-beam head, or "density" of points alone, which is rough
     scanners : the scanners that took part
     adjusted : Adjusted, None with density alone
     notes : sentences for the user
@@ -52,8 +54,7 @@ class EstimatedTrajectory:
 
     def summary(self) -> str:
         """One sentence on how it was estimated and how well it is known."""
-        way = "the rays of the mirrors" if self.method == "rays" else "the density of the points, which is rough"
-        return (f"Trajectory estimated from {way}: {len(self.trajectory):,} positions over {self.length:.0f} m, place known to "
+        return (f"Trajectory estimated from {WAYS[self.method]}: {len(self.trajectory):,} positions over {self.length:.0f} m, place known to "
                 f"{np.median(self.sigma):.3f} m, height to {np.median(self.sigma_height):.3f} m (median, one sigma).")
 
     @property
@@ -103,6 +104,11 @@ def estimate_trajectory(paths: Sequence[str | Path], crs: str = "", scanner_fiel
         tracks.append(first_track(samples.time[drive], samples.place[drive]))
         progress.report(READ + (TRACKED - READ) * (number + 1) / len(samples.drives))
     refuse_airborne(tracks)
+    heads = turning_heads(samples, tracks)
+    if heads is not None:
+        refuse_terrestrial(tracks, [])
+        refuse_handheld(tracks, [])
+        return _of_heads(samples, tracks, heads, wkt)
     scanners = spinning_scanners(samples, tracks)
     refuse_terrestrial(tracks, scanners)
     found = None
@@ -219,6 +225,19 @@ def _of_rays(samples, scanners, found, crs):
     if samples.left_out:
         result.notes.append(f"{samples.left_out:,} points came in short pieces between gaps of time and were left out.")
     return result
+
+
+def _of_heads(samples, tracks, heads, crs):
+    """The places of a many-beam head, one a turn."""
+    time, heading, sigma = (np.concatenate([getattr(head, name) for head in heads]) for name in ("time", "heading", "sigma"))
+    ground = np.concatenate([track.at(head.time)[0][:, 2] for head, track in zip(heads, tracks)])
+    place = np.column_stack([np.concatenate([head.place for head in heads]), ground + HEAD_HEIGHT])
+    known = sigma <= MAX_SIGMA
+    trajectory = _rough(time[known] + samples.start, place[known], heading[known], samples.origin, crs, True)
+    return EstimatedTrajectory(trajectory, sigma[known], np.full(int(known.sum()), HEAD_HEIGHT_SIGMA), "turns", notes=[
+        f"The points are those of a head of many beams that turns {abs(heads[0].rate):.1f} times a second. Its place follows from the "
+        f"directions in which it looked; its height above the road, known to {HEAD_HEIGHT_SIGMA:g} m, is a usual one, and roll and pitch are not "
+        "known."])
 
 
 def _by_density(samples, tracks, crs):

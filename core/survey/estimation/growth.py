@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from ...common.progress import Progress
+from ...curves.smoothing import robustly_smoothed
 from .adjustment import FIRST_NOISE, Adjusted, Returns, adjust_poses
 from .crossfall import crossfall_of
 from .poses import POSE, Poses
-from .smoothing import robustly_smoothed
 
 REACH = 10            # intervals that poses are carried on at a time: for a second a vehicle's motion is foreseen within decimetres
 MAX_GROWTHS = 12

@@ -1,0 +1,168 @@
+"""The track of a many-beam head that turns about an upright axis: every return lies in the direction in which the head looked at its time.
+
+In one turn the direction is phi + omega t, so that the place c of the head is a resection from thousands of bearings: of every return at p,
+the bearing of p - c equals phi + omega t. Solved for place, speed, phi and omega of every turn by iteratively reweighted least squares; the
+speed is nothing where the turns were moved to one place each already, as driving programs do.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .first_track import FirstTrack, headings_of
+from .samples import Samples
+
+TURNING_RATES = 4.0, 25.0          # turns per second that heads make
+RATE_STEP = 0.05           # 1/s
+RATE_SECONDS = 2.0         # s from which the rate is found: the vehicle hardly turns meanwhile
+MAX_RATE_SAMPLES = 20_000
+MIN_COHERENCE = 0.8        # of bearings with a steady turning, about the first track
+MAX_BEARING_NOISE = np.radians(0.5)  # of bearings about the head: those of a mirror that turns about another axis are degrees off
+FAR_FROM_TRACK = 4.0                  # m from the first track, at which its error of a metre does not spoil a bearing
+MAX_TURN_SAMPLES = 4000    # used of a turn
+MIN_TURN_SAMPLES = 200
+MIN_GAP_OF_TURN = 0.2            # of a turn without points, after which the next turn begins
+MIN_SEEN_SHARE_OF_TURN = 0.5      # of a turn that must have been seen
+NEAREST_AT_FIRST, NEAREST_RETURN = 3.0, 2.0   # m: nearer returns do not count, in the first rounds and later
+FIRST_HEAD_ROUNDS, HEAD_ROUNDS = 5, 15
+MAX_HEAD_STEP = 0.7             # m a round
+LEAST_BEARING_NOISE = np.radians(0.1)       # of a bearing
+MAX_TURN_MISFIT = 2.5           # times the usual noise: a turn of more is no turn of one head
+HEAD_HEIGHT, HEAD_HEIGHT_SIGMA = 2.0, 0.5   # m above the road: on the roofs of cars and of vans
+LEAST_HEAD_SIGMA = 0.02    # m: what the beams' own directions leave, which no field tells
+RATE_SCALE = 50.0          # 1/s: rates and speeds in units that make the equations even
+
+
+@dataclass
+class HeadTrack:
+    """Places of the head, one a turn.
+
+    time : (T,) s; place : (T, 2) m; sigma : (T,) m; heading : (T,) radians counter-clockwise from east
+    noise : radians, usual residual of a bearing; rate : turns per second, negative clockwise
+    """
+
+    time: np.ndarray
+    place: np.ndarray
+    sigma: np.ndarray
+    heading: np.ndarray
+    noise: float
+    rate: float
+
+
+def turning_heads(samples: Samples, tracks: list[FirstTrack]) -> list[HeadTrack] | None:
+    """The places of a many-beam head in every drive; None where the points are not those of one.
+
+    Parameters
+    ----------
+    samples : Samples with times
+    tracks : FirstTrack of each drive
+    """
+    rate = turning_rate(samples, tracks)
+    if rate is None:
+        return None
+    heads = []
+    for drive, track in zip(samples.drives, tracks):
+        head = head_track(samples.time[drive], samples.place[drive], track, rate)
+        if head is None or len(head.time) < 2 or head.noise > MAX_BEARING_NOISE:
+            return None
+        heads.append(head)
+    return heads
+
+
+def turning_rate(samples: Samples, tracks: list[FirstTrack]) -> float | None:
+    """Turns per second of a head, negative where it turns clockwise; None where bearings do not turn steadily.
+
+    Parameters
+    ----------
+    samples : Samples with times
+    tracks : FirstTrack of each drive
+    """
+    drive, track = max(zip(samples.drives, tracks), key=lambda pair: pair[0].stop - pair[0].start)
+    middle = 0.5 * (samples.time[drive.start] + samples.time[drive.stop - 1])
+    rows = drive.start + np.flatnonzero(np.abs(samples.time[drive] - middle) <= RATE_SECONDS / 2)
+    away = samples.place[rows, :2] - track.at(samples.time[rows])[0][:, :2]
+    rows, away = rows[far := np.hypot(*away.T) > FAR_FROM_TRACK], away[far]
+    kept = slice(None, None, max(len(rows) // MAX_RATE_SAMPLES, 1))
+    if len(rows) < MIN_TURN_SAMPLES:
+        return None
+    time, bearing = samples.time[rows][kept] - middle, np.exp(1j * np.arctan2(away[kept, 1], away[kept, 0]))
+    rates = np.arange(*TURNING_RATES, RATE_STEP)
+    rates = np.concatenate([rates, -rates])
+    coherence = np.array([abs(np.mean(bearing * np.exp(-2j * np.pi * rate * time))) for rate in rates])
+    return float(rates[coherence.argmax()]) if coherence.max() >= MIN_COHERENCE else None
+
+
+def head_track(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: float) -> HeadTrack | None:
+    """The places of the head in one drive.
+
+    Parameters
+    ----------
+    time : (N,) s, ascending
+    place : (N, 3) m
+    track : FirstTrack of the drive
+    rate : turns per second, of `turning_rate`
+
+    Returns
+    -------
+    HeadTrack; None where no whole turn was seen
+    """
+    time, flat, turn = _turns(time, place[:, :2], 1.0 / abs(rate))
+    if not len(time):
+        return None
+    count = int(turn[-1]) + 1
+    begin, end = np.full(count, np.inf), np.full(count, -np.inf)
+    np.minimum.at(begin, turn, time)
+    np.maximum.at(end, turn, time)
+    middle = 0.5 * (begin + end)
+    since = time - middle[turn]
+    head = track.at(middle)[0][:, :2].copy()
+    speed, omega = np.zeros((count, 2)), np.full(count, 2 * np.pi * rate)
+    away = flat - head[turn]
+    first = np.exp(1j * (np.arctan2(away[:, 1], away[:, 0]) - omega[turn] * since))
+    phi = np.angle(np.bincount(turn, first.real, count) + 1j * np.bincount(turn, first.imag, count))
+    for number in range(HEAD_ROUNDS):
+        away = flat - head[turn] - speed[turn] * since[:, None]
+        square = np.maximum((away**2).sum(axis=1), 1e-6)
+        off = np.angle(np.exp(1j * (np.arctan2(away[:, 1], away[:, 0]) - phi[turn] - omega[turn] * since)))
+        noise = max(1.4826 * float(np.median(np.abs(off))), LEAST_BEARING_NOISE)
+        weight = (square > (NEAREST_AT_FIRST if number < FIRST_HEAD_ROUNDS else NEAREST_RETURN) ** 2) / (1.0 + (off / noise) ** 2)
+        by_x, by_y, by_time = away[:, 1] / square, -away[:, 0] / square, since * RATE_SCALE
+        slopes = [by_x, by_y, -np.ones(len(off)), -by_time, by_x * by_time, by_y * by_time]
+        normal = np.array([[np.bincount(turn, weight * a * b, count) for b in slopes] for a in slopes]).transpose(2, 0, 1)
+        # a weak prior keeps turns solvable that saw one side alone, and their speed small
+        normal += np.diag([1e-3, 1e-3, 1e-3, 1e-3, 1.0, 1.0])
+        right = np.array([np.bincount(turn, weight * a * off, count) for a in slopes]).T
+        step = -np.linalg.solve(normal, right[..., None])[..., 0]
+        head += np.clip(step[:, :2], -MAX_HEAD_STEP, MAX_HEAD_STEP)
+        phi, omega = phi + step[:, 2], omega + step[:, 3] * RATE_SCALE
+        speed += np.clip(step[:, 4:] * RATE_SCALE, -MAX_HEAD_STEP / 0.1, MAX_HEAD_STEP / 0.1)
+    misfit = np.sqrt(np.bincount(turn, weight * off**2, count) / np.maximum(np.bincount(turn, weight, count), 1e-9))
+    usual = float(np.median(misfit))
+    covariance = np.linalg.inv(normal) * usual**2
+    sigma = np.sqrt(covariance[:, 0, 0] + covariance[:, 1, 1] + LEAST_HEAD_SIGMA**2)
+    good = misfit <= MAX_TURN_MISFIT * usual
+    return HeadTrack(middle[good], head[good], sigma[good], _headings(middle[good], head[good]), usual, rate)
+
+
+def _turns(time, flat, period):
+    """(N,) times, (N, 2) places and (N,) numbers of the turns that were seen long enough, thinned."""
+    cuts = np.flatnonzero(np.diff(time) > MIN_GAP_OF_TURN * period) + 1
+    group = np.searchsorted(cuts, np.arange(len(time)), side="right")
+    begun = time[np.r_[0, cuts]][group]
+    raw = np.cumsum(np.r_[0, (np.diff(group) > 0) | (np.diff(np.floor((time - begun) / period + 1e-6)) != 0)])
+    size = np.bincount(raw)
+    first = np.r_[0, np.cumsum(size)[:-1]]
+    whole = (time[first + size - 1] - time[first] >= MIN_SEEN_SHARE_OF_TURN * period) & (size >= MIN_TURN_SAMPLES)
+    rank = np.arange(len(raw)) - first[raw]
+    kept = whole[raw] & (rank % -(-size // MAX_TURN_SAMPLES)[raw] == 0)
+    return time[kept], flat[kept], (np.cumsum(whole) - 1)[raw[kept]]
+
+
+def _headings(time, place):
+    """(T,) headings of the way driven at uneven times."""
+    if len(time) < 2:
+        return np.zeros(len(time))
+    even = np.linspace(time[0], time[-1], max(int((time[-1] - time[0]) / 0.1), 1) + 1)
+    return np.interp(time, even, headings_of(np.stack([np.interp(even, time, axis) for axis in place.T], axis=1)))

@@ -1,0 +1,56 @@
+"""A head of many beams that turns on the roof of a car is found by its turns."""
+
+import numpy as np
+import pytest
+from drives import EAST, NORTH, write_cloud
+from lanewright.core.common.errors import RoadExtractionError
+from lanewright.core.survey.estimation.estimate import estimate_trajectory
+
+TURN, SPEED, HEIGHT, HALF, RADIUS = 0.1, 8.0, 1.8, 9.0, 60.0   # s, m/s; m: the head, the walls beside the street, its bend
+START = 318_204_000.0
+ELEVATIONS = np.radians(np.linspace(-24.0, 4.0, 24))
+
+
+def place_at(time, speed=SPEED):
+    """(N, 2) places and (N,) headings of a vehicle that bends left."""
+    angle = speed * time / RADIUS
+    return np.column_stack([RADIUS * np.sin(angle), RADIUS * (1 - np.cos(angle))]), angle
+
+
+def spun_cloud(path, by_turn, seconds=6.0, speed=SPEED, clockwise=True):
+    """A cloud of a street between walls; `by_turn` sees each turn from the place of its middle, as clouds of frames are."""
+    rng = np.random.default_rng(4)
+    step = np.arange(0.0, seconds, TURN / 700)
+    time, beam = (a.ravel() for a in np.meshgrid(step, np.arange(len(ELEVATIONS)), indexing="ij"))
+    head, yaw = place_at((np.floor(time / TURN) + 0.5) * TURN if by_turn else time, speed)
+    bearing = yaw + (-1 if clockwise else 1) * 2 * np.pi * time / TURN
+    ahead, left = np.cos(bearing - yaw), np.sin(bearing - yaw)
+    wall = HALF / np.maximum(np.abs(left), 1e-3)
+    elevation = ELEVATIONS[beam]
+    ground = np.where(elevation < 0, HEIGHT / np.tan(np.maximum(-elevation, 1e-3)), np.inf)
+    away = np.minimum(np.minimum(wall, ground), 60.0 + 0 * ahead) + rng.normal(0, 0.01, len(time))
+    kept = away < 50.0
+    x, y = (head[:, k] + away * side for k, side in enumerate((np.cos(bearing), np.sin(bearing))))
+    z = 100.0 + HEIGHT + away * np.tan(elevation)
+    return write_cloud(path, x[kept] + EAST, y[kept] + NORTH, z[kept], START + time[kept], crs="EPSG:32632")
+
+
+@pytest.mark.parametrize(("by_turn", "clockwise"), [(True, True), (False, True), (False, False)])
+def test_the_place_of_the_head_comes_back_within_centimetres(tmp_path, by_turn, clockwise):
+    found = estimate_trajectory([spun_cloud(tmp_path / "cloud.laz", by_turn, clockwise=clockwise)])
+    assert found.method == "turns" and "many-beam head" in found.summary() and any("10.0 times a second" in note for note in found.notes)
+    track = found.trajectory
+    assert len(track) == pytest.approx(60, abs=2)
+    true, yaw = place_at(track.time - START)
+    off = np.column_stack([track.x - EAST, track.y - NORTH]) - true
+    left = -off[:, 0] * np.sin(yaw) + off[:, 1] * np.cos(yaw)
+    ahead = off[:, 0] * np.cos(yaw) + off[:, 1] * np.sin(yaw)
+    assert np.sqrt(np.mean(left**2)) < 0.05 and np.abs(left).max() < 0.3 and np.sqrt(np.mean(ahead**2)) < 0.1
+    assert np.abs(track.z - 100.0 - HEIGHT).max() < 0.5
+    heading = np.radians(90.0 - track.heading)
+    assert np.abs(np.angle(np.exp(1j * (heading - yaw)))[2:-2]).max() < np.radians(3.0)
+
+
+def test_one_carried_at_walking_pace_is_refused_by_name(tmp_path):
+    with pytest.raises(RoadExtractionError, match="handheld or backpack"):
+        estimate_trajectory([spun_cloud(tmp_path / "cloud.laz", False, seconds=12.0, speed=1.2)])
