@@ -19,7 +19,7 @@ from ...survey.frame.road_frame import CORRIDOR
 from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.road_points import RoadPoints
 from .ground_grid import ROW_LENGTH, GroundCells, ground_cells
-from .limits import PAVEMENT_INSET, edge_offsets
+from .limits import edge_offsets
 from .openings import cells_driven, opened_limits, street_ground
 from .outline import outlines
 from .pavement_edge import GrownLimit, SurfaceProfiles, grown_limit
@@ -35,6 +35,7 @@ WINDOW_ROWS = 10              # rows of cells in memory at a time: 5 m
 TOLERANCE_FLOOR = 0.03        # m, height tolerance of a scanner without noise
 TOLERANCE_SIGMAS = 4.0        # times the noise of the heights, added to it
 TRACK_REACH = 1.5             # m either side of the reference line where ground must be measured
+GROWN_INSET = 0.05            # m off a limit that is no edge: on a road that is too wide, verge is extracted as paint
 MIN_SURFACE_WIDTH = 0.5       # m between the limits of a row with road
 
 
@@ -178,7 +179,7 @@ def find_carriageway(survey: Survey, road: int, edges: RoadEdges | None, setting
         closed[side] = np.isfinite(offset) & ~known
         if np.isnan(offset).any():
             grown[side] = grown_limit(SurfaceProfiles.joined(profiles), cells, height - prior[:, None], sign, track, settings.max_width)
-            offset = np.where(np.isnan(offset), grown[side].offset - sign * PAVEMENT_INSET, offset)
+            offset = np.where(np.isnan(offset), grown[side].offset - sign * GROWN_INSET, offset)
         limits[side] = offset, known
     limits = _with_mouths(limits, closed, tracks, cells, followed.ground, cells_driven(survey.frame, road, cells), settings.max_width)
     there = _has_road(followed.ground, cells.offsets) & (limits["left"][0] > limits["right"][0] + MIN_SURFACE_WIDTH)

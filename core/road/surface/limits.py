@@ -10,7 +10,6 @@ if TYPE_CHECKING:
     from ..edges.road_edges import RoadEdges
 
 MAX_OPENING = 30.0       # m of missing edge that is closed by a straight line
-PAVEMENT_INSET = 0.05    # m: on a road that is too wide, verge is extracted as paint
 EDGE_CONTINUATION = 5.0  # m by which the offset of an edge holds before its first and after its last vertex
 
 
@@ -27,7 +26,7 @@ def edge_offsets(edges: RoadEdges | None, road: int, stations: np.ndarray) -> di
     -------
     dict of side (left, right) to (offset, measured): `offset` is (N,) m, NaN where there is no edge;
     `measured` is (N,) bool, True where a measured or bridged edge gives the offset. It is False for inferred
-    edges and for closed openings. Edges of the pavement count where there is no curb, PAVEMENT_INSET inwards.
+    edges and for closed openings. Edges of the pavement count where there is no curb.
     """
     found = {}
     for side, sign in (("left", 1.0), ("right", -1.0)):
@@ -43,7 +42,7 @@ def edge_offsets(edges: RoadEdges | None, road: int, stations: np.ndarray) -> di
         offset = _continued(stations, offset)
         for s, d, _ in () if edges is None else _lines_of(edges, road, side, ~edges.of_curb):
             take = np.isnan(offset) & (stations >= s[0]) & (stations <= s[-1])
-            offset[take] = np.interp(stations[take], s, d) - sign * PAVEMENT_INSET
+            offset[take] = np.interp(stations[take], s, d)
             measured[take] = True
         found[side] = offset, measured
     return found

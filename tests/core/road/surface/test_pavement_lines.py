@@ -147,11 +147,11 @@ def test_a_curb_stays_what_it_is_and_the_pavement_ends_on_the_other_side_alone()
     assert len(set(both.chain)) == 2
 
 
-def test_the_surface_ends_just_inside_the_edge_of_the_pavement_and_counts_as_measured():
+def test_the_surface_ends_at_the_edge_of_the_pavement_and_counts_as_measured():
     survey = street()
     points, surface = extract_road_surface(survey, found(survey))
     d = points.all_points().d
-    assert HALF - 0.15 < np.percentile(d, 99.9) <= HALF + 0.02 and -HALF - 0.02 <= np.percentile(d, 0.1) < -HALF + 0.15
+    assert (np.percentile(d, 0.1), np.percentile(d, 99.9)) == pytest.approx((-HALF, HALF), abs=0.08)
     assert surface.area[surface.status == "measured"].sum() > 0.8 * surface.area.sum()
 
 
