@@ -65,10 +65,11 @@ def fixed_sections(first: int, last: int, width: float) -> list[tuple[int, int]]
 
     Returns
     -------
-    list of (first, last + 1), each about WORK_SECTION_LENGTH long, those at the ends shorter
+    list of (first, last + 1), each about WORK_SECTION_LENGTH long, those at the ends between half of that and one and a half
     """
     length = max(int(round(WORK_SECTION_LENGTH / width)), 1)
-    bounds = np.unique(np.r_[first, np.arange(first // length + 1, -(-last // length)) * length, last])
+    cuts = np.arange(first // length + 1, -(-last // length)) * length
+    bounds = np.r_[first, cuts[(cuts - first >= length / 2) & (last - cuts >= length / 2)], last]
     return [(int(a), int(b)) for a, b in zip(bounds[:-1], bounds[1:])]
 
 

@@ -65,7 +65,7 @@ def test_both_offices_find_the_same_curb_points_by_profiles(jobs):
 def test_most_places_of_both_maps_lie_within_a_centimetre(jobs, tmp_path):
     drive, *clouds = jobs
     maps = [make_road_map([cloud], drive, tmp_path / f"{k}.tif") for k, cloud in enumerate(clouds)]
-    for layer, share in (("edges", 0.95), ("marking_lines", 0.9)):
+    for layer, share in (("edges", 0.95), ("marking_lines", 0.85)):
         distance = apart(*(lines_of(made.layer(layer)) for made in maps), drive)
         assert len(distance) > 300 and np.median(distance) < 0.003 and np.quantile(distance, share) < 0.010, layer
     for made in maps:

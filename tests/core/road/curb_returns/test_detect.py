@@ -68,7 +68,7 @@ def test_a_dense_scan_with_centimetres_of_noise_shows_the_corner():
 
 def test_a_street_whose_corner_is_hidden_is_drawn_where_it_is_seen():
     ground = side_street(start=14.0, end=24.0)
-    edges = edges_of(scan(ground, hidden=shapely.box(5, 3.2, 14.3, 6.5)))
+    edges = edges_of(scan(ground, hidden=shapely.box(5, 3.2, 14.3, 6.0)))
     lines = [line for line in in_plan(edges, "side_street") if line.bounds[0] < 15]
     assert shapely.union_all(lines).length > 4.0
     assert farthest(lines, shapely.boundary(ground)) < 0.04
