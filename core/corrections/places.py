@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
+from ..common.runs import mask_runs
 from .corrections import Correction
 
 STEP = 0.25            # m between the places at which a line is compared with a correction
@@ -69,9 +70,8 @@ def _beside(line, number, places, reach):
     away = shapely.distance(course, shapely.points(xy))
     head, tail = _excess(xy, places[0], places[1]), _excess(xy, places[-1], places[-2])
     inside = (away <= reach) & ~((u <= 0) & (head > STEP)) & ~((u >= course.length) & (tail > STEP))
-    edges = np.flatnonzero(np.diff(np.r_[0, inside.astype(int), 0]))
     least = min(SHORTEST, course.length / 2)
-    for i, j in zip(edges[::2], edges[1::2]):
+    for i, j in mask_runs(inside):
         a, b = at[i], at[j - 1]
         first, last = u[i:j].min(), u[i:j].max()
         if b - a < least and b - a < arcs[-1] / 2 or last - first < ALONG * (b - a) or b <= a:

@@ -54,7 +54,7 @@ def connectors_on_road(s: np.ndarray, tracks: list[LaneTrack], heights: list[np.
                     continue
                 lane += 1
                 area = _connector(before, after, a, b, columns, driven[p], s, (z_before, z_after), frame, number)
-                rows.append(area | dict(lane=lane, status="inferred"))
+                rows.append(area | dict(lane=lane))
                 break
     return rows
 
@@ -70,9 +70,14 @@ def _connector(before, after, a, b, columns, driven, s, heights, frame, number):
     sides = [np.column_stack([*frame.roads[number].to_map(s[columns], d + side * half), z]) for side in (1, -1)]
     if before.direction < 0:
         sides = [side[::-1] for side in sides[::-1]]
-    return dict(road=number, type="connector", direction=before.direction, left=sides[0], right=sides[1], about=[NO_BORDER, NO_BORDER],
-                confidence=CONNECTOR_CONFIDENCE * min(before.confidence.mean(), after.confidence.mean()), station=float(s[columns[0]]),
-                end=float(s[columns[-1]]), first=float(d[0]), last=float(d[-1]), width=float(np.median(2 * half)))
+    return _row(number, before, after, sides, half, station=float(s[columns[0]]), end=float(s[columns[-1]]), first=float(d[0]), last=float(d[-1]))
+
+
+def _row(road, before, after, sides, half, **places):
+    """The row of Lanes of an area from one lane to another; `half` of its width at each place, `places` along and across the road."""
+    return dict(road=road, type="connector", direction=before.direction, left=sides[0], right=sides[1], about=[NO_BORDER, NO_BORDER],
+                confidence=CONNECTOR_CONFIDENCE * float(min(before.confidence.mean(), after.confidence.mean())), status="inferred",
+                width=float(np.median(2 * half)), **places)
 
 
 class RoadLanes(NamedTuple):
@@ -170,9 +175,7 @@ def _turn(left, entered, before, after, lanes, frame):
     sides = [np.c_[places + across * (middle + side * wide)[:, None], z] for side in (1, -1)]
     start = float(lanes[before.road].s[left.at])
     d = float(left.track.at(left.at)[0])
-    return dict(road=before.road, type="connector", direction=before.direction, left=sides[0], right=sides[1], about=[NO_BORDER, NO_BORDER],
-                confidence=CONNECTOR_CONFIDENCE * float(min(left.track.confidence.mean(), entered.track.confidence.mean())), status="inferred",
-                station=start, end=start + before.direction * float(along[-1]), first=d, last=d, width=float(np.median(2 * wide)))
+    return _row(before.road, left.track, entered.track, sides, wide, station=start, end=start + before.direction * float(along[-1]), first=d, last=d)
 
 
 def _piece_at(rows, road, lane, station):

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..common.runs import mask_runs
 from ..markings.cross_section.sections import STATION_STEP, CrossSections
 from ..markings.cross_section.weights import EDGE_LINE
 from .lane_track import LaneTrack
@@ -43,16 +44,16 @@ def shoulders(road: EstimatedRoad, tracks: list[LaneTrack], borders: list[list[n
     known = (at >= 0) & (at < len(pavement.s))
     at = np.clip(at, 0, len(pavement.s) - 1)
     rows = []
-    for track, sides in zip(tracks, borders):
+    for track, (left, right) in zip(tracks, borders):
         columns = np.arange(track.first, track.last + 1)
-        for sign, own, use, border in ((1, track.left, track.left_use, sides[0]), (-1, track.right, track.right_use, sides[1])):
+        for sign, own, use, border in ((1, track.left, track.left_use, left), (-1, track.right, track.right_use, right)):
             inner = track.d + sign * track.width / 2
             away = sign * (np.where(known[columns], pavement.d[:, at[columns]], np.nan) - inner)
             away = np.where((away >= STRIP_WIDTH[0]) & (away <= STRIP_WIDTH[1]), away, np.inf)
             nearest = np.argmin(away, axis=0)
             width = away[nearest, np.arange(len(columns))]
             wide = np.isfinite(width) & (use == EDGE_LINE) & (own >= 0) & (own < len(lines.d)) & ~_taken(tracks, track, inner, sign)
-            for a, b in _runs(wide):
+            for a, b in mask_runs(wide):
                 if (b - a - 1) * STATION_STEP < SHORTEST_SHOULDER or np.median(width[a:b]) < LEAST_SHOULDER:
                     continue
                 part, edge = slice(a, b), nearest[a:b]
@@ -65,9 +66,9 @@ def shoulders(road: EstimatedRoad, tracks: list[LaneTrack], borders: list[list[n
                 drawn = lines.drawn[own[part], columns[part]]
                 about = [(f"line {_usual(lines.number[own[part], columns[part]])}", "edge", lines.names[_usual(drawn)]),
                          (f"edge {_usual(pavement.number[edge, places])}", "pavement", "")]
-                sides = [border[part], outer]
+                strip = [border[part], outer]
                 rows.append(dict(
-                    road=number, type="shoulder", direction=0, left=sides[sign > 0], right=sides[sign < 0], about=about[::-sign],
+                    road=number, type="shoulder", direction=0, left=strip[sign > 0], right=strip[sign < 0], about=about[::-sign],
                     status="measured" if seen else "inferred", confidence=float(track.confidence[part].mean()), station=float(s[columns[a]]),
                     end=float(s[columns[b - 1]]), first=float(middle[0]), last=float(middle[-1]), width=float(np.median(width[part]))))
     return rows
@@ -90,9 +91,3 @@ def _taken(tracks, own, inner, sign):
         apart = sign * (other.d[there] - inner[here])
         found[here] |= (apart > 0) & (apart < STRIP_WIDTH[1] + other.width[there] / 2)
     return found
-
-
-def _runs(mask):
-    """(begin, end) of stretches of True, end exclusive."""
-    cuts = np.flatnonzero(np.diff(np.r_[False, mask, False].astype(int)))
-    return list(zip(cuts[::2].tolist(), cuts[1::2].tolist()))

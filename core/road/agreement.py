@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..common.runs import mask_runs
 from ..survey.frame.road_frame import RoadFrame
 from .common.curb_points import CurbPoints
 from .common.sides import SIDE_SIGNS
@@ -123,12 +124,6 @@ def _second_is_better(first, second):
             elif b < len(better) and one_curb[b]:
                 better[a:b] = better[b]
     return better
-
-
-def mask_runs(mask: np.ndarray) -> list[tuple[int, int]]:
-    """(first, last + 1) of every run of True in (N,) bool."""
-    change = np.flatnonzero(np.diff(np.r_[False, mask, False].astype(np.int8)))
-    return list(zip(change[::2].tolist(), change[1::2].tolist()))
 
 
 def measure_agreement(edges: RoadEdges, first_edges: RoadEdges, second_edges: RoadEdges, frame: RoadFrame) -> tuple[RoadEdges, RoadEdges]:

@@ -8,11 +8,14 @@ import subprocess
 import sys
 import threading
 import time
+from functools import partial
 from pathlib import Path
 
 import fiona
 import pytest
-from curbed_streets import parked_car, street, survey_of
+from curbed_streets import street, survey_of
+from executed_boundaries import Heard, numbers_of
+from executed_boundaries import boundaries as boundaries_by
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.execution import cluster as executing
@@ -31,36 +34,7 @@ from lanewright.library import run
 
 ROOT = Path(__file__).resolve().parents[2]
 PHASES = ["steps_of_section", "corners_of_section", "plan_steps_of_section"]
-
-
-class Heard(Progress):
-    def __init__(self):
-        self.lines = []
-
-    def info(self, text):
-        self.lines.append(text)
-
-    warn = info
-
-    def says(self, text):
-        return any(text in line for line in self.lines)
-
-
-def boundaries(executor, progress=Progress(), **noise):
-    survey = survey_of(parked_car(street(open_left=[(25.0, 33.0)], length=60.0, **noise), start=40.0))
-    survey.executor = executor
-    try:
-        return draw_boundaries(find_curb_points(survey, BoundarySettings("both"), progress), survey.frame)
-    finally:
-        survey.store.close()
-        executor.close()
-
-
-def numbers_of(found):
-    course, points = found.edges.course, found.curb_points
-    columns = [course.x, course.y, course.z, course.s, course.d, found.edges.agree, found.edges.rmse, found.edges.chain, found.edges.nearest_pass,
-               points.x, points.y, points.z, points.station, points.offset, points.height, points.support]
-    return [column.tobytes() for column in columns], list(points.status), list(points.kind), list(found.edges.status)
+boundaries = partial(boundaries_by, length=60.0)   # three sections of 20 m
 
 
 @pytest.fixture(scope="module")
@@ -145,7 +119,7 @@ def test_where_the_scheduler_is_killed_one_sentence_says_so_and_the_next_run_goe
     done = len(list(work.path.glob("phase-*/*.npz")))
     heard = Heard()
     work = WorkFolder(str(tmp_path / "work"))
-    assert numbers_of(boundaries(KeptResults(Threads(1), moved(work)), heard)) == by_threads
+    assert numbers_of(boundaries(KeptResults(Threads(1), moved(work)), progress=heard)) == by_threads
     assert done >= 1
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ...common.runs import mask_runs
 from ..common.curb_limits import MIN_FAINT_LENGTH
 from ..common.sides import SIDE_SIGNS
 from ..common.tracking import MAX_CHAIN_SCATTER, MAX_JOINED_GAP, MAX_ROAD_ROUGHNESS
@@ -153,11 +154,8 @@ def _straight_part(own):
     """The longest run of steps, as a slice, in the line's own direction: at its ends it may have caught a wall, or the back of a sidewalk."""
     along = np.arctan2(-own.nx, own.ny)
     turn = np.abs((along - np.arctan2(np.median(np.sin(along)), np.median(np.cos(along))) + np.pi) % (2 * np.pi) - np.pi)
-    cuts = np.flatnonzero(np.diff(np.r_[False, turn <= MAX_SIDE_STREET_TURN, False].astype(np.int8)))
-    if not len(cuts):
-        return slice(0, len(own))
-    k = int(np.argmax(cuts[1::2] - cuts[::2]))
-    return slice(int(cuts[2 * k]), int(cuts[2 * k + 1]))
+    runs = mask_runs(turn <= MAX_SIDE_STREET_TURN)
+    return slice(*max(runs, key=lambda run: run[1] - run[0])) if runs else slice(0, len(own))
 
 
 def _classify_continuation(own, s, d, side, line, limit, runs):

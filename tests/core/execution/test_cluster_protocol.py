@@ -8,7 +8,8 @@ import threading
 from concurrent.futures import Future, ThreadPoolExecutor
 
 import pytest
-from curbed_streets import parked_car, street, survey_of
+from curbed_streets import street, survey_of
+from executed_boundaries import boundaries, numbers_of
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.parallel import check_cancelled
 from lanewright.core.common.progress import Progress
@@ -20,7 +21,7 @@ from lanewright.core.execution.phase import Phase
 from lanewright.core.execution.plain import read_plain, write_plain
 from lanewright.core.execution.threads import Threads
 from lanewright.core.execution.work_folder import KeptResults, WorkFolder, code_digest
-from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
+from lanewright.core.survey.frame.road_frame import build_frame
 
 
 class KilledWorker(Exception):
@@ -71,22 +72,6 @@ class StandInFuture:
         return self.own.exception()
 
 
-def boundaries(executor, progress=Progress()):
-    survey = survey_of(parked_car(street(open_left=[(25.0, 33.0)]), start=40.0))
-    survey.executor = executor
-    try:
-        return draw_boundaries(find_curb_points(survey, BoundarySettings("both"), progress), survey.frame)
-    finally:
-        survey.store.close()
-        executor.close()
-
-
-def numbers_of(found):
-    course, points = found.edges.course, found.curb_points
-    columns = course.x, course.y, course.z, course.d, found.edges.agree, points.x, points.y, points.height, points.support
-    return [column.tobytes() for column in columns]
-
-
 @pytest.fixture(scope="module")
 def by_threads():
     return numbers_of(boundaries(Threads(1)))
@@ -128,7 +113,7 @@ def test_a_phase_that_cannot_be_halved_is_named_at_once():
     executor.close()
 
 
-lengths_of = survey_of.__globals__["build_frame"]   # any function of core: it is never called
+lengths_of = build_frame   # any function of core: it is never called
 
 
 def test_workers_that_all_pause_for_ever_are_not_waited_for(monkeypatch):
@@ -158,7 +143,7 @@ def test_cancel_leaves_no_folder():
 
     executor = Cluster(StandIn())
     with pytest.raises(Cancelled):
-        boundaries(executor, Impatient())
+        boundaries(executor, progress=Impatient())
     assert not executor.folder.exists()
 
 

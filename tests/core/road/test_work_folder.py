@@ -4,6 +4,7 @@ import os
 import shutil
 
 import pytest
+from executed_boundaries import Heard
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.execution import work_folder
@@ -19,19 +20,6 @@ pytestmark = pytest.mark.slow
 @pytest.fixture(scope="module")
 def sample(made_survey):
     return made_survey(length=40.0, pulse_rate=40_000.0)
-
-
-class Heard(Progress):
-    def __init__(self):
-        self.lines = []
-
-    def info(self, text):
-        self.lines.append(text)
-
-    warn = info
-
-    def says(self, text):
-        return any(text in line for line in self.lines)
 
 
 def boundaries(sample, folder, curbs=CurbSettings(), progress=None, cloud=None, workers=0, settings=SurveySettings()):

@@ -4,7 +4,8 @@ import threading
 import time
 
 import pytest
-from curbed_streets import parked_car, street, survey_of
+from curbed_streets import street, survey_of
+from executed_boundaries import boundaries, numbers_of
 from lanewright.core.common.errors import Cancelled, RoadExtractionError
 from lanewright.core.common.progress import Progress
 from lanewright.core.execution import interpreter, processes
@@ -12,7 +13,6 @@ from lanewright.core.execution.choice import ExecutionSettings, executor_for
 from lanewright.core.execution.phase import Phase
 from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.execution.threads import Threads
-from lanewright.core.road.detect_boundaries import BoundarySettings, draw_boundaries, find_curb_points
 from lanewright.core.survey.sensor_height import sensor_height_of
 
 
@@ -21,23 +21,6 @@ def python():
     found = interpreter.find_interpreter()
     assert found, "this Python itself can do the work"
     return found
-
-
-def boundaries(executor, method="both", progress=Progress()):
-    survey = survey_of(parked_car(street(open_left=[(25.0, 33.0)]), start=40.0))
-    survey.executor = executor
-    try:
-        return draw_boundaries(find_curb_points(survey, BoundarySettings(method), progress), survey.frame)
-    finally:
-        survey.store.close()
-        executor.close()
-
-
-def numbers_of(found):
-    course, points = found.edges.course, found.curb_points
-    columns = [course.x, course.y, course.z, course.s, course.d, found.edges.agree, found.edges.rmse, found.edges.chain, found.edges.nearest_pass,
-               points.x, points.y, points.z, points.station, points.offset, points.height, points.support]
-    return [column.tobytes() for column in columns], list(points.status), list(points.kind), list(found.edges.status)
 
 
 @pytest.fixture(scope="module")
