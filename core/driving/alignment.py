@@ -16,7 +16,7 @@ from .lane_track import BRIDGED
 from .settings import MIN_PLACES_PER_FIT
 
 if TYPE_CHECKING:
-    from ..survey.frame.road_frame import Road
+    from ..survey.frame.road import Road
     from .lane_track import LaneTrack
 
 MAX_PARALLEL_DEVIATION = 0.06  # m: 95 % of a lane's places are nearer than this to a parallel of the others

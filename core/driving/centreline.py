@@ -13,7 +13,7 @@ from .lane_track import BRIDGED
 from .settings import MIN_PLACES_PER_FIT
 
 if TYPE_CHECKING:
-    from ..survey.frame.road_frame import Road
+    from ..survey.frame.road import Road
     from .alignment import Element
     from .lane_track import LaneTrack
 

@@ -17,7 +17,7 @@ from ..markings.cross_section.sections import STATION_STEP
 from .lane_track import BRIDGED, INFERRED, MEASURED
 
 if TYPE_CHECKING:
-    from ..survey.frame.road_frame import Road
+    from ..survey.frame.road import Road
     from .centreline import Course
     from .lane_track import LaneTrack
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..common.memory import trim_heap
 from ..io.crs import check_projected
-from ..survey.frame.road_frame import CORRIDOR
+from ..survey.frame.road import CORRIDOR
 from ..survey.las.reader import read_headers
 from ..survey.trajectory.reprojection import reproject_trajectory
 

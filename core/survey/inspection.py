@@ -13,7 +13,7 @@ from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
 from ..io.crs import check_metric, horizontal_part, parse_crs
-from .frame.road_frame import build_frame
+from .frame.build import build_frame
 from .las.luminance import INTENSITY_SOURCES, without_intensity
 from .las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
 from .las.scanners import ScannerCensus

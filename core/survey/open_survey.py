@@ -21,7 +21,8 @@ from ..execution.work_folder import Heard, code_digest
 from ..io.crs import check_projected, crs_note, parse_crs
 from .adjustment.adjust import adjust_passes
 from .clock_check import check_clock
-from .frame.road_frame import CORRIDOR, build_frame
+from .frame.build import build_frame
+from .frame.road import CORRIDOR
 from .ingest import KEPT_ABOVE_ROAD, KEPT_BELOW_ROAD, SurveyReader, unwrap_week
 from .las.luminance import INTENSITY_SOURCES, check_coloured, without_intensity
 from .las.parallel_reader import ParallelCloudReader

@@ -16,7 +16,7 @@ from ...curves.robust import median
 from ...survey.frame.frame_lines import LINE_VERTEX_SPACING
 
 if TYPE_CHECKING:
-    from ...survey.frame.road_frame import Road
+    from ...survey.frame.road import Road
     from .common_trend import CommonTrend
     from .fit import MarkingLineSettings
     from .linking import LinkedLine

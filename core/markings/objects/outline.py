@@ -21,7 +21,7 @@ from .scan_tracks import fill_gaps, filled_between_tracks, track_reach
 from .shape import middle_line
 
 if TYPE_CHECKING:
-    from ...survey.frame.road_frame import Road
+    from ...survey.frame.road import Road
     from .shape import Shape
 
 CLOSE_ALONG = 0.40            # m of station over which a gap is closed

@@ -10,7 +10,8 @@ import numpy as np
 
 from ...intensity.tiled_image import IntensityRaster
 from ...io.geotiff import new_geotiff
-from ...survey.frame.road_frame import Road, RoadFrame
+from ...survey.frame.road import Road
+from ...survey.frame.road_frame import RoadFrame
 from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.road_points import RoadPoints
 from ..objects.outline import CLOSE_ALONG, painted_cells

@@ -19,7 +19,7 @@ from .tracking import PlanStepChain, group_lines
 
 if TYPE_CHECKING:
     from ...survey.frame.passes import Pass
-    from ...survey.frame.road_frame import Road
+    from ...survey.frame.road import Road
     from ..profiles.detect import CurbSettings
     from .detect import SearchLimit
 

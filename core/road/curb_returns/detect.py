@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 
 from ...common.progress import Progress
 from ...execution.phase import Phase
-from ...survey.frame.road_frame import CORRIDOR
+from ...survey.frame.road import CORRIDOR
 from ..common.curb_points import CurbPoints, curb_points_at
 from ..common.decimation import POINTS_PER_LEVEL_CELL_IN_PLAN, PointDecimation
 from ..common.sides import MAX_LOOK_ALONG, SIDE_SIGNS, ahead_of_vehicle, expected_height, work_sections

@@ -35,7 +35,7 @@ from .averaged_steps import AVERAGING_LENGTH, find_averaged_steps
 from .steps import find_steps
 
 if TYPE_CHECKING:
-    from ...survey.frame.road_frame import Road
+    from ...survey.frame.road import Road
     from ...survey.open_survey import Survey
 
 MIN_TRACK_DISTANCE = 0.6      # m from the track: no curb is nearer

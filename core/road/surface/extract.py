@@ -15,7 +15,7 @@ from ...common.errors import RoadExtractionError
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
-from ...survey.frame.road_frame import CORRIDOR
+from ...survey.frame.road import CORRIDOR
 from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.road_points import RoadPoints
 from .ground_grid import ROW_LENGTH, GroundCells, ground_cells

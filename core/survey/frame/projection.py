@@ -19,7 +19,8 @@ from .reference_line import NODE_SPACING
 
 if TYPE_CHECKING:
     from .passes import Pass
-    from .road_frame import Road, RoadFrame
+    from .road import Road
+    from .road_frame import RoadFrame
 
 Buffers = Callable[..., np.ndarray]   # what `ScratchBuffers.of` returns
 

@@ -7,7 +7,7 @@ from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import MARKING_LINES
 from lanewright.core.driving.driving_lines import make_driving_lines
 from lanewright.core.markings.lines.painted_lines import lines_from_features
-from lanewright.core.survey.frame.road_frame import build_frame
+from lanewright.core.survey.frame.build import build_frame
 from shapely.geometry import LineString
 
 RADIUS = 12.0

@@ -8,7 +8,7 @@ from lanewright.core.execution.plain import read_plain, write_plain
 from lanewright.core.road.common.occlusion import OcclusionGrid
 from lanewright.core.road.profiles.detect import CurbSettings
 from lanewright.core.survey.frame.passes import Pass
-from lanewright.core.survey.frame.road_frame import Road
+from lanewright.core.survey.frame.road import Road
 
 
 def there_and_back(tmp_path, value):
