@@ -151,9 +151,8 @@ def _in_lines(cells, longest_gap, window):
         rows = np.flatnonzero((cells[:, 0] >= first) & (cells[:, 0] < (number + 1) * chunk + 2 * length))
         column, across = cells[rows, 0] - first, cells[rows, 1]
         own = numbers[rows] == number
-        share = np.max([_painted_share(column, across, slope, gap, length)
-                        for slope in np.arange(-steps, steps + 1) * (MAX_BORDER_DRIFT / window)], axis=0)
-        result[rows[own]] = share[own] >= LINE_SHARE
+        painted = [_painted_along(column, across, slope, gap, length) for slope in np.arange(-steps, steps + 1) * (MAX_BORDER_DRIFT / window)]
+        result[rows[own]] = np.any(painted, axis=0)[own]
     return result
 
 
@@ -171,16 +170,21 @@ def _even_strip(cells):
     return np.abs(cells[:, 1] - middle) <= (usual + WIDTH_TOLERANCE) / 2, usual
 
 
-def _painted_share(column, across, slope, gap, length):
-    """(K,) the greatest painted share of `length` cells along a slope that hold a cell; gaps of `gap` cells are closed."""
+def _painted_along(column, across, slope, gap, length):
+    """(K,) whether a cell lies in `length` cells along a slope of which LINE_SHARE is painted; gaps of `gap` cells are closed."""
     row = across - np.rint(slope * column).astype(np.int64)
     row = row - row.min() + 1
     mask = np.zeros((row.max() + 2, column.max() + 1), np.uint8)
     mask[row, column] = 1
     # a line may leave its row of cells by one
     joined = cv2.dilate(cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((1, gap + 1), np.uint8)), np.ones((3, 1), np.uint8))
-    share = cv2.boxFilter(joined.astype(np.float32), -1, (length, 1), borderType=cv2.BORDER_CONSTANT)
-    return cv2.dilate(share, np.ones((1, length), np.uint8), borderValue=0)[row, column]
+    full = (_sums_along(joined, length) >= LINE_SHARE * length).astype(np.uint8)
+    return _sums_along(full, length)[row, column] > 0
+
+
+def _sums_along(mask, length):
+    """Sums of `length` cells about each cell, along the road."""
+    return cv2.boxFilter(mask, cv2.CV_16U, (length, 1), normalize=False, borderType=cv2.BORDER_CONSTANT)
 
 
 def _number_strips(parts, count, cells, rows, gap, gap_across, least):
