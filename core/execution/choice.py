@@ -15,7 +15,7 @@ from .processes import WorkerProcesses
 from .threads import Threads
 from .work_folder import KeptResults, WorkFolder
 
-PROCESS_POINTS = 100_000_000   # points near the road from which workers pay: they start in seconds, and the points are copied once for them
+PROCESS_POINTS = 100_000_000   # points of the files from which workers pay: they start in seconds, and everything goes through files
 MOST_AUTOMATIC_WORKERS = 8     # each takes some hundred MB
 
 
@@ -70,12 +70,12 @@ def executor_for(points: int, settings: ExecutionSettings = ExecutionSettings(),
 
     Parameters
     ----------
-    points : of the survey
+    points : of the files
     settings : ExecutionSettings
     progress : is told who does the work, where that are not threads as usual
     cluster : result of `cluster_for`
     """
-    executor = cluster or _executor_for(points, settings, progress)
+    executor: Executor = cluster or _executor_for(points, settings, progress)
     return KeptResults(executor, WorkFolder(settings.work_folder)) if settings.work_folder else executor
 
 
@@ -88,5 +88,5 @@ def _executor_for(points, settings, progress):
     if not interpreter:
         progress.info("No Python interpreter was found that worker processes can be started with, so threads of this program do their work.")
         return Threads()
-    progress.info(f"Curbs and scanlines are found by {workers} worker process(es), {interpreter}.")
+    progress.info(f"Points are read, and curbs and scanlines found, by {workers} worker process(es), {interpreter}.")
     return WorkerProcesses(interpreter, workers)

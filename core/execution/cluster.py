@@ -62,7 +62,7 @@ def cluster_of(address: str, insecure: bool, work: WorkFolder | None, progress: 
     except BaseException:
         (cluster or client).close()
         raise
-    progress.info(f"Curbs and scanlines are found by {len(workers)} worker(s) of the Dask cluster {address}. "
+    progress.info(f"Points are read, and curbs and scanlines found, by {len(workers)} worker(s) of the Dask cluster {address}. "
                   f"They can be watched at {client.dashboard_link}.")
     return cluster
 
@@ -130,6 +130,11 @@ class Cluster:
             # tasks at work look whether it is there
             shipped.unlink(missing_ok=True)
             work.end()
+
+    def sees(self, paths: Sequence[Path]) -> bool:
+        """Whether every worker finds these files where this computer does, and can decode them."""
+        sizes = {str(path): path.stat().st_size for path in paths}
+        return all(found is True for found in self.client.run(cluster_task.sees, sizes, on_error="return").values())
 
     def new_file(self) -> Path:
         """A new name in the folder."""

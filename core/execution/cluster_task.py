@@ -6,9 +6,11 @@ it touches the file BEAT, and where it does no longer, the workers remove the fo
 
 from __future__ import annotations
 
+import os
 import shutil
 import threading
 import time
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 from uuid import uuid4
@@ -17,6 +19,7 @@ from ..common.errors import Cancelled
 from ..common.memory import trim_heap
 from ..common.parallel import cancellation_scope
 from ..common.progress import Progress
+from .interpreter import DECODERS
 from .tasks import Tasks
 from .work_folder import code_digest
 
@@ -55,6 +58,12 @@ def look(folder: str, word: str, dask_worker: Any = None) -> dict[str, Any]:
     except OSError as error:
         problem = problem or error.strerror or str(error)
     return dict(code=code_digest(), problem=problem, memory=int(dask_worker.memory_manager.memory_limit or 0))
+
+
+def sees(sizes: dict[str, int]) -> bool:
+    """Whether this worker finds files of these sizes (bytes by path) and can decode point clouds."""
+    return all(find_spec(name) is not None for name in DECODERS) and all(
+        os.path.exists(path) and os.path.getsize(path) == size for path, size in sizes.items())
 
 
 def do(phase: str, item: str, result: str, code: str) -> dict[str, str]:

@@ -17,8 +17,9 @@ from pathlib import Path
 
 WORKER = Path(__file__).with_name("worker.py")
 NEEDED = ("numpy", "scipy", "shapely")   # packages whose versions must be equal, or results could differ
+DECODERS = ("laspy", "lazrs")            # packages that read point clouds; what they read is the same in all versions
 TRIAL_TIME = 30.0   # s that a trial may take on a busy computer
-THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "RAYON_NUM_THREADS")   # the last is lazrs's
 
 
 def versions() -> dict[str, str]:
@@ -39,7 +40,7 @@ def command_of(interpreter: str, *arguments: str) -> list[str]:
 
 
 def environment() -> dict[str, str]:
-    """The environment of a worker: without what QGIS set for its own Python, and with one thread for numpy."""
+    """The environment of a worker: without what QGIS set for its own Python, and with one thread for numpy and for decoding."""
     return {**{name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}, **dict.fromkeys(THREAD_VARIABLES, "1")}
 
 
@@ -66,7 +67,7 @@ def candidates() -> Iterator[str]:
 def find_interpreter() -> str:
     """The first candidate that can do the work of this process; "" where there is none.
 
-    It must import the packages NEEDED from the folders that this process imports from, in the same versions.
+    It must import the packages NEEDED from the folders that this process imports from, in the same versions, and DECODERS.
     """
     return next((path for path in candidates() if _can_work(path)), "")
 

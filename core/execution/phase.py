@@ -87,6 +87,10 @@ class Phase:
 class Executor(Protocol):
     """Who runs phases."""
 
+    @property
+    def folder(self) -> Path | None:
+        """That all workers see, for what phases write; None where the workers are threads of this process."""
+
     def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
         """Yield the results of all items in their order.
 
@@ -103,6 +107,9 @@ class Executor(Protocol):
         Exception
             Whatever the function raises.
         """
+
+    def sees(self, paths: Sequence[Path]) -> bool:
+        """Whether all workers can read these files, which are point clouds."""
 
     def release(self) -> None:
         """Free memory that is of use in further phases alone."""

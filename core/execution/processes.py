@@ -41,7 +41,7 @@ class WorkerProcesses:
 
     def __init__(self, interpreter: str, workers: int):
         self.interpreter, self.workers = interpreter, workers
-        self.folder = Path(tempfile.mkdtemp(prefix="lanewright-"))
+        self.folder: Path = Path(tempfile.mkdtemp(prefix="lanewright-"))
         # where nobody closes it; workers end by themselves when their input does
         self._left = weakref.finalize(self, shutil.rmtree, self.folder, ignore_errors=True)
         self._idle: queue.SimpleQueue[_Worker] = queue.SimpleQueue()
@@ -120,6 +120,10 @@ class WorkerProcesses:
         worker.kill()
         with self._lock:
             self._all.discard(worker)
+
+    def sees(self, paths: Sequence[Path]) -> bool:
+        """What this process sees: they run on the same computer."""
+        return True
 
     def release(self) -> None:
         """End the workers; the next phase starts new ones."""

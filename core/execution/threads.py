@@ -21,10 +21,15 @@ class Threads:
 
     def __init__(self, count: int | None = None):
         self.count = count
+        self.folder: Path | None = None
 
     def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
         """Yield the results of all items in their order; see `Executor`. Nothing is kept by it."""
         return ordered_map(phase.result, items, progress, self.count)
+
+    def sees(self, paths: Sequence[Path]) -> bool:
+        """What this process sees."""
+        return True
 
     def release(self) -> None:
         """Nothing is kept between phases."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import shutil
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from pathlib import Path
@@ -50,16 +51,23 @@ class WorkFolder:
                                    "written to, with room for about 20 bytes for every point near the road, or none.")
 
     def begin(self, name: str) -> Path:
-        """A new folder for something that will be known as `name` when it is finished."""
-        folder = self.path / f"{name}-{uuid4().hex[:8]}"
-        folder.mkdir()
-        return folder
+        """A new folder, not made yet, for something that will be known as `name` when it is finished."""
+        return self.path / f"{name}-{uuid4().hex[:8]}"
 
     def finish(self, name: str, folder: Path, messages: Sequence[tuple[str, str]]) -> None:
         """Keep a folder of `begin`, and what was said while it was made: ("info" or "warn", text)."""
         unfinished = self.path / f"{name}.{uuid4().hex}.part"
         unfinished.write_text(json.dumps(dict(folder=folder.name, messages=list(messages))), encoding="utf-8")
         os.replace(unfinished, self.path / f"{name}.json")
+
+    def discard(self) -> None:
+        """Remove this folder, at once for others, and what is in it."""
+        gone = self.path.with_name(f"{self.path.name}.{uuid4().hex}.part")
+        try:
+            os.replace(self.path, gone)
+        except OSError:
+            return   # Windows, while somebody reads in it: it stays
+        shutil.rmtree(gone, ignore_errors=True)
 
     def finished(self, name: str) -> tuple[Path, list[tuple[str, str]]] | None:
         """The folder and the messages that were kept under a name; None where there are none."""
@@ -117,6 +125,7 @@ class KeptResults:
 
     def __init__(self, executor: Executor, work: WorkFolder):
         self.executor, self.work = executor, work
+        self.folder: Path | None = work.path
 
     def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
         """Yield the results of all items in their order; see `Executor`."""
@@ -127,7 +136,7 @@ class KeptResults:
         files = [folder / f"{digest(item)}.npz" for item in items]
         missing = [k for k, file in enumerate(files) if not file.exists()]
         if len(missing) < len(items):
-            progress.info(f"{len(items) - len(missing)} of {len(items)} stretches of road were finished by an earlier run.")
+            progress.info(f"{len(items) - len(missing)} of {len(items)} parts of the work were finished by an earlier run.")
         left = set(missing)
         try:
             folder.mkdir(exist_ok=True)
@@ -143,6 +152,10 @@ class KeptResults:
         except OSError as error:
             raise self.work.error(error) from error
         progress.report(1.0)
+
+    def sees(self, paths: Sequence[Path]) -> bool:
+        """Whether the workers see files."""
+        return self.executor.sees(paths)
 
     def release(self) -> None:
         """Free memory that is of use in further phases alone."""

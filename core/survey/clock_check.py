@@ -9,7 +9,7 @@ import numpy as np
 from ..common.progress import Progress
 
 if TYPE_CHECKING:
-    from .open_survey import Survey
+    from .survey import Survey
 
 CLOCK_TRACK_HALF_WIDTH = 2.0     # m either side of the own track
 MAX_LOOK_AHEAD = 6.5        # m along the road: every scanner measures road nearer than this in each rotation

@@ -17,8 +17,9 @@ from .frame.build import build_frame
 from .las.luminance import INTENSITY_SOURCES, without_intensity
 from .las.reader import POINTS_PER_BLOCK, read_blocks, read_headers
 from .las.scanners import ScannerCensus
-from .open_survey import SurveySettings, match_clocks
-from .sensor_height import HEIGHT_PEAK_REACH, OWN_TRACK_HALF_WIDTH, sensor_height_of
+from .read_survey import match_clocks
+from .reading.sensor_height import HEIGHT_PEAK_REACH, OWN_TRACK_HALF_WIDTH, sensor_height_of
+from .survey import SurveySettings
 from .trajectory.reprojection import reproject_trajectory
 from .trajectory.trajectory import Trajectory, clean_trajectory
 

@@ -11,7 +11,7 @@ import numpy as np
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...countries.catalogue import country
-from ...survey.sensor_height import DEFAULT_SENSOR_HEIGHT
+from ...survey.reading.sensor_height import DEFAULT_SENSOR_HEIGHT
 from ..borders import BorderLayers, RoadBorders
 from ..surface_grid import SLICE_LENGTH
 from .chains import Chain, find_chains
@@ -24,7 +24,7 @@ from .uprights import UPRIGHT_SLICE, Uprights, find_uprights
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
-    from ...survey.open_survey import Survey
+    from ...survey.survey import Survey
 
 ROADSIDE_WINDOW = 20.0            # m of road looked at at a time; results do not depend on it
 ROADSIDE_MARGIN = 4.0      # m before and after it, for the ground

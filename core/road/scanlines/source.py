@@ -13,14 +13,14 @@ from ...common.progress import Progress
 from ...execution.phase import Executor, Recipe
 from ...execution.threads import THREADS
 from ...survey.lattice.scan_lattice import ScanLattice, find_lattice
-from ...survey.sensor_height import DEFAULT_SENSOR_HEIGHT, sensor_height_of
+from ...survey.reading.sensor_height import DEFAULT_SENSOR_HEIGHT, sensor_height_of
 from .grid import LINE_SEPARATION
 from .scanlines import Scanlines
 from .section_planes import ScanlineSettings, scanline_runs
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
-    from ...survey.open_survey import Survey
+    from ...survey.survey import Survey
     from ..common.decimation import LevelGround
 
 

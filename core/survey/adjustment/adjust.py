@@ -8,6 +8,7 @@ because nothing shows which of them is more accurate.
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -32,7 +33,7 @@ DRIFT_CHANGE_SIGMA = 0.010             # m, sigma of the drift from window to wi
 DRIFT_SIGMA = 0.20                # m, sigma of the drift itself
 
 
-def adjust_passes(survey: Any, progress: Progress = Progress()) -> None:
+def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | None = None) -> None:
     """Adjust the passes over every road to each other where they measurably disagree.
 
     Points and tracks are moved in plan and height; the reference lines of the roads stay.
@@ -41,6 +42,7 @@ def adjust_passes(survey: Any, progress: Progress = Progress()) -> None:
     ----------
     survey : Survey with times; its store and frame are replaced where passes are moved
     progress : Progress
+    folder : of the moved points that are not kept in memory; None for a temporary file
     """
     roads = [road for road in survey.store.roads() if len(survey.frame.passes_of(road)) > 1]
     moves = {}
@@ -53,7 +55,7 @@ def adjust_passes(survey: Any, progress: Progress = Progress()) -> None:
         moves.update(found)
         _report_offsets(road, offsets, found, progress)
     if moves:
-        _replace_points(survey, _map_corrections(survey.frame, moves), progress.part(0.5, 1.0))
+        _replace_points(survey, _map_corrections(survey.frame, moves), progress.part(0.5, 1.0), folder)
 
 
 def pass_sigma(offsets: list[PassOffsets]) -> float | None:
@@ -183,10 +185,10 @@ def _moved_track(frame, moves, p):
                    _by_station=None, _progress=None, _by_tick={})
 
 
-def _replace_points(survey, moves, progress):
+def _replace_points(survey, moves, progress, folder):
     """Replace the store by one of corrected points, and the passes of the frame by corrected ones."""
     before, frame = survey.store, survey.frame
-    store = SectionStore(before.dtype, before.section_length, before.memory_limit)
+    store = SectionStore(before.dtype, before.section_length, before.memory_limit, folder=folder)
 
     def part(key):
         records = _moved_points(frame, moves, before.section(*key))

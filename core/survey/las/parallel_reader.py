@@ -13,6 +13,7 @@ from .guard import chunks_of
 from .reader import CloudHeader, layer_selection, open_cloud, read_blocks, read_points, truncated_file_error, wrap_read_error
 
 MAX_BLOCKS_PER_CHUNK = 4   # larger chunks are not decoded as a whole: the points are read one block after the other
+MOST_LAYOUTS = 64          # files whose header and chunks are remembered
 TIME_SAMPLES = 5           # places in a file at which gps_time is sampled
 POINTS_PER_TIME_SAMPLE = 1000
 
@@ -28,7 +29,8 @@ class ParallelCloudReader:
     def __init__(self, layers: Sequence[str] | None = None):
         self._layers = layers
         self._readers: dict[int, tuple[str, Any]] = {}  # thread -> path, laspy.LasReader
-        self._buffers = threading.local()
+        self._layouts: dict[str, Any] = {}   # path -> header and chunks of the files read last
+        self._buffers, self._lock = threading.local(), threading.Lock()
 
     def __enter__(self) -> ParallelCloudReader:
         return self
@@ -43,20 +45,66 @@ class ParallelCloudReader:
         Any thread may call them; its next call may overwrite the record. A file that cannot be
         decoded in parallel is read here, one block after the other.
         """
-        for file in files:
+        for number, first, count in self.ranges(files, size):
+            if _in_one_piece(files[number], size):
+                for points in read_blocks(files[number].path, size, self._layers):
+                    yield partial(_identity, points)
+            else:
+                yield partial(self._load, files[number], first, count)
+
+    def ranges(self, files: Sequence[CloudHeader], size: int) -> Iterator[tuple[int, int, int]]:
+        """Yield (number of a file, index of the first point, points) of ranges of about `size` points, in the order of the points.
+
+        A range is whole chunks of a file; one that cannot be decoded in parallel is one range.
+        """
+        for number, file in enumerate(files):
             if not file.count:
                 continue
-            if min(file.chunk, file.count) > MAX_BLOCKS_PER_CHUNK * size:
-                for points in read_blocks(file.path, size, self._layers):
-                    yield partial(_identity, points)
-                continue
+            if _in_one_piece(file, size):
+                yield number, 0, file.count
+            elif self._layout(file)[0].are_points_compressed:
+                for _, _, first, run in _chunk_runs(file, size, self._layout(file)[1]):
+                    yield number, first, sum(count for count, _ in run)
+            else:
+                yield from ((number, first, min(size, file.count - first)) for first in range(0, file.count, size))
+
+    def points(self, file: CloudHeader, first: int, count: int, size: int) -> Iterator[Any]:
+        """Yield the points of a range, as of `ranges` with the same size, as laspy point records; the next may overwrite one."""
+        if _in_one_piece(file, size):
+            yield from read_blocks(file.path, size, self._layers)
+        else:
+            yield self._load(file, first, count)
+
+    def _load(self, file, first, count):
+        """The points of a range of whole chunks, or of any points of a LAS file."""
+        header, chunks = self._layout(file)
+        if not header.are_points_compressed:
+            return self._read_uncompressed(file.path, header, first, count)
+        record, place, table = chunks
+        points, length = table.T
+        ends = np.cumsum(points)
+        k, end = np.searchsorted(ends, (first, first + count - 1), side="right")
+        run = table[k:end + 1].copy()
+        run[-1, 0] -= ends[end] - first - count   # for the last chunk the table may state the capacity
+        run = [(count, nbytes) for count, nbytes in run.tolist() if count]
+        return self._read_chunks(file.path, header, record, place + int(length[:k].sum()), first, run)
+
+    def _layout(self, file):
+        """laspy's header of a file and, where it is compressed, its LASzip record, first byte and (C, 2) points and bytes of its chunks."""
+        found = self._layouts.get(file.path)
+        if found is None:
             with open_cloud(file.path, self._layers, checked=True) as reader:
                 header = reader.header
+            chunks = None
             if header.are_points_compressed:
-                yield from (partial(self._read_chunks, file.path, header, *run) for run in _chunk_runs(file, size))
-            else:
-                yield from (partial(self._read_uncompressed, file.path, header, first, min(size, file.count - first))
-                            for first in range(0, file.count, size))
+                record, place, table = chunks_of(file.path)
+                chunks = record, place, np.array(table, np.int64).reshape(-1, 2)
+            found = header, chunks
+            with self._lock:
+                while len(self._layouts) >= MOST_LAYOUTS:
+                    self._layouts.pop(next(iter(self._layouts)))
+                self._layouts[file.path] = found
+        return found
 
     def times(self, file: CloudHeader) -> Iterator[np.ndarray]:
         """Yield (N,) gps_time in seconds of a few points at several places of a file, its first and last points among them."""
@@ -66,8 +114,8 @@ class ParallelCloudReader:
             starts[:-1] -= starts[:-1] % file.chunk   # a chunk is decoded from its start on
             loads = [partial(self._read_points, file.path, int(start), POINTS_PER_TIME_SAMPLE) for start in np.unique(starts)]
         else:
-            with open_cloud(file.path, self._layers, checked=True) as reader:
-                loads = [partial(self._read_chunks, file.path, reader.header, *run) for run in _chunk_runs(file, 1)]
+            header, chunks = self._layout(file)
+            loads = [partial(self._read_chunks, file.path, header, *run) for run in _chunk_runs(file, 1, chunks)]
             loads = [loads[k] for k in np.unique(np.linspace(0, len(loads) - 1, TIME_SAMPLES).astype(int))]
         for load in loads:
             yield np.array(load()["gps_time"], float)
@@ -132,11 +180,16 @@ def _point_record(buffer, header):
     return laspy.ScaleAwarePointRecord(packed.array, packed.point_format, header.scales, header.offsets)
 
 
-def _chunk_runs(file, size):
+def _in_one_piece(file, size):
+    """Whether the chunks of a file are too large to be decoded apart."""
+    return min(file.chunk, file.count) > MAX_BLOCKS_PER_CHUNK * size
+
+
+def _chunk_runs(file, size, chunks):
     """Runs of as many chunks as `size` points hold, at least one: (LASzip record, first byte, index of the first point, [(points, bytes)])."""
-    record, place, table = chunks_of(file.path)
+    record, place, table = chunks
     first, points, run = 0, 0, []
-    for count, length in table:
+    for count, length in table.tolist():
         # for the last chunk the table may state the capacity
         count = min(count, file.count - first - points)
         if run and points + count > size:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import json
-import os
 import threading
 from bisect import bisect_left
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
+from uuid import uuid4
 
 import numpy as np
 
@@ -20,14 +20,14 @@ from ...common.order_statistics import bucket_argsort
 from ...common.parallel import check_cancelled
 from .columns import Columns, columns_in_order
 from .records import COORDINATE_SCALE, Points
-from .spill_file import Packing, SpillFile, StoredColumn
+from .spill_file import SpillFile, close_parts, new_part
+from .store_index import Key, StoreIndex
 from .stored_section import StoredSection
 
 SECTION_LENGTH = 5.0       # m of station; results do not depend on it
 MEMORY_LIMIT = 64 * 2**20  # bytes of records in memory before they are spilled
 CACHE_LIMIT = 64 * 2**20   # bytes of spilled sections cached as last read: neighbouring windows ask for them again
 STRIPS_PER_SECTION = 16    # points wait strip by strip until a section is sorted, so that points sorted together lie together in memory
-POINTS_FILE, SECTIONS_FILE = "points.bin", "sections.json"   # of a store that lies in a folder
 SECTION_LOCKS = 16         # locks that the sections share while they are read
 
 
@@ -65,14 +65,15 @@ class SectionStore:
     finish : function of a road and the Columns of one section, in no order; it is called once, before they
         are sorted, may change them, and returns a mask of the points to keep, or None for all
     cache_limit : bytes of spilled sections that are cached as last read
+    folder : where the points go that are not kept in memory, so that others can read them; None for a temporary file without a name
     """
 
     def __init__(self, dtype: Any, section_length: float = SECTION_LENGTH, memory_limit: int = MEMORY_LIMIT,
-                 finish: Callable[[int, Columns], np.ndarray | None] | None = None, cache_limit: int = CACHE_LIMIT):
+                 finish: Callable[[int, Columns], np.ndarray | None] | None = None, cache_limit: int = CACHE_LIMIT, folder: Path | None = None):
         self.dtype = np.dtype(dtype)
         self.section_length = section_length
         self.memory_limit = memory_limit
-        self.finish = finish
+        self.finish, self.folder = finish, folder
         self._buffers = ScratchBuffers()
         self._sections: dict[tuple[int, int], StoredSection] = {}
         self._cache: OrderedDict[tuple[int, int], Columns] = OrderedDict()   # the spilled sections read last
@@ -137,11 +138,21 @@ class SectionStore:
     def _spill_beyond_limit(self):
         if self._waiting_bytes <= self.memory_limit:
             return
-        if self._file is None:
-            self._file = SpillFile()
+        self._spill()
+
+    def _spill(self):
+        """Write all points in memory to the own file."""
+        file = self._own_file()
         for section in self._sections.values():
-            section.spill(self._file)
+            section.spill(file)
         self._waiting_bytes = 0
+
+    def _own_file(self):
+        """The file of the points that are not kept in memory."""
+        with self._lock:
+            if self._file is None:
+                self._file = SpillFile(self.folder and self.folder / f"points-{uuid4().hex}.bin")
+            return self._file
 
     def roads(self) -> list[int]:
         """Numbers of the roads that have points, ascending."""
@@ -150,6 +161,10 @@ class SectionStore:
     def sections(self, road: int) -> list[int]:
         """Numbers of the sections of a road that have points, ascending."""
         return sorted(section for number, section in self._sections if number == road)
+
+    def size(self, road: int, section: int) -> int:
+        """Points of a section, before `finish` removes any."""
+        return self._sections[road, section].size
 
     def section(self, road: int, section: int) -> Columns:
         """The Columns of one section in canonical order, read-only; empty where there are no points."""
@@ -171,7 +186,8 @@ class SectionStore:
         stored = self._sections.get((road, section))
         if stored is not None and not stored.in_order:
             before = stored.nbytes
-            stored.sort(self._file, self.finish and partial(self.finish, road))
+            file = None if all(isinstance(part, Columns) for part in stored.parts) else self._own_file()
+            stored.sort(file, self.finish and partial(self.finish, road))
             with self._lock:
                 self._waiting_bytes += stored.nbytes - before
         if stored is None or not stored.parts:
@@ -193,12 +209,7 @@ class SectionStore:
         (M,) array
         """
         part = self._sections[road, section].parts[0]
-        return part[name].take(rows, mode="clip") if isinstance(part, Columns) else self._spilled(part[name], rows)
-
-    def _spilled(self, stored, rows=None):
-        if self._file is None:  # a StoredColumn exists only where something was spilled
-            raise ValueError("nothing was written to a temporary file")
-        return self._file.get(stored, rows=rows)
+        return part[name].take(rows, mode="clip") if isinstance(part, Columns) else _from_file(part[name], rows)
 
     def first_unit(self, section: int) -> int:
         """The least station, in units of 0.1 mm, that lies in a section."""
@@ -211,8 +222,8 @@ class SectionStore:
 
     def _columns_of_file(self, stored):
         """Columns that are read one by one when they are asked for."""
-        return Columns({}, self.dtype, stored[self.dtype.names[0]].packing.size, lambda name: self._spilled(stored[name]),
-                       load_rows=lambda name, rows: self._spilled(stored[name], rows))
+        return Columns({}, self.dtype, stored[self.dtype.names[0]].packing.size, lambda name: _from_file(stored[name]),
+                       load_rows=lambda name, rows: _from_file(stored[name], rows))
 
     def _add_to_cache(self, key, records):
         with self._lock:
@@ -261,7 +272,9 @@ class SectionStore:
 
     def with_column(self, name: str) -> SectionStore:
         """A store of the same points in which one column is set anew, section by section; it shares all other columns with this one."""
-        return _ColumnOverlay(self, name)
+        from .column_overlay import ColumnOverlay
+
+        return ColumnOverlay(self, name)
 
     def clear_cache(self) -> None:
         """Release the sections that are cached as last read."""
@@ -269,104 +282,85 @@ class SectionStore:
             self._cache.clear()
             self._cache_bytes = 0
 
-    def move_to(self, folder: Path) -> None:
-        """Keep all points in a folder from now on, where `opened` finds them, in this process and in others; none are added any more.
+    @contextmanager
+    def part(self) -> Iterator[SectionStore]:
+        """A store like this one, without points, which are written to one new file of the same folder; it appears at the end."""
+        if self.folder is None:
+            raise ValueError("a part of a store lies in its folder")
+        with new_part(self.folder) as file:
+            store = SectionStore(self.dtype, self.section_length, self.memory_limit, folder=self.folder)
+            store._file = file
+            yield store
+
+    def index(self) -> StoreIndex:
+        """Put all points into the folder of this store, and tell where they lie there."""
+        if self._waiting_bytes:
+            self._spill()
+        return StoreIndex.of((key, section.in_order, section.parts) for key, section in sorted(self._sections.items()))
+
+    def write_in_order(self, keys: Sequence[Key], folder: Path) -> StoreIndex:
+        """Write sections, in canonical order, to a new file of a folder; this store stays as it is.
 
         Parameters
         ----------
-        folder : that is there; it gets the files POINTS_FILE and, when these are complete, SECTIONS_FILE
+        keys : (road, section) of each
+        folder : that is there
         """
-        file = SpillFile(folder / POINTS_FILE)
-        index = []
-        for key in sorted(self._sections):
-            records = self.section(*key)
-            if not len(records):
-                self._sections.pop(key)
-                continue
-            stored = {name: file.put(records[name]) for name in self.dtype.names or ()}
-            section = self._sections[key] = StoredSection(self.dtype, True)
-            section.parts.append(stored)
-            self._drop_from_cache(key)
-            index.append([*key, len(records), {name: [place, packing.least, list(packing.widths)] for name, (place, packing) in stored.items()}])
-        if self._file is not None:
-            self._file.close()
-        self._file, self._waiting_bytes = file, 0
-        text = json.dumps(dict(columns=[list(column) for column in self.dtype.descr], section_length=self.section_length, sections=index))
-        unfinished = folder / f"{SECTIONS_FILE}.part"
-        unfinished.write_text(text, encoding="utf-8")
-        os.replace(unfinished, folder / SECTIONS_FILE)
+        found = []
+        with new_part(folder) as file:
+            for key in keys:
+                check_cancelled()
+                stored = self._sections[key].written_in_order(file, self.finish and partial(self.finish, key[0]))
+                if stored is not None:
+                    found.append((key, True, [stored]))
+        return StoreIndex.of(found)
+
+    def contents(self) -> dict[str, Any]:
+        """What another process needs to open this store by `opened`, whose points lie in its folder then; plain values."""
+        return dict(columns=[list(column) for column in self.dtype.descr], section_length=self.section_length, points=self.index())
 
     @classmethod
-    def opened(cls, folder: Path) -> SectionStore:
-        """The store whose points `move_to` keeps in a folder; they can be read."""
-        found = json.loads((folder / SECTIONS_FILE).read_text(encoding="utf-8"))
-        store = cls(np.dtype([tuple(column) for column in found["columns"]]), found["section_length"])
-        store._file = SpillFile(folder / POINTS_FILE, read_only=True)
-        for road, number, count, columns in found["sections"]:
-            section = store._sections[road, number] = StoredSection(store.dtype, True)
-            section.parts.append({name: StoredColumn(place, Packing(store.dtype[name], count, least, tuple(widths)))
-                                  for name, (place, least, widths) in columns.items()})
-            store._count += count
+    def opened(cls, folder: Path, columns: list[list[str]], section_length: float, points: StoreIndex) -> SectionStore:
+        """The store of `contents`, whose points lie in a folder."""
+        store = cls([tuple(column) for column in columns], section_length, folder=folder)
+        store.adopt(points, folder)
         return store
+
+    def adopt(self, index: StoreIndex, folder: Path) -> None:
+        """Add the points that others wrote to files of a folder."""
+        for key, in_order, stored in index.stored(folder, self.dtype):
+            section = self._sections.setdefault(key, StoredSection(self.dtype, in_order))
+            section.in_order = in_order and not section.parts
+            section.parts.append(stored)
+            self._drop_from_cache(key)
+        self._count += index.count
+
+    def take_over(self, index: StoreIndex, folder: Path) -> None:
+        """Keep the points that others wrote in order to files of a folder, from now on, instead of those that are here."""
+        count = self._count
+        self._release()
+        self.folder = folder
+        self.adopt(index, folder)
+        self._count = count
 
     def close(self) -> None:
         """Release all points and their disk space."""
+        self._release()
+        close_parts()
+        if self.at_close is not None:
+            self.at_close()
+
+    def _release(self):
         self.clear_cache()
         self._sections.clear()
         self._waiting_bytes = 0
         if self._file is not None:
             self._file.close()
             self._file = None
-        if self.at_close is not None:
-            self.at_close()
 
 
-class _ColumnOverlay(SectionStore):
-    """The points of a store with one column replaced; it holds no points itself and joins two stores."""
-
-    def __init__(self, points: SectionStore, name: str):
-        super().__init__(points.dtype, points.section_length, points.memory_limit)
-        self._points, self._name = points, name
-        self._column = SectionStore([(name, points.dtype[name])], points.section_length, points.memory_limit)
-
-    @property
-    def count(self) -> int:
-        return self._column.count
-
-    def put(self, road: int, section: int, records: np.ndarray) -> None:
-        """Set the column of one section, (N,) in the order of its points."""
-        self._column.put(road, section, Columns({self._name: records}, self._column.dtype))
-
-    def append(self, road: int, records: Any) -> None:
-        """Refused: the points are those of another store."""
-        raise TypeError("The points of this store are those of another; a column can be put, points cannot be added.")
-
-    def roads(self) -> list[int]:
-        return self._points.roads()
-
-    def sections(self, road: int) -> list[int]:
-        return self._points.sections(road)
-
-    def _read(self, road, section):
-        column, points = self._column.section(road, section), self._points.section(road, section)
-
-        def of(name):
-            return column if name == self._name else points
-
-        return Columns({}, self.dtype, len(points), lambda name: of(name)[name],
-                       load_rows=lambda name, rows: of(name).column_rows(name, rows)), False
-
-    def column(self, road: int, section: int, name: str, rows: np.ndarray) -> np.ndarray:
-        return self.section(road, section).take(rows)[name]
-
-    def clear_cache(self) -> None:
-        self._column.clear_cache()
-        self._points.clear_cache()
-
-    def close(self) -> None:
-        super().close()
-        self._column.close()
-        self._points.close()
+def _from_file(stored, rows=None):
+    return stored.file.get(stored, rows=rows)
 
 
 class _MetresOfUnits:

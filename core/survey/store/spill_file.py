@@ -1,4 +1,4 @@
-"""A temporary file of columns, written and read by several threads at once.
+"""Files of columns: temporary ones, written and read by several threads at once, and parts that one process writes for all.
 
 Columns are packed, without loss, into as few bytes per value as their range needs, since the cost of a
 temporary file grows with its bytes.
@@ -11,8 +11,12 @@ import tempfile
 import threading
 import weakref
 from bisect import insort
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import lru_cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
+from uuid import uuid4
 
 import numpy as np
 
@@ -20,6 +24,7 @@ from ...common.memory import column_buffers
 
 PACKING_CHUNK = 1 << 15  # values packed at a time: they fit the processor's cache
 PART_WIDTHS = {0: (), 1: (1,), 2: (2,), 3: (2, 1), 4: (4,), 5: (4, 1), 6: (4, 2)}  # bytes of a value -> bytes of its parts, lowest first
+OPEN_PARTS = 64          # files of parts that are held open: a system lets a program open some hundred (macOS 256)
 MAX_FREE_RANGES = 64     # free ranges of the file that are remembered; of more, the smallest is forgotten
 
 
@@ -119,46 +124,30 @@ def _values_at(part, rows):
 
 
 class StoredColumn(NamedTuple):
-    """A column in the file.
+    """A column in a file.
 
     Attributes
     ----------
     place : first byte
     packing : how it is packed
+    file : that holds it
     """
 
     place: int
     packing: Packing
+    file: ColumnFile
 
 
-class SpillFile:
-    """Columns in a file.
+class ColumnFile:
+    """Columns in a file that is finished, read by any number of threads and processes.
 
     Parameters
     ----------
-    path : of the file; by default it is a temporary one without a name, which a killed run does not leave behind (on Windows it
-        is deleted when it is closed)
-    read_only : open a file that is there
-
-    Attributes
-    ----------
-    end : bytes of the file
+    path : of the file, which is opened when it is read, and again where too many others were read meanwhile
     """
 
-    def __init__(self, path: Path | None = None, read_only: bool = False) -> None:
-        self._file: Any = open(path, "rb" if read_only else "w+b", buffering=0) if path else tempfile.TemporaryFile(prefix="lanewright-", buffering=0)
-        # Closed with this object; otherwise Python warns of an unclosed file.
-        weakref.finalize(self, self._file.close)
-        self._lock = threading.Lock()
-        self._free: list[tuple[int, int]] = []   # (first byte, bytes) of released columns, by place
-        self.end = 0
-
-    def put(self, column: np.ndarray) -> StoredColumn:
-        """Write an (N,) column, N > 0, into the first free range that is large enough, or at the end."""
-        packing, data = pack(column)
-        place = self._allocate(packing.nbytes)
-        self._write(place, data)
-        return StoredColumn(place, packing)
+    def __init__(self, path: Path) -> None:
+        self.path = path
 
     def get(self, stored: StoredColumn, out: np.ndarray | None = None, rows: np.ndarray | None = None) -> np.ndarray:
         """Read a column, or some rows of it.
@@ -173,7 +162,7 @@ class SpillFile:
         -------
         (N,) or (M,) array, read-only where all values are equal and no `out` was given
         """
-        place, packing = stored
+        place, packing = stored.place, stored.packing
         count = packing.size if rows is None else len(rows)
         constant = packing.constant
         if constant is not None and out is None:
@@ -194,6 +183,104 @@ class SpillFile:
                 place, begin = place + packing.size * width, begin + span.size * width
             span.unpack(data, column, rows - first if rows is not None and first else rows)
         return column
+
+    def release(self, stored: StoredColumn) -> None:
+        """Others may read the column: it stays."""
+
+    def _read(self, place, array):
+        """Fill a contiguous array from a place."""
+        _opened(str(self.path)).read(place, array)
+
+
+class _OpenFile:
+    """A file that is closed when nobody reads it any more."""
+
+    def __init__(self, file):
+        # Closed with this object; otherwise Python warns of an unclosed file.
+        self.file, self.lock = file, threading.Lock()
+        weakref.finalize(self, file.close)
+
+    # pread and pwrite leave the file's position alone, so threads may use them together; Windows has neither.
+    def read(self, place, array):
+        """Fill a contiguous array from a place."""
+        data = memoryview(array.view(np.uint8)) if array.nbytes else b""
+        while len(data):
+            if hasattr(os, "preadv"):
+                count = os.preadv(self.file.fileno(), [data], place)
+            else:
+                with self.lock:
+                    self.file.seek(place)
+                    count = self.file.readinto(data)
+            if not count:
+                raise EOFError(f"The temporary file ends at byte {place:,}.")
+            data, place = data[count:], place + count
+
+    def write(self, place, array):
+        """Write an array at a place."""
+        data = memoryview(np.ascontiguousarray(array).view(np.uint8)) if array.nbytes else b""
+        while len(data):  # a signal may shorten a write; a full disk raises
+            if hasattr(os, "pwrite"):
+                written = os.pwrite(self.file.fileno(), data, place)
+            else:
+                with self.lock:
+                    self.file.seek(place)
+                    written = self.file.write(data)
+            data, place = data[written:], place + written
+
+
+@lru_cache(maxsize=OPEN_PARTS)
+def _opened(path):
+    return _OpenFile(open(path, "rb", buffering=0))
+
+
+def close_parts() -> None:
+    """Close the files that are held open: Windows removes none that is."""
+    _opened.cache_clear()
+
+
+@contextmanager
+def new_part(folder: Path) -> Iterator[SpillFile]:
+    """A new file in a folder, which appears there at the end, whole or not at all; without a byte in it there is none."""
+    name = f"points-{uuid4().hex}.bin"
+    unfinished = folder / f"{name}.part"
+    file = SpillFile(folder / name, unfinished)
+    try:
+        yield file
+        file.close()
+        if file.end:
+            os.replace(unfinished, folder / name)
+    finally:
+        file.close()
+        unfinished.unlink(missing_ok=True)
+
+
+class SpillFile(ColumnFile):
+    """Columns in a file that grows.
+
+    Parameters
+    ----------
+    path : of the file; by default it is a temporary one without a name, which a killed run does not leave behind (on Windows it
+        is deleted when it is closed)
+    unfinished : its path until then
+
+    Attributes
+    ----------
+    end : bytes of the file
+    """
+
+    def __init__(self, path: Path | None = None, unfinished: Path | None = None) -> None:
+        super().__init__(path or Path())
+        self._own = _OpenFile(open(unfinished or path, "w+b", buffering=0) if path else tempfile.TemporaryFile(prefix="lanewright-", buffering=0))
+        self._lock = threading.Lock()
+        self._free: list[tuple[int, int]] = []   # (first byte, bytes) of released columns, by place
+        self.end = 0
+
+    def put(self, column: np.ndarray) -> StoredColumn:
+        """Write an (N,) column, N > 0, into the first free range that is large enough, or at the end."""
+        packing, data = pack(column)
+        place = self._allocate(packing.nbytes)
+        self._own.write(place, data)
+        return StoredColumn(place, packing, self)
 
     def release(self, stored: StoredColumn) -> None:
         """Free the bytes of a column for others."""
@@ -224,33 +311,9 @@ class SpillFile:
             self.end += nbytes
             return self.end - nbytes
 
-    # pread and pwrite leave the file's position alone, so threads may use them together; Windows has neither.
-    def _write(self, place, array):
-        """Write an array at a place."""
-        data = memoryview(np.ascontiguousarray(array).view(np.uint8)) if array.nbytes else b""
-        while len(data):  # a signal may shorten a write; a full disk raises
-            if hasattr(os, "pwrite"):
-                written = os.pwrite(self._file.fileno(), data, place)
-            else:
-                with self._lock:
-                    self._file.seek(place)
-                    written = self._file.write(data)
-            data, place = data[written:], place + written
-
     def _read(self, place, array):
-        """Fill a contiguous array from a place."""
-        data = memoryview(array.view(np.uint8)) if array.nbytes else b""
-        while len(data):
-            if hasattr(os, "preadv"):
-                count = os.preadv(self._file.fileno(), [data], place)
-            else:
-                with self._lock:
-                    self._file.seek(place)
-                    count = self._file.readinto(data)
-            if not count:
-                raise EOFError(f"The temporary file ends at byte {place:,}.")
-            data, place = data[count:], place + count
+        self._own.read(place, array)
 
     def close(self) -> None:
-        """Release the disk space."""
-        self._file.close()
+        """Release the disk space of a file without a name; others stay."""
+        self._own.file.close()

@@ -13,7 +13,7 @@ from lanewright.core.execution.choice import ExecutionSettings, executor_for
 from lanewright.core.execution.phase import Phase
 from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.execution.threads import Threads
-from lanewright.core.survey.sensor_height import sensor_height_of
+from lanewright.core.survey.reading.sensor_height import sensor_height_of
 
 
 @pytest.fixture(scope="module")

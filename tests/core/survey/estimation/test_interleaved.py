@@ -5,7 +5,8 @@ import pytest
 from drives import write_cloud
 from lanewright.core.common.progress import Progress
 from lanewright.core.survey.estimation.estimate import estimate_trajectory
-from lanewright.core.survey.open_survey import TOLD_APART, open_survey
+from lanewright.core.survey.open_survey import open_survey
+from lanewright.core.survey.read_survey import TOLD_APART
 from mirror_drives import Mirror, mirror_drive
 
 BUTTERFLY = (Mirror(-45.0, -20.0, (0.0, 0.32, 0.0)), Mirror(45.0, -20.0, (0.0, -0.32, 0.0), ahead=0.55))

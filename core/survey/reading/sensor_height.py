@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .store.records import COORDINATE_SCALE, to_units
+from ..store.records import COORDINATE_SCALE, to_units
 
 if TYPE_CHECKING:
-    from .frame.road_frame import RoadFrame
-    from .store.columns import Columns
+    from ..frame.road_frame import RoadFrame
+    from ..store.columns import Columns
 
 OWN_TRACK_HALF_WIDTH = 1.5       # m either side of the own track: road, not sidewalk
 DEFAULT_SENSOR_HEIGHT = 2.6   # m, used where too few points lie on the track
@@ -123,6 +123,11 @@ class HeightHistogram:
         found = np.bincount(k)
         with self._lock:
             self.counts[number][least:least + len(found)] += found
+
+    def join(self, counts: dict[int, np.ndarray]) -> None:
+        """Add the counts of another histogram of the same passes and the same first estimate."""
+        for number, found in counts.items():
+            self.counts[number] += found
 
     def heights(self) -> dict[int, float]:
         """Height of the trajectory above the road, one per pass.

@@ -1,51 +1,36 @@
-"""Reading point cloud files into the section store: blocks are decoded and projected into the road frame in several threads.
-
-Only points near the road are stored, as compact records. The height of the road is estimated from the first blocks.
-"""
+"""Blocks of points, as they come from files: projected into the road frame, and those near the road chosen, as compact records."""
 
 from __future__ import annotations
 
-import os
-from collections import deque
-from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor, wait
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..common.memory import ScratchBuffers
-from ..common.parallel import POLL_INTERVAL
-from ..common.progress import Progress
-from .frame.projection import POINTS_PER_PROJECTION, RoadProjection
-from .las.luminance import luminance
-from .las.parallel_reader import ParallelCloudReader
-from .las.scale import LasAxis
-from .las.scanners import ScannerCensus, times_by_value
-from .las.time_slots import TimeSlots
-from .sensor_height import DEFAULT_SENSOR_HEIGHT, HeightHistogram, VehicleTracks, estimate_sensor_height
-from .store.columns import Columns
-from .store.records import COORDINATE_SCALE, SURVEY_POINT, fill_units, point_dtype, to_units
-from .trajectory.time_systems import SECONDS_PER_WEEK
+from ...common.memory import ScratchBuffers
+from ..frame.projection import POINTS_PER_PROJECTION, RoadProjection
+from ..las.luminance import luminance
+from ..las.scale import LasAxis
+from ..las.scanners import times_by_value
+from ..las.time_slots import TimeSlots
+from ..store.columns import Columns
+from ..store.records import COORDINATE_SCALE, SURVEY_POINT, fill_units, point_dtype, to_units
+from ..trajectory.time_systems import SECONDS_PER_WEEK
+from .sensor_height import HeightHistogram, VehicleTracks
 
 if TYPE_CHECKING:
     import laspy
 
-    from .frame.road_frame import RoadFrame
-    from .las.reader import CloudHeader
-    from .store.section_store import SectionStore
+    from ..frame.road_frame import RoadFrame
+    from ..store.section_store import PartitionedPoints, SectionStore
 
 DECODED_LAYERS = ("z", "intensity", "point_source_id", "gps_time", "flags")  # LAZ layers that are decoded
-MAX_WAITING_POINTS = 4_000_000  # points held back at most until the height of the road is known
-HEIGHT_SAMPLES = 5_000     # points on the own track from which the rough height is estimated
-MAX_INGEST_THREADS = 4     # each decodes blocks with all cores (lazrs keeps the others waiting) and projects their points
-BLOCKS_PER_THREAD = 3      # begun or queued per thread: keeps the threads busy while sections are written to the temporary file
 KEPT_ABOVE_ROAD, KEPT_BELOW_ROAD = 3.5, 4.0  # m: vehicles that hide a curb above the road, ditches below it
 # m stored beyond these limits: the height of the road is rough while reading and exact when points are returned,
 # so that the points returned do not depend on the order of the files
 INGEST_HEIGHT_MARGIN = 1.5
 HEIGHT_CELL_BITS = 12      # of a station in units of 0.1 mm: the height of the road is looked up every 0.41 m
-MAX_SPLIT_SAMPLES = 1_500_000   # points sampled, by which two scanners are told apart
 SCANNER_FIELDS = ("point_source_id", "scanner_channel")
 
 
@@ -63,6 +48,13 @@ class BlockSummary:
     brightest: int = 0
     without_time: int = 0
 
+    def join(self, other: BlockSummary) -> None:
+        """Add what another block contributes."""
+        self.darkest, self.brightest = min(self.darkest, other.darkest), max(self.brightest, other.brightest)
+        self.without_time += other.without_time
+        for name, times in other.scanners.items():
+            self._note(name, times)
+
     def add(self, columns: dict[str, np.ndarray], names: set[str]) -> None:
         """Count points of the block.
 
@@ -75,10 +67,13 @@ class BlockSummary:
         self.brightest = max(self.brightest, int(columns["intensity"].max()))
         for name, key in zip(SCANNER_FIELDS, ("source", "scanner")):
             if name in names:
-                seen = self.scanners.setdefault(name, {})
-                for value, (start, end, number) in times_by_value(columns[key], columns["time"]).items():
-                    first, last, count = seen.get(value, (start, end, 0))
-                    seen[value] = min(first, start), max(last, end), count + number
+                self._note(name, times_by_value(columns[key], columns["time"]))
+
+    def _note(self, name, times):
+        seen = self.scanners.setdefault(name, {})
+        for value, (start, end, number) in times.items():
+            first, last, count = seen.get(value, (start, end, 0))
+            seen[value] = min(first, start), max(last, end), count + number
 
 
 class HeightFilter:
@@ -121,22 +116,42 @@ class HeightFilter:
         return above.view(np.uint32) < self._depth
 
 
+@dataclass(frozen=True)
+class PointChoice:
+    """Which points of the files are taken, and how.
+
+    corridor : metres either side
+    has_time : whether points are assigned to passes by their time; else by the nearest point on a road
+    week_ends : whether the GPS week ends during the scan
+    above_road : metres above the road up to which points are kept
+    coloured : whether the luminance of the colours is taken as intensity
+    """
+
+    corridor: float
+    has_time: bool
+    week_ends: bool = False
+    above_road: float = KEPT_ABOVE_ROAD
+    coloured: bool = False
+
+    @property
+    def layers(self) -> tuple[str, ...]:
+        """The LAZ layers that are decoded."""
+        return (*DECODED_LAYERS, "rgb") if self.coloured else DECODED_LAYERS
+
+
 class BlockProjector:
     """Turns blocks into compact records in the road frame; safe to use in several threads.
 
     Parameters
     ----------
     frame : RoadFrame
-    corridor : metres either side
-    has_time : whether points are assigned to passes by their time; else by the nearest point on a road
-    week_ends : whether the GPS week ends during the scan
-    coloured : whether the luminance of the colours is taken as intensity
+    choice : PointChoice
     """
 
-    def __init__(self, frame: RoadFrame, corridor: float, has_time: bool, week_ends: bool = False, coloured: bool = False):
-        self.frame, self.corridor, self.has_time, self.week_ends, self.coloured = frame, corridor, has_time, week_ends, coloured
+    def __init__(self, frame: RoadFrame, choice: PointChoice):
+        self.frame, self.choice, self.corridor, self.has_time = frame, choice, choice.corridor, choice.has_time
         self.dtype = point_dtype(SURVEY_POINT, frame.farthest)
-        self.projection = RoadProjection(frame, corridor) if has_time else None
+        self.projection = RoadProjection(frame, choice.corridor) if choice.has_time else None
         self.roads = np.array([p.road for p in frame.passes] + [-1])
         self._scratch = ScratchBuffers()
 
@@ -200,9 +215,9 @@ class BlockProjector:
         raw = piece.array
         columns = {name: buffers(name, SURVEY_POINT[name]) for name in ("time", "intensity", "source", "returns")}
         columns["time"][:] = raw["gps_time"] if "gps_time" in raw.dtype.names else 0.0
-        if self.week_ends:
+        if self.choice.week_ends:
             columns["time"][:] = unwrap_week(columns["time"])
-        columns["intensity"][:] = luminance(piece) if self.coloured else raw["intensity"]
+        columns["intensity"][:] = luminance(piece) if self.choice.coloured else raw["intensity"]
         columns["source"][:] = raw["point_source_id"]
         columns["scanner"] = np.broadcast_to(np.uint8(0), len(raw))
         if "scanner_channel" in names and flagged:
@@ -273,133 +288,64 @@ def _both(one, other):
     return one & other
 
 
-class SurveyReader:
-    """Reads files into a section store and gathers statistics of the whole survey.
+@dataclass
+class ChosenPoints:
+    """What the points that are kept say of the survey.
+
+    histogram : HeightHistogram of those on the vehicle's own track
+    sampled : (N,) times and (N, 3) units of 0.1 mm of some points; without times none
+    """
+
+    histogram: HeightHistogram
+    sampled: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)
+
+
+class BlockReader:
+    """Chooses the points of blocks that lie near the road and partitions them by section; safe to use in several threads.
 
     Parameters
     ----------
     frame : RoadFrame
-    store : SectionStore that the points are added to
-    corridor : metres either side
-    has_time : whether points are assigned to passes by their time
-    week_ends : whether the GPS week ends during the scan
-    above_road : metres above the road up to which points are kept
-    coloured : whether the luminance of the colours is taken as intensity
-
-    Attributes, complete after `read`
-    ---------------------------------
-    census : ScannerCensus
-    darkest, brightest : lowest and highest intensity
-    unplaced_time : number of points at a time of no pass
-    heights : {pass number: metres from the trajectory down to the road}
-    uneven : see `HeightHistogram.uneven`
-    slots : TimeSlots of the points sampled, to tell scanners apart that no field distinguishes
-    sampled : their (N,) times and (N, 3) units of 0.1 mm, in no order; without times none
+    choice : PointChoice
+    slots : TimeSlots of the points that are sampled
     """
 
-    def __init__(self, frame: RoadFrame, store: SectionStore, corridor: float, has_time: bool, week_ends: bool = False,
-                 above_road: float = KEPT_ABOVE_ROAD, coloured: bool = False):
-        self.frame, self.store, self.above_road = frame, store, above_road
-        self.census, self.darkest, self.brightest, self.unplaced_time = ScannerCensus(), 65535, 0, 0
+    def __init__(self, frame: RoadFrame, choice: PointChoice, slots: TimeSlots):
+        self.frame, self.choice, self.slots = frame, choice, slots
         self.tracks = VehicleTracks(frame)
-        self.slots = TimeSlots(1)
-        self.sampled: list[tuple[np.ndarray, np.ndarray]] = []
-        self._blocks = BlockProjector(frame, corridor, has_time, week_ends, coloured)
-        # created once the rough height of the road is known; until then parts of blocks wait
-        self._ground: HeightFilter | None = None
-        self._histogram: HeightHistogram
-        self._waiting: list[tuple[int, Columns]] = []
-        self._samples: list[np.ndarray] = []
+        self._blocks = BlockProjector(frame, choice)
 
-    def read(self, files: list[CloudHeader], block: int, progress: Progress) -> None:
-        """Read all files, `block` points at a time."""
-        total, done = sum(file.count for file in files), 0
-        self.slots = TimeSlots.for_points(total, MAX_SPLIT_SAMPLES)
-        threads = min(MAX_INGEST_THREADS, os.cpu_count() or 1)
-        layers = (*DECODED_LAYERS, "rgb") if self._blocks.coloured else DECODED_LAYERS
-        with ParallelCloudReader(layers) as readers, ThreadPoolExecutor(threads) as pool:
-            waiting: deque[Future] = deque()
+    def ground(self, drop: float) -> HeightFilter:
+        """What is near a road that lies `drop` metres below the trajectory."""
+        return HeightFilter(self.frame, drop, self.choice.above_road)
 
-            def take():
-                nonlocal done
-                while not wait([waiting[0]], POLL_INTERVAL).done:
-                    progress.report(done / total)
-                done += self._take(*waiting.popleft().result())
-                progress.report(done / total)
+    def chosen(self, drop: float) -> ChosenPoints:
+        """No points yet, of a road that lies about `drop` metres below the trajectory."""
+        return ChosenPoints(HeightHistogram([p.number for p in self.frame.passes], drop))
 
-            try:
-                for load in readers.blocks(files, block):
-                    waiting.append(pool.submit(self._read_block, load))
-                    # the height of the road is estimated from the first blocks and filters the others
-                    while len(waiting) > (BLOCKS_PER_THREAD * threads if self._ground else 0):
-                        take()
-                while waiting:
-                    take()
-            finally:
-                for coming in waiting:
-                    coming.cancel()
-        self._settle()
-        self.heights, self.uneven = self._histogram.heights(), self._histogram.uneven()
+    def unfiltered(self, block: laspy.ScaleAwarePointRecord, found: BlockSummary) -> list[tuple[int, Columns]]:
+        """Road and Columns of the points of a block within the corridor, whatever their height; `found` is updated."""
+        return [(road, points.copy() if own is None else points.take(own).load_all()) for road, points, own in self._blocks.read(block, found)]
 
-    def _read_block(self, load):
-        """BlockSummary, points by road, whether these are filtered by height and partitioned, and the size of the block."""
-        block, ground, found, parts = load(), self._ground, BlockSummary(), []
-        for road, points, own in self._blocks.read(block, found, ground):
-            parts.append((road, _copied(points, own)) if ground is None else self._partition(road, points, own))
-        return found, parts, ground is not None, len(block)
+    def read(self, block: laspy.ScaleAwarePointRecord, found: BlockSummary, ground: HeightFilter, chosen: ChosenPoints,
+             store: SectionStore) -> list[PartitionedPoints]:
+        """The points of a block near the road, ready for the store; `found` and `chosen` are updated."""
+        return [self._partition(road, points, own, chosen, store) for road, points, own in self._blocks.read(block, found, ground)]
 
-    def _partition(self, road, points, own):
-        """Points partitioned by section for the store; those on the track enter the height histogram."""
-        for number, drops in self.tracks.drops(road, points, own):
-            self._histogram.add(number, drops)
-        if self._blocks.has_time:
-            self._sample(points, own)
-        return self.store.partition(road, points, own)
-
-    def _sample(self, points, own):
-        kept = self.slots.kept(points["time"]) & ((points["returns"] & 15) <= 1)
-        rows = np.flatnonzero(kept if own is None else kept & own)
-        if len(rows):
-            self.sampled.append((points["time"][rows], np.stack([points[name][rows] for name in "xyz"], axis=1)))
-
-    def _take(self, found, parts, parted, count):
-        """Take the result of a block, in the order of the files."""
-        self.darkest, self.brightest = min(self.darkest, found.darkest), max(self.brightest, found.brightest)
-        self.unplaced_time += found.without_time
-        for name, times in found.scanners.items():
-            self.census.take(name, times)
-        if parted:
-            for part in parts:
-                self.store.add(part)
-        elif self._ground is not None:
-            self._choose(parts)
-        else:
-            self._waiting += parts
-            self._samples += [drops[::7] for road, points in parts for _, drops in self.tracks.drops(road, points)]
-            if sum(map(len, self._samples)) > HEIGHT_SAMPLES or sum(len(points) for _, points in self._waiting) > MAX_WAITING_POINTS:
-                self._settle()
-        return count
-
-    def _settle(self):
-        """Estimate the rough height of the road and store the points that waited for it."""
-        if self._ground is not None:
-            return
-        drop = estimate_sensor_height(np.concatenate(self._samples)) if self._samples else None
-        drop = DEFAULT_SENSOR_HEIGHT if drop is None else drop
-        self._histogram = HeightHistogram([p.number for p in self.frame.passes], drop)
-        self._ground = HeightFilter(self.frame, drop, self.above_road)
-        waiting, self._waiting, self._samples = self._waiting, [], []
-        self._choose(waiting)
-
-    def _choose(self, parts):
-        """Filter by height the points that were projected before it was known, and store them."""
+    def filtered(self, parts: Iterable[tuple[int, Columns]], ground: HeightFilter, chosen: ChosenPoints,
+                 store: SectionStore) -> Iterator[PartitionedPoints]:
+        """Yield those of `unfiltered` that lie near the road, as `read` would have given them."""
         for road, points in parts:
-            buffers = ScratchBuffers().of(len(points))
-            near = self._ground.near(road, points["s"], points["z"], buffers)
+            near = ground.near(road, points["s"], points["z"], ScratchBuffers().of(len(points)))
             if near.any():
-                self.store.add(self._partition(road, points, near))
+                yield self._partition(road, points, near, chosen, store)
 
-
-def _copied(points, own):
-    """A copy of the points to use (None for all) as Columns."""
-    return points.copy() if own is None else points.take(own).load_all()
+    def _partition(self, road, points, own, chosen, store):
+        for number, drops in self.tracks.drops(road, points, own):
+            chosen.histogram.add(number, drops)
+        if self.choice.has_time:
+            kept = self.slots.kept(points["time"]) & ((points["returns"] & 15) <= 1)
+            rows = np.flatnonzero(kept if own is None else kept & own)
+            if len(rows):
+                chosen.sampled.append((points["time"][rows], np.stack([points[name][rows] for name in "xyz"], axis=1)))
+        return store.partition(road, points, own)

@@ -1,0 +1,265 @@
+"""Reading a survey: its points are read once and projected into the road frame, and checked against the trajectory."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..common.errors import RoadExtractionError
+from ..common.progress import Progress
+from ..execution.phase import Executor
+from ..io.crs import check_projected, crs_note, parse_crs
+from .adjustment.adjust import adjust_passes
+from .clock_check import check_clock
+from .frame.build import build_frame
+from .frame.road import CORRIDOR
+from .las.luminance import check_coloured, without_intensity
+from .las.parallel_reader import ParallelCloudReader
+from .las.reader import CloudHeader
+from .reading.blocks import PointChoice, unwrap_week
+from .reading.survey_reader import SurveyReader
+from .store.records import COORDINATE_SCALE, SURVEY_POINT, point_dtype
+from .store.section_store import SectionStore
+from .survey import Survey, SurveySettings
+from .trajectory.reprojection import reproject_trajectory
+from .trajectory.time_systems import align_time, wrapped_week
+
+if TYPE_CHECKING:
+    from .trajectory.trajectory import Trajectory
+
+INGEST_PROGRESS = 0.7        # of the work, where the passes are adjusted afterwards
+PARTS_PROGRESS = 0.85        # of reading, where the points are put in order afterwards
+LOWEST_SENSOR = 0.5          # m above the road: no scanner rides lower, but lines and places drawn on the road lie within
+TOLD_APART = "The points are of two scanners that no field tells apart; they were told apart by where their scan lines lead."
+SUSPICIOUS_SENSOR_HEIGHT = 5.0, 15.0  # m: higher than any survey vehicle; 1.5 to 4.5 m expressed in feet
+
+
+@dataclass(frozen=True)
+class SharedReading:
+    """A survey that is read by workers, or kept.
+
+    reading : Executor that reads the files
+    ordering : Executor that puts the points in order
+    points : folder for the points as they are read, seen by both; it is made
+    ordered : folder that gets the points; it is made where it is missing
+    """
+
+    reading: Executor
+    ordering: Executor
+    points: Path
+    ordered: Path
+
+
+def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: SurveySettings = SurveySettings(),
+                progress: Progress = Progress(), shared: SharedReading | None = None) -> Survey:
+    """Read point clouds once and project every point into the road frame.
+
+    Parameters
+    ----------
+    files : headers of LAS, LAZ or COPC files in any order
+    trajectory : Trajectory in any CRS and time system
+    settings : SurveySettings
+    progress : Progress
+    shared : who reads, where the points are to lie in a folder; None for threads of this process and its memory
+
+    Returns
+    -------
+    Survey
+
+    Raises
+    ------
+    RoadExtractionError
+        If a file cannot be read, the CRS is geographic or not in metres, or the
+        trajectory does not overlap the cloud in space or time.
+    """
+    coloured = settings.intensity_from == "rgb"
+    if coloured:
+        check_coloured(files)
+    crs = check_projected(files, settings.crs, trajectory.crs)
+    if note := crs_note(files, settings.crs, crs):
+        progress.warn(note)
+    trajectory = reproject_trajectory(trajectory, crs)
+    trajectory, time_note, has_time, week_ends = match_clocks(files, trajectory, settings, progress)
+    if time_note:
+        progress.info(time_note)
+    frame = build_frame(trajectory)
+    frame.crs = crs
+    frame.has_time = has_time
+    for note in frame.notes:
+        progress.info(note)
+    if not has_time and len(frame.passes) > len(frame.roads):
+        progress.warn(f"The trajectory drives {len(frame.passes)} times over {len(frame.roads)} road(s), and as {_without_time(files, trajectory)} "
+                      "the passes are mixed: whatever they differ by blurs the map. Export points and trajectory with their time, or process "
+                      "the files of each drive with its own part of the trajectory.")
+    _check_extent(files, frame, crs, trajectory.crs)
+    store = SectionStore(point_dtype(SURVEY_POINT, frame.farthest), settings.section_length, settings.memory_limit,
+                         folder=None if shared is None else shared.points)
+    reader = SurveyReader(frame, store, PointChoice(settings.corridor, has_time, week_ends, settings.above_road, coloured))
+    again = settings.fit_passes and has_time and len(frame.passes) > len(frame.roads)
+    read_at = INGEST_PROGRESS if again else 1.0
+    if shared is None:
+        reader.read(files, settings.block, progress.part(0.0, read_at))
+    else:
+        shared.points.mkdir(exist_ok=True)
+        reader.read_in_parts(files, settings.block, shared.reading, progress.part(0.0, PARTS_PROGRESS * read_at))
+    total = sum(file.count for file in files)
+    if not store.count:
+        raise RoadExtractionError(_no_overlap(files, frame, reader, settings.corridor))
+    if reader.unplaced_time:
+        progress.warn(f"{reader.unplaced_time:,} of {total:,} points were left out: their gps_time is missing or lies outside the "
+                      "trajectory's.")
+    if reader.uneven:
+        progress.warn("The trajectory does not keep to one height above the road: half of the points under the vehicle lie more than "
+                      f"{reader.uneven[0]:.2f} m off {reader.uneven[1]:.2f} m below it, and curbs are missed for that. Its heights may be in feet "
+                      "where the cloud's are in metres, or not be those that the cloud was made with: export both anew from one solution.")
+    height = float(np.mean(list(reader.heights.values())))
+    if abs(height) < LOWEST_SENSOR:
+        raise RoadExtractionError(
+            f"The trajectory lies {height:.2f} m above the road; a scanner rides at least {LOWEST_SENSOR} m above it. "
+            "It seems to be a line on the road, such as a driving line of a map, and not where the scanner was: choose the "
+            "trajectory that the navigation system recorded. If it is that of the vehicle's wheels, add the height of the scanner to its heights.")
+    if not crs and SUSPICIOUS_SENSOR_HEIGHT[0] < height < SUSPICIOUS_SENSOR_HEIGHT[1]:
+        progress.warn(f"The sensor seems to ride {height:.1f} m above the road, as if cloud and trajectory were in feet, and no CRS tells their "
+                      "unit: everything is measured in metres, so curbs and markings would be missed. If they are in feet, convert both to metres "
+                      "(in a metric CRS); if they are not, set CRS.")
+    scanner_field, scanners = reader.census.choose(settings.scanner_field)
+    survey = Survey(files, frame, store, crs, reader.heights, scanner_field, scanners,
+                    reader.brightest > reader.darkest, has_time,
+                    dict(read=total, kept=store.count, outside=total - store.count), above_road=settings.above_road)
+    progress.info(f"Points read: {total:,} from {len(files)} file(s), {store.count:,} near the road kept; "
+                 f"{len(frame.roads)} road(s), {len(frame.passes)} pass(es), {len(scanners)} scanner(s); "
+                 f"sensor {height:.2f} m above the road.")
+    if coloured:
+        progress.info("The brightness of the points' colours is taken as their intensity.")
+    if not survey.has_intensity and (note := without_intensity(files, settings.intensity_from)):
+        progress.warn(note)
+    if has_time and len(scanners) == 1:
+        at = read_at if shared is None else PARTS_PROGRESS * read_at
+        _tell_scanners_apart(survey, reader, progress.part(at, at))
+    if shared is not None:
+        shared.ordered.mkdir(exist_ok=True)
+        survey.put_in_order(shared.ordered, shared.ordering, progress.part(PARTS_PROGRESS * read_at, read_at))
+    if has_time:
+        check_clock(survey, progress)
+    if again:
+        measured = survey.store
+        adjust_passes(survey, progress.part(INGEST_PROGRESS, 1.0), None if shared is None else shared.points)
+        if shared is not None and survey.store is not measured:
+            for file in shared.ordered.iterdir():
+                file.unlink()
+            survey.put_in_order(shared.ordered, shared.ordering, progress.part(1.0, 1.0))
+    if shared is not None:
+        survey.keep(shared.ordered)
+    return survey
+
+
+def _tell_scanners_apart(survey, reader, progress):
+    """Where the points of one scanner, as it seems, are those of two by their scan lines, let the survey tell them apart."""
+    from .estimation.estimate import splitter_of
+    from .estimation.samples import samples_of
+
+    time, place = (np.concatenate(column) for column in zip(*reader.sampled))
+    if time.min() == time.max():
+        return
+    samples = samples_of(time, place * COORDINATE_SCALE, np.zeros(len(time), np.uint8), np.zeros(3), reader.slots.stride)
+    survey.splitter = splitter_of(samples, progress)
+    if survey.splitter is not None:
+        survey.scanners = [0, 1]
+        progress.info(TOLD_APART)
+
+
+def match_clocks(files: list[CloudHeader], trajectory: Trajectory, settings: SurveySettings,
+                 progress: Progress) -> tuple[Trajectory, str, bool, bool]:
+    """Convert the trajectory to the time system of the cloud.
+
+    Parameters
+    ----------
+    files : headers of the clouds
+    trajectory : Trajectory
+    settings : SurveySettings, of which `time` is used
+    progress : Progress
+
+    Returns
+    -------
+    trajectory : in the time system of the cloud
+    note : for the log, "" without one
+    has_time : whether points can be assigned to passes by their time
+    week_ends : whether the GPS week ends during the scan
+
+    Raises
+    ------
+    RoadExtractionError
+        If the times of cloud and trajectory do not overlap.
+    """
+    if not trajectory.has_time:
+        return trajectory, "The trajectory has no time; each point is assigned to the nearest position on it.", False, False
+    if not all(file.has_time for file in files):
+        return trajectory, "The point cloud has no gps_time; each point is assigned to the nearest position on the trajectory.", False, False
+    span = _time_span(files)
+    if span is None:
+        return trajectory, "All gps_time values are equal; each point is assigned to the nearest position on the trajectory.", False, False
+    span, week_ends = span
+    offset, note = align_time(trajectory.time, span, settings.time, files[0].adjusted_time)
+    return trajectory.shifted(offset), note, True, week_ends
+
+
+def _without_time(files, trajectory):
+    """What lacks the time that would tell the passes apart."""
+    if not trajectory.has_time:
+        return "the trajectory has no time"
+    if not all(file.has_time for file in files):
+        return "the points have no gps_time"
+    return "all points have the same gps_time"
+
+
+def _time_span(files):
+    """((first, last) gps_time, whether the week ends in between), of samples of every file; None if all times are equal.
+
+    The samples include the last points of each file.
+    """
+    with ParallelCloudReader(("gps_time",)) as readers:
+        samples = [time[np.isfinite(time)] for file in files if file.count for time in readers.times(file)]
+    times = np.concatenate(samples)
+    if not len(times) or times.max() <= times.min():
+        return None
+    week_ends = wrapped_week((times.min(), times.max()))
+    times = unwrap_week(times) if week_ends else times
+    return (float(times.min()), float(times.max())), week_ends
+
+
+def _check_extent(files, frame, crs, trajectory_crs):
+    low = np.min([file.minimum for file in files if file.count], axis=0)
+    high = np.max([file.maximum for file in files if file.count], axis=0)
+    x = np.concatenate([p.x for p in frame.passes]) + frame.origin[0]
+    y = np.concatenate([p.y for p in frame.passes]) + frame.origin[1]
+    reach = CORRIDOR
+    if not ((x > low[0] - reach) & (x < high[0] + reach) & (y > low[1] - reach) & (y < high[1] + reach)).any():
+        raise RoadExtractionError(
+            f"The trajectory does not run through the point cloud. The cloud covers x {low[0]:.1f} to {high[0]:.1f}, "
+            f"y {low[1]:.1f} to {high[1]:.1f}; the trajectory runs over x {x.min():.1f} to {x.max():.1f}, "
+            f"y {y.min():.1f} to {y.max():.1f}. {_what_to_try(low, high, x, y, crs, trajectory_crs, reach)}")
+
+
+def _what_to_try(low, high, x, y, crs, trajectory_crs, reach):
+    """The advice of the error message, where cloud and trajectory do not overlap."""
+    if ((y > low[0] - reach) & (y < high[0] + reach) & (x > low[1] - reach) & (x < high[1] + reach)).any():
+        return "The trajectory's x and y are exchanged: name its columns the other way round, or swap them."
+    if (np.abs(high[:2]) <= 180).all() and (np.abs(low[:2]) <= 180).all() and (high - low)[:2].max() < 1.0:
+        return "The cloud's coordinates look like degrees: reproject it to a projected CRS, such as the UTM zone of the survey."
+    if trajectory_crs:
+        return f"Both were taken to be in {parse_crs(crs).name}. Check that they belong to one survey, and the CRS of the trajectory."
+    cloud = f"The cloud is in {parse_crs(crs).name}, the trajectory" if crs else "The trajectory"
+    return f"{cloud} carries no CRS. Give it the one its coordinates are in (Import trajectory does), and check that both belong to one survey."
+
+
+def _no_overlap(files, frame, reader, corridor):
+    if reader.unplaced_time:
+        starts, ends = [p.time[0] for p in frame.passes], [p.time[-1] for p in frame.passes]
+        times = f"{min(starts):.1f} s to {max(ends):.1f} s"
+        return (f"No point was measured while the trajectory was driven: {reader.unplaced_time} points lie outside "
+                f"its time, {times}. Set the trajectory's time system, or check that both belong to one survey.")
+    return (f"No point lies within {corridor:.0f} m of the trajectory and near its height. Check that "
+            "cloud and trajectory belong to one survey and use one CRS.")

@@ -1,0 +1,163 @@
+"""An open survey: its points by section of road, the road frame, and what is known of all of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..common.errors import RoadExtractionError
+from ..common.progress import Progress
+from ..common.setting import check_limits, setting
+from ..execution.phase import Executor, Recipe
+from ..execution.plain import read_plain, write_plain
+from ..execution.threads import THREADS
+from .frame.road import CORRIDOR
+from .las.luminance import INTENSITY_SOURCES
+from .las.reader import POINTS_PER_BLOCK, CloudHeader
+from .reading.blocks import KEPT_ABOVE_ROAD
+from .reading.finishing import Finishing
+from .reading.ordering import UnorderedPoints
+from .store.records import Points
+from .store.section_store import MEMORY_LIMIT, SECTION_LENGTH, SectionStore
+
+if TYPE_CHECKING:
+    from .adjustment.corrections import PassCorrections
+    from .estimation.interleaved import ScannerSplitter
+    from .frame.road_frame import RoadFrame
+
+SURVEY_FOLDER, SURVEY_FILE = "survey", "survey.npz"   # of a survey that other processes open
+SHIPPED = ("frame", "crs", "sensor_height", "scanner_field", "scanners", "has_intensity", "has_time", "counts", "moves", "above_road")
+
+
+@dataclass(frozen=True)
+class SurveySettings:
+    """Settings of reading a survey.
+
+    corridor : m either side of the reference line of a road
+    scanner_field : "automatic", "scanner_channel" or "point_source_id"
+    time : time system of the trajectory: automatic, gps, adjusted, week or day
+    crs : WKT for clouds that carry none
+    intensity_from : "intensity", or "rgb" for the luminance of the colours
+    fit_passes : whether passes over one road are adjusted to each other
+    above_road : m above the road up to which points are kept; the map needs what hides a curb, an inventory what hangs over the road
+    section_length : m of station in a section of the store
+    memory_limit : bytes of points in memory; more go to a temporary file
+    block : points decoded at a time
+    """
+
+    corridor: float = setting(CORRIDOR, 5.0, 100.0, "The corridor", "m")
+    scanner_field: str = "automatic"
+    time: str = "automatic"
+    crs: str = ""
+    intensity_from: str = INTENSITY_SOURCES[0]
+    fit_passes: bool = True
+    above_road: float = setting(KEPT_ABOVE_ROAD, 1.0, 100.0, "The height above the road", "m")
+    section_length: float = SECTION_LENGTH
+    memory_limit: int = MEMORY_LIMIT
+    block: int = POINTS_PER_BLOCK
+
+    def __post_init__(self) -> None:
+        check_limits(self)
+        if self.intensity_from not in INTENSITY_SOURCES:
+            raise RoadExtractionError(f"Intensity cannot be taken from “{self.intensity_from}”; choose one of {', '.join(INTENSITY_SOURCES)}.")
+
+
+@dataclass
+class Survey:
+    """An open survey: points by section, the road frame and statistics of the whole survey.
+
+    files : headers of the point clouds
+    frame : RoadFrame
+    store : SectionStore of the points
+    crs : WKT, "" where unknown
+    sensor_height : {pass number: metres from the trajectory down to the road}
+    scanner_field : LAS field that identifies the scanners, None if there is one
+    scanners : values of that field, see `ScannerCensus.choose`
+    has_intensity : whether intensities differ
+    has_time : whether points are assigned to passes by their time
+    counts : numbers of points read, kept and outside
+    moves : PassCorrections by which points and tracks were moved, None where they are as measured
+    above_road : metres above the road up to which points are returned
+    executor : Executor of the phases that read from this survey
+    folder : where the points lie for other processes, None where they are this one's alone
+    splitter : tells two scanners apart that no field distinguishes; None where there is no need
+    """
+
+    files: list[CloudHeader]
+    frame: RoadFrame
+    store: SectionStore
+    crs: str
+    sensor_height: dict[int, float]
+    scanner_field: str | None
+    scanners: list[Any]
+    has_intensity: bool
+    has_time: bool
+    counts: dict[str, int] = field(default_factory=dict)
+    moves: PassCorrections | None = None
+    above_road: float = KEPT_ABOVE_ROAD
+    executor: Executor = THREADS
+    folder: Path | None = None
+    splitter: ScannerSplitter | None = None
+
+    def __post_init__(self) -> None:
+        self.store.finish = self._finished
+
+    def recipe(self, folder: Path) -> Recipe:
+        """Move the points to a folder, unless they are there, and say how other processes open the survey."""
+        if self.folder is None:
+            own = folder / SURVEY_FOLDER
+            own.mkdir()
+            self.move_to(own)
+        return Recipe("survey.survey:survey_in_folder", dict(folder=str(self.folder)))
+
+    def move_to(self, folder: Path, executor: Executor = THREADS, progress: Progress = Progress()) -> None:
+        """Keep the points, in order, in an empty folder from now on, from where `survey_in_folder` opens the survey, here and elsewhere."""
+        self.put_in_order(folder, executor, progress)
+        self.keep(folder)
+
+    def keep(self, folder: Path) -> None:
+        """Write what other processes need to open the survey whose points were put in order in a folder."""
+        write_plain(folder / SURVEY_FILE, dict(store=self.store.contents(), **{name: getattr(self, name) for name in SHIPPED}))
+        self.folder = folder
+
+    def put_in_order(self, folder: Path, executor: Executor = THREADS, progress: Progress = Progress()) -> None:
+        """Put the points in order, in a folder that the executor's workers see, as they see that of the store."""
+        finishing = None if self.store.finish is None else self.finishing
+        UnorderedPoints(self.store, finishing, folder).put_in_order(executor, self.stretch, progress)
+
+    def stretch(self, road: int, start: float, end: float) -> str:
+        """What messages call the road between two stations (m), with the files whose points may lie there."""
+        s = np.linspace(start, end, 5)
+        x, y = self.frame.to_map(road, s, 0.0)
+        near = [Path(file.path).name for file in self.files if file.count and file.minimum[0] - CORRIDOR <= x.max() and x.min() <= file.maximum[0]
+                + CORRIDOR and file.minimum[1] - CORRIDOR <= y.max() and y.min() <= file.maximum[1] + CORRIDOR]
+        return f"road {road}, {start:.0f} to {end:.0f} m" + (f" ({', '.join(near)})" if near else "")
+
+    def window(self, road: int, start: float, end: float) -> Points:
+        """Points of a road with start <= station < end (m) near its height, scanners numbered from 0."""
+        return self.store.window(road, start, end)
+
+    def section(self, road: int, number: int) -> Points:
+        """Points of one section near the height of the road."""
+        return Points(self.store.section(road, number))
+
+    @property
+    def finishing(self) -> Finishing:
+        """What the points of a section are finished with before they are put in order."""
+        return Finishing(self.frame, self.sensor_height, self.scanner_field, self.scanners, self.splitter, self.above_road)
+
+    def _finished(self, road, records):
+        return self.finishing(road, records)
+
+    def road_height(self, road: int, s: np.ndarray) -> np.ndarray:
+        """(N,) local z of the road under the track at (N,) stations, accurate to decimetres."""
+        return self.frame.track_height(road, s, self.sensor_height)
+
+
+def survey_in_folder(folder: str) -> Survey:
+    """The survey that `Survey.recipe` put into a folder, without the files that it was read from."""
+    found = read_plain(Path(folder) / SURVEY_FILE)
+    return Survey(files=[], store=SectionStore.opened(Path(folder), **found.pop("store")), folder=Path(folder), **found)

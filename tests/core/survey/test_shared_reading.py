@@ -1,0 +1,219 @@
+"""A survey read part by part by workers: the points that threads of one process read, to the last bit; and what happens when a worker ends."""
+
+import threading
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from drives import ahead, bend, chain, contents, drive, joined, surveyed_points, write_cloud
+from executed_boundaries import Heard
+from lanewright.core.common.errors import Cancelled, RoadExtractionError
+from lanewright.core.common.progress import Progress
+from lanewright.core.execution import interpreter, processes
+from lanewright.core.execution.choice import ExecutionSettings
+from lanewright.core.execution.processes import WorkerProcesses
+from lanewright.core.execution.threads import Threads
+from lanewright.core.survey import open_survey as opening
+from lanewright.core.survey.open_survey import open_survey
+from lanewright.core.survey.reading import ordering, survey_reader
+from lanewright.core.survey.survey import SurveySettings, survey_in_folder
+
+SETTINGS = SurveySettings(block=700)   # points
+
+
+@pytest.fixture(autouse=True)
+def small_parts(monkeypatch):
+    monkeypatch.setattr(survey_reader, "PART_POINTS", 2000)
+    monkeypatch.setattr(survey_reader, "HEIGHT_SAMPLES", 20)   # the first blocks are read by the caller
+    monkeypatch.setattr(ordering, "ORDERED_POINTS", 2000)
+
+
+@pytest.fixture(scope="module")
+def street(tmp_path_factory):
+    """(trajectory, paths) of a bend that is driven twice, the second time 6 cm aside, in a LAS and a LAZ file."""
+    folder = tmp_path_factory.mktemp("street")
+    path = chain(ahead(80), bend(60, 60), ahead(60))
+    drives = [drive(path, start=1000.0), drive(path, start=2000.0)]
+    clouds = []
+    for k, (trajectory, kind) in enumerate(zip(drives, ("las", "laz"))):
+        x, y, z, measured = surveyed_points(trajectory)
+        clouds.append(write_cloud(folder / f"drive{k}.{kind}", x, y, z + 0.06 * k, measured, crs="EPSG:32632",
+                                  intensity=np.arange(len(x)) % 997, channel=np.arange(len(x)) % 2))
+    return joined(*drives), clouds
+
+
+def opened(street, executor=None, progress=None, settings=SETTINGS, **execution):
+    """(contents, what is known of all) of the survey, read by an executor or as settings have it."""
+    trajectory, clouds = street
+    with pytest.MonkeyPatch.context() as patch:
+        if executor is not None:
+            patch.setattr(opening, "executor_for", lambda *_: executor)
+        survey = open_survey(clouds, trajectory, settings, progress or Progress(), ExecutionSettings(**execution))
+    found = contents(survey).tobytes(), known(survey)
+    if survey.folder is not None:
+        again = survey_in_folder(str(survey.folder))
+        assert (contents(again).tobytes(), known(again)) == found
+        again.store.close()
+    survey.store.close()
+    return found
+
+
+def known(survey):
+    tracks = [(p.x.tobytes(), p.y.tobytes(), p.z.tobytes()) for p in survey.frame.passes]
+    return survey.sensor_height, survey.scanner_field, survey.scanners, survey.has_intensity, survey.counts, tracks
+
+
+@pytest.fixture(scope="module")
+def by_threads(street):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(survey_reader, "HEIGHT_SAMPLES", 20)
+        return opened(street)
+
+
+@pytest.fixture(scope="module")
+def python():
+    return interpreter.find_interpreter()
+
+
+@pytest.mark.parametrize("workers", [1, 2, 3])
+def test_worker_processes_read_what_threads_read_and_leave_nothing(street, by_threads, python, workers):
+    executor = WorkerProcesses(python, workers)
+    assert opened(street, executor) == by_threads
+    assert not executor.folder.exists()
+
+
+@pytest.mark.parametrize("block, points", [(700, 700), (997, 10**6), (10**6, 1), (40, 500)])
+def test_neither_blocks_nor_parts_change_a_point(street, by_threads, python, monkeypatch, block, points):
+    monkeypatch.setattr(survey_reader, "PART_POINTS", points)
+    assert opened(street, WorkerProcesses(python, 1), settings=SurveySettings(block=block)) == by_threads
+
+
+def test_a_survey_without_times_is_read_alike(street, python):
+    trajectory, clouds = street
+    alone = replace(trajectory, has_time=False), clouds
+    assert opened(alone, WorkerProcesses(python, 2)) == opened(alone)
+
+
+def killed_while_it_reads(executor):
+    """Kill a worker that has begun to read."""
+    def kill():
+        while not (list(executor.folder.glob("points/points-*")) and executor._all):
+            time.sleep(0.005)
+        next(iter(executor._all))._process.kill()
+
+    threading.Thread(target=kill, daemon=True).start()
+    return executor
+
+
+def test_a_worker_that_is_killed_while_it_reads_is_replaced_and_nothing_is_lost(street, by_threads, python):
+    executor = killed_while_it_reads(WorkerProcesses(python, 1))
+    assert opened(street, executor) == by_threads
+    assert not executor.folder.exists()
+
+
+def test_where_workers_keep_ending_the_file_is_named(street, python, monkeypatch):
+    monkeypatch.setattr(processes, "TRIALS", 0)
+    executor = WorkerProcesses(python, 1)
+    with pytest.raises(RoadExtractionError, match=r"drive\d.la[sz], points [\d,]+ to [\d,]+.*fewer workers"):
+        opened(street, executor)
+    assert not executor.folder.exists()
+
+
+def test_a_damaged_file_is_named_by_the_worker_that_meets_it(street, python, tmp_path):
+    trajectory, (las, _) = street
+    cut = tmp_path / "cut.las"
+    cut.write_bytes(open(las, "rb").read()[:-60_000])
+    with pytest.raises(RoadExtractionError, match="cut.las is (cut off|damaged)"):
+        opened((trajectory, [cut]), WorkerProcesses(python, 2))
+
+
+class StopsReading(Heard):
+    """Cancels when so many parts are read."""
+
+    def __init__(self, work, parts):
+        super().__init__()
+        self.work, self.parts = work, parts
+
+    def report(self, fraction):
+        if len(read_parts(self.work)) >= self.parts:
+            raise Cancelled
+
+
+def read_parts(work):
+    """{result of a part that was read: time of its last change}."""
+    return {path: path.stat().st_mtime_ns for path in work.glob("survey-*.parts/phase-*/*.npz")}
+
+
+@pytest.mark.parametrize("workers", [0, 2])
+def test_a_run_that_was_ended_while_it_read_goes_on_where_it_was(street, by_threads, tmp_path, monkeypatch, workers):
+    work, calls = tmp_path / "work", []
+    with pytest.raises(Cancelled):
+        opened(street, progress=StopsReading(work, 3), work_folder=str(work), workers=workers)
+    done = read_parts(work)
+    monkeypatch.setattr(opening.WorkFolder, "discard", lambda parts: calls.append(read_parts(work)))
+    heard = Heard()
+    assert opened(street, progress=heard, work_folder=str(work), workers=workers) == by_threads
+    assert len(done) >= 3 and len(calls[0]) > len(done) and all(calls[0][path] == when for path, when in done.items())
+    assert heard.says(f"{len(done)} of {len(calls[0])} parts of the work")
+
+
+def test_a_work_folder_keeps_the_points_in_order_and_nothing_that_was_on_the_way(street, by_threads, tmp_path):
+    assert opened(street, work_folder=str(tmp_path / "work")) == by_threads
+    assert not list(tmp_path.glob("work/*.parts")) and not list(tmp_path.rglob("*.part"))
+    heard = Heard()
+    assert opened(street, progress=heard, work_folder=str(tmp_path / "work")) == by_threads
+    assert heard.says("read by an earlier run")
+
+
+def test_another_run_that_was_quicker_is_believed(street, by_threads, tmp_path, monkeypatch):
+    work = str(tmp_path / "work")
+    own = opening.read_survey
+
+    def slow(*arguments):
+        monkeypatch.setattr(opening, "read_survey", own)
+        opened(street, work_folder=work)
+        raise RoadExtractionError("The parts are gone.")
+
+    monkeypatch.setattr(opening, "read_survey", slow)
+    assert opened(street, work_folder=work) == by_threads
+
+
+class Blind(Threads):
+    """Workers who do not see the files."""
+
+    def __init__(self, folder):
+        super().__init__(1)
+        self.folder = folder
+
+    def sees(self, paths):
+        return False
+
+
+def test_what_the_workers_do_not_see_is_read_here(street, by_threads, tmp_path):
+    heard = Heard()
+    assert opened(street, Blind(tmp_path), heard) == by_threads
+    assert heard.says("do not see the point clouds") and not list(tmp_path.iterdir())
+
+
+class Halving(Threads):
+    """Has every item that can be halved done in two."""
+
+    def __init__(self, folder):
+        super().__init__(1)
+        self.folder, self.halved = folder, 0
+
+    def run(self, phase, items, progress=Progress(), keep=()):
+        for first, end, *more in items:
+            if phase.join is None or end - first < 2:
+                yield phase.result((first, end, *more))
+                continue
+            self.halved += 1
+            middle = (first + end) // 2
+            yield phase.join([phase.result((first, middle)), phase.result((middle, end))])
+
+
+def test_halves_of_a_part_are_the_part(street, by_threads, tmp_path):
+    executor = Halving(tmp_path)
+    assert opened(street, executor) == by_threads
+    assert executor.halved > 2
