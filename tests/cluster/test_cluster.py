@@ -12,6 +12,7 @@ from functools import partial
 from pathlib import Path
 
 import fiona
+import numpy as np
 import pytest
 from curbed_streets import street, survey_of
 from executed_boundaries import Heard, numbers_of
@@ -29,6 +30,7 @@ from lanewright.core.road.detect_boundaries import BoundarySettings, draw_bounda
 from lanewright.core.road.scanlines.section_planes import all_scanlines
 from lanewright.core.sample import SampleSettings, make_sample_survey
 from lanewright.core.survey.open_survey import open_survey
+from lanewright.core.survey.reading import survey_reader
 from lanewright.core.survey.reading.sensor_height import sensor_height_of
 from lanewright.core.survey.survey import SurveySettings
 from lanewright.library import run
@@ -311,3 +313,49 @@ def test_a_caller_that_is_killed_leaves_nothing_and_its_work_is_gone_on_with(clu
 
 def test_seconds_without_a_sign_of_life_are_many_in_real_runs():
     assert executing.CALLER_LOST >= 60.0
+
+
+@pytest.fixture(scope="module")
+def sample(tmp_path_factory):
+    """A sample survey and its cloud."""
+    made, path = make_sample_survey(SampleSettings(length=40.0, pulse_rate=40_000.0)), tmp_path_factory.mktemp("sample") / "survey.laz"
+    made.write_cloud(path)
+    return made, path
+
+
+def points_read(sample, monkeypatch, progress=Progress(), **execution):
+    """All points of the survey as bytes, read in parts of 50,000 points, and what was sent where."""
+    made, path = sample
+    monkeypatch.setattr(survey_reader, "PART_POINTS", 50_000)
+    survey = open_survey([path], made.trajectory, SurveySettings(block=20_000), progress, ExecutionSettings(**execution))
+    with contextlib.closing(survey.store):
+        parts = [np.array(survey.section(road, number).records) for road in survey.store.roads() for number in survey.store.sections(road)]
+        return np.concatenate(parts).tobytes()
+
+
+def test_workers_read_what_threads_read(cluster, sample, monkeypatch):
+    heard = Heard()
+    assert points_read(sample, monkeypatch, heard, scheduler=cluster.address) == points_read(sample, monkeypatch)
+    assert not heard.says("do not see the point clouds")
+
+
+def test_a_worker_that_is_killed_while_it_reads_costs_no_part_that_was_read(cluster, sample, monkeypatch, tmp_path):
+    work, finished = tmp_path / "work", {}
+
+    class Kill(Progress):
+        def report(self, fraction):
+            found = {path: path.stat().st_mtime_ns for path in work.glob("survey-*.parts/phase-*/*.npz")}
+            if found and not finished:
+                finished.update(found)
+                cluster.kill_a_worker()
+
+    monkeypatch.setattr(WorkFolder, "discard", lambda parts: None)
+    assert points_read(sample, monkeypatch, Kill(), scheduler=cluster.address, work_folder=str(work)) == points_read(sample, monkeypatch)
+    assert finished and all(path.stat().st_mtime_ns == when for path, when in finished.items())
+
+
+def test_point_clouds_that_workers_do_not_see_are_read_here(cluster, sample, monkeypatch):
+    heard = Heard()
+    monkeypatch.setattr(executing.Cluster, "sees", lambda self, paths: False)
+    assert points_read(sample, monkeypatch, heard, scheduler=cluster.address) == points_read(sample, monkeypatch)
+    assert heard.says("do not see the point clouds")
