@@ -186,7 +186,9 @@ def _map_of(survey, image_path, settings, stages, corrections):
     boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, found, survey.frame, settings.edges,
                             survey=survey)
     edges = correct_edges(boundaries.edges, survey.frame, wanted)
-    road_points, surface = stages.run("surface", "Extracting the road surface …", extract_road_surface, survey, edges, settings.surface)
+    road_points, surface = stages.run("surface", "Extracting the road surface …", extract_road_surface, survey, edges, settings.surface,
+                                      ground=boundaries.ground)
+    boundaries.ground = None
     facts = dict(files=len(survey.files), scanners=len(survey.scanners), passes=len(survey.frame.passes),
                  roads=len(survey.frame.roads), sensor_height=survey.sensor_height, **survey.counts)
     density = tuple(_density(points, store, stages.progress, stages.done)

@@ -19,6 +19,7 @@ from .scanlines.candidates import GAP_FILL_REACH
 from .scanlines.detect import ScanlineBoundarySettings, curbs_from_scanlines
 from .scanlines.section_planes import ScanlineSettings
 from .scanlines.source import SurveyScanlines
+from .surface.measured_ground import MeasuredGround
 from .surface.pavement_lines import with_pavement_edges
 
 if TYPE_CHECKING:
@@ -65,12 +66,14 @@ class RoadBoundaries:
     edges : RoadEdges
     differences : RoadEdges, where the edges of the two methods lie apart; None with one method
     length_by_method : method -> m of measured edges; empty with one method
+    ground : MeasuredGround in which edges of the pavement were looked for; None without
     """
 
     curb_points: CurbPoints
     edges: RoadEdges
     differences: RoadEdges | None = None
     length_by_method: dict = field(default_factory=dict)
+    ground: MeasuredGround | None = None
 
 
 def find_curb_points(survey: Survey, settings: BoundarySettings = BoundarySettings(), progress: Progress = Progress()) -> dict[str, CurbPoints]:
@@ -146,7 +149,8 @@ def draw_boundaries(found: dict[str, CurbPoints], frame: RoadFrame, settings: Ed
     """
     boundaries = _drawn(found, frame, settings, progress)
     if survey is not None:
-        boundaries.edges = with_pavement_edges(survey, boundaries.edges, settings, progress=progress)
+        boundaries.ground = MeasuredGround(survey)
+        boundaries.edges = with_pavement_edges(survey, boundaries.edges, settings, progress=progress, ground=boundaries.ground)
     return boundaries
 
 

@@ -15,11 +15,11 @@ from ...common.errors import RoadExtractionError
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
-from ...survey.frame.road import CORRIDOR
 from ...survey.store.records import COORDINATE_SCALE
 from ...survey.store.road_points import RoadPoints
-from .ground_grid import ROW_LENGTH, GroundCells, ground_cells
+from .ground_grid import ROW_LENGTH, GroundCells
 from .limits import edge_offsets
+from .measured_ground import WINDOW_ROWS, MeasuredGround
 from .openings import cells_driven, opened_limits, street_ground
 from .outline import outlines
 from .pavement_edge import GrownLimit, SurfaceProfiles, grown_limit
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from ...survey.open_survey import Survey
     from ..edges.road_edges import RoadEdges
 
-WINDOW_ROWS = 10              # rows of cells in memory at a time: 5 m
 TOLERANCE_FLOOR = 0.03        # m, height tolerance of a scanner without noise
 TOLERANCE_SIGMAS = 4.0        # times the noise of the heights, added to it
 TRACK_REACH = 1.5             # m either side of the reference line where ground must be measured
@@ -85,7 +84,7 @@ class Carriageway:
 
 
 def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, settings: SurfaceSettings = SurfaceSettings(),
-                         progress: Progress = Progress()) -> tuple[RoadPoints, SurfaceOutlines]:
+                         progress: Progress = Progress(), ground: MeasuredGround | None = None) -> tuple[RoadPoints, SurfaceOutlines]:
     """Select the points of the road surface and draw its outline.
 
     Between road edges, all points at the height of the road belong to the surface. The height is followed from the
@@ -100,6 +99,7 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
     edges : RoadEdges or None
     settings : SurfaceSettings
     progress : Progress
+    ground : MeasuredGround that an earlier stage kept, or None
 
     Returns
     -------
@@ -116,7 +116,7 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
     roads = survey.store.roads()
     for k, road in enumerate(roads):
         part = progress.part(k / len(roads), (k + 1) / len(roads))
-        carriageway = find_carriageway(survey, road, edges, settings, part.part(0.0, 0.5))
+        carriageway = find_carriageway(survey, road, edges, settings, part.part(0.0, 0.5), ground)
         if carriageway is None:
             progress.warn(f"Road {road}: no ground was measured near the track, so this road has no surface.")
             continue
@@ -132,7 +132,7 @@ def extract_road_surface(survey: Survey, edges: RoadEdges | None = None, setting
 
 
 def find_carriageway(survey: Survey, road: int, edges: RoadEdges | None, settings: SurfaceSettings,
-                     progress: Progress = Progress()) -> Carriageway | None:
+                     progress: Progress = Progress(), ground: MeasuredGround | None = None) -> Carriageway | None:
     """Height and limits of one road, row by row.
 
     Parameters
@@ -142,6 +142,7 @@ def find_carriageway(survey: Survey, road: int, edges: RoadEdges | None, setting
     edges : RoadEdges or None
     settings : SurfaceSettings
     progress : Progress
+    ground : MeasuredGround of the survey, or None to measure it here
 
     Returns
     -------
@@ -154,20 +155,9 @@ def find_carriageway(survey: Survey, road: int, edges: RoadEdges | None, setting
     measured = edge_offsets(edges, road, stations)
     missing = np.isnan(measured["left"][0]) | np.isnan(measured["right"][0])
 
-    def measure(row):
-        points = survey.window(road, row * ROW_LENGTH, (row + WINDOW_ROWS) * ROW_LENGTH)
-        profiles = None
-        if missing[row - windows[0]:row - windows[0] + WINDOW_ROWS].any():
-            profiles = SurfaceProfiles.of(points, row * ROW_LENGTH, WINDOW_ROWS * ROW_LENGTH, CORRIDOR, road_height)
-        return ground_cells(points, row, WINDOW_ROWS, CORRIDOR, road_height), profiles
-
-    def road_height(s):
-        return survey.road_height(road, s)
-
-    measured_windows = list(ordered_map(measure, windows, progress))
-    cells = GroundCells.joined([part for part, _ in measured_windows])
-    profiles = [part for _, part in measured_windows if part is not None]
-    prior = road_height(stations)
+    per_window = missing.reshape(-1, WINDOW_ROWS).any(axis=1)
+    cells, profiles = (ground or MeasuredGround(survey)).windows(road, windows, per_window.tolist(), progress)
+    prior = survey.road_height(road, stations)
     followed = follow_road(cells, prior)
     if followed is None:
         return None

@@ -23,6 +23,7 @@ from .pavement_edge import PROFILE_COLUMN
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame
     from ...survey.open_survey import Survey
+    from .measured_ground import MeasuredGround
 
 AGREEING_LENGTH = 7.0       # m of road of which most must show the edge
 MIN_PAVEMENT_LENGTH = 10.0  # m of a line: rows are averages of 7 m, so a shorter one is a single observation
@@ -33,7 +34,7 @@ CELL_SIGMA = PROFILE_COLUMN / np.sqrt(12.0)  # m, of a place that is known to a 
 
 
 def with_pavement_edges(survey: Survey, edges: RoadEdges, settings: EdgeSettings = EdgeSettings(), surface: SurfaceSettings = SurfaceSettings(),
-                        progress: Progress = Progress()) -> RoadEdges:
+                        progress: Progress = Progress(), ground: MeasuredGround | None = None) -> RoadEdges:
     """The edges and, where there is no curb, edges of the pavement.
 
     Parameters
@@ -43,6 +44,7 @@ def with_pavement_edges(survey: Survey, edges: RoadEdges, settings: EdgeSettings
     settings : EdgeSettings, of which `max_gap` counts
     surface : SurfaceSettings
     progress : Progress
+    ground : MeasuredGround of the survey, which keeps what is measured here, or None
 
     Returns
     -------
@@ -51,7 +53,7 @@ def with_pavement_edges(survey: Survey, edges: RoadEdges, settings: EdgeSettings
     pieces: list[EdgePiece] = []
     roads = survey.store.roads()
     for k, road in enumerate(roads):
-        carriageway = find_carriageway(survey, road, edges, surface, progress.part(k / len(roads), (k + 1) / len(roads)))
+        carriageway = find_carriageway(survey, road, edges, surface, progress.part(k / len(roads), (k + 1) / len(roads)), ground)
         if carriageway is not None:
             pieces += pavement_pieces(survey.frame, road, carriageway, edges, settings.max_gap, len(pieces))
     if pieces:
