@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.ndimage import median_filter
 
+from .ground_change import ROUGHNESS_FACTOR, ROUGHNESS_FLOOR
 from .ground_grid import COLUMN_WIDTH, ROW_LENGTH, GroundCells
-from .pavement_edge import ROUGHNESS_FACTOR, ROUGHNESS_FLOOR
 
 if TYPE_CHECKING:
     from ...survey.frame.road_frame import RoadFrame

@@ -1,0 +1,179 @@
+"""Where the ground across the road changes: the first cell outward that is no longer like the road before it.
+
+The ground changes where, over some cells, it is off the height of the road, tilts away, or is rougher than the road before, or
+where nothing was measured and no road follows. The rules are our own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .ground_grid import known_median
+from .region_growing import MAX_HEIGHT_DEVIATION
+
+CERTAIN_ROAD = 1.2           # m beside the track that belong to the road: the vehicle drove there
+MIN_CHANGE_CELLS = 4         # cells over which a change must last
+MAX_HEIGHT_CHANGE = 0.025    # m from the median height of the cells before
+UNEVENNESS_FACTOR = 2.0      # times the unevenness of the road, added to either height limit
+CELLS_OF_UNEVENNESS = 8      # cells at least whose steps tell how uneven the road is
+ROUGHNESS_FACTOR, ROUGHNESS_FLOOR = 1.6, 0.0025  # times the roughness of the road, and m added to it
+CELLS_OF_ROUGHNESS = 15      # cells before a place whose roughness is the road's
+MIN_TILT_CHANGE = 0.10       # m per m: change of tilt at which a bank or a ditch begins,
+CELLS_OF_TILT = 10, 6        # between so many cells before a place and from it on,
+MIN_CELLS_OF_TILT = 5, 4     # of which so many were measured
+MAX_EMPTY_GROUND_CELLS = 5   # consecutive cells without points at which the road ends,
+MAX_BLIND_CELLS = 12         # unless at most so many are empty and road follows: the blind zone beside the vehicle
+CELLS_BEFORE_BLIND = 10      # cells before a blind zone whose roughness the road behind must have
+MIN_MEASURED_BEHIND = 0.75   # of the cells behind a blind zone, for road to follow
+OBSTACLE_HEIGHT = 0.25       # m above the road of a cell that hides the road behind it, such as the side of a car,
+OBSTACLE_CELLS = 5           # where road follows within so many cells
+MIN_AGREEING_SHARE = 0.7     # of the cells ahead that must show the change
+PROFILES_PER_BATCH = 64      # profiles compared at a time; their windows take some megabytes
+
+
+@dataclass
+class HalfProfiles:
+    """P profiles of K cells from the reference line outward.
+
+    Attributes
+    ----------
+    u : (K,) m, outward offsets of the middles of the cells, ascending
+    off : (P, K) m above the height of the road; NaN where nothing was measured, or an obstacle hides the road
+    rough : (P, K) m
+    """
+
+    u: np.ndarray
+    off: np.ndarray
+    rough: np.ndarray
+
+    def __post_init__(self) -> None:
+        """Cells of obstacles are no ground."""
+        low = np.isfinite(self.off) & (np.abs(self.off) < MAX_HEIGHT_DEVIATION)
+        follows = _ahead(np.pad(low, ((0, 0), (0, 1)))[:, 1:], OBSTACLE_CELLS, fill=False).any(axis=2)
+        with np.errstate(invalid="ignore"):
+            self.off = np.where((self.off > OBSTACLE_HEIGHT) & follows, np.nan, self.off)
+
+    def changes(self, beside: np.ndarray, max_width: float) -> np.ndarray:
+        """(P,) int, the first cell of other ground, or the one at the largest width; -1 where nothing was measured before it.
+
+        Parameters
+        ----------
+        beside : (P,) m, outward offset of the track
+        max_width : m from the track
+        """
+        start = np.searchsorted(self.u, beside + CERTAIN_ROAD)
+        stop = np.searchsorted(self.u, beside + max_width)
+        empty = self.blind()
+        found = np.empty(len(self.off), np.int64)
+        for first in range(0, len(found), PROFILES_PER_BATCH):
+            part = slice(first, first + PROFILES_PER_BATCH)
+            uneven = _unevenness(self.off[part], np.maximum(start[part], CELLS_OF_UNEVENNESS))
+            differs = _differs(self.u, self.off[part], self.rough[part], uneven)
+            for k in range(len(uneven)):
+                at = first + k
+                found[at] = self._change(at, int(start[at]), int(stop[at]), empty[at], differs[k], float(uneven[k]))
+        return found
+
+    def blind(self) -> np.ndarray:
+        """(P, K) bool, whether nothing was measured in the cells from a cell on."""
+        return ~_ahead(np.isfinite(self.off), MAX_EMPTY_GROUND_CELLS, fill=False).any(axis=2)
+
+    def _change(self, profile, start, stop, empty, differs, uneven):
+        """The change of one profile between two cells."""
+        if not np.isfinite(self.off[profile, :stop]).any():
+            return -1
+        other = np.flatnonzero(differs[start:stop])
+        last = start + int(other[0]) if len(other) else stop
+        blind = start
+        for k in (start + np.flatnonzero(empty[start:min(last + 1, stop)])).tolist():
+            if k >= blind:
+                blind = self._road_behind(profile, k, uneven)
+                if not blind:
+                    return k
+        return last
+
+    def _road_behind(self, profile, k, uneven):
+        """The first cell behind a blind zone that begins at cell k, or 0 where no road follows.
+
+        The ground behind must be at the height of the road and as smooth. Its brightness is not compared, because it was
+        measured in another part of the scanner's turn.
+        """
+        off, rough = self.off[profile], self.rough[profile]
+        measured = np.flatnonzero(np.isfinite(off[k:k + MAX_BLIND_CELLS + 1]))
+        if not len(measured):
+            return 0
+        again = k + int(measured[0])
+        behind, inner = slice(again, again + 2 * MIN_CHANGE_CELLS), slice(max(k - CELLS_BEFORE_BLIND, 0), k)
+        if np.isfinite(off[behind]).mean() < MIN_MEASURED_BEHIND \
+                or (np.abs(off[behind]) > MAX_HEIGHT_DEVIATION + UNEVENNESS_FACTOR * uneven).any():
+            return 0
+        with np.errstate(invalid="ignore"):
+            smooth = known_median(rough[behind], 0) <= ROUGHNESS_FACTOR * known_median(rough[inner], 0) + ROUGHNESS_FLOOR
+        return again if smooth else 0
+
+
+def _ahead(values, count, fill=np.nan):
+    """(P, K, count) the cells from each cell on; `fill` beyond the end."""
+    return np.lib.stride_tricks.sliding_window_view(np.pad(values, ((0, 0), (0, count - 1)), constant_values=fill), count, axis=1)
+
+
+def _before(values, count):
+    """(P, K, count) the cells before each cell; NaN before the first."""
+    return np.lib.stride_tricks.sliding_window_view(np.pad(values, ((0, 0), (count, 0)), constant_values=np.nan), count, axis=1)[:, :-1]
+
+
+def _unevenness(off, cells):
+    """(P,) m, median step between neighbouring ones of the first cells."""
+    step = np.abs(np.diff(off, axis=1))
+    return np.nan_to_num(known_median(np.where(np.arange(step.shape[1]) < cells[:, None] - 1, step, np.nan), 1))
+
+
+def _differs(u, off, rough, uneven):
+    """(P, K) bool, whether the ground from a cell on is no longer that of the road."""
+    ahead, before = _ahead(off, MIN_CHANGE_CELLS), _before(off, MIN_CHANGE_CELLS)
+    seen = np.isfinite(ahead)
+    count = seen.sum(axis=2)
+    slack = UNEVENNESS_FACTOR * uneven[:, None]
+    with np.errstate(invalid="ignore"):
+        away = np.abs(ahead) > MAX_HEIGHT_DEVIATION + slack[..., None]
+        high = (count > 1) & away[..., 0] & (away.sum(axis=2) > MIN_AGREEING_SHARE * count)
+        # the step may cut the first cell that was measured
+        stepped = (np.abs(ahead - known_median(before, 2)[..., None]) > MAX_HEIGHT_CHANGE + slack[..., None]) | ~seen | (np.cumsum(seen, axis=2) == 1)
+        step = (count > 2) & (np.isfinite(before).sum(axis=2) > 2) & stepped.all(axis=2)
+        rough_ahead, usual = _ahead(rough, MIN_CHANGE_CELLS), _before(rough, CELLS_OF_ROUGHNESS)
+        rougher = rough_ahead > (ROUGHNESS_FACTOR * known_median(usual, 2) + ROUGHNESS_FLOOR)[..., None]
+        known = np.isfinite(rough_ahead).sum(axis=2)
+        rugged = (known > 1) & (np.isfinite(usual).sum(axis=2) > 3) & rougher[..., 0] & (rougher.sum(axis=2) > MIN_AGREEING_SHARE * known)
+    return high | step | rugged | _turns(u, off, slack)
+
+
+def _turns(u, off, slack):
+    """(P, K) bool, whether the ground from a cell on tilts away from the metre before."""
+    # cells are of one width, so places are counted from the cell itself
+    size = u[1] - u[0]
+    after, inner = _ahead(off, CELLS_OF_TILT[1]), _before(off, CELLS_OF_TILT[0])
+    at_after, at_inner = np.arange(CELLS_OF_TILT[1]) * size, np.arange(-CELLS_OF_TILT[0], 0) * size
+    a, b = np.isfinite(after), np.isfinite(inner)
+    level, slope = _lines(at_inner, inner, b)
+    over = np.where(a, after - level[..., None] - slope[..., None] * at_after, np.nan)
+    _, tilt = _lines(at_after, over, a)
+    # most cells, not a single one beside an obstacle
+    most = known_median(over / (at_after + 0.5 * size), 2)
+    with np.errstate(invalid="ignore"):
+        # the bank may begin farther out
+        begins = np.abs(over[..., 0]) >= 0.5 * MIN_TILT_CHANGE * size + slack
+        return (b.sum(axis=2) >= MIN_CELLS_OF_TILT[0]) & (a.sum(axis=2) >= MIN_CELLS_OF_TILT[1]) & a[..., 0] & begins \
+            & (np.minimum(np.abs(most), np.abs(tilt)) > MIN_TILT_CHANGE)
+
+
+def _lines(at, values, known):
+    """Level at 0 and slope of the straight lines of least squares through the known ones of values at (N,) places."""
+    count = np.maximum(known.sum(axis=2), 1)
+    values = np.where(known, values, 0.0)
+    middle, mean = (known * at).sum(axis=2) / count, values.sum(axis=2) / count
+    away = known * (at - middle[..., None])
+    with np.errstate(invalid="ignore", divide="ignore"):
+        slope = (away * values).sum(axis=2) / (away * at).sum(axis=2)
+    return mean - slope * middle, slope
