@@ -2,7 +2,7 @@
 
 from ...core.common.schemas import ASSESSED_BOUNDARIES
 from ..algorithm import Algorithm
-from ..parameters import SettingSpec, settings_class
+from ..parameters import ChoiceSpec, SettingSpec, settings_class
 from ..texts import tr
 from .inputs import (
     add_area,
@@ -19,6 +19,7 @@ from .inputs import (
 
 BOUNDARY = "assess.boundaries:BoundaryAccuracySettings"
 
+EDGES = ("automatic", "all", "curbs")
 BOUNDARY_SETTINGS = (
     SettingSpec(
         "TOLERANCE", BOUNDARY, "tolerance", tr("Tolerance of the layer and of the numbers (m)"),
@@ -64,6 +65,13 @@ class AssessBoundaries(Algorithm):
             add_tolerances(self, settings(), tr("Tolerances (m)"), tr(
                 "Distances to either side within which a line is right, with commas between them. The report has a row for each."))
         self.add_settings(BOUNDARY_SETTINGS)
+        self.add(ChoiceSpec(
+            "EDGES", tr("Edges to judge"),
+            tr("Road edges hold curbs and, where there is no curb, edges of the pavement. Curbs judges curbs alone; all judges whatever both layers "
+               "hold. Automatic leaves edges of the pavement out where the field edge or kind of the reference says that it holds curbs alone: "
+               "such a reference cannot tell whether they are right."),
+            value=EDGES[0], choices=EDGES,
+        ))
         add_excluded(self)
         add_area(self)
         self.add_sink("OUTPUT", tr("Boundaries by outcome"), tr("One line an interval and outcome."), fields=ASSESSED_BOUNDARIES,
@@ -74,7 +82,16 @@ class AssessBoundaries(Algorithm):
 
     def work(self, call, progress):
         from ...core.assess.boundaries import assess_boundaries
-        from ...core.assess.inputs import along_the_road_only, bottoms_only, check_kind, check_overlap, check_reference, common_crs, in_crs
+        from ...core.assess.inputs import (
+            along_the_road_only,
+            bottoms_only,
+            check_kind,
+            check_overlap,
+            check_reference,
+            common_crs,
+            edges_that_compare,
+            in_crs,
+        )
         from ...core.assess.layers import boundary_layer
         from ...core.report.assessment import boundary_report
 
@@ -97,6 +114,8 @@ class AssessBoundaries(Algorithm):
             result, _ = choose(result, warn)
             reference, kept = choose(reference, warn)
             excluded, kinds = ([values[k] for k in kept] for values in (excluded, kinds))
+        result, reference, kept = edges_that_compare(result, reference, call.choice("EDGES"), warn)
+        excluded, kinds = ([values[k] for k in kept] for values in (excluded, kinds))
         judged = reference.subset([not x for x in excluded])
         check_reference(judged, result, frame, area, settings.corridor, warn)
         progress.report(0.4)

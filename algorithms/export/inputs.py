@@ -53,7 +53,7 @@ def write_map_layers(call, layers, progress):
 
 LINE_FIELDS = tuple(field for field in DRIVING_LINES if field.name in ("road", "lane", "status", "station_m", "end_m", "sigma_m"))
 MARKING_LINE_FIELDS = tuple(field for field in MARKING_LINES if field.name in ("road", "line", "kind", "pattern", "width_m"))
-EDGE_FIELDS = tuple(field for field in ROAD_EDGES if field.name in ("road", "height_m"))
+EDGE_FIELDS = tuple(field for field in ROAD_EDGES if field.name in ("road", "height_m", "edge"))
 MARKING_FIELDS = tuple(field for field in MARKINGS if field.name in ("road", "class"))
 
 

@@ -14,6 +14,7 @@ from ..io.crs import check_metric, horizontal_part, parse_crs, same_crs
 from .matching import MAX_ROAD_DISTANCE, TrajectoryStationing, sample_lines, single_lines
 
 MAX_LAYER_DISTANCE = 100.0  # m between the extents of two layers of one road
+PAVEMENT, CURBS = "pavement", ("curb", "dropped")   # values of the field `edge`
 TRANSVERSE_KINDS = ("corner", "side_street", "island")  # values of the field `kind` of curbs that do not run along the road
 
 
@@ -191,6 +192,47 @@ def along_the_road_only(layer: AssessedLayer, warn: Callable[[str], None] = _ign
     length = sum(layer.geometries[k].length for k in np.flatnonzero(transverse))
     warn(f"{layer.label} holds {length:.0f} m of corners, side streets and islands; they are not judged.")
     return layer.subset(~transverse), np.flatnonzero(~transverse).tolist()
+
+
+def edges_that_compare(result: AssessedLayer, reference: AssessedLayer, edges: str = "automatic",
+                       warn: Callable[[str], None] = _ignore) -> tuple[AssessedLayer, AssessedLayer, list[int]]:
+    """(the result, the reference, and the rows of it that remain) with edges of the same kinds: curbs are not judged by edges of the pavement.
+
+    Parameters
+    ----------
+    result, reference : AssessedLayer; the field `edge`, else `kind`, says what a line is
+    edges : "all" keeps both layers as they are; "curbs" leaves edges of the pavement out of both; "automatic" leaves them out of the result
+        where the reference says of its lines that they are curbs, and of none that it is an edge of the pavement
+    warn : called with a sentence
+    """
+    named = [_what_edges_are(layer) for layer in (result, reference)]
+    pavement = [names == PAVEMENT for names in named]
+    curbs_alone = bool(np.isin(named[1], CURBS).any() and not pavement[1].any())
+    every = list(range(len(reference.geometries)))
+    if edges == "all" or not (pavement[0].any() or pavement[1].any()):
+        return result, reference, every
+    if edges == "automatic" and not curbs_alone:
+        if not np.isin(named[1], (*CURBS, PAVEMENT)).any():
+            warn(f"{result.label} holds {_length(result, pavement[0]):.0f} m of edges of the pavement without a curb, and {reference.label} does "
+                 "not say what its lines are. If it holds curbs alone, choose curbs as the edges to judge.")
+        return result, reference, every
+    if pavement[0].any():
+        warn(f"{result.label} holds {_length(result, pavement[0]):.0f} m of edges of the pavement without a curb; they are not judged, as the curbs "
+             f"of {reference.label} cannot tell whether they are right.")
+    kept = np.flatnonzero(~pavement[1])
+    if pavement[1].any():
+        warn(f"{reference.label} holds {_length(reference, pavement[1]):.0f} m of edges of the pavement without a curb; they are left out.")
+    return result.subset(~pavement[0]), reference.subset(~pavement[1]), kept.tolist()
+
+
+def _what_edges_are(layer):
+    """(N,) what each line is: `edge` says it, and in layers without that field `kind`."""
+    edge, kind = layer.column("edge"), layer.column("kind")
+    return np.array([str(b if a is None else a).lower() if a is not None or b is not None else "" for a, b in zip(edge, kind)], object)
+
+
+def _length(layer, mask):
+    return float(sum(layer.geometries[k].length for k in np.flatnonzero(mask)))
 
 
 def check_reference(reference: AssessedLayer, result: AssessedLayer, frame: Any = None, area: Any = None, corridor: float = MAX_ROAD_DISTANCE,

@@ -27,7 +27,8 @@ class Lanes:
     lane_id : (P,) str objects, "road.lane.piece", each once
     type : (P,) str objects, one of LANE_TYPES
     direction : (P,) int, 1 along the road's reference line, -1 against it, 0 where nobody drives
-    left_line, right_line : (P,) str objects, what the border is: "line 12", "edge 3" or "none"
+    left_line, right_line : (P,) str objects, what the border is: "line 12" by `line` of the marking lines, "edge 3" by
+        `chain` of the road edges, or "none"
     left_kind, right_kind : (P,) str objects, edge, lane, centre, curb, pavement, hatch or none
     left_pattern, right_pattern : (P,) str objects, as in DRIVING_LINES, "" where there is none
     successors : P tuples of lane_ids, what follows in the direction of travel

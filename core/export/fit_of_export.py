@@ -11,7 +11,7 @@ import shapely
 from ..common.features import Features
 from ..driving.lanes_layer import Lanes
 
-NEAR_BORDER = 1.0     # m from a line within which a place is held against it
+NEAR_MIDDLE = 1.0     # m from the middle of a lane within which a driving line is held against it
 SAME_BORDER = 0.05    # m across within which heights are compared
 
 
@@ -32,7 +32,7 @@ def border_misses(source: Lanes, exported: Lanes) -> tuple[Misses, Misses]:
         for border in exported.borders(k):
             pieces.append(np.concatenate([border[:-1], border[1:]], axis=1))
     segments = np.concatenate(pieces) if pieces else np.empty((0, 6))
-    return _misses(vertices, segments)
+    return _misses(vertices, segments, np.inf)
 
 
 def driving_line_misses(driving_lines: Features | None, exported: Lanes, measured_only: bool = True,
@@ -48,14 +48,14 @@ def driving_line_misses(driving_lines: Features | None, exported: Lanes, measure
             and (row.get("road"), row.get("lane")) not in apart_from]
     if not rows or not middles:
         return _summary(np.empty(0))
-    return _misses(np.concatenate(rows), np.concatenate([np.concatenate([line[:-1], line[1:]], axis=1) for line in middles]))[0]
+    return _misses(np.concatenate(rows), np.concatenate([np.concatenate([line[:-1], line[1:]], axis=1) for line in middles]), NEAR_MIDDLE)[0]
 
 
-def _misses(places, segments):
-    """(across, in height) of (N, 3) places against (M, 6) segments from end to end."""
+def _misses(places, segments, farthest):
+    """(across, in height) of (N, 3) places against (M, 6) segments from end to end, where one lies nearer than `farthest` metres."""
     lines = shapely.linestrings(segments.reshape(-1, 2, 3)[:, :, :2])
     points, tree = shapely.points(places[:, :2]), shapely.STRtree(lines)
-    _, across = tree.query_nearest(points, max_distance=NEAR_BORDER, return_distance=True, all_matches=False)
+    _, across = tree.query_nearest(points, max_distance=None if np.isinf(farthest) else farthest, return_distance=True, all_matches=False)
     which, near = tree.query(points, predicate="dwithin", distance=SAME_BORDER)
     first, last = segments[near, :3], segments[near, 3:]
     run = (last - first)[:, :2]

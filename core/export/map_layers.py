@@ -20,6 +20,7 @@ class MapLine:
 
     road : number; what : marking or edge; kind : edge, lane, centre, curb, dropped or pavement; pattern : as in MARKING_LINES
     points : (N, 3) map coordinates; width : metres, NaN where unknown; side : left, right or ""
+    edge : what an edge is, curb or pavement
     """
 
     road: int
@@ -29,6 +30,7 @@ class MapLine:
     points: np.ndarray
     width: float = np.nan
     side: str = ""
+    edge: str = "curb"
 
 
 @dataclass
@@ -78,7 +80,7 @@ class MapLayers:
         layer = Features("LineStringZ", ROAD_EDGES, crs=self.lanes.crs)
         for number, line in enumerate((line for line in self.lines if line.what == "edge"), start=1):
             layer.add(shapely.linestrings(line.points), road=line.road, side=line.side or None, status=STATUS_OF_MAPS, station_m=0.0,
-                      end_m=plan_length(line.points), part="bottom", length_m=plan_length(line.points), kind="main", chain=number)
+                      end_m=plan_length(line.points), part="bottom", length_m=plan_length(line.points), kind="main", edge=line.edge, chain=number)
         return layer
 
 

@@ -35,12 +35,13 @@ class SharedBorders:
 
 def with_shared_borders(source: RoadMapSource) -> RoadMapSource:
     """A road map whose lanes share their borders, with a note for the user where one was moved by more than a line is wide."""
-    found = share_borders(meet_lanes(source.lanes))
+    met = meet_lanes(source.lanes)
+    found = share_borders(met)
     notes = list(source.notes)
     if found.moved > TOLD_MOVE:
         notes.append(f"Maps have one border between two lanes: facing borders, as of a double line, were led along their middle, moved by up to "
                      f"{found.moved:.2f} m.")
-    return replace(source, lanes=found.lanes, gaps=found.gaps, notes=notes)
+    return replace(source, lanes=found.lanes, gaps=found.gaps, middles=(met.left + met.right) / 2, notes=notes)
 
 
 def meet_lanes(lanes: Lanes) -> Lanes:
@@ -90,9 +91,12 @@ def share_borders(lanes: Lanes) -> SharedBorders:
     rows = np.concatenate([lanes.left, lanes.right])
     nodes, first = _numbered(rows)
     places = rows[first]
+    # a place has one height, that of all lanes beside it
+    places[:, 2] = np.bincount(nodes, rows[:, 2]) / np.bincount(nodes)
+    count = len(lanes.left)
     pairs, beyond = _facing(lanes, nodes, places)
     if not len(pairs):
-        return SharedBorders(lanes, np.zeros((len(lanes), 2)), 0.0)
+        return SharedBorders(replace(lanes, left=places[nodes[:count]], right=places[nodes[count:]]), np.zeros((len(lanes), 2)), 0.0)
     apart = places[pairs[:, 1]] - places[pairs[:, 0]]
     move = np.zeros_like(places)
     np.add.at(move, pairs[:, 0], apart / 2)
@@ -100,7 +104,6 @@ def share_borders(lanes: Lanes) -> SharedBorders:
     target = places + move + _faded(lanes, nodes, places, pairs, move)
     target[pairs[:, 1]] = target[pairs[:, 0]]   # the same to the last digit
     moved = target[nodes]
-    count = len(lanes.left)
     gap = np.zeros(len(places))
     gap[pairs.ravel()] = np.repeat(beyond, 2)
     gaps = np.stack([[_typical(gap[nodes[side + a:side + b]]) for a, b in zip(lanes.start[:-1], lanes.start[1:])] for side in (0, count)], axis=1)

@@ -27,6 +27,7 @@ class RoadMapSource:
     driving_lines, marking_lines, road_edges, markings : Features or None
     notes : sentences for the user, filled by `checked`
     gaps : (P, 2) metres between the two stripes at the left and right border of each lane, None or 0 where there is one
+    middles : (V, 3) of the lanes between their own stripes, vertex by vertex; None where they are the middles of the lanes
     """
 
     lanes: Lanes
@@ -36,6 +37,7 @@ class RoadMapSource:
     markings: Features | None = None
     notes: list[str] = field(default_factory=list)
     gaps: np.ndarray | None = None
+    middles: np.ndarray | None = None
 
     def others(self) -> Iterator[tuple[str, Features]]:
         """(what messages call it, layer) of the layers beside the lanes that there are."""

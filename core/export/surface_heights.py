@@ -27,7 +27,8 @@ def with_surface_heights(lanes: Lanes, road_points: RoadPoints) -> tuple[Lanes, 
 
     Returns
     -------
-    lanes : Lanes; vertices without points keep their heights
+    lanes : Lanes; vertices without points are raised or lowered as those before and after them on the border, and keep their heights on a
+        border without any
     share : 0 to 1, of the vertices that have points
     """
     from scipy.spatial import cKDTree
@@ -54,6 +55,20 @@ def with_surface_heights(lanes: Lanes, road_points: RoadPoints) -> tuple[Lanes, 
     enough = counts >= FEWEST_POINTS
     median = np.full(len(same), np.nan)
     median[enough] = height[(first + counts // 2)[enough]]
-    z = np.where(np.abs(median[which] - vertices[:, 2]) < MOST_CHANGE, median[which], vertices[:, 2])
-    found = np.c_[vertices[:, :2], z]
+    change = median[which] - vertices[:, 2]
+    change[~(np.abs(change) < MOST_CHANGE)] = np.nan
+    found = np.c_[vertices[:, :2], vertices[:, 2] + _along_borders(change, vertices, lanes.start)]
     return replace(lanes, left=found[:len(lanes.left)], right=found[len(lanes.left):]), float(enough[which].mean())
+
+
+def _along_borders(change, vertices, start):
+    """(V,) the changes of the vertices of left and right borders; NaN is filled in from those before and after it on its border."""
+    filled = np.nan_to_num(change)
+    count = len(change) // 2
+    for side in (0, count):
+        for a, b in zip(start[:-1] + side, start[1:] + side):
+            known = np.isfinite(change[a:b])
+            if known.any() and not known.all():
+                along = np.append(0.0, np.cumsum(np.hypot(*np.diff(vertices[a:b, :2], axis=0).T)))
+                filled[a:b] = np.interp(along, along[known], change[a:b][known])
+    return filled

@@ -300,6 +300,16 @@
         </message>
         <message>
             <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Edges to judge</source>
+            <translation>Zu beurteilende Ränder</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
+            <source>Road edges hold curbs and, where there is no curb, edges of the pavement. Curbs judges curbs alone; all judges whatever both layers hold. Automatic leaves edges of the pavement out where the field edge or kind of the reference says that it holds curbs alone: such a reference cannot tell whether they are right.</source>
+            <translation>Straßenränder enthalten Bordsteine und, wo keiner ist, Ränder des Belags. Curbs beurteilt nur Bordsteine; all beurteilt alles, was beide Layer enthalten. Automatic lässt Ränder des Belags aus, wo das Feld edge oder kind der Referenz sagt, dass sie nur Bordsteine enthält: eine solche Referenz kann nicht sagen, ob sie richtig sind.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/assess/assess_boundaries.py" />
             <source>lines</source>
             <translation>Linien</translation>
         </message>
@@ -5500,13 +5510,13 @@
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
-            <source>What its left border is (line or edge and its number)</source>
-            <translation>Was links begrenzt (Linie oder Rand mit Nummer)</translation>
+            <source>What its left border is (line N of the marking lines, edge N: chain of the road edges)</source>
+            <translation>Was ihr linker Rand ist (line N der Markierungslinien, edge N: chain der Straßenränder)</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
-            <source>What its right border is (line or edge and its number)</source>
-            <translation>Was rechts begrenzt (Linie oder Rand mit Nummer)</translation>
+            <source>What its right border is (line N of the marking lines, edge N: chain of the road edges)</source>
+            <translation>Was ihr rechter Rand ist (line N der Markierungslinien, edge N: chain der Straßenränder)</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />

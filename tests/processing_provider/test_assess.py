@@ -117,6 +117,28 @@ def test_curbs_that_leave_the_road_are_put_aside(provider, tmp_path):
     assert results["FALSE"] == 0 and "40 m of corners, side streets and islands" in report
 
 
+@pytest.mark.parametrize("fields, rows, edges, false", [
+    ("&field=kind:string", [["curb"], ["dropped"]], "automatic", 0), ("&field=edge:string", [["curb"], ["curb"]], "automatic", 0),
+    ("&field=kind:string", [["curb"], ["curb"]], "all", 20), ("", None, "curbs", 0), ("", None, "automatic", 20)])
+def test_a_reference_of_curbs_does_not_judge_edges_of_the_pavement(provider, tmp_path, fields, rows, edges, false):
+    lines = ["LineStringZ (0 3.5 10, 100 3.5 10)", "LineStringZ (0 -3.5 10, 60 -3.5 10)", "LineStringZ (60 -5 10, 100 -5 10)"]
+    what = [["main", "curb"], ["main", "curb"], ["main", "pavement"]]
+    result = layer("LineStringZ", lines, fields="&field=kind:string&field=edge:string", rows=what)
+    reference = layer("LineStringZ", ["LineStringZ (0 3.5 10, 100 3.5 10)", "LineStringZ (0 -3.5 10, 60 -3.5 10)"], fields=fields, rows=rows)
+    results, report = run("assessboundaries", tmp_path, INPUT=result, REFERENCE=reference, TRAJECTORY=drive(), EDGES=edges, EXCLUDED="false")
+    assert (results["CORRECT"], results["FALSE"], results["MISSED"]) == (80, false, 0)
+    assert ("40 m of edges of the pavement" in report) == (edges != "all")
+
+
+def test_a_reference_with_edges_of_the_pavement_judges_them(provider, tmp_path):
+    lines, fields = ["LineStringZ (0 3.5 10, 100 3.5 10)", "LineStringZ (0 -3.5 10, 100 -3.5 10)"], "&field=edge:string"
+    both = layer("LineStringZ", lines, fields=fields, rows=[["curb"], ["pavement"]])
+    results, _ = run("assessboundaries", tmp_path, INPUT=both, REFERENCE=both)
+    assert (results["CORRECT"], results["FALSE"], results["MISSED"]) == (100, 0, 0)
+    results, _ = run("assessboundaries", tmp_path, INPUT=both, REFERENCE=both, EDGES="curbs")
+    assert (results["CORRECT"], results["FALSE"], results["MISSED"]) == (50, 0, 0)
+
+
 def test_a_result_in_another_crs_is_brought_over(provider, tmp_path):
     there = processing.run("native:reprojectlayer", {"INPUT": street(), "TARGET_CRS": "EPSG:4326", "OUTPUT": "TEMPORARY_OUTPUT"})["OUTPUT"]
     for algorithm in ("assessboundaries", "assessdrivinglines"):

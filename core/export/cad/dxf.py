@@ -28,7 +28,7 @@ class DxfLine:
 
 
 def dxf_lines(source: RoadMapSource) -> list[DxfLine]:
-    """Lane borders, driving lines, marking lines by kind and pattern, road edges by kind, outlines of markings by class."""
+    """Lane borders, driving lines, marking lines by kind and pattern, road edges by what they are, outlines of markings by class."""
     found = []
     lanes = source.lanes
     seen = set()
@@ -41,9 +41,15 @@ def dxf_lines(source: RoadMapSource) -> list[DxfLine]:
     found += _of(source.driving_lines, lambda row: "DRIVING_LINE" + ("" if row.get("status") in (None, "measured") else f"_{row['status'].upper()}"))
     found += _of(source.marking_lines, lambda row: "_".join(filter(None, ("MARKING", str(row.get("kind") or "line").upper(),
                                                                           str(row.get("pattern") or "").upper().replace("-", "_")))))
-    found += _of(source.road_edges, lambda row: "ROAD_EDGE" + ("_CURB" if row.get("height_m") else ""))
+    found += _of(source.road_edges, _edge_layer)
     found += _of(source.markings, lambda row: f"MARKING_AREA_{str(row.get('class') or 'other').upper()}")
     return found
+
+
+def _edge_layer(row: dict[str, Any]) -> str:
+    """ROAD_EDGE_CURB, _DROPPED or _PAVEMENT; of layers that do not say what an edge is, ROAD_EDGE_CURB where it has a height, else ROAD_EDGE."""
+    what = row.get("edge") or ("curb" if row.get("height_m") else "")
+    return f"ROAD_EDGE_{str(what).upper()}" if what else "ROAD_EDGE"
 
 
 def _of(layer: Features | None, name_of: Callable[[dict[str, Any]], str]) -> list[DxfLine]:

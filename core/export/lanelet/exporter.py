@@ -93,6 +93,8 @@ class _Drafting:
         self.draft = LaneletDraft(every)
         self.left, self.right = numbers[:len(lanes.left)], numbers[len(lanes.left):]
         self.way_of: dict[tuple[int, ...], int] = {}
+        # beside a double line the bounds meet in its middle, and the line to drive on stays between the stripes
+        self.middles = source.middles if source.middles is not None else (lanes.left + lanes.right) / 2
         self.heights = source.road_edges
         self.sigma = sigma_of_lanes(lanes, source.driving_lines)
 
@@ -141,7 +143,7 @@ class _Drafting:
             tags["lanewright:sigma_m"] = f"{self.sigma[k]:.3f}"
         if lanes.status[k] != "measured":
             tags |= {"lanewright:status": lanes.status[k], "lanewright:confidence": f"{lanes.confidence[k]:.2f}"}
-        centre = self._new_nodes((lanes.left[rows] + lanes.right[rows]) / 2)
+        centre = self._new_nodes(self.middles[rows])
         ways = [self._way(nodes, kind, pattern, line) for nodes, kind, pattern, line in (
             (left, lanes.left_kind[k], lanes.left_pattern[k], lanes.left_line[k]),
             (right, lanes.right_kind[k], lanes.right_pattern[k], lanes.right_line[k]))]

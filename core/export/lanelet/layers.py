@@ -91,7 +91,8 @@ def layers_of_lanelets(whole: LaneletMap, crs: str = "", progress: Progress = Pr
         kind = way.tags.get("type", "")
         if len(points) > 1 and (kind in ("line_thin", "line_thick") or kind in EDGE_WAYS):
             pattern = PATTERN_OF_WAY.get(way.tags.get("subtype", ""), "")
-            found.lines.append(MapLine(1, "edge" if kind in EDGE_WAYS else "marking", "lane", pattern, points))
+            found.lines.append(MapLine(1, "edge" if kind in EDGE_WAYS else "marking", "lane", pattern, points,
+                                       edge="curb" if kind == "curbstone" else "pavement"))
     left_out = len(whole.lanelets) - len(network.left)
     if left_out:
         found.notes.append(f"{left_out} lanelets lack a border or its nodes and were left out.")
@@ -115,6 +116,7 @@ def matched(left: np.ndarray, right: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 def _border(tags, turned):
     """(kind, pattern) of a way, seen in the direction of travel."""
-    kind = "curb" if tags.get("type") == "curbstone" else "edge" if tags.get("type") in EDGE_WAYS else "lane"
+    named = tags.get("type", "")
+    kind = {"curbstone": "curb", "road_border": "pavement"}.get(named, "edge" if named in EDGE_WAYS else "lane")
     pattern = PATTERN_OF_WAY.get(tags.get("subtype", ""), "") if tags.get("type") in ("line_thin", "line_thick") else ""
     return kind, "-".join(pattern.split("-")[::-1]) if turned and "-" in pattern and not pattern.startswith("double") else pattern

@@ -11,10 +11,11 @@ from ...common.progress import Progress
 from ...common.setting import check_limits, setting
 from ..lane_uncertainty import sigma_of_lanes
 from ..sources import RoadMapSource, nearest_values
+from .heights import add_heights
 from .junctions import link_roads
 from .model import MapLane, MapRoad, OpenDriveMap, RoadMark
 from .road_objects import add_objects
-from .road_shape import add_heights, add_lanes, centre_of, shape_of
+from .road_shape import add_lanes, centre_of, shape_of
 from .strips import Cell, Slice, cut_into_cells, end_to_end, is_connector, mark_junctions, slices_of, strips_of
 
 ROUND_ORIGIN = 100.0      # m: the false origin is a multiple of it
@@ -150,16 +151,16 @@ class _Drafting:
         breaks = {(id(one), id(owner[id(other)])) for one in ordinary for cell in one.cells for other in cell.after if id(other) in owner
                   and any(id(near) not in owner for near in cell.after + other.before)}
         found = [([one.turned() for one in strip[::-1]] if _against(strip) else strip, False) for strip in strips_of(ordinary, breaks)]
-        ways = [cell for one in inside for cell in one.cells if cell.direction] + [cell for cell in self.cells if is_connector(cell, self.lanes)]
-        lost = sum(1 for one in inside for cell in one.cells if not cell.direction)
+        parts = [part for one in inside for part in one.ways()] + [Slice([cell]) for cell in self.cells if is_connector(cell, self.lanes)]
+        lost = sum(len(one.cells) for one in inside if not any(cell.direction for cell in one.cells))
         if lost:
             self.notes.append(f"{lost} pieces that nobody drives lie within junctions, where OpenDRIVE has no place for them.")
-        for cell in ways:   # all run with their traffic
-            if cell.direction < 0:
-                Slice([cell]).turned()
-        for way in end_to_end(ways):
+        # all run with their traffic
+        parts = [one.turned() if any(cell.direction < 0 for cell in one.cells) else one for one in parts]
+        part_of = {id(cell): one for one in parts for cell in one.cells if cell.direction}
+        for way in end_to_end([cell for one in parts for cell in one.cells if cell.direction]):
             # what comes from nowhere or leads nowhere is no way through
-            found.append(([Slice([cell]) for cell in way], bool(way[0].before) and bool(way[-1].after)))
+            found.append(([part_of[id(cell)] for cell in way], bool(way[0].before) and bool(way[-1].after)))
         return found
 
     def road(self, strip: list[Slice], number: int, single: bool) -> DraftRoad:
@@ -203,8 +204,8 @@ class _Drafting:
         kind, pattern, line = self._about(cell, left)
         if kind == "curb":
             return RoadMark(0.0, "curb" if not pattern else MARK_OF_PATTERN.get(pattern, "none"))
-        name = MARK_OF_PATTERN.get(pattern, "none")
-        mark = RoadMark(0.0, name, "white" if name != "none" else "standard", self._paint_width(line))
+        name = MARK_OF_PATTERN.get(pattern, "edge" if kind == "pavement" else "none")
+        mark = RoadMark(0.0, name, "white" if name not in ("none", "edge") else "standard", self._paint_width(line))
         if "broken" in name:
             mark.dash, mark.gap = self.settings.dash
         return mark

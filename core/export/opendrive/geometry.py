@@ -7,13 +7,15 @@ ASAM OpenDRIVE 1.7 and 1.8, chapters Geometry and Roads.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...curves.base import Arc
 from ...curves.clothoid import Clothoid
 
+STRAIGHT_BEND = 1e-5    # 1/m: a curvature that moves 200 m of road by 5 cm
+LEAST_ELEMENT = 1e-4   # m: shorter pieces of a reference line are none
 TABLE_STEP = 0.25   # m between the places by which arc lengths on poly3 are found
 
 
@@ -150,3 +152,20 @@ class PlanView:
             rows = owner == k
             places[rows], heading[rows], bend[rows] = self.elements[k].at(s[rows] - starts[k])
         return places, heading, bend
+
+    def lengthened(self, before: float, after: float) -> PlanView:
+        """The same line, which goes on with the curvature of its ends by metres before its start and after its end."""
+        elements = self.elements
+        if before > LEAST_ELEMENT:
+            _, _, (bend,) = self.at(np.zeros(1))
+            x, y, heading = _bent(0.0, elements[0].x, elements[0].y, elements[0].heading + np.pi, before, -bend).end()
+            elements = (_bent(0.0, x, y, heading - np.pi, before, bend), *(replace(one, s=one.s + before) for one in elements))
+        if after > LEAST_ELEMENT:
+            _, _, (bend,) = self.at(np.array([self.length]))
+            elements = (*elements, _bent(sum(one.length for one in elements), *elements[-1].end(), after, bend))
+        return PlanView(elements)
+
+
+def _bent(s, x, y, heading, length, bend):
+    """A line or an arc."""
+    return PlanElement(s, x, y, heading, length, *(("arc", (float(bend),)) if abs(bend) > STRAIGHT_BEND else ()))

@@ -63,6 +63,8 @@ def _add_section(rows, lines, whole, network, surface, number, road_number):
         inside = id - int(np.sign(id))
         inner, outer = (whole.placed(points) for points in surface.borders(number, id, s, offsets))
         lines += _painted(road_number, lane, section.s, s, outer, _kind(section.lanes, id))
+        if _kind(section.lanes, id) == "pavement" and plan_length(outer) > LEAST_WIDTH:
+            lines.append(MapLine(road_number, "edge", "main", "", without_repeats(outer), side="left" if id > 0 else "right", edge="pavement"))
         if _edge(section.lanes, id) and plan_length(inner) > LEAST_WIDTH:
             lines.append(MapLine(road_number, "edge", "main", "", without_repeats(inner), side="left" if id > 0 else "right"))
         if lane.type in NO_LANES or np.abs(offsets[id] - offsets[inside]).max() < LEAST_WIDTH:
@@ -102,12 +104,14 @@ def road_numbers(whole: OpenDriveMap) -> dict[str, int]:
 
 
 def _kind(lanes: dict[int, MapLane], id: int) -> str:
-    """What the outer border of a lane is: centre (of lane 0), lane between two driven lanes, curb, edge."""
+    """What the outer border of a lane is: centre (of lane 0), lane between two driven lanes, curb, pavement where that ends without one, edge."""
     if id == 0:
         return "centre"
     beyond = lanes.get(id + int(np.sign(id)))
     if beyond is not None and beyond.type in RAISED:
         return "curb"
+    if any(mark.type == "edge" for mark in lanes[id].marks):
+        return "pavement"
     if beyond is not None and beyond.type in DRIVEN_TYPES and lanes[id].type in DRIVEN_TYPES:
         return "lane"
     return "edge"

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from .geometry import PlanElement, PlanView
+from .geometry import STRAIGHT_BEND, PlanElement, PlanView
 
 FIT_GRID = 0.25             # m between the places at which the curve is integrated
 LEAST_PIECE = 2.0       # m of an element: shorter ones follow noise
 FIT_ROUNDS = 8              # of the solution for one set of knots
-STRAIGHT_BEND = 1e-5         # 1/m: a curvature that moves 200 m of road by 5 cm
 END_WEIGHT = 10.0       # of the first and last place: there roads meet
 TURN_WEIGHT = 50.0      # m: a milliradian at an end counts as much as 5 cm of one place
 SETTLED_STEP = 1e-6          # m of change of the places from one round to the next

@@ -13,10 +13,6 @@ from .reference_line import fit_reference, polynomial_reference
 from .strips import Slice
 
 NEAREST_POINTS = 0.005   # m between points of a guide line
-FLAT = 0.001             # m of height that a cross-section may miss without a crossfall of its own
-ROLLED = 0.001           # m by which a superelevation may move a border in plan: readers differ on whether it does
-SAME_PLACE_ALONG = 0.05  # m between cross-sections at which lanes are cut
-MOST_SECTIONS = 40       # between two cross-sections that are written
 LEAST_END = 0.5          # m of width from which the end of a road has a direction
 MOST_ASKEW = 0.2         # rad between the end of a road and a square cut: more is askew on purpose
 LOOSER = (1.0, 5.0, 25.0)   # times the tolerance that the reference line may lie beside a border with corners
@@ -24,18 +20,25 @@ SMOOTHER = (1.0, 3.0)    # m, standard deviations of the means that take the cor
 BEND_STEP = 0.25         # m between the places at which a border is held against the curvature
 LEAST_STRETCH = 0.1      # of a border against the reference line: less is beside the centre of the curve
 FOOT_ROUNDS = 8
+END_ROUNDS = 4
 LEAST_STEP = 0.001       # m along the road between places that count
+LEAST_CHORD = 1.0        # m of a border's end, along which it goes straight on
 
 
 @dataclass
 class RoadShape:
-    """plan : reference line; s, t, z : for each slice a (borders, n) array of its vertices; starts : (sections + 1,) metres."""
+    """plan : reference line; s, t, z : for each slice a (borders, n) array of its vertices; starts : (sections + 1,) metres.
+
+    courses : for each slice and border (3, n) s, t, z that reach from the start of its section to its end at least, s rising: sections are cut
+        square, lanes are not
+    """
 
     plan: PlanView
     s: list[np.ndarray]
     t: list[np.ndarray]
     z: list[np.ndarray]
     starts: np.ndarray
+    courses: list[list[np.ndarray]]
 
 
 def centre_of(one: Slice, left_hand: bool) -> int:
@@ -67,15 +70,78 @@ def shape_of(strip: list[Slice], centres: list[int], tolerance: float) -> RoadSh
     plan = _reference(guide[keep], tolerance, ends, tolerance / max(widest, 1.0), _reach(strip, index, guide)[keep])
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(guide, axis=0).T)))
     along *= plan.length / along[-1]
-    s_all, t_all, z_all = [], [], []
-    for one, rows in zip(strip, index):
-        places = np.stack(one.borders())
-        s, t = feet(plan, places[..., :2].reshape(-1, 2), np.tile(along[rows], len(places)))
-        s_all.append(s.reshape(places.shape[:2]))
-        t_all.append(t.reshape(places.shape[:2]))
-        z_all.append(places[..., 2])
-    cuts = [float((s_all[k - 1][centres[k - 1], -1] + s_all[k][centres[k], 0]) / 2) for k in range(1, len(strip))]
-    return RoadShape(plan, s_all, t_all, z_all, np.array([0.0, *cuts, plan.length]))
+    for _ in range(END_ROUNDS):   # seen from a longer line the corners lie a little elsewhere
+        s_all, t_all = _frame(plan, strip, [along[rows] for rows in index])
+        before, after = _beyond_ends(strip, s_all, plan.length)
+        if max(before, after) < LEAST_STEP:
+            break
+        plan, along = plan.lengthened(before, after), along + before
+    z_all = [np.stack(one.borders())[..., 2] for one in strip]
+    starts = np.array([0.0, *_cuts(strip, centres, s_all), plan.length])
+    courses = [[_course(strip, k, j, (s_all, t_all, z_all), starts[k:k + 2]) for j in range(len(strip[k].cells) + 1)] for k in range(len(strip))]
+    return RoadShape(plan, s_all, t_all, z_all, starts, courses)
+
+
+def _frame(plan, strip, near):
+    """(s, t) of the vertices of every slice, (borders, n) metres each; near : for each slice (n,) metres along the road."""
+    found: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
+    for one, along in zip(strip, near):
+        places = np.stack(one.borders())[..., :2]
+        for values, new in zip(found, feet(plan, places.reshape(-1, 2), np.tile(along, len(places)))):
+            values.append(new.reshape(places.shape[:2]))
+    return found
+
+
+def _beyond_ends(strip, s, length):
+    """Metres by which borders reach beyond the start and the end of the road, where it meets no other: an end that is cut askew is made square."""
+    return (0.0 if _meets(strip[0], False) else max(-float(s[0][:, 0].min()), 0.0),
+            0.0 if _meets(strip[-1], True) else max(float(s[-1][:, -1].max()) - length, 0.0))
+
+
+def _meets(one, at_end):
+    """Whether a slice at an end of a road touches another road there."""
+    return any(cell.after if at_end else cell.before for cell in one.cells)
+
+
+def _cuts(strip, centres, s):
+    """Metres at which sections begin after the first: at lane 0, but before borders that begin there and after those that end."""
+    found = [0.0]
+    for k in range(1, len(strip)):
+        at = float((s[k - 1][centres[k - 1], -1] + s[k][centres[k], 0]) / 2)
+        ending, beginning = [nodes[-1] for nodes in strip[k - 1].nodes()], [nodes[0] for nodes in strip[k].nodes()]
+        least = max((float(s[k - 1][j, -1]) for j, node in enumerate(ending) if node not in beginning), default=-np.inf)
+        most = min((float(s[k][j, 0]) for j, node in enumerate(beginning) if node not in ending), default=np.inf)
+        at = (least + most) / 2 if least > most else min(max(at, least), most)
+        found.append(max(at, found[-1] + LEAST_STEP))
+    return found[1:]
+
+
+def _course(strip, k, j, frame, ends):
+    """(3, n) s, t, z of a border of a slice, with the vertices of the borders that it goes on in, and straight on beyond them."""
+    def vertices(number, border):
+        return np.stack([values[number][border] for values in frame])
+
+    parts = [vertices(k, j)]
+    for way, here, there in ((-1, 0, -1), (1, -1, 0)):
+        number, border = k, j
+        while 0 <= number + way < len(strip) and (parts[0][0, 0] > ends[0] if way < 0 else parts[-1][0, -1] < ends[1]):
+            node = strip[number].nodes()[border][here]
+            same = [other for other, nodes in enumerate(strip[number + way].nodes()) if nodes[there] == node]
+            if len(same) != 1:
+                break
+            number, border = number + way, same[0]
+            parts.insert(0 if way < 0 else len(parts), vertices(number, border))
+    line = np.concatenate(parts, axis=1)
+    line = line[:, risen(line[0])]
+    for end, at in ((0, ends[0]), (-1, ends[1])):
+        if line.shape[1] > 1 and (line[0, 0] > at if end == 0 else line[0, -1] < at):
+            reach = np.flatnonzero(np.abs(line[0] - line[0, end]) >= LEAST_CHORD)
+            other = 0 if end else -1
+            other = int(reach[0 if end == 0 else -1]) if len(reach) else other
+            slope = (line[1:, end] - line[1:, other]) / (line[0, end] - line[0, other])
+            place = np.r_[at, line[1:, end] + slope * (at - line[0, end])]
+            line = np.insert(line, 0 if end == 0 else line.shape[1], place, axis=1)
+    return line
 
 
 def _guide(strip, centres):
@@ -137,14 +203,16 @@ def _smoothed(points, width):
 
 
 def _end_headings(strip, guide):
-    """((start, end) headings square to the ends of the road, None where they are cut askew; metres, its width)."""
+    """((start, end) headings square to the ends at which the road meets another, None where they are cut askew; metres, its width)."""
     found, widest = [], 0.0
-    for one, row, way in ((strip[0], 0, guide[min(2, len(guide) - 1)] - guide[0]), (strip[-1], -1, guide[-1] - guide[-min(3, len(guide))])):
+    for one, row, way, meets in (
+            (strip[0], 0, guide[min(2, len(guide) - 1)] - guide[0], _meets(strip[0], False)),
+            (strip[-1], -1, guide[-1] - guide[-min(3, len(guide))], _meets(strip[-1], True))):
         across = (one.cells[0].left[row] - one.cells[-1].right[row])[:2]
         widest = max(widest, float(np.hypot(*across)))
         heading, along = float(np.arctan2(-across[0], across[1])), float(np.arctan2(way[1], way[0]))
         askew = abs((heading - along + np.pi) % (2 * np.pi) - np.pi)
-        found.append(heading if np.hypot(*across) > LEAST_END and askew < MOST_ASKEW else None)
+        found.append(heading if meets and np.hypot(*across) > LEAST_END and askew < MOST_ASKEW else None)
     return tuple(found), widest
 
 
@@ -181,7 +249,7 @@ def add_lanes(road: MapRoad, shape: RoadShape, strip: list[Slice], centres: list
     offsets, numbers = [], []
     for k, (one, centre) in enumerate(zip(strip, centres)):
         start, end = shape.starts[k], shape.starts[k + 1]
-        s, t = zip(*(_within(start, end, *_rising(*_lengthened(shape, strip, k, j))) for j in range(len(one.cells) + 1)))
+        s, t = zip(*(_within(start, end, *course[:2]) for course in shape.courses[k]))
         functions = fit_cubics(s, t, start, end, tolerance)
         if _crossing(functions, end - start):
             functions = broken_lines(s, _untangled(s, t, centre), start, end)
@@ -198,35 +266,16 @@ def add_lanes(road: MapRoad, shape: RoadShape, strip: list[Slice], centres: list
     return numbers
 
 
-def _lengthened(shape, strip, k, border):
-    """s and t of a border of a slice, with a vertex more at each end where it goes on in the next slice: sections are cut square, lanes not."""
-    s, t = shape.s[k][border], shape.t[k][border]
-    for other, here, there, beyond in ((k - 1, 0, -1, -2), (k + 1, -1, 0, 1)):
-        if not 0 <= other < len(strip):
-            continue
-        node = strip[k].nodes()[border][here]
-        same = [j for j, nodes in enumerate(strip[other].nodes()) if nodes[there] == node]
-        if len(same) == 1:
-            at = 0 if here == 0 else len(s)
-            s, t = np.insert(s, at, shape.s[other][same[0], beyond]), np.insert(t, at, shape.t[other][same[0], beyond])
-    return s, t
-
-
 def _within(start, end, s, values):
-    """Places of a function from start to end; where it reaches beyond, it is cut off there."""
-    inner = (s > start + LEAST_STEP) & (s < end - LEAST_STEP)
-    if not inner.any() and len(s) < 2:
-        return s, values
-    # what ends before an edge keeps its last place: the function goes straight on from there
-    first = [start] if s[0] <= start + LEAST_STEP else []
-    last = [end] if s[-1] >= end - LEAST_STEP else []
-    places = np.concatenate([first, s[inner], last])
-    return (places, np.interp(places, s, values)) if len(places) > 1 else (s, values)
+    """Places of a function from start to end."""
+    inner = s[(s > start + LEAST_STEP) & (s < end - LEAST_STEP)]
+    places = np.concatenate([[start], inner, [end]])
+    return places, np.interp(places, s, values)
 
 
-def _rising(s, values):
-    keep = np.append(True, np.diff(np.maximum.accumulate(s)) > LEAST_STEP)
-    return s[keep], values[keep]
+def risen(s: np.ndarray) -> np.ndarray:
+    """(N,) bool: whether each of (N,) metres along the road lies ahead of all before it."""
+    return np.append(True, np.diff(np.maximum.accumulate(s)) > LEAST_STEP)
 
 
 def _crossing(functions, length):
@@ -241,86 +290,3 @@ def _untangled(s, t, centre):
     for k in range(centre + 1, len(levels)):
         levels[k] = np.minimum(levels[k], levels[k - 1])
     return [np.interp(one, s[0], level) for one, level in zip(s, levels)]
-
-
-def add_heights(road: MapRoad, shape: RoadShape, tolerance: float) -> None:
-    """Give a road its elevation, and a superelevation where the cross-section is a plane, else its shape.
-
-    A superelevation is taken only where its roll moves no border by more than a millimetre: readers differ on whether it does.
-    """
-    along: list[float] = []
-    level: list[float] = []
-    sections: list[tuple[float, np.ndarray, np.ndarray]] = []
-    for s, t, z in zip(shape.s, shape.t, shape.z):
-        for column in range(s.shape[1]):
-            order = np.argsort(t[:, column], kind="stable")
-            across, height = t[order, column], z[order, column]
-            at = float(s[int(np.argmin(np.abs(t[:, column]))), column])
-            middle = float(_extended(0.0, across, height))
-            along.append(at)
-            level.append(middle)
-            sections.append((at, across, height - middle))
-    order = np.argsort(along, kind="stable")
-    places, values = _rising(np.array(along)[order], np.array(level)[order])
-    road.elevation = simplified(fit_cubics([places], [values], 0.0, road.length, tolerance / 2)[0])
-    sections = [sections[k] for k in order]
-    if max(np.abs(rise).max() for _, _, rise in sections) < FLAT:
-        return
-    slopes = np.array([float((t @ rise) / max(t @ t, 1e-9)) for _, t, rise in sections])
-    missed = max(float(np.abs(rise - t * slope).max()) for (_, t, rise), slope in zip(sections, slopes))
-    moved = max(float(np.abs(t).max()) * (1 - np.cos(np.arctan(slope))) for (_, t, _), slope in zip(sections, slopes))
-    if missed < tolerance / 2 and moved < ROLLED:
-        at, roll = _rising(np.array([s for s, _, _ in sections]), np.arctan(slopes))
-        widest = max(float(np.abs(t).max()) for _, t, _ in sections)
-        road.superelevation = simplified(fit_cubics([at], [roll], 0.0, road.length, tolerance / 2 / widest)[0])
-        return
-    rows = []
-    sections = _one_each(sections)
-    for k in _telling(sections, tolerance / 2):
-        place, offsets, heights = sections[k]
-        t, rise = _rising(offsets, heights)
-        slope = np.diff(rise) / np.diff(t) if len(t) > 1 else np.zeros(1)
-        rows += [[float(np.clip(place, 0.0, road.length)), a, b, c, 0.0, 0.0] for a, b, c in zip(t, rise, [*slope, 0.0])]
-    road.shape = np.array(rows)
-
-
-def _one_each(sections):
-    """One cross-section a place: where two slices meet the wider one."""
-    found = [sections[0]]
-    for section in sections[1:]:
-        if section[0] - found[-1][0] > SAME_PLACE_ALONG:
-            found.append(section)
-        elif np.ptp(section[1]) > np.ptp(found[-1][1]):
-            found[-1] = found[-1][0], section[1], section[2]
-    return found
-
-
-def _telling(sections, tolerance):
-    """Numbers of the cross-sections between which all others are interpolated within a tolerance."""
-    kept, last = [0], len(sections) - 1
-    while kept[-1] < last:
-        first = kept[-1]
-        reach = first + 1
-        for k in range(first + 2, min(first + MOST_SECTIONS, last) + 1):
-            if any(not _between(sections[first], sections[j], sections[k], tolerance) for j in range(first + 1, k)):
-                break
-            reach = k
-        kept.append(reach)
-    return kept
-
-
-def _between(first, middle, last, tolerance):
-    """Whether a cross-section is that between two others; where lanes begin or end it is not."""
-    if not len(first[1]) == len(middle[1]) == len(last[1]) or last[0] - first[0] < LEAST_STEP:
-        return False
-    share = (middle[0] - first[0]) / (last[0] - first[0])
-    return bool(np.abs(first[2] + share * (last[2] - first[2]) - middle[2]).max() <= tolerance)
-
-
-def _extended(at, x, y):
-    """Linear interpolation that goes on beyond the ends."""
-    if len(x) > 1 and (at < x[0] or at > x[-1]):
-        i, j = (0, 1) if at < x[0] else (-1, -2)
-        run = x[i] - x[j]
-        return y[i] + (y[i] - y[j]) / run * (at - x[i]) if abs(run) > 0.1 else y[i]
-    return np.interp(at, x, y)

@@ -76,6 +76,12 @@ class Slice:
             parts[1].append(last)
         return Slice(parts[0], self.at_start, False), Slice(parts[1], False, self.at_end)
 
+    def ways(self) -> list[Slice]:
+        """A slice for each lane that is driven, with what nobody drives on its right; left of the first one, on its left."""
+        driven = [k for k, cell in enumerate(self.cells) if cell.direction]
+        cuts = [0, *driven[1:], len(self.cells)]
+        return [Slice(self.cells[a:b], self.at_start, self.at_end) for a, b in zip(cuts[:-1], cuts[1:])] if driven else []
+
     def turned(self) -> Slice:
         """The same slice seen along the opposite direction of the road; its cells are changed."""
         for cell in self.cells:

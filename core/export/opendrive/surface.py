@@ -10,6 +10,8 @@ from .model import MapRoad
 BORDER_STEP = 0.5   # m between the places at which borders are computed
 SAGITTA = 0.0005    # m by which the chord between two of them may miss a curve
 LEAST_BORDER_STEP = 0.05   # m
+BENDING_ROUNDS = 5   # of halving the steps where a border bends
+BEFORE_END = 1e-6    # m before the end of a section at which its functions still hold
 
 
 class RoadSurface:
@@ -24,7 +26,7 @@ class RoadSurface:
         self.road = road
 
     def stations(self, number: int, step: float = BORDER_STEP) -> np.ndarray:
-        """(N,) metres of s at which a section is cut: evenly, and wherever a function of it changes."""
+        """(N,) metres of s at which a section is cut: evenly, wherever a function of it changes, and closer where a border bends."""
         road, first, last = self.road, self.road.sections[number].s, self.road.section_end(number)
         bend = np.abs(road.plan.at(np.linspace(first, last, max(int((last - first) / step), 1) + 1))[2]).max()
         step = min(step, max(float(np.sqrt(8 * SAGITTA / max(bend, 1e-9))), LEAST_BORDER_STEP))
@@ -34,7 +36,19 @@ class RoadSurface:
         knots = np.unique(knots[(knots >= first) & (knots <= last)])
         keep = np.append(True, np.diff(knots) > 1e-3)
         keep[-1] = True
-        return knots[keep]
+        knots = knots[keep]
+        if number + 1 < len(road.sections):   # the functions of the next section begin at its end
+            knots[-1] = max(knots[-1] - BEFORE_END, knots[-2])
+        for _ in range(BENDING_ROUNDS):
+            middles = (knots[:-1] + knots[1:]) / 2
+            ends, inner = (np.stack(list(self.offsets(number, s).values())) for s in (knots, middles))
+            rise, run = np.diff(ends, axis=1), np.diff(knots)
+            missed = np.abs(inner - (ends[:, :-1] + ends[:, 1:]) / 2) * run / np.hypot(run, rise)
+            bent = (missed > SAGITTA).any(0) & (run > 2 * LEAST_BORDER_STEP / 2**BENDING_ROUNDS)
+            if not bent.any():
+                break
+            knots = np.sort(np.append(knots, middles[bent]))
+        return knots
 
     def offsets(self, number: int, s: np.ndarray) -> dict[int, np.ndarray]:
         """(N,) metres left of the reference line of every lane's outer border, and of lane 0, by lane number."""

@@ -82,8 +82,15 @@ def sections_of_pavement(edges: RoadEdges) -> dict[int, CrossSections]:
 
 def _main_edges(edges, wanted):
     main = np.flatnonzero((edges.kind == "main") & wanted)
-    return cross_sections(edges.course.take(main), edges.edge[main], edges.kind[main], np.full(len(main), "", object),
-                          edges.status[main] != "bridged")
+    found = cross_sections(edges.course.take(main), edges.edge[main], edges.kind[main], np.full(len(main), "", object),
+                           edges.status[main] != "bridged")
+    # the layer names a line by its chain; -1 stays -1
+    chain = np.full(edges.edge.max(initial=-1) + 2, -1)
+    known = edges.edge >= 0
+    chain[edges.edge[known]] = edges.chain[known]
+    for sections in found.values():
+        sections.number = chain[sections.number]
+    return found
 
 
 @dataclass
