@@ -1,14 +1,5 @@
-"""What users read, in their language: QGIS sets a translation, elsewhere texts stay as they are written."""
+"""What users read, in their language; the core, which writes reports, holds what sets it."""
 
-_translate = None
+from ..core.common.texts import set_translation, told, tr
 
-
-def set_translation(translate):
-    """Make `tr` go through a function from text to text; None for none."""
-    global _translate
-    _translate = translate
-
-
-def tr(text):
-    """The text in the user's language."""
-    return text if _translate is None else _translate(text)
+__all__ = ["set_translation", "told", "tr"]

@@ -1,4 +1,4 @@
-"""The manual in a window of its own: the pages of docs/manual, read from the plugin's folder."""
+"""The manual in a window of its own: the pages of docs/manual, read from the plugin's folder, in the user's language where they are translated."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ from qgis.PyQt.QtCore import Qt, QUrl, pyqtSlot
 from qgis.PyQt.QtGui import QDesktopServices, QPixmap, QTextDocument
 from qgis.PyQt.QtWidgets import QMainWindow, QTextBrowser, QToolBar
 
-from ..processing_provider.texts import tr
+from ..processing_provider.texts import chosen_language, tr
 
 PAGES = Path(__file__).resolve().parents[1] / "docs" / "manual"
 SCHEME = "lanewright"  # lanewright:detectcurbs is what an algorithm's Help button opens
@@ -33,17 +33,23 @@ class ManualWindow(QMainWindow):
     @pyqtSlot(QUrl)
     def open_address(self, url):
         """What a lanewright: address names; the contents where there is no such page."""
-        name = url.path().strip("/")
-        self.show_page(name if (PAGES / f"{name}.md").is_file() else "index")
+        self.show_page(url.path().strip("/"))
 
     def show_page(self, name):
-        self.browser.setSource(QUrl.fromLocalFile(str(PAGES / f"{name}.md")), QTextDocument.ResourceType.MarkdownResource)
+        self.browser.setSource(QUrl.fromLocalFile(str(page_path(name))), QTextDocument.ResourceType.MarkdownResource)
         self.show()
         self.raise_()
 
     def forget(self):
         QDesktopServices.unsetUrlHandler(SCHEME)
         self.close()
+
+
+def page_path(name, language=""):
+    """The file of a page in a language, by default that of QGIS; in English where it is not translated, the contents where there is no such page."""
+    own = PAGES / (language or chosen_language())[:2]
+    pages = [folder / f"{page}.md" for page in (name, "index") for folder in (own, PAGES)]
+    return next(page for page in pages if page.is_file())
 
 
 class PageBrowser(QTextBrowser):

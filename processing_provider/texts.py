@@ -20,7 +20,12 @@ def _translate(text):
     return QCoreApplication.translate(CONTEXT, text)
 
 
-set_translation(_translate)
+def told(message):
+    """What the core says, in the user's language."""
+    return _core.told(message)
+
+
+set_translation(_translate, told)
 
 
 def chosen_language():
@@ -41,16 +46,13 @@ def install_translator(locale=""):
     if not translator.load(str(TRANSLATIONS / f"lanewright_{language}.qm")):
         return None
     QCoreApplication.installTranslator(translator)
+    set_translation(_translate, told, language)
     return translator
-
-
-def told(message):
-    """What the core says, in the user's language."""
-    return _core.told(message)
 
 
 def remove_translator(translator):
     global _core
     _core = CoreMessages({})
+    set_translation(_translate, told)
     if translator is not None:
         QCoreApplication.removeTranslator(translator)

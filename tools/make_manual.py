@@ -1,10 +1,12 @@
-"""Writes the manual's page of every algorithm, and its contents: make_manual.py [FOLDER].
+"""Writes the manual's page of every algorithm, and its contents, in English and in every language it is translated to: make_manual.py [FOLDER].
 
 The text is that of the toolbox: a parameter's label and help, an output's fields. What people write
-by hand (the walk-through, models, headless use, troubleshooting) lies beside it and is only linked.
+by hand (the walk-through, models, headless use, troubleshooting) lies beside it and is only linked. A language has a
+folder of its own, as `de`, whose generated pages come from the translations of the toolbox; see manual_translations.py for the others.
 """
 
 import os
+import subprocess
 import sys
 from pathlib import Path
 
@@ -13,13 +15,9 @@ os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 from plugin_package import ROOT, load
 
 PAGES = ROOT / "docs" / "manual"
+LANGUAGES = {"de": "Deutsch"}  # beside English: folder and own name
 WRITTEN_BY_HAND = ("first_survey", "corrections", "models", "hd_maps", "hd_map_opendrive", "hd_map_lanelet2", "hd_map_cad", "headless",
                    "large_surveys", "troubleshooting")
-KINDS = {
-    "multilayer": "files", "file": "file", "source": "vector layer", "raster": "raster", "crs": "CRS", "number": "number",
-    "enum": "choice", "boolean": "yes or no", "string": "text", "sink": "vector layer", "fileDestination": "file",
-    "rasterDestination": "raster", "pointcloud": "point cloud", "vector": "vector layer", "matrix": "numbers",
-}
 # The commands run as they are printed, in one folder, from the sample survey to its assessment: each reads what another wrote.
 FILES = {
     "POINT_CLOUDS": "survey.laz", "POINT_CLOUD": "survey.laz", "TRAJECTORY": "trajectory.gpkg", "ROAD_EDGES": "road_edges.gpkg",
@@ -56,61 +54,79 @@ NAMED = {
 }
 
 
-def pages(algorithms):
-    """File name -> text of every generated page."""
+def pages(algorithms, language=""):
+    """File name -> text of every generated page, in the language that the algorithms were declared in ("" is English)."""
     from lanewright.processing_provider.algorithm import LanewrightAlgorithm
 
     shown = [LanewrightAlgorithm(algorithm()).create() for algorithm in algorithms]
-    return {**{f"{algorithm.name()}.md": page(algorithm) for algorithm in shown}, "index.md": contents(shown)}
+    return {**{f"{algorithm.name()}.md": page(algorithm, language) for algorithm in shown}, "index.md": contents(shown, language)}
 
 
-def contents(algorithms):
-    lines = ["# Lanewright manual", "", "Road maps from mobile laser scanning, in QGIS.", ""]
-    lines += [f"- [{heading(name)}]({name}.md)" for name in WRITTEN_BY_HAND if (PAGES / f"{name}.md").exists()]
-    lines += ["", "## The algorithms, in the order of the work"]
+def contents(algorithms, language):
+    folder = PAGES / language
+    others = [f"[{name}]({other}/index.md)" for other, name in LANGUAGES.items()] if not language else ["[English](../index.md)"]
+    lines = [f"# {tr('Lanewright manual')}", "", " · ".join(others), "", tr("Road maps from mobile laser scanning, in QGIS."), ""]
+    lines += [f"- [{heading(folder / f'{name}.md')}]({name}.md)" for name in WRITTEN_BY_HAND if (folder / f"{name}.md").exists()]
+    lines += ["", f"## {tr('The algorithms, in the order of the work')}"]
     group = None
     for algorithm in algorithms:
         if algorithm.group() != group:
             group = algorithm.group()
             lines += ["", f"### {group}", ""]
-        lines.append(f"- [{algorithm.declaration.title()}]({algorithm.name()}.md): {lower_first(algorithm.shortDescription())}")
+        said = algorithm.shortDescription()
+        lines.append(f"- [{algorithm.declaration.title()}]({algorithm.name()}.md): {said if language else lower_first(said)}")
     return "\n".join(lines) + "\n"
 
 
-def page(algorithm):
+def page(algorithm, language):
     lines = [f"# {algorithm.declaration.title()}", "", algorithm.shortDescription(), ""]
-    lines += [part + "\n" for part in algorithm.declaration.HELP.split("\n\n") if part]
+    lines += [part + "\n" for part in algorithm.declaration.help_paragraphs()]
     if (PAGES / "img" / f"{algorithm.name()}.png").exists():
-        lines += [f"![{algorithm.declaration.title()}](img/{algorithm.name()}.png)", ""]
+        lines += [f"![{algorithm.declaration.title()}]({'../' if language else ''}img/{algorithm.name()}.png)", ""]
     definitions = algorithm.parameterDefinitions()
     inputs = [d for d in definitions if not d.isDestination()]
     plain = [d for d in inputs if not advanced(d)]
     folded = [d for d in inputs if advanced(d)]
-    lines += ["## Inputs", ""] + table(plain)
+    lines += [f"## {tr('Inputs')}", ""] + table(plain)
     if folded:
-        lines += ["", "## Advanced parameters", ""] + table(folded)
-    lines += ["", "## Results", ""]
+        lines += ["", f"## {tr('Advanced parameters')}", ""] + table(folded)
+    lines += ["", f"## {tr('Results')}", ""]
     for d in definitions:
         if d.isDestination():
             lines += [result(d)]
     numbers = [o for o in algorithm.outputDefinitions() if o.type() == "outputNumber"]
     if numbers:
-        lines += ["", "Numbers, for models and scripts:", ""]
+        lines += ["", tr("Numbers, for models and scripts:"), ""]
         lines += [f"- `{o.name()}`: {o.description()}" for o in numbers]
-    lines += ["", "## On the command line", "", "```", command(algorithm, definitions), "```"]
+    lines += ["", f"## {tr('On the command line')}", "", "```", command(algorithm, definitions), "```"]
     return "\n".join(lines) + "\n"
 
 
 def table(definitions):
-    lines = ["| parameter | what it is | default |", "|---|---|---|"]
+    lines = [f"| {tr('parameter')} | {tr('what it is')} | {tr('default')} |", "|---|---|---|"]
     for d in definitions:
-        said = f"**{d.description()}** ({KINDS.get(d.type(), d.type())}{', optional' if optional(d) else ''}). {d.help()}"
-        lines.append(f"| `{d.name()}` | {cell(said)}{choices(d)} | {cell(default(d))} |")
+        lines.append(f"| `{d.name()}` | {cell(f'**{d.description()}** ({kind(d)}). {d.help()}')}{choices(d)} | {cell(default(d))} |")
     return lines
 
 
+def kind(d):
+    """What a parameter takes, and whether it may be left out."""
+    kinds = {
+        "multilayer": tr("files"), "file": tr("file"), "source": tr("vector layer"), "raster": tr("raster"), "crs": tr("CRS"),
+        "number": tr("number"), "enum": tr("choice"), "boolean": tr("yes or no"), "string": tr("text"), "sink": tr("vector layer"),
+        "fileDestination": tr("file"), "rasterDestination": tr("raster"), "pointcloud": tr("point cloud"), "vector": tr("vector layer"),
+        "matrix": tr("numbers"),
+    }
+    return ", ".join([kinds.get(d.type(), d.type()), *([tr("optional")] if optional(d) else [])])
+
+
 def choices(d):
-    return f" One of: {', '.join(f'`{option}`' for option in d.options())}." if d.type() == "enum" else ""
+    if d.type() != "enum":
+        return ""
+    from lanewright.algorithms.choice_words import choice_word
+
+    words = [f"`{option}`" + (f" ({choice_word(option)})" if choice_word(option) != option else "") for option in d.options()]
+    return " " + tr("One of: {choices}.").format(choices=", ".join(words))
 
 
 def default(d):
@@ -119,11 +135,12 @@ def default(d):
 
 
 def result(d):
-    said = f"- `{d.name()}`: **{d.description()}** ({KINDS.get(d.type(), d.type())}{', optional' if optional(d) else ''})."
-    text, _, fields = d.help().partition("Fields:")
+    said = f"- `{d.name()}`: **{d.description()}** ({kind(d)})."
+    title = tr("Fields: {fields}.").split("{")[0].strip()
+    text, _, fields = d.help().partition(title)
     lines = [" ".join(part for part in (said, text.strip()) if part)]
     if fields:
-        lines += ["  Fields:"] + [f"    - {entry.strip()}" for entry in fields.strip().rstrip(".").split(";")]
+        lines += [f"  {title}"] + [f"    - {entry.strip()}" for entry in fields.strip().rstrip(".").split(";")]
     return "\n".join(lines)
 
 
@@ -169,9 +186,16 @@ def cell(text):
     return text.replace("|", "\\|").replace("\n", " ")
 
 
-def heading(name):
+def tr(text):
+    """What the toolbox would say for a text."""
+    from lanewright.algorithms.texts import tr as told
+
+    return told(text)
+
+
+def heading(path):
     """The first heading of a page written by hand."""
-    with open(PAGES / f"{name}.md", encoding="utf-8") as page:
+    with open(path, encoding="utf-8") as page:
         return page.readline().lstrip("# ").strip()
 
 
@@ -180,17 +204,30 @@ def lower_first(text):
 
 
 def main():
+    """Write the English pages, and those of each language by a program of its own: texts are translated when they are imported."""
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else PAGES
+    write(folder, sys.argv[2] if len(sys.argv) > 2 else "")
+    if len(sys.argv) < 3:
+        for language in LANGUAGES:
+            subprocess.run([sys.executable, __file__, str(folder / language), language], check=True)
+
+
+def write(folder, language):
     from qgis.core import QgsApplication
 
     load()
     application = QgsApplication([], False)
     application.initQgis()
     try:
+        if language:
+            from lanewright.processing_provider.texts import install_translator
+
+            translator = install_translator(language)  # Qt keeps none
+            assert translator is not None, f"there is no translation to {language}: run make translations"
         from lanewright.algorithms.catalogue import ALGORITHMS
 
-        folder = Path(sys.argv[1]) if len(sys.argv) > 1 else PAGES
         folder.mkdir(parents=True, exist_ok=True)
-        made = pages(ALGORITHMS)
+        made = pages(ALGORITHMS, language)
         for name, text in made.items():
             (folder / name).write_text(text, encoding="utf-8")
         print(f"{len(made)} pages written to {folder}")

@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "resources" / "i18n"
 SCHEMAS = ROOT / "core" / "common" / "schemas.py"
 CONTEXT = "Lanewright"
-FOLDERS = ("algorithms", "processing_provider", "desktop")
+FOLDERS = ("algorithms", "processing_provider", "desktop", "core")
 # Texts that stand in a class or a table and are translated where they are shown
 FEWEST_LETTERS = 8  # of a sentence of the core: what is shorter would be found in anything
 IN_A_CLASS = {"TITLE", "SUMMARY", "HELP", "GROUP", "TAGS", "GROUPS"}
@@ -27,7 +27,8 @@ IN_A_CLASS = {"TITLE", "SUMMARY", "HELP", "GROUP", "TAGS", "GROUPS"}
 def texts():
     """Every text a user reads, with the file it is in, in the order of the files."""
     found = {}
-    for path in [ROOT / "plugin.py", *sorted(file for folder in FOLDERS for file in (ROOT / folder).rglob("*.py"))]:
+    files = sorted(file for folder in FOLDERS for file in (ROOT / folder).rglob("*.py"))
+    for path in [ROOT / "plugin.py", ROOT / "tools" / "make_manual.py", *files]:
         for text in texts_of(ast.parse(path.read_text(encoding="utf-8"))):
             found.setdefault(text, path.relative_to(ROOT).as_posix())
     for text in aliases():

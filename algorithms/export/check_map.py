@@ -4,7 +4,7 @@ from ...core.common.errors import RoadExtractionError
 from ...core.common.schemas import MAP_FINDINGS
 from ..algorithm import Algorithm
 from ..parameters import CrsSpec
-from ..texts import tr
+from ..texts import told, tr
 from .inputs import add_map_file, map_file
 
 MAP_FILTER = "HD maps (*.xodr *.osm *.XODR *.OSM *.xml);;All files (*.*)"
@@ -47,7 +47,7 @@ class CheckMap(Algorithm):
             call.text("REPORT", map_check_report(found, path, [note] if note else []))
         counts = found.counts()
         for fault, count in sorted(counts.items(), key=lambda item: -item[1]):
-            progress.warn(tr("{fault}: {count}").format(fault=fault, count=count))
+            progress.warn(tr("{fault}: {count}").format(fault=told(fault), count=count))
         progress.info(tr("{findings} findings; {lanes} driven lanes and pieces, {successors} links to the next, {neighbours} pairs side by "
                          "side.").format(
             findings=len(found.found), lanes=found.lanes, successors=found.successors, neighbours=found.neighbours))

@@ -3,7 +3,7 @@
 from ...core.common.errors import RoadExtractionError
 from ..algorithm import Algorithm
 from ..parameters import ChoiceSpec, SettingSpec
-from ..texts import tr
+from ..texts import told, tr
 from .inputs import add_road_map_layers, road_map_source
 
 ROADS = "export.opendrive.exporter:OpenDriveSettings"
@@ -46,8 +46,8 @@ class ExportCad(Algorithm):
             progress.warn(note)
         numbers, tables = (_dxf if kind == "dxf" else _landxml)(call, source, progress)
         if call.wants("REPORT"):
-            facts = [("Format", {"dxf": "DXF", "landxml": "LandXML 1.2"}[kind]), ("Lines", int(numbers["LINES"]))]
-            call.text("REPORT", map_export_report("Road map for CAD", call.layer_name("LANES"), facts, tables, source.notes))
+            facts = [(tr("Format"), {"dxf": "DXF", "landxml": "LandXML 1.2"}[kind]), (tr("Lines"), int(numbers["LINES"]))]
+            call.text("REPORT", map_export_report(tr("Road map for CAD"), call.layer_name("LANES"), facts, tables, source.notes))
         return numbers
 
     def _check_name(self, call, kind):
@@ -67,7 +67,7 @@ def _dxf(call, source, progress):
     write_dxf(lines, call.new_file("OUTPUT"))
     counts = Counter(line.layer for line in lines)
     progress.info(tr("{count} polylines in {layers} layers.").format(count=len(lines), layers=len(counts)))
-    return {"LINES": float(len(lines)), "ALIGNMENTS": 0.0, "MISSED": 0.0}, [("Layers", ("Layer", "Polylines"), sorted(counts.items()))]
+    return {"LINES": float(len(lines)), "ALIGNMENTS": 0.0, "MISSED": 0.0}, [(tr("Layers"), (tr("Layer"), tr("Polylines")), sorted(counts.items()))]
 
 
 def _landxml(call, source, progress):
@@ -88,7 +88,7 @@ def _landxml(call, source, progress):
     missed = max((one.missed for one in found), default=0.0)
     progress.info(tr("{count} alignments, {length:.0f} m; elements within {missed:.3f} m of their lines.").format(
         count=len(found), length=sum(one.length for one in found), missed=missed))
-    rows = [(one.name, one.description, round(one.length, 2), len(one.plan.elements) if one.plan is not None else None, len(one.profile))
+    rows = [(one.name, told(one.description), round(one.length, 2), len(one.plan.elements) if one.plan is not None else None, len(one.profile))
             for one in found]
-    tables = [("Alignments", ("Name", "What it is", "Length (m)", "Elements", "Points of the profile"), rows)]
+    tables = [(tr("Alignments"), (tr("Name"), tr("What it is"), tr("Length (m)"), tr("Elements"), tr("Points of the profile")), rows)]
     return {"LINES": float(len(found)), "ALIGNMENTS": float(len(found)), "MISSED": missed}, tables

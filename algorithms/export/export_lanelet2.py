@@ -2,7 +2,7 @@
 
 from ..algorithm import Algorithm
 from ..parameters import ChoiceSpec, FlagSpec, SettingSpec
-from ..texts import tr
+from ..texts import told, tr
 from .inputs import add_road_map_layers, road_map_source
 
 LANELETS = "export.lanelet.exporter:LaneletSettings"
@@ -65,17 +65,18 @@ class ExportLanelet2(Algorithm):
         for note in notes:
             progress.warn(note)
         for fault, count in found.counts().items():
-            progress.warn(tr("{fault}: {count}").format(fault=fault, count=count))
+            progress.warn(tr("{fault}: {count}").format(fault=told(fault), count=count))
         numbers = {"LANELETS": float(len(draft.lanelets)), "WAYS": float(len(whole.ways)), "NODES": float(len(whole.node_ids)),
                    "SUCCESSORS": float(found.successors), "FINDINGS": float(len(found.found))}
-        progress.info(tr("{count} lanelets; latitude and longitude by: {way}.").format(count=len(draft.lanelets), way=degrees.way))
+        progress.info(tr("{count} lanelets; latitude and longitude by: {way}.").format(count=len(draft.lanelets), way=told(degrees.way)))
         if call.wants("REPORT"):
-            accuracy = f"{degrees.accuracy:g} m" if degrees.accuracy >= 0 else "not stated"
-            facts = [("Lanelets", len(draft.lanelets)), ("Links from one lane to the next", found.successors),
-                     ("Pairs of lanes side by side", found.neighbours), ("Ways", len(whole.ways)), ("Nodes", len(whole.node_ids)),
-                     ("Transformation to latitude and longitude", degrees.way), ("Accuracy of the transformation", accuracy),
-                     ("Heights", degrees.vertical)]
-            faults = [("Findings of the check", ("Fault", "Count"), sorted(found.counts().items()))] if found.found else []
-            call.text("REPORT", map_export_report("Lanelet2 map", call.layer_name("LANES"), facts, faults, notes,
+            accuracy = f"{degrees.accuracy:g} m" if degrees.accuracy >= 0 else tr("not stated")
+            facts = [(tr("Lanelets"), len(draft.lanelets)), (tr("Links from one lane to the next"), found.successors),
+                     (tr("Pairs of lanes side by side"), found.neighbours), (tr("Ways"), len(whole.ways)), (tr("Nodes"), len(whole.node_ids)),
+                     (tr("Transformation to latitude and longitude"), told(degrees.way)), (tr("Accuracy of the transformation"), accuracy),
+                     (tr("Heights"), told(degrees.vertical))]
+            counts = [(told(fault), count) for fault, count in sorted(found.counts().items())]
+            faults = [(tr("Findings of the check"), (tr("Fault"), tr("Count")), counts)] if counts else []
+            call.text("REPORT", map_export_report(tr("Lanelet2 map"), call.layer_name("LANES"), facts, faults, notes,
                                                   layers_of_lanelets(whole, source.lanes.crs)))
         return numbers

@@ -2,7 +2,7 @@
 
 from ..algorithm import Algorithm
 from ..parameters import ChoiceSpec, SettingSpec
-from ..texts import tr
+from ..texts import told, tr
 from .inputs import OPENDRIVE_FILTER, add_road_map_layers, road_map_source
 
 ROADS = "export.opendrive.exporter:OpenDriveSettings"
@@ -76,7 +76,7 @@ class ExportOpenDrive(Algorithm):
         for note in notes:
             progress.warn(note)
         for fault, count in found.counts().items():
-            progress.warn(tr("{fault}: {count}").format(fault=fault, count=count))
+            progress.warn(tr("{fault}: {count}").format(fault=told(fault), count=count))
         progress.info(tr("{roads} roads, {junctions} junctions; borders within {across:.3f} m of the survey's.").format(
             roads=len(whole.roads), junctions=len(whole.junctions), across=across.largest))
         if call.wants("REPORT"):
@@ -91,22 +91,25 @@ class ExportOpenDrive(Algorithm):
 def _report(call, whole, found, shown, misses, notes):
     from collections import defaultdict
 
+    from ...core.common.words import word
     from ...core.report.map_export import map_export_report
 
     lengths = defaultdict(float)
     for road in whole.roads:
         for element in road.plan.elements:
             lengths[element.kind] += element.length
-    facts = [("Roads", len(whole.roads)), ("Junctions", len(whole.junctions)), ("Lanes of sections that are driven", found.lanes),
-             ("Links from one lane to the next", found.successors), ("Pairs of lanes side by side", found.neighbours),
-             ("False origin", f"{whole.offset[0]:g}, {whole.offset[1]:g}"), ("geoReference", whole.reference or "none")]
-    names = ("Borders, across", "Borders, in height", "Driving lines from the middles of lanes (measured)",
-             "The same, of lanes beside no double line")
+    facts = [(tr("Roads"), len(whole.roads)), (tr("Junctions"), len(whole.junctions)), (tr("Lanes of sections that are driven"), found.lanes),
+             (tr("Links from one lane to the next"), found.successors), (tr("Pairs of lanes side by side"), found.neighbours),
+             (tr("False origin"), f"{whole.offset[0]:g}, {whole.offset[1]:g}"), ("geoReference", whole.reference or tr("none"))]
+    names = (tr("Borders, across"), tr("Borders, in height"), tr("Driving lines from the middles of lanes (measured)"),
+             tr("The same, of lanes beside no double line"))
     tables = [
-        ("Against the survey", ("", "Mean (m)", "95 % (m)", "Largest (m)", "Places"),
+        (tr("Against the survey"), ("", tr("Mean (m)"), "95 % (m)", tr("Largest (m)"), tr("Places")),
          [(name, round(one.mean, 4), round(one.p95, 4), round(one.largest, 4), one.places) for name, one in zip(names, misses) if one.places]),
-        ("Elements of the reference lines", ("Element", "Length (m)"), sorted((kind, round(metres, 1)) for kind, metres in lengths.items())),
+        (tr("Elements of the reference lines"), (tr("Element"), tr("Length (m)")),
+         [(word(kind, "element"), round(metres, 1)) for kind, metres in sorted(lengths.items())]),
     ]
     if found.found:
-        tables.append(("Findings of the check", ("Fault", "Count"), sorted(found.counts().items())))
-    return map_export_report("OpenDRIVE map", call.layer_name("LANES"), facts, tables, notes, shown)
+        counts = [(told(fault), count) for fault, count in sorted(found.counts().items())]
+        tables.append((tr("Findings of the check"), (tr("Fault"), tr("Count")), counts))
+    return map_export_report(tr("OpenDRIVE map"), call.layer_name("LANES"), facts, tables, notes, shown)

@@ -11,6 +11,8 @@ import shapely
 
 from ..assess.metrics import Errors
 from ..common.features import Features
+from ..common.texts import tr
+from ..common.words import word
 from .figures import Chart
 from .map_figure import MAP_MARGIN, draw_map, png
 from .page import Page
@@ -48,9 +50,9 @@ def outcome_map(page: Page, layer: Features, caption: str, background: tuple[np.
     longest = MAX_MAP_WIDTH if width > height else MAX_MAP_HEIGHT
     picture: Any = draw_map({"outcome": layer}, background, bounds, longest, style, PAPER_GREY)
     length = _scale_bar(picture, longest / max(width, height), min(width, 200.0))
-    page.picture(png(picture), f"{caption} The bar is {length:g} m long.")
+    page.picture(png(picture), caption + " " + tr("The bar is {length:g} m long.").format(length=length))
     shown = {row["outcome"] for row in layer.rows}
-    page.colour_key([(colour, name) for name, colour in OUTCOME_COLOURS.items() if name in shown])
+    page.colour_key([(colour, word(name)) for name, colour in OUTCOME_COLOURS.items() if name in shown])
 
 
 def _scale_bar(picture, scale, width):
@@ -63,15 +65,14 @@ def _scale_bar(picture, scale, width):
     return length
 
 
-def error_along_road(page: Page, station: np.ndarray, error: np.ndarray, weights: np.ndarray, along: str, what: str = "lateral error") -> None:
-    """Add a chart of the RMSE and the largest error along the road, in bins of 10 m or more.
+def error_along_road(page: Page, station: np.ndarray, error: np.ndarray, weights: np.ndarray, along: str) -> None:
+    """Add a chart of the RMSE and the largest lateral error along the road, in bins of 10 m or more.
 
     Parameters
     ----------
     page : Page
     station, error, weights : (N,) metres
     along : what stations are measured along
-    what : name of the error
     """
     known = np.isfinite(station) & np.isfinite(error)
     if not known.any():
@@ -83,14 +84,15 @@ def error_along_road(page: Page, station: np.ndarray, error: np.ndarray, weights
     largest = np.full(count, np.nan)
     np.fmax.at(largest, number, size)
     rms = np.where(np.isfinite(largest), 100 * np.sqrt(mean), np.nan)
-    chart = Chart((edges[0], edges[-1]), (0, 1.05 * 100 * np.nanmax(largest)), f"along {along} (m)", "cm")
+    chart = Chart((edges[0], edges[-1]), (0, 1.05 * 100 * np.nanmax(largest)), tr("along {what} (m)").format(what=along), "cm")
     chart.bars(edges[:-1], edges[1:], rms, BAR_COLOUR, title="RMSE")
-    chart.curve(np.repeat(edges, 2)[1:-1], np.repeat(100 * largest, 2), CURVE_COLOUR, "largest")
-    page.drawing(chart.svg(), f"The {what} along {along}: bars are the RMSE of every {edges[1] - edges[0]:.0f} m, the line is the largest.")
+    chart.curve(np.repeat(edges, 2)[1:-1], np.repeat(100 * largest, 2), CURVE_COLOUR, tr("largest"))
+    page.drawing(chart.svg(), tr("The lateral error along {what}: bars are the RMSE of every {bin:.0f} m, the line is the largest.").format(
+        what=along, bin=edges[1] - edges[0]))
 
 
-def error_histogram(page: Page, error: np.ndarray, weights: np.ndarray, signed: str, what: str = "Lateral error") -> None:
-    """Add a histogram of (N,) errors, metres, with (N,) weights; `signed` says which sign is which."""
+def error_histogram(page: Page, error: np.ndarray, weights: np.ndarray, signed: str) -> None:
+    """Add a histogram of (N,) lateral errors, metres, with (N,) weights; `signed` says which sign is which."""
     known = np.isfinite(error)
     if not known.any():
         return
@@ -98,9 +100,9 @@ def error_histogram(page: Page, error: np.ndarray, weights: np.ndarray, signed: 
     reach = max(float(np.percentile(np.abs(error), 99)) * 1.15, 0.5)
     edges = np.linspace(-reach, reach, ERROR_CLASSES + 1)
     share = 100 * np.histogram(np.clip(error, edges[0], edges[-1]), edges, weights=weights)[0] / weights.sum()
-    chart = Chart((edges[0], edges[-1]), (0, 1.08 * share.max()), f"{what.lower()} (cm)", "% of the length")
+    chart = Chart((edges[0], edges[-1]), (0, 1.08 * share.max()), tr("lateral error (cm)"), tr("% of the length"))
     chart.bars(edges[:-1], edges[1:], share, BAR_COLOUR)
-    page.drawing(chart.svg(), f"{what}, {signed}; what lies farther out is counted in the outermost bars.")
+    page.drawing(chart.svg(), tr("Lateral error, {signed}; what lies farther out is counted in the outermost bars.").format(signed=signed))
 
 
 def outcomes_along_road(page: Page, stations: Mapping[str, np.ndarray], lengths: Mapping[str, np.ndarray], along: str, unit: str) -> None:
@@ -123,12 +125,12 @@ def outcomes_along_road(page: Page, stations: Mapping[str, np.ndarray], lengths:
         number = np.clip(np.searchsorted(edges, stations[name][known], side="right") - 1, 0, count - 1)
         amounts[name] = np.bincount(number, lengths[name][known], count)
         total = total + amounts[name]
-    chart = Chart((edges[0], edges[-1]), (0, 1.05 * total.max()), f"along {along} (m)", unit)
+    chart = Chart((edges[0], edges[-1]), (0, 1.05 * total.max()), tr("along {what} (m)").format(what=along), unit)
     base = np.zeros(count)
     for name in OUTCOME_COLOURS:
         if name in amounts:
-            base = chart.bars(edges[:-1], edges[1:], amounts[name], OUTCOME_COLOURS[name], base, name)
-    page.drawing(chart.svg(), f"Outcomes along {along}, in every {edges[1] - edges[0]:.0f} m.")
+            base = chart.bars(edges[:-1], edges[1:], amounts[name], OUTCOME_COLOURS[name], base, word(name))
+    page.drawing(chart.svg(), tr("Outcomes along {what}, in every {bin:.0f} m.").format(what=along, bin=edges[1] - edges[0]))
 
 
 def bins_of(station: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

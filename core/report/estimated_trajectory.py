@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..common.texts import told, tr
 from ..survey.estimation.estimate import WAYS
 from .figures import Chart
 from .page import Page
@@ -20,37 +21,39 @@ LEAST_CHART_TOP = 0.02  # m
 
 def estimated_trajectory_report(found: EstimatedTrajectory) -> str:
     """The report on an EstimatedTrajectory as HTML."""
-    page = Page("Estimated trajectory", "Where the scanner was, from the point clouds alone.")
+    page = Page(tr("Estimated trajectory"), tr("Where the scanner was, from the point clouds alone."))
     for note in found.notes:
-        page.warning(note)
+        page.warning(told(note))
     track = found.trajectory
-    page.facts((("Way", f"from {WAYS[found.method]}"),
-                ("Positions", len(track)), ("Length", f"{found.length:.1f} m"),
-                ("Time", f"{track.time[0]:.3f} to {track.time[-1]:.3f} s" if track.has_time else "none"),
-                ("Refers to", "the middle of the scanners" if len(found.scanners) > 1 else "the scanner"),
-                ("Uncertainty of the place, one sigma", _spread(found.sigma)), ("Uncertainty of the height, one sigma", _spread(found.sigma_height))))
+    page.facts(((tr("Way"), tr("from {what}").format(what=told(WAYS[found.method]))),
+                (tr("Positions"), len(track)), (tr("Length"), f"{found.length:.1f} m"),
+                (tr("Time"), tr("{first:.3f} to {last:.3f} s").format(first=track.time[0], last=track.time[-1]) if track.has_time else tr("none")),
+                (tr("Refers to"), tr("the middle of the scanners") if len(found.scanners) > 1 else tr("the scanner")),
+                (tr("Uncertainty of the place, one sigma"), _spread(found.sigma)),
+                (tr("Uncertainty of the height, one sigma"), _spread(found.sigma_height))))
     if found.adjusted is not None:
         _scanners(page, found)
-        page.heading("Uncertainty along the drive")
-        page.drawing(_chart(found), "Blue the place, orange the height, one sigma. It grows at the ends of the cloud, where few lines see the road.")
+        page.heading(tr("Uncertainty along the drive"))
+        page.drawing(_chart(found), tr(
+            "Blue the place, orange the height, one sigma. It grows at the ends of the cloud, where few lines see the road."))
     return page.html()
 
 
 def _spread(sigma):
-    return f"{np.median(sigma):.3f} m (median), {sigma.max():.3f} m (largest)"
+    return tr("{median:.3f} m (median), {largest:.3f} m (largest)").format(median=np.median(sigma), largest=sigma.max())
 
 
 def _scanners(page, found):
     adjusted, poses = found.adjusted, found.adjusted.poses
-    page.heading("Scanners")
+    page.heading(tr("Scanners"))
     rows = []
     for k, one in enumerate(found.scanners):
         used = np.isfinite(adjusted.misfit[:, k])
         rows.append((one.number + 1, abs(float(poses.rate[k])), float(np.degrees(poses.turn[k])), float(np.degrees(poses.lean[k])),
                      *map(float, poses.lever[k]), 1000.0 * float(np.median(adjusted.misfit[used, k]))))
-    page.table(("Scanner", "Turns per second", "Plane turned (°)", "Plane leaning forward (°)", "Ahead (m)", "Left (m)", "Up (m)",
-                "Returns off their rays (mm)"), rows, (None, 3, 2, 2, 3, 3, 3, 1))
-    page.note("Turned: counter-clockwise from straight across. Ahead, left and up: from the middle of the scanners.")
+    page.table((tr("Scanner"), tr("Turns per second"), tr("Plane turned (°)"), tr("Plane leaning forward (°)"), tr("Ahead (m)"), tr("Left (m)"),
+                tr("Up (m)"), tr("Returns off their rays (mm)")), rows, (None, 3, 2, 2, 3, 3, 3, 1))
+    page.note(tr("Turned: counter-clockwise from straight across. Ahead, left and up: from the middle of the scanners."))
 
 
 def _chart(found):
@@ -58,8 +61,8 @@ def _chart(found):
     gone = np.minimum(np.diff(time, prepend=time[0]), 1.0).cumsum()
     cell = np.minimum((gone / max(gone[-1], 1e-9) * CHART_COLUMNS).astype(np.int64), CHART_COLUMNS - 1)
     top = max(float(np.quantile(np.maximum(found.sigma, found.sigma_height), 0.995)), LEAST_CHART_TOP)
-    chart = Chart((0.0, float(gone[-1])), (0.0, top), "seconds of driving, without pauses", "one sigma (m)")
-    for values, colour, title in ((found.sigma, PLACE_COLOUR, "place"), (found.sigma_height, HEIGHT_COLOUR, "height")):
+    chart = Chart((0.0, float(gone[-1])), (0.0, top), tr("seconds of driving, without pauses"), tr("one sigma (m)"))
+    for values, colour, title in ((found.sigma, PLACE_COLOUR, tr("place")), (found.sigma_height, HEIGHT_COLOUR, tr("height"))):
         worst = np.full(CHART_COLUMNS, np.nan)
         np.fmax.at(worst, cell, values)
         chart.curve((np.arange(CHART_COLUMNS) + 0.5) / CHART_COLUMNS * gone[-1], worst, colour, title)

@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING
 import cv2
 import numpy as np
 
+from ..common.texts import told, tr
+from ..common.words import word
 from ..io.crs import horizontal_part, parse_crs
 from ..io.gdal_errors import gdal_exceptions
 from ..overlay.control_points import CHECK, CONTROL, DISABLED
 from ..overlay.warp import drawn_area, output_grid
 from .map_figure import png
-from .page import Page
+from .page import Page, number
 
 if TYPE_CHECKING:
     from ..overlay.georeference import Georeferencing
@@ -21,7 +23,6 @@ RESIDUAL_PICTURE_SIDE = 1300  # px, longer side of the picture
 MAX_ARROW_LENGTH = 0.06       # of the longest arrow, as a share of that side
 ROLE_COLOURS = {CONTROL: (60, 60, 230), CHECK: (230, 190, 40), DISABLED: (150, 150, 150)}  # blue, green, red
 ROLE_CSS = {role: f"#{red:02x}{green:02x}{blue:02x}" for role, (blue, green, red) in ROLE_COLOURS.items()}
-POLYNOMIAL_NAMES = {0: "shift (order 0)", 1: "polynomial of order 1 (affine)", 2: "polynomial of order 2", 3: "polynomial of order 3"}
 
 
 def georeferencing_report(found: Georeferencing, drawn: str, departure: float) -> str:
@@ -33,40 +34,47 @@ def georeferencing_report(found: Georeferencing, drawn: str, departure: float) -
     drawn : path of the GeoTIFF that was drawn
     departure : pixels between the drawn image and the polynomial, from `draw_image`
     """
-    page = Page("Georeferenced image", "How well the image lies on its control points.")
+    page = Page(tr("Georeferenced image"), tr("How well the image lies on its control points."))
     for note in found.notes:
-        page.warning(note)
+        page.warning(told(note))
     image, crs = found.image, found.points.crs
     _, width, height = output_grid(found)
-    page.heading("Image")
+    page.heading(tr("Image"))
+    outside = tr("{share:.0f} % of the image, left out") if found.cut else tr("{share:.0f} % of the image")
     page.facts((
-        ("Image", image.path), ("Pixels and lines", f"{image.width} × {image.height}"), ("Placed by", POLYNOMIAL_NAMES[found.settings.order]),
-        ("CRS", horizontal_part(parse_crs(crs)).name if crs else "none"), ("Result", f"{width} × {height} pixels of {found.pixel_size:g} m"),
-        ("Drawn within", f"{departure:.2f} pixels of the polynomial, everywhere"),
-        ("Outside the hull of the control points", f"{100 * found.outside:.0f} % of the image" + (", left out" if found.cut else ""))))
+        (tr("Image"), image.path), (tr("Pixels and lines"), f"{image.width} × {image.height}"), (tr("Placed by"), _polynomial(found.settings.order)),
+        (tr("CRS"), horizontal_part(parse_crs(crs)).name if crs else tr("none")),
+        (tr("Result"), tr("{width} × {height} pixels of {size:g} m").format(width=width, height=height, size=found.pixel_size)),
+        (tr("Drawn within"), tr("{departure:.2f} pixels of the polynomial, everywhere").format(departure=departure)),
+        (tr("Outside the hull of the control points"), outside.format(share=100 * found.outside))))
     _errors(page, found)
     picture, magnification = residual_picture(found, drawn)
-    page.heading("Residuals")
-    page.picture(png(picture), f"From where the polynomial puts each point to where it was measured, {magnification:,.0f} times as long as on "
-                               "the ground. North is up; the thin line is the hull of the control points.")
-    page.colour_key([(ROLE_CSS[role], role) for role in (CONTROL, CHECK, DISABLED) if len(found.points.having(role))])
+    page.heading(tr("Residuals"))
+    page.picture(png(picture), tr("From where the polynomial puts each point to where it was measured, {times} times as long as on "
+                                  "the ground. North is up; the thin line is the hull of the control points.").format(
+                                      times=number(round(magnification)) if magnification >= 1 else f"{magnification:g}"))
+    page.colour_key([(ROLE_CSS[role], word(role)) for role in (CONTROL, CHECK, DISABLED) if len(found.points.having(role))])
     _points(page, found)
     return page.html()
 
 
+def _polynomial(order):
+    return {0: tr("shift (order 0)"), 1: tr("polynomial of order 1 (affine)"), 2: tr("polynomial of order 2"), 3: tr("polynomial of order 3")}[order]
+
+
 def _errors(page, found):
     fit, pixel = found.fit, found.pixel_size
-    rows = [("Control points", len(found.points.having(CONTROL)), found.rmse()),
-            ("Control points, each left out in turn", len(found.points.having(CONTROL)), found.left_out_rmse),
-            ("Check points", len(found.points.having(CHECK)), found.rmse(CHECK))]
-    page.heading("Errors")
-    page.table(("", "Points", "RMSE (m)", "RMSE (pixels)", "Largest (m)"),
+    rows = [(tr("Control points"), len(found.points.having(CONTROL)), found.rmse()),
+            (tr("Control points, each left out in turn"), len(found.points.having(CONTROL)), found.left_out_rmse),
+            (tr("Check points"), len(found.points.having(CHECK)), found.rmse(CHECK))]
+    page.heading(tr("Errors"))
+    page.table(("", tr("Points"), "RMSE (m)", tr("RMSE (pixels)"), tr("Largest (m)")),
                [(title, count, error, error / pixel, _largest(vectors)) for (title, count, error), vectors in zip(
                    rows, (found.errors[found.points.having(CONTROL)], found.left_out[found.points.having(CONTROL)],
                           found.errors[found.points.having(CHECK)]))])
-    page.note("RMSE = √(Σ(dx² + dy²) / n). The residuals of control points are too small, since the polynomial was fitted to them; "
-              f"there are {fit.free} more than it needs. Points measured in the laser point cloud itself show how well the image fits "
-              "the cloud, not how well either fits the ground.")
+    page.note(tr("RMSE = √(Σ(dx² + dy²) / n). The residuals of control points are too small, since the polynomial was fitted to them; "
+                 "there are {free} more than it needs. Points measured in the laser point cloud itself show how well the image fits "
+                 "the cloud, not how well either fits the ground.").format(free=fit.free))
 
 
 def _largest(vectors):
@@ -75,11 +83,12 @@ def _largest(vectors):
 
 
 def _points(page, found):
-    page.heading("Points")
+    page.heading(tr("Points"))
     points = found.points
     page.table(
-        ("Point", "Role", "Pixel", "Line", "East (m)", "North (m)", "Residual (m)", "Without this point (m)"),
-        [(points.names[k], str(points.roles[k]), round(float(points.pixel[k]), 2), round(float(points.line[k]), 2),
+        (tr("Point"), tr("Role"), tr("Pixel"), tr("Line, downwards"), tr("East (m)"), tr("North (m)"), tr("Residual (m)"),
+         tr("Without this point (m)")),
+        [(points.names[k], word(points.roles[k]), round(float(points.pixel[k]), 2), round(float(points.line[k]), 2),
           *(float(error) for error in found.errors[k]), float(np.hypot(*found.errors[k])), float(np.hypot(*found.left_out[k])))
          for k in range(len(points))])
 
@@ -144,8 +153,8 @@ def _reduced_copy(path):
     width, height = (max(int(n * share), 1) for n in (dataset.RasterXSize, dataset.RasterYSize))
     colours = (3, 2, 1) if dataset.RasterCount >= 3 else (1, 1, 1)
     bands = []
-    for number in colours:
-        band = dataset.GetRasterBand(number)
+    for channel in colours:
+        band = dataset.GetRasterBand(channel)
         data = band.ReadRaster(0, 0, dataset.RasterXSize, dataset.RasterYSize, width, height, gdal.GDT_Float32,
                                resample_alg=gdal.GRIORA_Average)
         bands.append(np.frombuffer(data, np.float32).reshape(height, width))

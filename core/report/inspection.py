@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import cv2
 import numpy as np
 
+from ..common.texts import told, tr
 from ..io.crs import horizontal_part, parse_crs
 from .map_figure import png
 from .page import Page
@@ -21,17 +22,17 @@ NO_DATA_COLOUR = (28, 28, 30)  # blue, green, red
 
 def inspection_report(found: Inspection) -> str:
     """The report of an Inspection as HTML."""
-    page = Page("Survey", "What the point clouds and the trajectory hold, before any work is done on them.")
+    page = Page(tr("Survey"), tr("What the point clouds and the trajectory hold, before any work is done on them."))
     for note in found.notes:
-        page.warning(note)
+        page.warning(told(note))
     _points(page, found)
     _density(page, found)
     _time(page, found)
     _drive(page, found.drive)
     _intensity(page, found)
-    page.heading("Files")
+    page.heading(tr("Files"))
     page.table(
-        ("File", "LAS", "Point format", "Points", "x", "y", "z", "CRS"),
+        (tr("File"), "LAS", tr("Point format"), tr("Points"), "x", "y", "z", tr("CRS")),
         [(file.path, file.version, file.point_format, file.count, *(f"{a:.1f} – {b:.1f}" for a, b in zip(file.minimum, file.maximum)),
           _crs_name(file.crs)) for file in found.files])
     return page.html()
@@ -39,22 +40,21 @@ def inspection_report(found: Inspection) -> str:
 
 def _points(page, found):
     size = found.maximum - found.minimum
-    page.heading("Points")
+    page.heading(tr("Points"))
     page.facts((
-        ("Points", found.count), ("Files", len(found.files)), ("CRS", _crs_name(found.crs)),
-        ("Extent", f"{size[0]:.1f} × {size[1]:.1f} m, {size[2]:.1f} m high"),
-        ("x", f"{found.minimum[0]:.2f} to {found.maximum[0]:.2f}"), ("y", f"{found.minimum[1]:.2f} to {found.maximum[1]:.2f}"),
-        ("z", f"{found.minimum[2]:.2f} to {found.maximum[2]:.2f}"),
-        ("Returns", _shares(found.returns, found.count)), ("Classes", _shares(found.classes, found.count))))
+        (tr("Points"), found.count), (tr("Files"), len(found.files)), (tr("CRS"), _crs_name(found.crs)),
+        (tr("Extent"), tr("{width:.1f} × {depth:.1f} m, {height:.1f} m high").format(width=size[0], depth=size[1], height=size[2])),
+        *((axis, tr("{low:.2f} to {high:.2f}").format(low=low, high=high)) for axis, low, high in zip("xyz", found.minimum, found.maximum)),
+        (tr("Returns"), _shares(found.returns, found.count)), (tr("Classes"), _shares(found.classes, found.count))))
 
 
 def _density(page, found):
-    page.heading("Density")
+    page.heading(tr("Density"))
     page.table(
-        ("", "Points per m²", "Points per m³"),
+        ("", tr("Points per m²"), tr("Points per m³")),
         [(title, float(found.per_area[key]), float(found.per_volume[key])) for title, key in (
-            ("Mean of occupied cells", "mean"), ("Median of occupied cells", "median"),
-            ("As a point sees it (mean over points)", "of_a_point"), ("Densest cell", "largest"))])
+            (tr("Mean of occupied cells"), "mean"), (tr("Median of occupied cells"), "median"),
+            (tr("As a point sees it (mean over points)"), "of_a_point"), (tr("Densest cell"), "largest"))])
     image, caption = density_picture(found)
     page.picture(png(image), caption)
 
@@ -70,53 +70,56 @@ def density_picture(found: Inspection) -> tuple[np.ndarray, str]:
     scale = max(DENSITY_PICTURE_SIDE / max(density.shape), 1.0 / 64)
     height, width = (max(int(round(n * scale)), 1) for n in density.shape)
     image = cv2.resize(image, (width, height), interpolation=cv2.INTER_NEAREST if scale >= 1 else cv2.INTER_AREA)
-    caption = f"Points per m², from 0 (dark) to {top:.0f} (yellow); north is up."
+    caption = tr("Points per m², from 0 (dark) to {most:.0f} (yellow); north is up.").format(most=top)
     trajectory: Any = found.trajectory
     if trajectory is not None and found.near_share:
         track = np.c_[trajectory.x - corner[0], corner[1] - trajectory.y] / found.settings.cell_size * scale
         cv2.polylines(image, [np.rint(track).astype(np.int32)], False, (60, 60, 255), 2, cv2.LINE_AA)
-        caption += " Red is the trajectory."
+        caption += " " + tr("Red is the trajectory.")
     return image, caption
 
 
 def _time(page, found):
-    page.heading("Time and scanners")
+    page.heading(tr("Time and scanners"))
     rows = []
     if found.time_span:
         first, last = found.time_span
-        rows.append(("gps_time", f"{first:.3f} to {last:.3f} s, {last - first:.1f} s"))
+        rows.append(("gps_time", tr("{first:.3f} to {last:.3f} s, {seconds:.1f} s").format(first=first, last=last, seconds=last - first)))
         if found.files[0].adjusted_time:
             start = datetime(1980, 1, 6) + timedelta(seconds=first + 1e9)
-            rows.append(("Counted as", f"adjusted standard GPS time; begins {start:%Y-%m-%d %H:%M:%S} in GPS time"))
+            rows.append((tr("Counted as"), tr("adjusted standard GPS time; begins {start} in GPS time").format(start=f"{start:%Y-%m-%d %H:%M:%S}")))
         else:
-            rows.append(("Counted as", "seconds of the GPS week, says the file"))
+            rows.append((tr("Counted as"), tr("seconds of the GPS week, says the file")))
     else:
-        rows.append(("gps_time", "none that can be used"))
-    rows.append(("Scanners", f"{len(found.scanners)}, distinguished by {found.scanner_field}" if found.scanner_field else "1"))
+        rows.append(("gps_time", tr("none that can be used")))
+    apart = tr("{count}, distinguished by {field}").format(count=len(found.scanners), field=found.scanner_field)
+    rows.append((tr("Scanners"), apart if found.scanner_field else "1"))
     if found.near_share is not None:
-        rows.append(("Points within 25 m of the trajectory", f"{100 * found.near_share:.1f} %"))
+        rows.append((tr("Points within 25 m of the trajectory"), f"{100 * found.near_share:.1f} %"))
     if found.in_time_share is not None:
-        rows.append(("Scan time covered by the trajectory", f"{100 * found.in_time_share:.1f} %"))
+        rows.append((tr("Scan time covered by the trajectory"), f"{100 * found.in_time_share:.1f} %"))
     if found.trajectory is not None:
         driven = float(np.hypot(np.diff(found.trajectory.x), np.diff(found.trajectory.y)).sum())
-        rows.append(("Trajectory", f"{len(found.trajectory)} positions over {driven:.1f} m"))
+        rows.append((tr("Trajectory"), tr("{count} positions over {length:.1f} m").format(count=len(found.trajectory), length=driven)))
     page.facts(rows)
 
 
 def _drive(page, drive):
     if drive is None:
         return
-    page.heading("Drive")
-    height = "unknown: too few points lie under the vehicle" if drive.sensor_height is None else f"{drive.sensor_height:.2f} m above the road"
-    page.facts((("Driven", f"{drive.driven:.1f} m"), ("Trajectory", height),
-                ("Roads", ", ".join(f"road {number}: {length:.1f} m" for number, length in enumerate(drive.roads)))))
+    page.heading(tr("Drive"))
+    height = tr("unknown: too few points lie under the vehicle") if drive.sensor_height is None else \
+        tr("{height:.2f} m above the road").format(height=drive.sensor_height)
+    page.facts(((tr("Driven"), f"{drive.driven:.1f} m"), (tr("Trajectory"), height),
+                (tr("Roads"), ", ".join(tr("road {number}: {length:.1f} m").format(number=number, length=length)
+                                        for number, length in enumerate(drive.roads)))))
     page.table(
-        ("Pass", "Road", "Way", "From station (m)", "To station (m)", "Seconds", "Mean speed (km/h)"),
-        [(number, road, "along" if way > 0 else "against", round(first, 1) + 0.0, round(last, 1) + 0.0, round(end - start, 1),
+        (tr("Pass"), tr("Road"), tr("Way"), tr("From station (m)"), tr("To station (m)"), tr("Seconds"), tr("Mean speed (km/h)")),
+        [(number, road, tr("along") if way > 0 else tr("against"), round(first, 1) + 0.0, round(last, 1) + 0.0, round(end - start, 1),
           round(3.6 * abs(last - first) / max(end - start, 1e-9), 1)) for number, road, way, first, last, start, end in drive.passes])
     image, low, high = profile_picture(drive.profile)
-    page.picture(png(image), f"Heights along the drive, {drive.profile[-1, 0]:.0f} m from left to right, {low:.1f} m (below) to {high:.1f} m "
-                             "(above): red the trajectory, grey the road under it.")
+    page.picture(png(image), tr("Heights along the drive, {length:.0f} m from left to right, {low:.1f} m (below) to {high:.1f} m "
+                                "(above): red the trajectory, grey the road under it.").format(length=drive.profile[-1, 0], low=low, high=high))
 
 
 def profile_picture(profile: np.ndarray, width: int = 900, height: int = 220) -> tuple[np.ndarray, float, float]:
@@ -152,15 +155,15 @@ def profile_picture(profile: np.ndarray, width: int = 900, height: int = 220) ->
 
 
 def _intensity(page, found):
-    page.heading("Intensity")
+    page.heading(tr("Intensity"))
     values = np.flatnonzero(found.intensity)
     share = np.cumsum(found.intensity) / found.count
     low, middle, high = (int(np.searchsorted(share, q)) for q in (0.01, 0.5, 0.99))
-    page.facts((("Range", f"{values[0]} to {values[-1]}"), ("1 %, median, 99 %", f"{low}, {middle}, {high}"),
-                ("Different values", len(values))))
+    page.facts(((tr("Range"), tr("{low} to {high}").format(low=values[0], high=values[-1])), (tr("1 %, median, 99 %"), f"{low}, {middle}, {high}"),
+                (tr("Different values"), len(values))))
     if len(values) > 1:
         page.picture(png(histogram_picture(found.intensity, low, high)),
-                     f"How often each intensity occurs, from {low} (left) to {high} (right).")
+                     tr("How often each intensity occurs, from {low} (left) to {high} (right).").format(low=low, high=high))
 
 
 def histogram_picture(counts: np.ndarray, low: int, high: int, width: int = 900, height: int = 220) -> np.ndarray:
@@ -178,7 +181,7 @@ def histogram_picture(counts: np.ndarray, low: int, high: int, width: int = 900,
 
 
 def _crs_name(wkt):
-    return horizontal_part(parse_crs(wkt)).name if wkt else "none"
+    return horizontal_part(parse_crs(wkt)).name if wkt else tr("none")
 
 
 def _shares(counts, total):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from ..common.texts import told, tr
 from ..export.check.findings import FAULTS, Findings
 from .page import Page
 
@@ -20,19 +21,21 @@ def map_check_report(found: Findings, path: str, notes: Sequence[str] = ()) -> s
     path : of the file
     notes : further sentences
     """
-    page = Page("Check of an HD map", f"{Path(path).name}.")
+    page = Page(tr("Check of an HD map"), f"{Path(path).name}.")
     for note in notes:
-        page.warning(note)
-    page.facts([("Driven lanes and pieces", found.lanes), ("Links from one lane to the next", found.successors),
-                ("Pairs of lanes side by side", found.neighbours), ("Findings", len(found.found))])
+        page.warning(told(note))
+    page.facts([(tr("Driven lanes and pieces"), found.lanes), (tr("Links from one lane to the next"), found.successors),
+                (tr("Pairs of lanes side by side"), found.neighbours), (tr("Findings"), len(found.found))])
     if not found.found:
-        page.text("Nothing was found.")
+        page.text(tr("Nothing was found."))
         return page.html()
-    page.heading("Faults")
-    page.table(("Fault", "Count", "What it means"), [(fault, count, FAULTS[fault]) for fault, count in sorted(found.counts().items())])
-    page.heading("Findings")
-    page.table(("Fault", "Where", "What was seen", "x", "y"),
-               [(one.fault, one.element, one.text, one.place[0], one.place[1]) for one in found.found[:MOST_ROWS]], (None, None, None, 2, 2))
+    page.heading(tr("Faults"))
+    page.table((tr("Fault"), tr("Count"), tr("What it means")),
+               [(told(fault), count, told(FAULTS[fault])) for fault, count in sorted(found.counts().items())])
+    page.heading(tr("Findings"))
+    page.table((tr("Fault"), tr("Where"), tr("What was seen"), "x", "y"),
+               [(told(one.fault), told(one.element), told(one.text), one.place[0], one.place[1]) for one in found.found[:MOST_ROWS]],
+               (None, None, None, 2, 2))
     if len(found.found) > MOST_ROWS:
-        page.note(f"The first {MOST_ROWS} of {len(found.found)}; the layer has all of them.")
+        page.note(tr("The first {shown} of {count}; the layer has all of them.").format(shown=MOST_ROWS, count=len(found.found)))
     return page.html()

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from ..common.texts import told, tr
+from ..common.words import word
 from ..export.map_layers import MapLayers
 from .page import Page
 
@@ -29,16 +31,16 @@ def map_export_report(title: str, subtitle: str, facts: Iterable[tuple[str, Any]
     """
     page = Page(title, subtitle)
     for note in notes:
-        page.warning(note)
+        page.warning(told(note))
     page.facts(facts)
     for heading, names, rows in tables:
         page.heading(heading)
         page.table(names, rows)
     if shown is not None and len(shown.lanes):
-        page.heading("The file as it is read back")
-        page.drawing(_map(shown), "Lanes by type and painted lines; north is up.")
+        page.heading(tr("The file as it is read back"))
+        page.drawing(_map(shown), tr("Lanes by type and painted lines; north is up."))
         present = [kind for kind in COLOUR_OF_LANE if (shown.lanes.type == kind).any()]
-        page.colour_key([(COLOUR_OF_LANE[kind], kind) for kind in present])
+        page.colour_key([(COLOUR_OF_LANE[kind], word(kind)) for kind in present])
     return page.html()
 
 

@@ -9,6 +9,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from ..common.texts import language
+
 TEMPLATES = Path(__file__).parent / "templates"
 
 
@@ -74,7 +76,7 @@ class Page:
 
     def html(self) -> str:
         """The whole page."""
-        return _template().render(title=self.title, blocks=self.blocks)
+        return _template().render(title=self.title, blocks=self.blocks, language=language())
 
     def _add(self, kind: str, **content: Any) -> None:
         self.blocks.append({"kind": kind, **content})

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import cv2
 import numpy as np
 
+from ..common.texts import told, tr
 from ..overlay.pair_cutouts import pair_cutouts
 from .map_figure import png
 from .page import Page
@@ -22,26 +23,30 @@ _ACCEPTED, _REFUSED = (80, 150, 40), (50, 50, 210)  # blue, green, red
 
 def proposed_points_report(found: Proposal) -> str:
     """The report of a Proposal as HTML."""
-    page = Page("Proposed control points", "The same paint in the image and in the intensity image.")
+    page = Page(tr("Proposed control points"), tr("The same paint in the image and in the intensity image."))
     for note in found.notes:
-        page.warning(note)
-    page.heading("Image")
+        page.warning(told(note))
+    page.heading(tr("Image"))
     page.facts((
-        ("Image", found.image.path), ("Placed roughly by", found.rough.source),
-        ("Found turned by", f"{found.turn_degrees:.1f}° counter-clockwise, from its rows to east"), ("Pixel on the ground", f"{found.size:.4f} m"),
-        ("Pairs", f"{len(found)}, of which {int(found.accepted.sum())} accepted"),
-        ("RMSE of the accepted pairs, each left out in turn",
-         f"{found.rmse:.3f} m, by a polynomial of order {found.order}" if found.accepted.any() else "–")))
+        (tr("Image"), found.image.path), (tr("Placed roughly by"), told(found.rough.source)),
+        (tr("Found turned by"), tr("{turn:.1f}° counter-clockwise, from its rows to east").format(turn=found.turn_degrees)),
+        (tr("Pixel on the ground"), f"{found.size:.4f} m"),
+        (tr("Pairs"), tr("{count}, of which {accepted} accepted").format(count=len(found), accepted=int(found.accepted.sum()))),
+        (tr("RMSE of the accepted pairs, each left out in turn"),
+         tr("{rmse:.3f} m, by a polynomial of order {order}").format(rmse=found.rmse, order=found.order) if found.accepted.any() else "–")))
     if found.rival is not None:
-        page.note(f"The next likely place lies {np.hypot(found.rival.dx, found.rival.dy):.1f} m away: {found.rival.votes_for:.0f} corners "
-                  f"speak for the place found, {found.rival.votes_against:.0f} for that one.")
-    page.heading("Pairs of cut-outs")
-    page.picture(png(pairs_picture(found)), "Left the image, right the intensity image, both 3.2 m wide, north up. Green: accepted. Red: refused by "
-                                            "default. Below each: its number, the likeness of the two, and how far off the other pairs place it.")
-    page.heading("Points")
-    page.table(("Point", "Accepted", "Likeness", "Residual (m)", "Pixel", "Line", "East (m)", "North (m)", "Why not"),
-               [(str(k + 1), "yes" if found.accepted[k] else "no", float(found.score[k]), float(found.residual[k]), float(found.pixel[k]),
-                 float(found.line[k]), float(found.easting[k]), float(found.northing[k]), found.why[k]) for k in range(len(found))],
+        page.note(tr("The next likely place lies {away:.1f} m away: {here:.0f} corners speak for the place found, {there:.0f} for that one.").format(
+            away=np.hypot(found.rival.dx, found.rival.dy), here=found.rival.votes_for, there=found.rival.votes_against))
+    page.heading(tr("Pairs of cut-outs"))
+    page.picture(png(pairs_picture(found)), tr(
+        "Left the image, right the intensity image, both 3.2 m wide, north up. Green: accepted. Red: refused by "
+        "default. Below each: its number, the likeness of the two, and how far off the other pairs place it."))
+    page.heading(tr("Points"))
+    page.table((tr("Point"), tr("Accepted"), tr("Likeness"), tr("Residual (m)"), tr("Pixel"), tr("Line, downwards"), tr("East (m)"), tr("North (m)"),
+                tr("Why not")),
+               [(str(k + 1), tr("yes") if found.accepted[k] else tr("no"), float(found.score[k]), float(found.residual[k]), float(found.pixel[k]),
+                 float(found.line[k]), float(found.easting[k]), float(found.northing[k]), tr(found.why[k]) if found.why[k] else "")
+                for k in range(len(found))],
                (None, None, 2, 3, 2, 2, 3, 3, None))
     return page.html()
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..common.texts import language, told, tr
+from ..common.words import word
 from .figures import Chart
 from .page import Page
 
@@ -28,11 +30,11 @@ def roadside_report(found: Roadside, lines: Features, points: Features) -> str:
     found : Roadside
     lines, points : Features of `roadside_to_features`
     """
-    page = Page("Roadside", "What stands beside the road. Heights are those above the ground at its foot; distances count outward from the "
-                            "carriageway's edge.")
+    page = Page(tr("Roadside"), tr("What stands beside the road. Heights are those above the ground at its foot; distances count outward from the "
+                                   "carriageway's edge."))
     for note in found.notes:
-        page.warning(note)
-    page.heading("Together")
+        page.warning(told(note))
+    page.heading(tr("Together"))
     lengths: dict[tuple[str, str], float] = defaultdict(float)
     counts: dict[tuple[str, str], int] = defaultdict(int)
     for row in lines.rows:
@@ -40,24 +42,27 @@ def roadside_report(found: Roadside, lines: Features, points: Features) -> str:
     for row in points.rows:
         counts[row["kind"], row["side"]] += 1
     if lengths:
-        page.table(("Line", "Side", "Length (m)"), [(_name(kind), side, length) for (kind, side), length in sorted(lengths.items())])
+        page.table((tr("Line"), tr("Side"), tr("Length (m)")),
+                   [(_name(kind), word(side), length) for (kind, side), length in sorted(lengths.items())])
     if counts:
-        page.table(("Single", "Side", "Number"), [(_name(kind), side, number) for (kind, side), number in sorted(counts.items())])
+        page.table((tr("Single"), tr("Side"), tr("Number")), [(_name(kind), word(side), number) for (kind, side), number in sorted(counts.items())])
     if not lengths and not counts:
-        page.text("Nothing was found within the reach.")
+        page.text(tr("Nothing was found within the reach."))
     for road, edges in found.edges.items():
         own = [row for row in lines.rows if row["road"] == road]
-        page.heading(f"Road {road}")
+        page.heading(tr("Road {road}").format(road=road))
         _plan(page, found, road, edges, points)
         if own:
-            page.table(("Kind", "Side", "From (m)", "To (m)", "Length (m)", "From the edge (m)", "Height (m)", "Foot (m)"),
-                       [(_name(row["kind"]), *(row[name] for name in ("side", "station_m", "end_m", "length_m", "edge_m", "height_m", "foot_m")))
+            page.table((tr("Kind"), tr("Side"), tr("From (m)"), tr("To (m)"), tr("Length (m)"), tr("From the edge (m)"), tr("Height (m)"),
+                        tr("Foot (m)")),
+                       [(_name(row["kind"]), word(row["side"]), *(row[name] for name in (
+                           "station_m", "end_m", "length_m", "edge_m", "height_m", "foot_m")))
                         for row in own], (None, None, 1, 1, 1, 2, 2, 2))
     return page.html()
 
 
 def _name(kind):
-    return kind.replace("_", " ")
+    return kind.replace("_", " ") if language() == "en" else word(kind)
 
 
 def _plan(page, found, road, edges, points):
@@ -65,9 +70,10 @@ def _plan(page, found, road, edges, points):
     lines = [line for line in found.lines if line.chain.road == road]
     own = [row for row in points.rows if row["road"] == road]
     reach = np.concatenate([edges.left, edges.right, *(line.chain.d for line in lines), [row["offset_m"] for row in own]])
-    chart = Chart((float(edges.s[0]), float(edges.s[-1])), (float(reach.min()) - 0.5, float(reach.max()) + 0.5), "Station (m)", "Offset (m)", 260)
-    chart.curve(edges.s, edges.left, EDGE_COLOUR, "edge of the carriageway", 1.0)
-    chart.curve(edges.s, edges.right, EDGE_COLOUR, "edge of the carriageway", 1.0)
+    chart = Chart((float(edges.s[0]), float(edges.s[-1])), (float(reach.min()) - 0.5, float(reach.max()) + 0.5),
+                  tr("Station (m)"), tr("Offset (m)"), 260)
+    chart.curve(edges.s, edges.left, EDGE_COLOUR, tr("edge of the carriageway"), 1.0)
+    chart.curve(edges.s, edges.right, EDGE_COLOUR, tr("edge of the carriageway"), 1.0)
     for line in lines:
         chart.curve(line.chain.s, line.chain.d, KIND_COLOURS[line.kind], _name(line.kind), 2.4)
     along, across = MARK_SIZE[0] * np.ptp(edges.s), MARK_SIZE[1] * np.ptp(reach)
@@ -75,6 +81,6 @@ def _plan(page, found, road, edges, points):
         at = np.array([row["station_m"]])
         chart.bars(at - along / 2, at + along / 2, np.array([across]), KIND_COLOURS[row["kind"]], np.array([row["offset_m"] - across / 2]),
                    f"{_name(row['kind'])}, {row['height_m']:.1f} m")
-    page.drawing(chart.svg(), "The roadside from above, straightened; black are the edges of the carriageway.")
+    page.drawing(chart.svg(), tr("The roadside from above, straightened; black are the edges of the carriageway."))
     kinds = {line.kind for line in lines} | {row["kind"] for row in own}
     page.colour_key([(colour, _name(kind)) for kind, colour in KIND_COLOURS.items() if kind in kinds])

@@ -4,6 +4,131 @@
     <context>
         <name>Lanewright</name>
         <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>Road maps from mobile laser scanning, in QGIS.</source>
+            <translation>Straßenkarten aus mobilem Laserscanning, in QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>files</source>
+            <translation>Dateien</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>file</source>
+            <translation>Datei</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>vector layer</source>
+            <translation>Vektorlayer</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>raster</source>
+            <translation>Raster</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>CRS</source>
+            <translation>KBS</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>number</source>
+            <translation>Zahl</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>choice</source>
+            <translation>Auswahl</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>yes or no</source>
+            <translation>ja oder nein</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>text</source>
+            <translation>Text</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>point cloud</source>
+            <translation>Punktwolke</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>numbers</source>
+            <translation>Zahlen</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>Numbers, for models and scripts:</source>
+            <translation>Zahlen für Modelle und Skripte:</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>Lanewright manual</source>
+            <translation>Lanewright-Handbuch</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>The algorithms, in the order of the work</source>
+            <translation>Die Algorithmen, in der Reihenfolge der Arbeit</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>Results</source>
+            <translation>Ergebnisse</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>On the command line</source>
+            <translation>Auf der Kommandozeile</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>parameter</source>
+            <translation>Parameter</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>what it is</source>
+            <translation>was es ist</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>default</source>
+            <translation>Vorgabe</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>One of: {choices}.</source>
+            <translation>Eines von: {choices}.</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>Inputs</source>
+            <translation>Eingaben</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>Advanced parameters</source>
+            <translation>Erweiterte Parameter</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>optional</source>
+            <translation>wahlfrei</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
+            <source>Fields: {fields}.</source>
+            <translation>Felder: {fields}.</translation>
+        </message>
+        <message>
             <location filename="../../algorithms/algorithm.py" />
             <source>Survey</source>
             <translation>Vermessung</translation>
@@ -66,7 +191,7 @@
         <message>
             <location filename="../../algorithms/algorithm.py" />
             <source>LAS, LAZ or COPC files of one survey, or a folder that holds them, or names with wildcards (/data/B12/tile_*.laz). Files may overlap and come in any order.</source>
-            <translation>LAS-, LAZ- oder COPC-Dateien einer Aufnahme, ein Ordner, in dem sie liegen, oder Namen mit Platzhaltern (/data/B12/tile_*.laz). Dateien dürfen sich überlappen und in beliebiger Reihenfolge kommen.</translation>
+            <translation>LAS-, LAZ- oder COPC-Dateien einer Vermessung, ein Ordner, in dem sie liegen, oder Namen mit Platzhaltern (/data/B12/tile_*.laz). Dateien dürfen sich überlappen und in beliebiger Reihenfolge kommen.</translation>
         </message>
         <message>
             <location filename="../../algorithms/algorithm.py" />
@@ -92,11 +217,6 @@
             <location filename="../../algorithms/algorithm.py" />
             <source>Report</source>
             <translation>Bericht</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/algorithm.py" />
-            <source>Fields: {fields}.</source>
-            <translation>Felder: {fields}.</translation>
         </message>
         <message>
             <location filename="../../algorithms/assess/assess_boundaries.py" />
@@ -1495,8 +1615,53 @@
         </message>
         <message>
             <location filename="../../algorithms/export/export_cad.py" />
+            <source>Layers</source>
+            <translation>Layer</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
             <source>{count} alignments, {length:.0f} m; elements within {missed:.3f} m of their lines.</source>
             <translation>{count} Achsen, {length:.0f} m; Elemente innerhalb {missed:.3f} m von ihren Linien.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>Name</source>
+            <translation>Name</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>What it is</source>
+            <translation>Was es ist</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>Length (m)</source>
+            <translation>Länge (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>Elements</source>
+            <translation>Elemente</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>Points of the profile</source>
+            <translation>Punkte des Höhenplans</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>Road map for CAD</source>
+            <translation>Straßenkarte für CAD</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>Layer</source>
+            <translation>Layer</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_cad.py" />
+            <source>Polylines</source>
+            <translation>Polylinien</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/export_cad.py" />
@@ -1605,13 +1770,48 @@
         </message>
         <message>
             <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>not stated</source>
+            <translation>nicht angegeben</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
             <source>{count} lanelets; latitude and longitude by: {way}.</source>
             <translation>{count} Lanelets; Breite und Länge durch: {way}.</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>Transformation to latitude and longitude</source>
+            <translation>Transformation nach Breite und Länge</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>Accuracy of the transformation</source>
+            <translation>Genauigkeit der Transformation</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>Heights</source>
+            <translation>Höhen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>Lanelet2 map</source>
+            <translation>Lanelet2-Karte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
             <source>{count} pieces of the type {kind} are no lanelets and were left out.</source>
             <translation>{count} Stücke vom Typ {kind} sind keine Lanelets und wurden weggelassen.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>Fault</source>
+            <translation>Fehler</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_lanelet2.py" />
+            <source>Count</source>
+            <translation>Anzahl</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/export_opendrive.py" />
@@ -1680,8 +1880,53 @@
         </message>
         <message>
             <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>Borders, across</source>
+            <translation>Grenzen, quer</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>Borders, in height</source>
+            <translation>Grenzen, in der Höhe</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>Driving lines from the middles of lanes (measured)</source>
+            <translation>Fahrlinien gegen die Mitten der Fahrstreifen (gemessene)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>The same, of lanes beside no double line</source>
+            <translation>Dasselbe, von Fahrstreifen neben keiner Doppellinie</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>OpenDRIVE map</source>
+            <translation>OpenDRIVE-Karte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
             <source>OpenDRIVE file</source>
             <translation>OpenDRIVE-Datei</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>Lanes of sections that are driven</source>
+            <translation>Befahrene Streifen der Abschnitte</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>False origin</source>
+            <translation>Verschobener Ursprung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>Against the survey</source>
+            <translation>Gegen die Vermessung</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>Elements of the reference lines</source>
+            <translation>Elemente der Bezugslinien</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/export_opendrive.py" />
@@ -1702,6 +1947,31 @@
             <location filename="../../algorithms/export/export_opendrive.py" />
             <source>The layer of lanes has no CRS: the file has no geoReference.</source>
             <translation>Der Layer der Fahrstreifen hat kein KBS: Die Datei hat keine geoReference.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>none</source>
+            <translation>keine Angabe</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>Mean (m)</source>
+            <translation>Mittel (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>Largest (m)</source>
+            <translation>Größter Wert (m)</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>Places</source>
+            <translation>Stellen</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/export/export_opendrive.py" />
+            <source>Element</source>
+            <translation>Element</translation>
         </message>
         <message>
             <location filename="../../algorithms/export/export_opendrive.py" />
@@ -2031,7 +2301,7 @@
         <message>
             <location filename="../../algorithms/inventory/roadside.py" />
             <source>Roadside</source>
-            <translation>Straßenrand</translation>
+            <translation>Straßenseitenraum</translation>
         </message>
         <message>
             <location filename="../../algorithms/inventory/roadside.py" />
@@ -2652,11 +2922,6 @@
             <location filename="../../algorithms/markings/intensity_image.py" />
             <source>image</source>
             <translation>Bild</translation>
-        </message>
-        <message>
-            <location filename="../../algorithms/markings/intensity_image.py" />
-            <source>raster</source>
-            <translation>Raster</translation>
         </message>
         <message>
             <location filename="../../algorithms/markings/intensity_image.py" />
@@ -3366,7 +3631,7 @@
         <message>
             <location filename="../../algorithms/road/detect_boundaries.py" />
             <source>Road edges straight from the point clouds, by profiles, by scanlines or by both.</source>
-            <translation>Straßenränder direkt aus den Punktwolken: eine Tür zu allen Wegen, sie zu finden.</translation>
+            <translation>Straßenränder direkt aus den Punktwolken, über Profile, über Scanlinien oder über beide.</translation>
         </message>
         <message>
             <location filename="../../algorithms/road/detect_boundaries.py" />
@@ -3556,7 +3821,7 @@
         <message>
             <location filename="../../algorithms/road/fit_road_edges.py" />
             <source>0 draws no edge where none was found. A width draws one at half of it either side of the road's reference line, flagged as inferred.</source>
-            <translation>0 zeichnet keinen Rand, wo keiner gefunden wurde. Eine Breite zeichnet einen in halber Breite beiderseits der Bezugslinie der Straße, als gefolgert gekennzeichnet.</translation>
+            <translation>0 zeichnet keinen Rand, wo keiner gefunden wurde. Eine Breite zeichnet einen in halber Breite beiderseits der Bezugslinie der Straße, als erschlossen gekennzeichnet.</translation>
         </message>
         <message>
             <location filename="../../algorithms/road/fit_road_edges.py" />
@@ -3656,7 +3921,7 @@
         <message>
             <location filename="../../algorithms/survey/estimate_trajectory.py" />
             <source>Where the scanner was, from the point clouds alone, for surveys that come without a trajectory.</source>
-            <translation>Wo der Scanner war, allein aus den Punktwolken, für Aufnahmen ohne Trajektorie.</translation>
+            <translation>Wo der Scanner war, allein aus den Punktwolken, für Vermessungen ohne Trajektorie.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/estimate_trajectory.py" />
@@ -3941,7 +4206,7 @@
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />
             <source>Simulates a mobile laser scanning survey of a street, motorway, junction or mountain road, together with its known truth.</source>
-            <translation>Erzeugt die Laserscan-Vermessung einer Straße, Autobahn, Kreuzung oder Bergstraße, die es nur auf dem Papier gibt, zusammen mit der Wahrheit über sie.</translation>
+            <translation>Simuliert die mobile Laserscan-Vermessung einer Straße, Autobahn, Kreuzung oder Bergstraße, zusammen mit ihrer bekannten Wahrheit.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/sample_survey.py" />
@@ -4171,7 +4436,7 @@
         <message>
             <location filename="../../algorithms/survey_input.py" />
             <source>Where two drives over a road measurably lie centimetres apart, as navigation drifts between them, each is moved by its share until curbs and paint agree, and the log says how far. Off keeps every point where it was measured, for surveys adjusted to control points already; what the passes differ by then blurs curbs and doubles lines.</source>
-            <translation>Wo zwei Befahrungen einer Straße messbar Zentimeter auseinanderliegen, weil die Navigation zwischen ihnen driftet, wird jede um ihren Anteil verschoben, bis Bordsteine und Farbe übereinstimmen; das Protokoll sagt, um wie viel. Ausgeschaltet bleibt jeder Punkt, wo er gemessen wurde: für Aufnahmen, die schon an Passpunkten ausgeglichen sind. Worin die Befahrungen sich dann unterscheiden, macht Bordsteine unscharf und Linien doppelt.</translation>
+            <translation>Wo zwei Befahrungen einer Straße messbar Zentimeter auseinanderliegen, weil die Navigation zwischen ihnen driftet, wird jede um ihren Anteil verschoben, bis Bordsteine und Farbe übereinstimmen; das Protokoll sagt, um wie viel. Ausgeschaltet bleibt jeder Punkt, wo er gemessen wurde: für Vermessungen, die schon an Passpunkten ausgeglichen sind. Worin die Befahrungen sich dann unterscheiden, macht Bordsteine unscharf und Linien doppelt.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />
@@ -4181,7 +4446,7 @@
         <message>
             <location filename="../../algorithms/survey_input.py" />
             <source>So many further processes of Python find curbs and make scanlines, with the same results. More are faster as long as there are processor cores for them, and each takes some hundred MB of memory. Automatic takes one per core for surveys of more than 100 million points, and none for smaller ones. Where no Python can be started, this program does their work, and the log says so.</source>
-            <translation>So viele weitere Python-Prozesse suchen Bordsteine und bilden Scanlinien, mit denselben Ergebnissen. Mehr sind schneller, solange es Prozessorkerne für sie gibt; jeder braucht einige hundert MB Speicher. Automatisch ist einer je Kern bei Aufnahmen mit mehr als 100 Millionen Punkten, keiner bei kleineren. Wo sich kein Python starten lässt, übernimmt dieses Programm ihre Arbeit, und das Protokoll sagt es.</translation>
+            <translation>So viele weitere Python-Prozesse suchen Bordsteine und bilden Scanlinien, mit denselben Ergebnissen. Mehr sind schneller, solange es Prozessorkerne für sie gibt; jeder braucht einige hundert MB Speicher. Automatisch ist einer je Kern bei Vermessungen mit mehr als 100 Millionen Punkten, keiner bei kleineren. Wo sich kein Python starten lässt, übernimmt dieses Programm ihre Arbeit, und das Protokoll sagt es.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />
@@ -4191,7 +4456,7 @@
         <message>
             <location filename="../../algorithms/survey_input.py" />
             <source>The workers of a Dask cluster that is running already find curbs and make scanlines, with the same results: tls://host:8786, or tcp://127.0.0.1:8786 on this computer. They need the same Python, packages and Lanewright, no QGIS, and a work folder that all machines see. The manual's page on large surveys tells how to start one. Worker processes are not used then.</source>
-            <translation>Die Worker eines bereits laufenden Dask-Clusters suchen Bordsteine und bilden Scanlinien, mit denselben Ergebnissen: tls://rechner:8786, oder tcp://127.0.0.1:8786 auf diesem Rechner. Sie brauchen dasselbe Python, dieselben Pakete und dasselbe Lanewright, kein QGIS, und einen Arbeitsordner, den alle Rechner sehen. Wie man einen startet, steht im Handbuch unter Large surveys. Weitere Prozesse werden dann nicht verwendet.</translation>
+            <translation>Die Worker eines bereits laufenden Dask-Clusters suchen Bordsteine und bilden Scanlinien, mit denselben Ergebnissen: tls://rechner:8786, oder tcp://127.0.0.1:8786 auf diesem Rechner. Sie brauchen dasselbe Python, dieselben Pakete und dasselbe Lanewright, kein QGIS, und einen Arbeitsordner, den alle Rechner sehen. Wie man einen startet, steht im Handbuch unter „Große Vermessungen“. Weitere Prozesse werden dann nicht verwendet.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />
@@ -4267,6 +4532,1941 @@
             <location filename="../../algorithms/vector_source.py" />
             <source>{label} has geometries without heights (Z). Use the layer that Lanewright wrote.</source>
             <translation>{label} hat Geometrien ohne Höhen (Z). Den Layer verwenden, den Lanewright geschrieben hat.</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>measured</source>
+            <translation>gemessen</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>bridged</source>
+            <translation>überbrückt</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>inferred</source>
+            <translation>erschlossen</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>hidden</source>
+            <translation>verdeckt</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>grown</source>
+            <translation>gewachsen</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>accepted</source>
+            <translation>bestätigt</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>drawn</source>
+            <translation>gezeichnet</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>unknown</source>
+            <translation>unbekannt</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>together</source>
+            <translation>zusammen</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>carriageway</source>
+            <translation>Fahrbahn</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>dropped curb</source>
+            <translation>abgesenkter Bordstein</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>edge of the pavement</source>
+            <translation>Rand der Befestigung</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>main carriageway</source>
+            <translation>durchgehende Fahrbahn</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>corner of a curb</source>
+            <translation>Bordsteinecke</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>side street</source>
+            <translation>Seitenstraße</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>island</source>
+            <translation>Insel</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Zebra crossing</source>
+            <translation>Zebrastreifen</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Stop line</source>
+            <translation>Haltlinie</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Give-way line</source>
+            <translation>Wartelinie</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Arrow</source>
+            <translation>Pfeil</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Symbol</source>
+            <translation>Symbol</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Hatching</source>
+            <translation>Schraffur</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>marking</source>
+            <translation>Markierung</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>other paint</source>
+            <translation>andere Farbe</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>solid</source>
+            <translation>durchgezogen</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>dashed</source>
+            <translation>gestrichelt</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>double, solid</source>
+            <translation>doppelt, durchgezogen</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>double, dashed</source>
+            <translation>doppelt, gestrichelt</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>solid and dashed</source>
+            <translation>durchgezogen und gestrichelt</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>dashed and solid</source>
+            <translation>gestrichelt und durchgezogen</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>between two lines</source>
+            <translation>zwischen zwei Linien</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>beside one line</source>
+            <translation>neben einer Linie</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Driving lane</source>
+            <translation>Fahrstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Shoulder</source>
+            <translation>Seitenstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Parking</source>
+            <translation>Parkstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Bicycle lane</source>
+            <translation>Radfahrstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Hatched area</source>
+            <translation>Sperrfläche</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Median</source>
+            <translation>Mittelstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Connector over a junction</source>
+            <translation>Verbindung über eine Kreuzung</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>accept</source>
+            <translation>bestätigen</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>delete</source>
+            <translation>löschen</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>move</source>
+            <translation>verschieben</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Wall</source>
+            <translation>Mauer</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Gutter</source>
+            <translation>Rinne</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Tree trunk</source>
+            <translation>Baumstamm</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>rut depth</source>
+            <translation>Spurrinnentiefe</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>grade</source>
+            <translation>Längsneigung</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>correct</source>
+            <translation>richtig</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>missed</source>
+            <translation>verpasst</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>false</source>
+            <translation>falsch</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>excluded</source>
+            <translation>ausgenommen</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Control point</source>
+            <translation>Passpunkt</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Check point</source>
+            <translation>Prüfpunkt</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Disabled point</source>
+            <translation>Abgeschalteter Punkt</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>arc</source>
+            <translation>Kreisbogen</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>parametric cubic</source>
+            <translation>parametrische Kubik</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Edge line</source>
+            <translation>Randlinie</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Lane line</source>
+            <translation>Fahrstreifenlinie</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>Centre line</source>
+            <translation>Mittellinie</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Accuracy of road boundaries</source>
+            <translation>Genauigkeit der Straßenränder</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Errors in the correct intervals</source>
+            <translation>Abweichungen in den richtigen Abschnitten</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Intervals by outcome; north is up. Correct, missed and excluded ones are drawn along the reference, false ones along the result.</source>
+            <translation>Abschnitte nach Ergebnis; Norden ist oben. Richtige, übersehene und ausgenommene sind längs der Referenz gezeichnet, falsche längs des Ergebnisses.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Along the road</source>
+            <translation>Längs der Straße</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>intervals</source>
+            <translation>Abschnitte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Distribution</source>
+            <translation>Verteilung</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Accuracy of driving lines</source>
+            <translation>Genauigkeit der Fahrlinien</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Errors</source>
+            <translation>Abweichungen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>The result's lines, correct and false, and the reference where it was missed; north is up.</source>
+            <translation>Die Linien des Ergebnisses, richtig und falsch, und die Referenz, wo sie übersehen wurde; Norden ist oben.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>positive left of the reference as drawn</source>
+            <translation>positiv links der Referenz, wie sie gezeichnet ist</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Line by line</source>
+            <translation>Linie für Linie</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Accuracy of markings</source>
+            <translation>Genauigkeit der Markierungen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>With a tolerance and for objects, IoU is F1 / (2 − F1): right cells of the result and found ones of the reference differ in number.</source>
+            <translation>Mit Toleranz und bei Objekten ist IoU = F1 / (2 − F1): Die Zahl der richtigen Zellen des Ergebnisses und die der gefundenen der Referenz unterscheiden sich.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Map</source>
+            <translation>Karte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Objects of the reference that were found and missed, and false objects of the result; north is up.</source>
+            <translation>Gefundene und übersehene Objekte der Referenz und falsche Objekte des Ergebnisses; Norden ist oben.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>By class</source>
+            <translation>Nach Klasse</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Recall and precision count paint of any class; F1 and IoU of the class require the same class in both, if both have it.</source>
+            <translation>Vollständigkeit und Präzision zählen Farbe jeder Klasse; F1 und IoU der Klasse verlangen in beiden dieselbe Klasse, wo beide eine haben.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Side</source>
+            <translation>Seite</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Tolerance (cm)</source>
+            <translation>Toleranz (cm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Intervals</source>
+            <translation>Abschnitte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Correct</source>
+            <translation>Richtig</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Missed</source>
+            <translation>Übersehen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>False</source>
+            <translation>Falsch</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Across: mean (cm)</source>
+            <translation>Quer: Mittel (cm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Maximum (cm)</source>
+            <translation>Größter Wert (cm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Height: mean (cm)</source>
+            <translation>Höhe: Mittel (cm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Half-width (cm)</source>
+            <translation>Halbe Breite (cm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Total width (cm)</source>
+            <translation>Ganze Breite (cm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Mean gap (m)</source>
+            <translation>Mittlere Lücke (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Mean (cm)</source>
+            <translation>Mittel (cm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Reference line</source>
+            <translation>Referenzlinie</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Right</source>
+            <translation>Richtig</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>within {cells} (%)</source>
+            <translation>innerhalb von {cells} (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Class</source>
+            <translation>Klasse</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Reference cells</source>
+            <translation>Zellen der Referenz</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Result cells</source>
+            <translation>Zellen des Ergebnisses</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>F1 of the class (%)</source>
+            <translation>F1 der Klasse (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>IoU of the class (%)</source>
+            <translation>IoU der Klasse (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Judged in intervals of {interval:g} m along {along}, each side by itself. An interval is correct when lines of the result cover at least {coverage:g} % of it and {agreement:g} % of them lie within the tolerance of the reference. A line elsewhere is false, and the reference is missed; so it is where there is no line, whether something hid the boundary or not. Tolerances are distances to either side.</source>
+            <translation>Beurteilt in Abschnitten von {interval:g} m längs: {along}; jede Seite für sich. Ein Abschnitt ist richtig, wenn Linien des Ergebnisses mindestens {coverage:g} % davon abdecken und {agreement:g} % von ihnen innerhalb der Toleranz der Referenz liegen. Eine Linie anderswo ist falsch und die Referenz übersehen; ebenso, wo keine Linie ist, ob nun etwas den Rand verdeckt hat oder nicht. Toleranzen sind Abstände nach jeder Seite.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Not judged: {count} intervals.</source>
+            <translation>Nicht beurteilt: {count} Abschnitte.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>The mean across is {signed}; heights are result less reference, and missing where a layer has none.</source>
+            <translation>Das Mittel quer ist {signed}; Höhen sind Ergebnis weniger Referenz und fehlen, wo ein Layer keine hat.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Map, within {tolerance:g} cm</source>
+            <translation>Karte, innerhalb von {tolerance:g} cm</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>{result} against {reference}.</source>
+            <translation>{result} gegen {reference}.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Not judged because</source>
+            <translation>Nicht beurteilt, weil</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Completeness (recall) is the share of the reference within the tolerance of the result; correctness (precision) the share of the result within the tolerance of the reference, and miscoding the share outside it: the buffer lies about the reference. Quality is matched result over result and unmatched reference.</source>
+            <translation>Vollständigkeit ist der Anteil der Referenz innerhalb der Toleranz des Ergebnisses; Richtigkeit (Präzision) der Anteil des Ergebnisses innerhalb der Toleranz der Referenz, Fehlkodierung der Anteil außerhalb: Der Puffer liegt um die Referenz. Qualität ist zugeordnetes Ergebnis durch Ergebnis und nicht zugeordnete Referenz.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>{result:.1f} m of result, {reference:.1f} m of reference. A gap is at least {gap:g} m of reference without a result within the tolerance.</source>
+            <translation>{result:.1f} m Ergebnis, {reference:.1f} m Referenz. Eine Lücke ist mindestens {gap:g} m Referenz ohne ein Ergebnis innerhalb der Toleranz.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Across</source>
+            <translation>Quer</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Height</source>
+            <translation>Höhe</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Of the result within {distance:.0f} cm of a reference line. The mean across is positive left of the reference as drawn.</source>
+            <translation>Vom Ergebnis innerhalb von {distance:.0f} cm um eine Referenzlinie. Das Mittel quer ist positiv links der Referenz, wie sie gezeichnet ist.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Half-widths. Each reference line with the result that lies nearest to it; result farther than {distance:.0f} cm from every reference line belongs to none and shows in the table above only.</source>
+            <translation>Halbe Breiten. Jede Referenzlinie mit dem Ergebnis, das ihr am nächsten liegt; Ergebnis, das weiter als {distance:.0f} cm von jeder Referenzlinie entfernt ist, gehört zu keiner und steht nur in der Tabelle oben.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Judged in cells of {size:g} cm; a cell is painted when its centre is. With a tolerance of one cell the other side is widened by one cell all round before the comparison. An object is found, or right, if at least {share:g} % of its cells are, with a tolerance of {cells}.</source>
+            <translation>Beurteilt in Zellen von {size:g} cm; eine Zelle ist markiert, wenn ihre Mitte es ist. Mit einer Toleranz von einer Zelle wird die andere Seite vor dem Vergleich ringsum um eine Zelle verbreitert. Ein Objekt ist gefunden oder richtig, wenn mindestens {share:g} % seiner Zellen es sind, mit einer Toleranz von {cells}.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Cells, strict</source>
+            <translation>Zellen, streng</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>With a tolerance of {cells}.</source>
+            <translation>Mit einer Toleranz von {cells}.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>{count} cell</source>
+            <translation>{count} Zelle</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>{count} cells</source>
+            <translation>{count} Zellen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>{length:.1f} m of the result lie more than {corridor:g} m from the trajectory and were left out.</source>
+            <translation>{length:.1f} m des Ergebnisses liegen mehr als {corridor:g} m von der Trajektorie entfernt und wurden weggelassen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Tolerances were given as the total width of the buffer; the half-width stands beside it.</source>
+            <translation>Toleranzen wurden als ganze Breite des Puffers angegeben; die halbe steht daneben.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Tolerances were given as the half-width of the buffer, from the line to its rim.</source>
+            <translation>Toleranzen wurden als halbe Breite des Puffers angegeben, von der Linie zu seinem Rand.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Lines match whatever their direction.</source>
+            <translation>Linien passen zusammen, welche Richtung sie auch haben.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Cells, tolerance {cells}</source>
+            <translation>Zellen, Toleranz {cells}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Objects</source>
+            <translation>Objekte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Lines that cross at more than {angle:g}° do not match.</source>
+            <translation>Linien, die sich unter mehr als {angle:g}° kreuzen, passen nicht zusammen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Recall {tolerance:g} cm (%)</source>
+            <translation>Vollständigkeit {tolerance:g} cm (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment.py" />
+            <source>Miscoding {tolerance:g} cm (%)</source>
+            <translation>Fehlkodierung {tolerance:g} cm (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment_figures.py" />
+            <source>largest</source>
+            <translation>größte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment_figures.py" />
+            <source>lateral error (cm)</source>
+            <translation>Querabweichung (cm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment_figures.py" />
+            <source>% of the length</source>
+            <translation>% der Länge</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment_figures.py" />
+            <source>along {what} (m)</source>
+            <translation>längs: {what} (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment_figures.py" />
+            <source>The lateral error along {what}: bars are the RMSE of every {bin:.0f} m, the line is the largest.</source>
+            <translation>Die Querabweichung längs: {what}. Balken sind der RMSE von je {bin:.0f} m, die Linie ist die größte.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment_figures.py" />
+            <source>Lateral error, {signed}; what lies farther out is counted in the outermost bars.</source>
+            <translation>Querabweichung, {signed}; was weiter außen liegt, zählt in den äußersten Balken.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment_figures.py" />
+            <source>Outcomes along {what}, in every {bin:.0f} m.</source>
+            <translation>Ergebnisse längs: {what}, je {bin:.0f} m.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/assessment_figures.py" />
+            <source>The bar is {length:g} m long.</source>
+            <translation>Der Balken ist {length:g} m lang.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Stations count along the road, offsets to its left. Crossfall is positive where the road falls to the right, seen along the road; left and right are seen that way too.</source>
+            <translation>Stationen zählen längs der Straße, Abstände nach links. Die Querneigung ist positiv, wo die Straße nach rechts fällt, längs der Straße gesehen; auch links und rechts sind so gesehen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Limits</source>
+            <translation>Grenzwerte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>What exceeds the limits</source>
+            <translation>Was die Grenzwerte überschreitet</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Medians along the road. ± is the standard deviation of a crossfall, with what roll leaves unknown.</source>
+            <translation>Mediane längs der Straße. ± ist die Standardabweichung einer Querneigung, einschließlich dessen, was der Rollwinkel offenlässt.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Station (m)</source>
+            <translation>Station (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Offset (m)</source>
+            <translation>Abstand (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>The lanes from above, straightened. Red: a limit is exceeded.</source>
+            <translation>Die Fahrstreifen von oben, begradigt. Rot: Ein Grenzwert ist überschritten.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Crossfall of the lanes</source>
+            <translation>Querneigung der Fahrstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Rut depth of the lanes, the deeper wheel path</source>
+            <translation>Spurrinnentiefe der Fahrstreifen, die tiefere Radspur</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Width of the lanes</source>
+            <translation>Breite der Fahrstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Width of the carriageway</source>
+            <translation>Breite der Fahrbahn</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Grade</source>
+            <translation>Längsneigung</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Height of the left curb</source>
+            <translation>Höhe des linken Bords</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Height of the right curb</source>
+            <translation>Höhe des rechten Bords</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Clearance</source>
+            <translation>Lichte Höhe</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Rut depth, at most (mm)</source>
+            <translation>Spurrinnentiefe, höchstens (mm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Crossfall, at least (%)</source>
+            <translation>Querneigung, mindestens (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Crossfall, at most (%)</source>
+            <translation>Querneigung, höchstens (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Grade, at most (%)</source>
+            <translation>Längsneigung, höchstens (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Width of a lane, at least (m)</source>
+            <translation>Breite eines Fahrstreifens, mindestens (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Clearance, at least (m)</source>
+            <translation>Lichte Höhe, mindestens (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>The country of the catalogue sets no limits.</source>
+            <translation>Das Land des Katalogs setzt keine Grenzwerte.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>No section exceeds a limit.</source>
+            <translation>Kein Querschnitt überschreitet einen Grenzwert.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Lane</source>
+            <translation>Fahrstreifen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Limit</source>
+            <translation>Grenzwert</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>From (m)</source>
+            <translation>Von (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>To (m)</source>
+            <translation>Bis (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Worst</source>
+            <translation>Schlechtester Wert</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Part</source>
+            <translation>Teil</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Width (m)</source>
+            <translation>Breite (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Crossfall (%)</source>
+            <translation>Querneigung (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Grade (%)</source>
+            <translation>Längsneigung (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Rut left (mm)</source>
+            <translation>Spurrinne links (mm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Rut right (mm)</source>
+            <translation>Spurrinne rechts (mm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Road {road}</source>
+            <translation>Straße {road}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>Of the country: {sources}</source>
+            <translation>Vom Land: {sources}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>{count} more are in the layer (field exceeds).</source>
+            <translation>{count} weitere stehen im Layer (Feld exceeds).</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/cross_sections.py" />
+            <source>lane {number}</source>
+            <translation>Fahrstreifen {number}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>Estimated trajectory</source>
+            <translation>Geschätzte Trajektorie</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>Where the scanner was, from the point clouds alone.</source>
+            <translation>Wo der Scanner war, allein aus den Punktwolken.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>Turned: counter-clockwise from straight across. Ahead, left and up: from the middle of the scanners.</source>
+            <translation>Verdreht: gegen den Uhrzeigersinn aus der Querrichtung. Vorn, links und oben: von der Mitte der Scanner aus.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>seconds of driving, without pauses</source>
+            <translation>Sekunden der Fahrt, ohne Pausen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>one sigma (m)</source>
+            <translation>ein Sigma (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>Uncertainty along the drive</source>
+            <translation>Unsicherheit längs der Fahrt</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>Blue the place, orange the height, one sigma. It grows at the ends of the cloud, where few lines see the road.</source>
+            <translation>Blau die Lage, orange die Höhe, ein Sigma. Sie wächst an den Enden der Wolke, wo wenige Linien die Straße sehen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>{median:.3f} m (median), {largest:.3f} m (largest)</source>
+            <translation>{median:.3f} m (Median), {largest:.3f} m (größte)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>Scanner</source>
+            <translation>Scanner</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>Turns per second</source>
+            <translation>Umdrehungen je Sekunde</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>Plane turned (°)</source>
+            <translation>Ebene verdreht (°)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>Plane leaning forward (°)</source>
+            <translation>Ebene nach vorn geneigt (°)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>Ahead (m)</source>
+            <translation>Vorn (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>Left (m)</source>
+            <translation>Links (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>Up (m)</source>
+            <translation>Oben (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>Returns off their rays (mm)</source>
+            <translation>Echos neben ihren Strahlen (mm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>place</source>
+            <translation>Lage</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>height</source>
+            <translation>Höhe</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>Way</source>
+            <translation>Weg</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>Length</source>
+            <translation>Länge</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>Time</source>
+            <translation>Zeit</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>Refers to</source>
+            <translation>Bezieht sich auf</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>Uncertainty of the place, one sigma</source>
+            <translation>Unsicherheit der Lage, ein Sigma</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>Uncertainty of the height, one sigma</source>
+            <translation>Unsicherheit der Höhe, ein Sigma</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>the middle of the scanners</source>
+            <translation>die Mitte der Scanner</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>the scanner</source>
+            <translation>den Scanner</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>from {what}</source>
+            <translation>aus: {what}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/estimated_trajectory.py" />
+            <source>{first:.3f} to {last:.3f} s</source>
+            <translation>{first:.3f} bis {last:.3f} s</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>How well the image lies on its control points.</source>
+            <translation>Wie gut das Bild auf seinen Passpunkten liegt.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>{share:.0f} % of the image, left out</source>
+            <translation>{share:.0f} % des Bildes, weggelassen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>{share:.0f} % of the image</source>
+            <translation>{share:.0f} % des Bildes</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>shift (order 0)</source>
+            <translation>Verschiebung (Ordnung 0)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>polynomial of order 1 (affine)</source>
+            <translation>Polynom der Ordnung 1 (affin)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>polynomial of order 2</source>
+            <translation>Polynom der Ordnung 2</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>polynomial of order 3</source>
+            <translation>Polynom der Ordnung 3</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>Control points, each left out in turn</source>
+            <translation>Passpunkte, jeder der Reihe nach weggelassen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>RMSE (pixels)</source>
+            <translation>RMSE (Pixel)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>Point</source>
+            <translation>Punkt</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>Role</source>
+            <translation>Rolle</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>Pixel</source>
+            <translation>Pixel</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>Line, downwards</source>
+            <translation>Zeile, nach unten</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>East (m)</source>
+            <translation>Ost (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>North (m)</source>
+            <translation>Nord (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>Residual (m)</source>
+            <translation>Restabweichung (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>Without this point (m)</source>
+            <translation>Ohne diesen Punkt (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>Pixels and lines</source>
+            <translation>Pixel und Zeilen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>Placed by</source>
+            <translation>Eingepasst durch</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>Result</source>
+            <translation>Ergebnis</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>Drawn within</source>
+            <translation>Gezeichnet innerhalb von</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>Outside the hull of the control points</source>
+            <translation>Außerhalb der Hülle der Passpunkte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>From where the polynomial puts each point to where it was measured, {times} times as long as on the ground. North is up; the thin line is the hull of the control points.</source>
+            <translation>Von dort, wohin das Polynom jeden Punkt setzt, dorthin, wo er gemessen wurde, {times}-mal so lang wie am Boden. Norden ist oben; die dünne Linie ist die Hülle der Passpunkte.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>RMSE = √(Σ(dx² + dy²) / n). The residuals of control points are too small, since the polynomial was fitted to them; there are {free} more than it needs. Points measured in the laser point cloud itself show how well the image fits the cloud, not how well either fits the ground.</source>
+            <translation>RMSE = √(Σ(dx² + dy²) / n). Die Restklaffungen der Passpunkte sind zu klein, denn das Polynom wurde an sie angepasst; es gibt {free} mehr, als es braucht. Punkte, die in der Laserpunktwolke selbst gemessen sind, zeigen, wie gut das Bild zur Wolke passt, nicht, wie gut eines von beiden zum Boden passt.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>{width} × {height} pixels of {size:g} m</source>
+            <translation>{width} × {height} Pixel von {size:g} m</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/georeferencing.py" />
+            <source>{departure:.2f} pixels of the polynomial, everywhere</source>
+            <translation>{departure:.2f} Pixeln vom Polynom, überall</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>What the point clouds and the trajectory hold, before any work is done on them.</source>
+            <translation>Was die Punktwolken und die Trajektorie enthalten, bevor damit gearbeitet wird.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Files</source>
+            <translation>Dateien</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Density</source>
+            <translation>Dichte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Time and scanners</source>
+            <translation>Zeit und Scanner</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Drive</source>
+            <translation>Fahrt</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>unknown: too few points lie under the vehicle</source>
+            <translation>unbekannt: zu wenige Punkte liegen unter dem Fahrzeug</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Intensity</source>
+            <translation>Intensität</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>File</source>
+            <translation>Datei</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Point format</source>
+            <translation>Punktformat</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Points per m²</source>
+            <translation>Punkte je m²</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Points per m³</source>
+            <translation>Punkte je m³</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Points per m², from 0 (dark) to {most:.0f} (yellow); north is up.</source>
+            <translation>Punkte je m², von 0 (dunkel) bis {most:.0f} (gelb); Norden ist oben.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Red is the trajectory.</source>
+            <translation>Rot ist die Trajektorie.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>{count}, distinguished by {field}</source>
+            <translation>{count}, unterschieden durch {field}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Pass</source>
+            <translation>Befahrung</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>From station (m)</source>
+            <translation>Von Station (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>To station (m)</source>
+            <translation>Bis Station (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Seconds</source>
+            <translation>Sekunden</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Mean speed (km/h)</source>
+            <translation>Mittlere Geschwindigkeit (km/h)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Extent</source>
+            <translation>Ausdehnung</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Returns</source>
+            <translation>Echos</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Classes</source>
+            <translation>Klassen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>none that can be used</source>
+            <translation>keine verwendbare</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Points within 25 m of the trajectory</source>
+            <translation>Punkte innerhalb von 25 m der Trajektorie</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Scan time covered by the trajectory</source>
+            <translation>Von der Trajektorie abgedeckte Scanzeit</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>{height:.2f} m above the road</source>
+            <translation>{height:.2f} m über der Straße</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Driven</source>
+            <translation>Gefahren</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Heights along the drive, {length:.0f} m from left to right, {low:.1f} m (below) to {high:.1f} m (above): red the trajectory, grey the road under it.</source>
+            <translation>Höhen längs der Fahrt, {length:.0f} m von links nach rechts, {low:.1f} m (unten) bis {high:.1f} m (oben): rot die Trajektorie, grau die Straße darunter.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Range</source>
+            <translation>Bereich</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>1 %, median, 99 %</source>
+            <translation>1 %, Median, 99 %</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Different values</source>
+            <translation>Verschiedene Werte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Counted as</source>
+            <translation>Gezählt als</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>seconds of the GPS week, says the file</source>
+            <translation>Sekunden der GPS-Woche, laut Datei</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>along</source>
+            <translation>mit</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>against</source>
+            <translation>gegen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>How often each intensity occurs, from {low} (left) to {high} (right).</source>
+            <translation>Wie oft jede Intensität vorkommt, von {low} (links) bis {high} (rechts).</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>{width:.1f} × {depth:.1f} m, {height:.1f} m high</source>
+            <translation>{width:.1f} × {depth:.1f} m, {height:.1f} m hoch</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Mean of occupied cells</source>
+            <translation>Mittel der besetzten Zellen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Median of occupied cells</source>
+            <translation>Median der besetzten Zellen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>As a point sees it (mean over points)</source>
+            <translation>Wie ein Punkt sie sieht (Mittel über die Punkte)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>Densest cell</source>
+            <translation>Dichteste Zelle</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>{first:.3f} to {last:.3f} s, {seconds:.1f} s</source>
+            <translation>{first:.3f} bis {last:.3f} s, {seconds:.1f} s</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>{count} positions over {length:.1f} m</source>
+            <translation>{count} Positionen über {length:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>{low} to {high}</source>
+            <translation>{low} bis {high}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>adjusted standard GPS time; begins {start} in GPS time</source>
+            <translation>GPS-Standardzeit weniger eine Milliarde Sekunden; beginnt {start} in GPS-Zeit</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>{low:.2f} to {high:.2f}</source>
+            <translation>{low:.2f} bis {high:.2f}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/inspection.py" />
+            <source>road {number}: {length:.1f} m</source>
+            <translation>Straße {number}: {length:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/intensity.py" />
+            <source>Intensity correction</source>
+            <translation>Intensitätskorrektur</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/intensity.py" />
+            <source>Asphalt's intensity by scanner, before and after. Distances are from the track of the vehicle.</source>
+            <translation>Die Intensität des Asphalts nach Scanner, vorher und nachher. Entfernungen sind die von der Spur des Fahrzeugs.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/intensity.py" />
+            <source>Asphalt before</source>
+            <translation>Asphalt vorher</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/intensity.py" />
+            <source>Asphalt after</source>
+            <translation>Asphalt nachher</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/intensity.py" />
+            <source>Variation before (%)</source>
+            <translation>Schwankung vorher (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/intensity.py" />
+            <source>Variation after (%)</source>
+            <translation>Schwankung nachher (%)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/intensity.py" />
+            <source>Highest/lowest before</source>
+            <translation>Höchster/niedrigster vorher</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/intensity.py" />
+            <source>Highest/lowest after</source>
+            <translation>Höchster/niedrigster nachher</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/map_check.py" />
+            <source>Check of an HD map</source>
+            <translation>Prüfung einer HD-Karte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/map_check.py" />
+            <source>Faults</source>
+            <translation>Fehler</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/map_check.py" />
+            <source>Nothing was found.</source>
+            <translation>Es wurde nichts gefunden.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/map_check.py" />
+            <source>What it means</source>
+            <translation>Was er bedeutet</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/map_check.py" />
+            <source>Where</source>
+            <translation>Wo</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/map_check.py" />
+            <source>What was seen</source>
+            <translation>Was gesehen wurde</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/map_check.py" />
+            <source>The first {shown} of {count}; the layer has all of them.</source>
+            <translation>Die ersten {shown} von {count}; der Layer hat alle.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/map_export.py" />
+            <source>The file as it is read back</source>
+            <translation>Die Datei, wie sie zurückgelesen wird</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/map_export.py" />
+            <source>Lanes by type and painted lines; north is up.</source>
+            <translation>Fahrstreifen nach Art und aufgemalte Linien; Norden ist oben.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/proposed_points.py" />
+            <source>Proposed control points</source>
+            <translation>Vorgeschlagene Passpunkte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/proposed_points.py" />
+            <source>The same paint in the image and in the intensity image.</source>
+            <translation>Dieselbe Farbe im Bild und im Intensitätsbild.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/proposed_points.py" />
+            <source>Pairs of cut-outs</source>
+            <translation>Paare von Ausschnitten</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/proposed_points.py" />
+            <source>Left the image, right the intensity image, both 3.2 m wide, north up. Green: accepted. Red: refused by default. Below each: its number, the likeness of the two, and how far off the other pairs place it.</source>
+            <translation>Links das Bild, rechts das Intensitätsbild, beide 3,2 m breit, Norden oben. Grün: angenommen. Rot: in der Vorgabe abgelehnt. Unter jedem: seine Nummer, die Ähnlichkeit der beiden, und wie weit daneben die anderen Paare es setzen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/proposed_points.py" />
+            <source>Accepted</source>
+            <translation>Bestätigt</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/proposed_points.py" />
+            <source>Likeness</source>
+            <translation>Ähnlichkeit</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/proposed_points.py" />
+            <source>Why not</source>
+            <translation>Warum nicht</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/proposed_points.py" />
+            <source>Placed roughly by</source>
+            <translation>Ungefähr eingepasst durch</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/proposed_points.py" />
+            <source>Found turned by</source>
+            <translation>Gefunden mit Drehung</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/proposed_points.py" />
+            <source>Pixel on the ground</source>
+            <translation>Pixel am Boden</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/proposed_points.py" />
+            <source>Pairs</source>
+            <translation>Paare</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/proposed_points.py" />
+            <source>RMSE of the accepted pairs, each left out in turn</source>
+            <translation>RMSE der angenommenen Paare, jedes der Reihe nach weggelassen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/proposed_points.py" />
+            <source>The next likely place lies {away:.1f} m away: {here:.0f} corners speak for the place found, {there:.0f} for that one.</source>
+            <translation>Die nächstwahrscheinliche Stelle liegt {away:.1f} m entfernt: {here:.0f} Ecken sprechen für die gefundene Stelle, {there:.0f} für jene.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/proposed_points.py" />
+            <source>yes</source>
+            <translation>ja</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/proposed_points.py" />
+            <source>no</source>
+            <translation>nein</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/proposed_points.py" />
+            <source>{turn:.1f}° counter-clockwise, from its rows to east</source>
+            <translation>{turn:.1f}° gegen den Uhrzeigersinn, von seinen Zeilen nach Osten</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/proposed_points.py" />
+            <source>{count}, of which {accepted} accepted</source>
+            <translation>{count}, davon {accepted} angenommen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/proposed_points.py" />
+            <source>{rmse:.3f} m, by a polynomial of order {order}</source>
+            <translation>{rmse:.3f} m, durch ein Polynom der Ordnung {order}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>The uncertainty is one sigma across the line, from residuals, point spacing and what passes differ by; two thirds of the places lie within it on simulated streets. What the whole trajectory is off is not in it.</source>
+            <translation>Die Unsicherheit ist ein Sigma quer zur Linie, aus Restabweichungen, Punktabstand und dem, worin Befahrungen sich unterscheiden; auf simulierten Straßen liegen zwei Drittel der Stellen innerhalb davon. Ein Fehler der ganzen Trajektorie ist nicht darin.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Made by Lanewright. Lengths are in metres; “bridged” was drawn across a gap, “inferred” was placed from the outer lines alone; everything else was measured.</source>
+            <translation>Erstellt von Lanewright. Längen sind in Metern; „überbrückt“ wurde über eine Lücke hinweg gezeichnet, „erschlossen“ allein aus den äußeren Linien; alles andere wurde gemessen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Road edges and surface</source>
+            <translation>Straßenränder und Oberfläche</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Agreement of the two methods</source>
+            <translation>Übereinstimmung der beiden Verfahren</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Here they lie more than 5 cm apart; look at these places first.</source>
+            <translation>Hier liegen sie mehr als 5 cm auseinander; diese Stellen zuerst ansehen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Absolute mean curvature of the surface through the points of line markings, as measured and at the height of the line fitted to them: how rough a marking is, not how the road bends.</source>
+            <translation>Betrag der mittleren Krümmung der Fläche durch die Punkte von Linienmarkierungen, wie gemessen und in der Höhe der eingepassten Linie: wie rau eine Markierung ist, nicht, wie die Straße sich krümmt.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Curvature along the driving lines</source>
+            <translation>Krümmung längs der Fahrlinien</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>station (m)</source>
+            <translation>Station (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Reading and placing points</source>
+            <translation>Punkte lesen und zuordnen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Curbs</source>
+            <translation>Bordsteine</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Marking extraction</source>
+            <translation>Markierungen extrahieren</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Outlier removal</source>
+            <translation>Ausreißer entfernen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Clustering</source>
+            <translation>Zusammenfassen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>road edge, measured</source>
+            <translation>Straßenrand, gemessen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>road edge, bridged</source>
+            <translation>Straßenrand, überbrückt</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>the two methods more than 5 cm apart</source>
+            <translation>die beiden Verfahren mehr als 5 cm auseinander</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>marking line</source>
+            <translation>Markierungslinie</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Stage</source>
+            <translation>Schritt</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>The road map over the intensity image; north is up.</source>
+            <translation>Die Straßenkarte über dem Intensitätsbild; Norden ist oben.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Neither a curb nor an edge of the pavement was found along this road, so no edge line was drawn.</source>
+            <translation>Längs dieser Straße wurde weder ein Bordstein noch ein Rand der Befestigung gefunden; daher wurde keine Randlinie gezeichnet.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Status of the surface</source>
+            <translation>Status der Oberfläche</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Area (m²)</source>
+            <translation>Fläche (m²)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Edges measured (m)</source>
+            <translation>Gemessene Ränder (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Nowhere do they lie more than 5 cm apart for a metre or more.</source>
+            <translation>Nirgends liegen sie einen Meter oder länger mehr als 5 cm auseinander.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Apart at most (cm)</source>
+            <translation>Auseinander, höchstens (cm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Use</source>
+            <translation>Verwendung</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Number</source>
+            <translation>Anzahl</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>No driving line was made: no two lines that bound a lane were found.</source>
+            <translation>Es wurde keine Fahrlinie erstellt: Keine zwei Linien wurden gefunden, die einen Fahrstreifen begrenzen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Source</source>
+            <translation>Herkunft</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Status</source>
+            <translation>Status</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Uncertainty (mm)</source>
+            <translation>Unsicherheit (mm)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>The driving lines have no circular arcs.</source>
+            <translation>Die Fahrlinien haben keine Kreisbögen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Row</source>
+            <translation>Zeile</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Action</source>
+            <translation>Aktion</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Target</source>
+            <translation>Ziel</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Note</source>
+            <translation>Notiz</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Made</source>
+            <translation>Ausgeführt</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Per m³, mean of occupied cubes</source>
+            <translation>Je m³, Mittel der besetzten Würfel</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Per m³, as a point sees it</source>
+            <translation>Je m³, wie ein Punkt sie sieht</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Mean curvature of marking points (1/m)</source>
+            <translation>Mittlere Krümmung von Markierungspunkten (1/m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Before fitting</source>
+            <translation>Vor dem Einpassen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>After fitting</source>
+            <translation>Nach dem Einpassen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>less than {speed}</source>
+            <translation>unter {speed}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Allows (km/h)</source>
+            <translation>Erlaubt (km/h)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Why</source>
+            <translation>Warum</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Speed (km/h)</source>
+            <translation>Geschwindigkeit (km/h)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Least radius (m)</source>
+            <translation>Kleinster Radius (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Least length of a curve (m)</source>
+            <translation>Kleinste Länge einer Kurve (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Together</source>
+            <translation>Zusammen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Points read</source>
+            <translation>Gelesene Punkte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Points near the road</source>
+            <translation>Punkte nahe der Straße</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Passes</source>
+            <translation>Befahrungen</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Trajectory above the road</source>
+            <translation>Trajektorie über der Straße</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Edge</source>
+            <translation>Rand</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>{taken} points were taken for paint, {kept} are left without outliers.</source>
+            <translation>{taken} Punkte galten als Farbe, {kept} bleiben ohne Ausreißer.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Line</source>
+            <translation>Linie</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Pattern</source>
+            <translation>Muster</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Turn</source>
+            <translation>Drehsinn</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Cubes of 1 m. {share:.1f} % of the points near the road are its surface. “As a point sees it” is the mean over points of how many share their cube.</source>
+            <translation>Würfel von 1 m. {share:.1f} % der Punkte nahe der Straße sind ihre Oberfläche. „Wie ein Punkt sie sieht“ ist das Mittel über die Punkte, wie viele sich ihren Würfel teilen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>the line as drawn</source>
+            <translation>die Linie, wie gezeichnet</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>arcs of the table of curve elements</source>
+            <translation>Bögen der Tabelle der Bogenelemente</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>In 1/m, in the direction of travel, positive to the left; from the headings of the {base:g} m behind and ahead. Stations are the road's.</source>
+            <translation>In 1/m, in Fahrtrichtung, positiv nach links; aus den Richtungen der {base:g} m davor und danach. Stationen sind die der Straße.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Design code check, {code}</source>
+            <translation>Prüfung nach Entwurfsregel, {code}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>{height:.2f} m (pass {number})</source>
+            <translation>{height:.2f} m (Befahrung {number})</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Both methods see {length:.0f} m of the edges drawn; 95 % of each piece keeps within {usual:.1f} cm on average.</source>
+            <translation>Beide Verfahren sehen {length:.0f} m der gezeichneten Ränder; 95 % jedes Stücks liegen im Mittel innerhalb von {usual:.1f} cm.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>{count} corrections match nothing in this run; they were left out. Look at these places and delete or renew the rows.</source>
+            <translation>{count} Korrekturen passen in diesem Lauf zu nichts; sie wurden weggelassen. Diese Stellen ansehen und die Zeilen löschen oder erneuern.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>{count} further driving lines are not drawn.</source>
+            <translation>{count} weitere Fahrlinien sind nicht gezeichnet.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Before: points near the road</source>
+            <translation>Vorher: Punkte nahe der Straße</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>After: road surface</source>
+            <translation>Nachher: Straßenoberfläche</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>kernel of 0.2 m, {count} points</source>
+            <translation>Kern von 0,2 m, {count} Punkte</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>least radius for the speed, {code}</source>
+            <translation>kleinster Radius für die Geschwindigkeit, {code}</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Road {road}, lane {lane}.</source>
+            <translation>Straße {road}, Fahrstreifen {lane}.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/road_map.py" />
+            <source>Lane {lane}.</source>
+            <translation>Fahrstreifen {lane}.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/roadside.py" />
+            <source>What stands beside the road. Heights are those above the ground at its foot; distances count outward from the carriageway's edge.</source>
+            <translation>Was neben der Straße steht. Höhen sind die über dem Boden am Fuß; Abstände zählen vom Fahrbahnrand nach außen.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/roadside.py" />
+            <source>edge of the carriageway</source>
+            <translation>Fahrbahnrand</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/roadside.py" />
+            <source>The roadside from above, straightened; black are the edges of the carriageway.</source>
+            <translation>Der Straßenseitenraum von oben, begradigt; schwarz sind die Fahrbahnränder.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/roadside.py" />
+            <source>Nothing was found within the reach.</source>
+            <translation>In der Reichweite wurde nichts gefunden.</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/roadside.py" />
+            <source>Single</source>
+            <translation>Einzelnes</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/roadside.py" />
+            <source>Kind</source>
+            <translation>Art</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/roadside.py" />
+            <source>From the edge (m)</source>
+            <translation>Vom Rand (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/roadside.py" />
+            <source>Height (m)</source>
+            <translation>Höhe (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/report/roadside.py" />
+            <source>Foot (m)</source>
+            <translation>Fuß (m)</translation>
         </message>
         <message>
             <location filename="../../desktop/algorithm_dialog.py" />
@@ -4640,11 +6840,6 @@
         </message>
         <message>
             <location filename="../../desktop/manual.py" />
-            <source>Lanewright manual</source>
-            <translation>Lanewright-Handbuch</translation>
-        </message>
-        <message>
-            <location filename="../../desktop/manual.py" />
             <source>Contents</source>
             <translation>Inhalt</translation>
         </message>
@@ -4676,7 +6871,7 @@
         <message>
             <location filename="../../desktop/menu.py" />
             <source>From a survey to driving lines in one call</source>
-            <translation>Vom Aufmaß zu den Fahrlinien in einem Aufruf</translation>
+            <translation>Von der Vermessung zu den Fahrlinien in einem Aufruf</translation>
         </message>
         <message>
             <location filename="../../desktop/menu.py" />
@@ -4746,12 +6941,12 @@
         <message>
             <location filename="../../desktop/menu.py" />
             <source>Replace the last run of a survey</source>
-            <translation>Letzten Lauf einer Aufnahme ersetzen</translation>
+            <translation>Letzten Lauf einer Vermessung ersetzen</translation>
         </message>
         <message>
             <location filename="../../desktop/menu.py" />
             <source>New results take the place of the last ones of the same survey and algorithm in the layer tree; files stay</source>
-            <translation>Neue Ergebnisse treten im Layerbaum an die Stelle der letzten derselben Aufnahme und desselben Algorithmus; Dateien bleiben</translation>
+            <translation>Neue Ergebnisse treten im Layerbaum an die Stelle der letzten derselben Vermessung und desselben Algorithmus; Dateien bleiben</translation>
         </message>
         <message>
             <location filename="../../desktop/menu.py" />
@@ -4936,12 +7131,12 @@
         <message>
             <location filename="../../desktop/sample_run.py" />
             <source>The sample survey is already running.</source>
-            <translation>Die Beispielaufnahme läuft bereits.</translation>
+            <translation>Die Beispielvermessung läuft bereits.</translation>
         </message>
         <message>
             <location filename="../../desktop/sample_run.py" />
             <source>The road map of the sample survey is in the project, its report in the Results Viewer. Its files in {folder} are deleted when QGIS is closed: save the layers you want to keep.</source>
-            <translation>Die Straßenkarte der Beispielaufnahme ist im Projekt, ihr Bericht in der Ergebnisanzeige. Ihre Dateien in {folder} werden gelöscht, wenn QGIS beendet wird: Speichern Sie die Layer, die Sie behalten möchten.</translation>
+            <translation>Die Straßenkarte der Beispielvermessung ist im Projekt, ihr Bericht in der Ergebnisanzeige. Ihre Dateien in {folder} werden gelöscht, wenn QGIS beendet wird: Speichern Sie die Layer, die Sie behalten möchten.</translation>
         </message>
         <message>
             <location filename="../../desktop/sample_run.py" />
@@ -5090,41 +7285,6 @@
         </message>
         <message>
             <location filename="../../processing_provider/results/attributes.py" />
-            <source>measured</source>
-            <translation>gemessen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>bridged</source>
-            <translation>überbrückt</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>inferred</source>
-            <translation>erschlossen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>hidden</source>
-            <translation>verdeckt</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>grown</source>
-            <translation>gewachsen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>accepted</source>
-            <translation>bestätigt</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>drawn</source>
-            <translation>gezeichnet</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
             <source>bottom</source>
             <translation>unten</translation>
         </message>
@@ -5135,63 +7295,8 @@
         </message>
         <message>
             <location filename="../../processing_provider/results/attributes.py" />
-            <source>marking</source>
-            <translation>Markierung</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>other paint</source>
-            <translation>andere Farbe</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>between two lines</source>
-            <translation>zwischen zwei Linien</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>beside one line</source>
-            <translation>neben einer Linie</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
             <source>drawn by hand</source>
             <translation>von Hand gezeichnet</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>accept</source>
-            <translation>bestätigen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>delete</source>
-            <translation>löschen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>move</source>
-            <translation>verschieben</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>correct</source>
-            <translation>richtig</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>missed</source>
-            <translation>verpasst</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>false</source>
-            <translation>falsch</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>excluded</source>
-            <translation>ausgenommen</translation>
         </message>
         <message>
             <location filename="../../processing_provider/results/attributes.py" />
@@ -5205,48 +7310,13 @@
         </message>
         <message>
             <location filename="../../processing_provider/results/attributes.py" />
-            <source>height</source>
-            <translation>Höhe</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>Edge line</source>
-            <translation>Randlinie</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>Centre line</source>
-            <translation>Mittellinie</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>Lane line</source>
-            <translation>Fahrstreifenlinie</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
-            <source>Lane</source>
-            <translation>Fahrstreifen</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
             <source>Paint</source>
             <translation>Farbe</translation>
         </message>
         <message>
             <location filename="../../processing_provider/results/attributes.py" />
-            <source>Pass</source>
-            <translation>Befahrung</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/attributes.py" />
             <source>Curb point</source>
             <translation>Bordsteinpunkt</translation>
-        </message>
-        <message>
-            <location filename="../../processing_provider/results/ready_styles.py" />
-            <source>By class</source>
-            <translation>Nach Klasse</translation>
         </message>
         <message>
             <location filename="../../processing_provider/results/ready_styles.py" />
@@ -5300,28 +7370,13 @@
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
-            <source>Status</source>
-            <translation>Status</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
             <source>Confidence (0 to 1)</source>
             <translation>Vertrauen (0 bis 1)</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
-            <source>Station (m)</source>
-            <translation>Station (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
             <source>Offset, left positive (m)</source>
             <translation>Abstand, links positiv (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
-            <source>Height (m)</source>
-            <translation>Höhe (m)</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
@@ -5332,16 +7387,6 @@
             <location filename="../../core/common/schemas.py" />
             <source>Agreement of the two methods (cm)</source>
             <translation>Übereinstimmung der beiden Verfahren (cm)</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
-            <source>Length (m)</source>
-            <translation>Länge (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
-            <source>Width (m)</source>
-            <translation>Breite (m)</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
@@ -5385,11 +7430,6 @@
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
-            <source>Why</source>
-            <translation>Warum</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
             <source>Chain along the curb</source>
             <translation>Kette längs des Bordsteins</translation>
         </message>
@@ -5400,18 +7440,8 @@
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
-            <source>Residual (m)</source>
-            <translation>Restabweichung (m)</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
             <source>Supporting points</source>
             <translation>Stützende Punkte</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
-            <source>Scanner</source>
-            <translation>Scanner</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
@@ -5420,18 +7450,8 @@
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
-            <source>Area (m²)</source>
-            <translation>Fläche (m²)</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
             <source>Cluster</source>
             <translation>Gruppe</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
-            <source>Class</source>
-            <translation>Klasse</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
@@ -5450,18 +7470,8 @@
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
-            <source>Line</source>
-            <translation>Linie</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
             <source>Kind (edge/lane/centre)</source>
             <translation>Art (edge/lane/centre)</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
-            <source>Pattern</source>
-            <translation>Muster</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
@@ -5472,11 +7482,6 @@
             <location filename="../../core/common/schemas.py" />
             <source>Fitted function (JSON)</source>
             <translation>Eingepasste Funktion (JSON)</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
-            <source>Kind</source>
-            <translation>Art</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
@@ -5680,11 +7685,6 @@
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
-            <source>Note</source>
-            <translation>Notiz</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
             <source>Kind of a line that is drawn (edge/lane/centre)</source>
             <translation>Art einer gezeichneten Linie (edge/lane/centre)</translation>
         </message>
@@ -5695,18 +7695,8 @@
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
-            <source>Fault</source>
-            <translation>Fehler</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
             <source>Road, lane, way or relation</source>
             <translation>Straße, Fahrstreifen, Weg oder Relation</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
-            <source>What was seen</source>
-            <translation>Was gesehen wurde</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
@@ -5820,23 +7810,8 @@
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
-            <source>Point</source>
-            <translation>Punkt</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
             <source>Role (control/check/disabled)</source>
             <translation>Rolle (control/check/disabled)</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
-            <source>Pixel</source>
-            <translation>Pixel</translation>
-        </message>
-        <message>
-            <location filename="../../core/common/schemas.py" />
-            <source>Line, downwards</source>
-            <translation>Zeile, nach unten</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />
@@ -6020,21 +7995,6 @@
         </message>
         <message>
             <location filename="../../resources/styles/assessed_lines.qml" />
-            <source>Correct</source>
-            <translation>Richtig</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/assessed_lines.qml" />
-            <source>Missed</source>
-            <translation>Übersehen</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/assessed_lines.qml" />
-            <source>False</source>
-            <translation>Falsch</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/assessed_lines.qml" />
             <source>Not judged</source>
             <translation>Nicht bewertet</translation>
         </message>
@@ -6079,21 +8039,6 @@
             <translation>Rechts, verdeckt</translation>
         </message>
         <message>
-            <location filename="../../resources/styles/control_points.qml" />
-            <source>Control point</source>
-            <translation>Passpunkt</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/control_points.qml" />
-            <source>Check point</source>
-            <translation>Prüfpunkt</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/corrections.qml" />
-            <source>Accepted</source>
-            <translation>Bestätigt</translation>
-        </message>
-        <message>
             <location filename="../../resources/styles/corrections.qml" />
             <source>To be deleted</source>
             <translation>Zu löschen</translation>
@@ -6134,41 +8079,6 @@
             <translation>Erschlossen</translation>
         </message>
         <message>
-            <location filename="../../resources/styles/lanes.qml" />
-            <source>Driving lane</source>
-            <translation>Fahrstreifen</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/lanes.qml" />
-            <source>Connector over a junction</source>
-            <translation>Verbindung über eine Kreuzung</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/lanes.qml" />
-            <source>Shoulder</source>
-            <translation>Seitenstreifen</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/lanes.qml" />
-            <source>Bicycle lane</source>
-            <translation>Radfahrstreifen</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/lanes.qml" />
-            <source>Parking</source>
-            <translation>Parkstreifen</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/lanes.qml" />
-            <source>Hatched area</source>
-            <translation>Sperrfläche</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/lanes.qml" />
-            <source>Median</source>
-            <translation>Mittelstreifen</translation>
-        </message>
-        <message>
             <location filename="../../resources/styles/marking_lines.qml" />
             <source>Solid</source>
             <translation>Durchgezogen</translation>
@@ -6177,36 +8087,6 @@
             <location filename="../../resources/styles/marking_lines.qml" />
             <source>Dashed</source>
             <translation>Gestrichelt</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/markings.qml" />
-            <source>Zebra crossing</source>
-            <translation>Zebrastreifen</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/markings.qml" />
-            <source>Stop line</source>
-            <translation>Haltlinie</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/markings.qml" />
-            <source>Give-way line</source>
-            <translation>Wartelinie</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/markings.qml" />
-            <source>Arrow</source>
-            <translation>Pfeil</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/markings.qml" />
-            <source>Symbol</source>
-            <translation>Symbol</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/markings.qml" />
-            <source>Hatching</source>
-            <translation>Schraffur</translation>
         </message>
         <message>
             <location filename="../../resources/styles/markings.qml" />
@@ -6227,11 +8107,6 @@
             <location filename="../../resources/styles/residuals.qml" />
             <source>Check point (residual 100 times as long)</source>
             <translation>Prüfpunkt (Restklaffung 100-fach)</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/residuals.qml" />
-            <source>Disabled point</source>
-            <translation>Abgeschalteter Punkt</translation>
         </message>
         <message>
             <location filename="../../resources/styles/road_edges.qml" />
@@ -6265,11 +8140,6 @@
         </message>
         <message>
             <location filename="../../resources/styles/roadside.qml" />
-            <source>Wall</source>
-            <translation>Mauer</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/roadside.qml" />
             <source>Fence</source>
             <translation>Zaun</translation>
         </message>
@@ -6277,11 +8147,6 @@
             <location filename="../../resources/styles/roadside.qml" />
             <source>Hedge</source>
             <translation>Hecke</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/roadside.qml" />
-            <source>Gutter</source>
-            <translation>Rinne</translation>
         </message>
         <message>
             <location filename="../../resources/styles/roadside_objects.qml" />
@@ -6292,11 +8157,6 @@
             <location filename="../../resources/styles/roadside_objects.qml" />
             <source>Sign</source>
             <translation>Schild</translation>
-        </message>
-        <message>
-            <location filename="../../resources/styles/roadside_objects.qml" />
-            <source>Tree trunk</source>
-            <translation>Baumstamm</translation>
         </message>
     </context>
 </TS>

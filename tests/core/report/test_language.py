@@ -1,0 +1,90 @@
+"""Reports in the user's language: no text goes past the translation, names and numbers of the data do."""
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+from lanewright.core.assess.boundaries import assess_boundaries
+from lanewright.core.assess.layers import boundary_layer
+from lanewright.core.common.texts import set_translation
+from lanewright.core.common.words import word
+from lanewright.core.export.check.findings import FAULTS, Finding, Findings
+from lanewright.core.report import boundary_report, map_check_report
+from shapely.geometry import LineString
+
+REPORTS = sorted(path for path in (Path(__file__).resolve().parents[3] / "core" / "report").glob("*.py") if path.stem not in ("__init__", "page"))
+# Calls whose texts stand on a page; those whose texts were translated, or are of the layers, which have one language
+SHOWN = {"Page", "Chart", "heading", "text", "note", "warning", "facts", "table", "picture", "drawing", "colour_key", "level", "curve", "bars",
+         "outcome_map", "outcomes_along_road", "error_histogram", "error_along_road"}
+TRANSLATED = {"tr", "told", "word", "_name", "get", "layer", "column", "having", "removeprefix"}
+MADE_OF_LETTERS = re.compile(r"[a-z]{3,}|[A-Za-z]{4,}")
+
+
+@pytest.fixture
+def marked():
+    """Every text that was translated stands in brackets."""
+    set_translation(lambda text: f"⟦{text}⟧", lambda text: f"⟦{text}⟧", "de")
+    yield
+    set_translation(None)
+
+
+def name_of(call):
+    return call.func.id if isinstance(call.func, ast.Name) else call.func.attr if isinstance(call.func, ast.Attribute) else ""
+
+
+def untranslated(node):
+    """The texts below a node that nothing translates; keys and comparisons are none."""
+    if isinstance(node, ast.Call) and name_of(node) in TRANSLATED or isinstance(node, (ast.Subscript, ast.Compare)):
+        return
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        yield node.value
+    for inner in ast.iter_child_nodes(node):
+        if not (isinstance(node, ast.FormattedValue) and inner is node.format_spec):
+            yield from untranslated(inner)
+
+
+@pytest.mark.parametrize("path", REPORTS, ids=lambda path: path.stem)
+def test_every_text_on_a_page_is_translated(path):
+    """RMSE, IoU and other names of the field are the same in all languages; colours begin with #."""
+    found = {}
+    for call in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(call, ast.Call) and name_of(call) in SHOWN:
+            for argument in (*call.args, *(keyword.value for keyword in call.keywords)):
+                found |= {text: call.lineno for text in untranslated(argument) if MADE_OF_LETTERS.search(text)}
+    names = {"gps_time", "RMSE (cm)", "RMSE (m)", "RMSE", "xyz"}
+    fields = {text for text in found if re.fullmatch(r"[a-z]+(_[a-z0-9]+)*", text) and (text in NAMES_OF_FIELDS or "_" in text)}
+    assert not {text: line for text, line in found.items() if text not in names | fields and not text.startswith("#")}
+
+
+NAMES_OF_FIELDS = {"mean", "median", "largest", "left", "right", "both", "lane", "source", "status", "kind", "pattern", "correct", "missed", "false",
+                   "side", "height"}
+
+
+def texts_of(page):
+    """What a reader sees."""
+    return re.findall(r">([^<>]+)<", re.sub(r"(?s)<style>.*?</style>|<img[^>]*>", "", page))
+
+
+def test_a_report_shows_no_english_but_names(marked):
+    curb = LineString([(0, 0, 1), (20, 0, 1)])
+    accuracy = assess_boundaries([curb], [curb, LineString([(30, 0, 1), (50, 0, 1)])])
+    page = boundary_report(accuracy, boundary_layer(accuracy, ""), ("Mine", "Truth"), ["A warning."])
+    bare = {re.sub(r"⟦[^⟧]*⟧", "", text) for text in texts_of(re.sub(r"(?s)⟦[^⟦⟧]*⟦[^⟦⟧]*⟧[^⟦⟧]*⟧", "", page))}
+    assert not {text for text in bare if MADE_OF_LETTERS.search(text)} - {"RMSE (cm)", "RMSE"}
+    assert '<html lang="de">' in page and "⟦A warning.⟧" in page
+
+
+def test_a_report_is_english_and_says_so_where_nothing_translates():
+    page = map_check_report(Findings([Finding("gap", "road 1", "There are 2 m.", (0.0, 0.0, 0.0))]), "a/map.xodr")
+    assert '<html lang="en">' in page and "⟦" not in page and FAULTS["gap"] in page
+
+
+def test_values_of_fields_are_words_of_the_language_names_stay(marked):
+    assert word("bridged") == "⟦bridged⟧" and word("occluded") == "⟦hidden⟧"
+    assert word("edge", "class") == "⟦Edge line⟧" and word("edge", "target") == "⟦road edge⟧"
+    assert word("B12") == "B12" and word(None) == word("") == "–"
+
+
+def test_values_of_fields_stand_in_english_reports_as_they_stand_in_the_layers():
+    assert word("side_street") == "side_street" and word("edge", "class") == "edge"
