@@ -49,9 +49,9 @@ def test_figures_of_driving_lines_can_be_saved():
 
 def test_the_page_says_what_a_street_loses_without_some_evidence():
     whole = dict(lanes=(95.0, 100.0), lanes_5=(90.0, 100.0), driven=(99.0, 100.0), lanes_right=(98.0, 100.0), directions=(100.0, 100.0))
-    evidence = {"": whole, **{name: whole for name in EVIDENCE}, "arrows": dict(whole, directions=(60.0, 100.0))}
+    evidence = {"": whole, **{name: whole for name in EVIDENCE}, "where arrows lie": dict(whole, directions=(60.0, 100.0))}
     text = evidence_section([dict(name="a street", evidence=evidence, confidence={"4": (970.0, 1000.0, 990.0)})])
-    arrows = next(line for line in text.splitlines() if line.startswith("| arrows"))
+    arrows = next(line for line in text.splitlines() if line.startswith("| where arrows lie"))
     assert "-40.0" in arrows and arrows.endswith("| a street |")
     assert next(line for line in text.splitlines() if line.startswith("| stop lines")).endswith("| none |")
     assert "| 0.95 to 1.00 | 0.99 | 0.97 | 100 |" in text

@@ -34,8 +34,10 @@ EVIDENCE = {
     "no border between lanes without paint": dict(unpainted_divider=0.0, unpainted_lane_line=0.0),
     "widths of lanes": dict(other_width=0.0, odd_width=1.0),
     "hatched areas": dict(hatched_lane=0.0, lane_through_hatching=0.0),
-    "arrows": dict(arrow_outside=0.0),
+    "where arrows lie": dict(arrow_outside=0.0),
+    "which way arrows point": dict(arrow_against=0.0),
     "stop lines": dict(split_stop=0.0),
+    "which way arrows point, and stop lines": dict(arrow_against=0.0, split_stop=0.0),
     "what is usual: how many lanes lead which way": dict(one_way=(0.0,) * 4, uneven=0.0, two_and_one=0.0),
     "another carriageway driven beside this one": dict(two_way_carriageway=0.0),
     "traffic keeps to its side": dict(wrong_side=0.0, left_hand=0.0),
@@ -66,7 +68,9 @@ def _lanes_without(change, work):
     with ExitStack() as stack:
         for module in ("markings.lines.naming", "driving.driving_lines"):
             stack.enter_context(swapped(module, "estimate_roads", estimate))
-        lines = named_by_estimate(work.lines, work.frame, NEUTRAL.usual_lane, work.marking_objects, edges, work.bright, work.clustered)
+        # what was named with all evidence must not tell now
+        unnamed = replace(work.lines, kind=np.full(len(work.lines), "", object))
+        lines = named_by_estimate(unnamed, work.frame, NEUTRAL.usual_lane, work.marking_objects, edges, work.bright, work.clustered)
         lanes, *_ = make_driving_lines(lines, work.frame, markings=work.marking_objects, edges=edges, road_points=work.bright)
     return driving_lines_to_features(lanes, work.frame)
 

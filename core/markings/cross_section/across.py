@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .candidates import Candidates
-from .strips import BOTH, FIRST, REST_FIRST, REST_SECOND, SECOND, STRIPS, StripCosts
+from .strips import BOTH, FIRST, REST_FIRST, REST_SECOND, SECOND, STRIPS, StripCosts, stops_across
 from .weights import CENTRE_LINE, EDGE_LINE, LANE_LINE, OTHER_LINE, EstimateWeights
 
 KEPT = 32     # cross-sections of an interval that are kept
@@ -61,11 +61,11 @@ def lane_strips(sections: Sections, costs: StripCosts) -> LaneStrips:
     return LaneStrips(i, k, m, end, kind, costs.lanes[kind, i, m, end], costs.first_lanes[kind, i, m, end])
 
 
-def best_sections(candidates: Candidates, costs: StripCosts, weights: EstimateWeights, kept: int = KEPT) -> Sections:
-    """The `kept` best cross-sections of each interval."""
+def best_sections(candidates: Candidates, costs: StripCosts, stops: np.ndarray, weights: EstimateWeights, kept: int = KEPT) -> Sections:
+    """The `kept` best cross-sections of each interval; `stops` are those of Evidence."""
     count, size = candidates.left.shape
     kinds = len(STRIPS)
-    between = _boundary_costs(candidates, weights)
+    between = _boundary_costs(candidates, stops, weights)
     best = np.full((count, size, kinds, kept), np.inf)
     back = np.full((count, size, kinds, kept), -1)
     # to the left of everything nobody drives
@@ -95,11 +95,12 @@ def _lowest(values, kept):
     return np.take_along_axis(place, order, axis=1), np.take_along_axis(lowest, order, axis=1)
 
 
-def _boundary_costs(c, w):
+def _boundary_costs(c, stops, w):
     """(I, M, 5, 5) nats of a boundary between a strip on its left and one on its right."""
     scale = (c.length / w.correlation)[:, None]
     table = w.boundary[c.made_of]
     extra = c.painted * w.short * (1 - c.trust) + w.bridged * (1 - c.seen)
+    stopped = stops_across(stops, (c.left + c.right) / 2)
     cost = np.full((*c.left.shape, len(STRIPS), len(STRIPS)), np.inf)
     for left in STRIPS:
         for right in STRIPS:
@@ -107,7 +108,8 @@ def _boundary_costs(c, w):
             if what >= 0:
                 misnamed = w.named * ((c.named >= 0) & (c.named != what) & (what != OTHER_LINE))
                 wrong = w.wrong_side if (left, right) in _WRONG_SIDE else 0.0
-                cost[:, :, left, right] = scale * (table[:, :, what] + wrong + misnamed + (extra if what != OTHER_LINE else 0.0))
+                cost[:, :, left, right] = scale * (table[:, :, what] + wrong + misnamed + (extra if what != OTHER_LINE else 0.0)) \
+                    + w.split_stop * stopped * (what == CENTRE_LINE)
     return cost
 
 

@@ -45,7 +45,7 @@ def estimate_road(candidates: Candidates, evidence: Evidence, first_direction: i
     weights : EstimateWeights
     """
     costs = strip_costs(candidates, evidence, weights, lane_width, first_direction)
-    sections = best_sections(candidates, costs, weights)
+    sections = best_sections(candidates, costs, evidence.stops, weights)
     sections.cost += _roads_of_many_lanes(candidates, costs, sections, evidence.divided, weights)
     area, divider = occupancy(candidates, costs, sections)
     # where no line is seen, as on a crossing, much may change; where no line is known nothing can be said

@@ -30,7 +30,8 @@ class Evidence:
 
     driven : (P, I) m, offset of each pass, NaN where it was not; directions : (P,) 1 along, -1 against the road
     asphalt, hatched : (I, B) share of each bin of BIN metres, from -FAR on, that is road surface or hatched; None where unknown
-    arrows : (A, 2) interval and offset; stops : (S, 3) interval, least and greatest offset
+    arrows : (A, 3) interval, offset, and which way it points: 1 along the road, -1 against it, nearer 0 the less sure
+    stops : (S, 3) interval, least and greatest offset
     divided : (I,) bool, whether the road is one carriageway of two
     """
 
@@ -148,7 +149,7 @@ def between_ends(ends: np.ndarray, likely: np.ndarray) -> tuple[np.ndarray, np.n
 
 
 def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, directions: np.ndarray, covered: np.ndarray | None = None,
-                hatched: np.ndarray | None = None, markings: MarkingObjects | None = None, road: int = 0,
+                hatched: np.ndarray | None = None, arrows: np.ndarray | None = None, markings: MarkingObjects | None = None, road: int = 0,
                 divided: np.ndarray | None = None) -> Evidence:
     """The Evidence of each interval, from what is known at each station.
 
@@ -158,7 +159,8 @@ def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, direc
     s : (K,) metres
     driven, directions : as `driven_offsets` gives them
     covered, hatched : (K, BINS) bool, or None
-    markings : MarkingObjects, of which arrows and stop lines count; or None
+    arrows : (A, 3) as `arrows_of` gives them, or None
+    markings : MarkingObjects, of which stop lines count; or None
     road : number of the road
     divided : (K,) bool as `other_carriageway` gives it, or None
     """
@@ -171,11 +173,8 @@ def evidence_of(candidates: Candidates, s: np.ndarray, driven: np.ndarray, direc
     count = np.add.reduceat(known, candidates.first, axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
         where = np.where(2 * count >= size, np.add.reduceat(np.where(known, driven, 0.0), candidates.first, axis=1) / count, np.nan)
-    arrows, stops = np.empty((0, 2)), np.empty((0, 3))
-    if markings is not None:
-        arrows = _arrows(candidates, s, markings, road)
-        stops = _stop_lines(candidates, s, markings, road)
-    return Evidence(where, directions, share(covered), share(hatched), arrows, stops,
+    stops = np.empty((0, 3)) if markings is None else _stop_lines(candidates, s, markings, road)
+    return Evidence(where, directions, share(covered), share(hatched), _of_interval(candidates, s, arrows), stops,
                     np.zeros(len(size), bool) if divided is None else np.add.reduceat(divided, candidates.first) * 2 > size)
 
 
@@ -184,13 +183,13 @@ def _extents(markings, road, kind):
     return found[np.isfinite(found[:, 0])]
 
 
-def _arrows(candidates, s, markings, road):
-    """(A, 2) interval and offset of the middle of each arrow."""
-    extent = _extents(markings, road, "arrow")
-    middle = extent[:, :2].mean(axis=1)
-    extent, middle = (values[(middle >= s[0]) & (middle <= s[-1])] for values in (extent, middle))
-    interval = np.searchsorted(s[candidates.first], middle, side="right") - 1
-    return np.c_[interval.clip(0), extent[:, 2:].mean(axis=1)]
+def _of_interval(candidates, s, arrows):
+    """Arrows on the road with the interval in place of the station."""
+    if arrows is None:
+        return np.empty((0, 3))
+    arrows = arrows[(arrows[:, 0] >= s[0]) & (arrows[:, 0] <= s[-1])]
+    interval = np.searchsorted(s[candidates.first], arrows[:, 0], side="right") - 1
+    return np.c_[interval.clip(0), arrows[:, 1:]]
 
 
 def _stop_lines(candidates, s, markings, road):

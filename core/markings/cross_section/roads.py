@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .arrows import arrows_of
 from .candidates import Boundaries, boundary_candidates, gather_boundaries
 from .estimate import RoadEstimate, estimate_road, lane_spans
 from .evidence import between_ends, driven_offsets, evidence_of, other_carriageway, surface_coverage
@@ -82,8 +83,9 @@ def estimate_roads(lines: dict[int, CrossSections], frame: RoadFrame, usual_widt
                                        np.abs(frame.road(number).curvature(of_road.s)) > 1 / WIDENED_RADIUS,
                                        borders_of_hatching(markings, frame, number, of_road.s) if markings is not None else None)
         candidates = boundary_candidates(boundaries, weights)
-        known[number] = boundaries, candidates, evidence_of(candidates, of_road.s, *driven, covered, hatched, markings, number,
-                                                                other_carriageway(frame, number, of_road.s))
+        known[number] = boundaries, candidates, evidence_of(
+            candidates, of_road.s, *driven, covered, hatched, arrows_of(markings, frame, number) if markings is not None else None, markings,
+            number, other_carriageway(frame, number, of_road.s))
     sides = {"right": (-1,), "left": (1,)}.get(side, (-1, 1))
     found = {first: _estimates(known, first, usual_width, weights) for first in sides}
     total = {first: sum(one.total for one in of_roads.values()) + (weights.left_hand if first > 0 else 0.0) for first, of_roads in found.items()}

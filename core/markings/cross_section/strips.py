@@ -20,6 +20,7 @@ HATCHED_SHARE = 0.12       # of a strip that is covered by hatching: its bars le
 ASPHALT_OF_A_LANE = 2.2, 3.0   # m of asphalt that could be a lane: between two lines, and elsewhere
 ASPHALT_SOFTNESS = 0.2     # m by which that is uncertain
 OTHER_SIGMA = 0.8          # m, scatter of lane widths from road to road
+STOP_MARGIN = 0.5          # m by which a stop line may reach beyond the lanes that it is for
 MIN_SCANNED_SHARE = 0.6    # of a lane's width that must be seen of a lane beside the end of the surface
 
 
@@ -52,7 +53,7 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
     paint = c.painted | (c.made_of == HATCHING)
     both_paint, any_paint = paint[:, :, None] & paint[:, None, :], paint[:, :, None] | paint[:, None, :]
     asphalt = width * _share_between(evidence.asphalt, c, width) if evidence.asphalt is not None else np.where(both_paint, width, 0.0)
-    arrows_in, arrows_off = _arrows(c, evidence.arrows, w)
+    arrows_in, arrows = _arrows(c, evidence.arrows)
 
     cost = np.full((len(STRIPS), count, size, size), np.inf)
     lanes, first_lanes = np.zeros((2, len(STRIPS), count, size, size), int)
@@ -74,17 +75,19 @@ def strip_costs(candidates: Candidates, evidence: Evidence, weights: EstimateWei
         fits = _width_cost(each, lane_width, w) + _unused(asphalt - number * lane_width, w.unused_asphalt[1]) * loose
         # what lies beyond the end of the surface
         beyond = np.clip(1 - width / np.maximum(number * each, 0.1), 0, 1) * hidden
-        total = base + scale * (fits + beyond * w.off_asphalt) + _dividers(arrows_off, each, number, begin, w)
+        total = base + scale * (fits + beyond * w.off_asphalt)
         scanned = ~hidden | (width > MIN_SCANNED_SHARE * number * lane_width)
         total = np.where(possible & scanned & (each >= NEUTRAL.narrowest_lane), total, np.inf)
         for split in range(number + 1):
             kind = SECOND if split == 0 else FIRST if split == number else BOTH
             alike = max(split - 1, 0) + max(number - split - 1, 0)
             unpainted = (0 < split < number) * w.unpainted_divider + alike * w.unpainted_lane_line
-            driven = total + scale * unpainted + scale * _driven_cost(evidence, inside, begin, each, number, split, first_direction, w)
+            driven = total + scale * (unpainted + _driven_cost(evidence, inside, begin, each, number, split, first_direction, w)) \
+                + _arrow_cost(arrows, each, number, split, first_direction, begin, w)
+            if kind == BOTH:
+                driven += w.split_stop * stops_across(evidence.stops, begin - split * each)
             better = driven < cost[kind]
             cost[kind][better], lanes[kind][better], first_lanes[kind][better] = driven[better], number, split
-    _stop_lines(cost, evidence.stops, d_left, d_right, w)
     return StripCosts(cost, lanes, first_lanes, lane_width)
 
 
@@ -152,31 +155,33 @@ def _driven_cost(evidence, inside, d_left, each, number, split, first_direction,
     return cost
 
 
-def _arrows(c, arrows, w):
-    """(I, M, M) number of arrows between two boundaries, and a list of (interval, offset)."""
+def _arrows(c, arrows):
+    """(I, M, M) number of arrows between two boundaries, and a list of (interval, offset, way, which boundaries it lies between)."""
     number = np.zeros((*c.left.shape, c.left.shape[1]))
     found = []
-    for interval, d in arrows:
+    for interval, d, way in arrows:
         k = int(interval)
         inside = (d < c.right[k][:, None]) & (d > c.left[k][None, :])
         number[k] += inside
-        found.append((k, float(d), inside))
+        found.append((k, float(d), float(way), inside))
     return number, found
 
 
-def _dividers(arrows, each, count, d_left, w):
-    """(I, M, M) nats of arrows beside the middle of their lanes."""
+def _arrow_cost(arrows, each, count, split, first_direction, d_left, w):
+    """(I, M, M) nats of arrows beside the middle of their lanes, and of arrows that point against them."""
     cost = np.zeros(each.shape)
-    for k, d, inside in arrows:
+    for k, d, way, inside in arrows:
         place = (d_left[k] - d) / np.maximum(each[k], 0.1)
         lane = np.clip(np.floor(place), 0, count - 1)
-        cost[k] += inside * np.minimum(0.5 * ((place - lane - 0.5) * each[k] / w.arrow_sigma) ** 2, w.arrow_outside)
+        against = np.maximum(-way * np.where(lane < split, first_direction, -first_direction), 0.0)
+        cost[k] += inside * (np.minimum(0.5 * ((place - lane - 0.5) * each[k] / w.arrow_sigma) ** 2, w.arrow_outside) + against * w.arrow_against)
     return cost
 
 
-def _stop_lines(cost, stops, d_left, d_right, w):
-    """Lanes of both directions without paint between them where a stop line crosses both."""
+def stops_across(stops: np.ndarray, divider: np.ndarray) -> np.ndarray:
+    """(I, ...) how many stop lines, as in Evidence, cross the border between the two directions, which lies at `divider`, (I, ...) m."""
+    number = np.zeros(divider.shape)
     for interval, low, high in stops:
         k = int(interval)
-        middle = (d_left[k] + d_right[k]) / 2
-        cost[BOTH, k] += np.where((middle > low + 0.5) & (middle < high - 0.5), w.split_stop, 0.0)
+        number[k] += (divider[k] > low + STOP_MARGIN) & (divider[k] < high - STOP_MARGIN)
+    return number

@@ -47,8 +47,9 @@ class EstimateWeights:
     driven_sigma : m, scatter of a vehicle about the middle of its lane; driven_astride : the most that this costs
     hatched_lane : of a lane over a hatched area
     arrow_outside, arrow_sigma : of an arrow where no lane is; m, scatter of arrows about the middle of their lane
+    arrow_against : of an arrow that surely points against its lane: of 150, one is no arrow, or misread
     wrong_side : of oncoming traffic on the near side
-    split_stop : of a stop line before lanes of both directions
+    split_stop : of a stop line across the border between the two directions: no authority paints one, of fifty one is another bar
     change : of a metre across that becomes lane, or ceases to be one; turn : that changes its direction
     divider_change : of a border between lanes that begins or ends
     lanes_remembered, directions_remembered : m without any line, as over a junction, that leave a third of what was known before
@@ -95,8 +96,9 @@ class EstimateWeights:
     hatched_lane: float = 8.0
     arrow_outside: float = 4.0
     arrow_sigma: float = 0.4
+    arrow_against: float = 5.0
     wrong_side: float = 8.0
-    split_stop: float = 3.0
+    split_stop: float = 4.0
     change: float = 0.5
     turn: float = 3.0
     divider_change: float = 1.5

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from lanewright.core.common.features import Features
 from lanewright.core.common.schemas import MARKINGS
+from lanewright.core.sample.parts.paint import straight_arrow
 from lined_streets import HEIGHT, Street
 from shapely.geometry import Polygon
 
@@ -15,7 +16,7 @@ def lanes_of(street, **inputs):
     for line, row in lines:
         length.setdefault(row["lane"], []).append((line.length, round(float(np.median(street.offsets(line))), 2), row["direction"]))
     for parts in length.values():
-        if sum(part[0] for part in parts) > 30.0:
+        if sum(part[0] for part in parts) > 25.0:
             _, offset, direction = max(parts)
             found[offset] = direction
     return found
@@ -25,6 +26,15 @@ def area(street, first, last, right, left, kind):
     """A marking between stations and offsets, as a row of the layer."""
     corners = street.places([first, last, last, first], [right, right, left, left])
     return Polygon(np.c_[corners, np.full(4, HEIGHT)]), {"road": 0, "class": kind, "use": "other"}
+
+
+def outlined(street, *shapes):
+    """Markings of outlines, (n, 2) m of station and offset, each with its class."""
+    layer = Features("PolygonZ", MARKINGS)
+    for outline, kind in shapes:
+        places = street.places(*outline.T)
+        layer.add(Polygon(np.c_[places, np.full(len(places), HEIGHT)]), **{"road": 0, "class": kind, "use": "other"})
+    return layer
 
 
 def painted(street, *areas):
@@ -104,6 +114,28 @@ def test_a_carriageway_beside_one_that_was_driven_the_other_way_is_one_way():
 
     assert lanes_of(street()) == {-1.75: 1, 1.75: -1}
     assert lanes_of(street(again=(16.0,))) == {-1.75: 1, 1.75: 1}
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_arrows_tell_which_way_a_lane_between_two_solid_lines_leads(way):
+    street = Street(vehicle=-1.75).paint(3.5, kind="edge").paint(0.0).paint(-3.5, kind="edge")
+    arrows = [(straight_arrow(station, 1.75, way), "arrow") for station in (25.0, 60.0, 95.0)]
+    assert lanes_of(street) == {-1.75: 1, 1.75: -1}
+    assert lanes_of(street, markings=outlined(street, *arrows)) == {-1.75: 1, 1.75: way}
+
+
+def test_arrows_that_point_against_the_drive_do_not_turn_it():
+    street = Street(vehicle=-1.75).paint(3.5, kind="edge").paint(0.0).paint(-3.5, kind="edge")
+    arrows = [(straight_arrow(station, -1.75, -1), "arrow") for station in (25.0, 60.0, 95.0)]
+    assert lanes_of(street, markings=outlined(street, *arrows))[-1.75] == 1
+
+
+def test_a_stop_line_across_two_lanes_says_that_they_lead_one_way():
+    street = Street(length=40.0, vehicle=-1.75).paint(3.5, kind="edge").paint(0.0).paint(-3.5, kind="edge")
+    assert lanes_of(street) == {-1.75: 1, 1.75: -1}
+    assert lanes_of(street, markings=painted(street, (34.0, 34.5, -3.4, 3.4, "stop"))) == {-1.75: 1, 1.75: 1}
+    # before its own lane alone it says nothing of the other
+    assert lanes_of(street, markings=painted(street, (34.0, 34.5, -3.4, -0.1, "stop"))) == {-1.75: 1, 1.75: -1}
 
 
 def test_painted_lanes_are_sure():

@@ -1,0 +1,61 @@
+"""Which way painted arrows point, by their outlines."""
+
+import numpy as np
+import pytest
+from lanewright.core.common.features import Features
+from lanewright.core.common.schemas import MARKINGS
+from lanewright.core.markings.cross_section.arrows import arrows_of
+from lanewright.core.markings.objects.marking_objects import markings_from_features
+from lanewright.core.sample.parts.paint import left_arrow, straight_arrow, turn_arrow
+from lined_streets import HEIGHT, Street
+from shapely.geometry import Polygon
+
+
+def ways(street, *outlines, cluster=None):
+    layer = Features("PolygonZ", MARKINGS)
+    for outline in outlines:
+        places = street.places(*outline.T)
+        layer.add(Polygon(np.c_[places, np.full(len(places), HEIGHT)]), road=0, use="other", cluster=cluster, **{"class": "arrow"})
+    return arrows_of(markings_from_features(layer, street.frame), street.frame, 0)
+
+
+def turned(outline, angle):
+    """An outline turned about its middle, degrees."""
+    cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    middle = outline.mean(axis=0)
+    return (outline - middle) @ np.array([[cos, sin], [-sin, cos]]) + middle
+
+
+@pytest.mark.parametrize("way", [1, -1])
+@pytest.mark.parametrize("made", [straight_arrow, turn_arrow, left_arrow])
+def test_an_arrow_points_from_its_shaft_to_its_head(made, way):
+    found = ways(Street(), made(50.0, 1.5, way))
+    assert np.sign(found[0, 2]) == way and abs(found[0, 2]) > 0.8
+    assert found[0, 0] == pytest.approx(50.0 + way * 2.25, abs=0.1)
+
+
+@pytest.mark.parametrize("way", [1, -1])
+def test_an_arrow_points_the_same_way_askew_in_a_bend_and_where_the_street_was_driven_backwards(way):
+    for street in (Street(radius=60.0), Street(vehicle=1.75, backwards=True)):
+        found = ways(street, *(turned(straight_arrow(60.0, 1.5, way), angle) for angle in (-15.0, 0.0, 15.0)))
+        assert (np.sign(found[:, 2]) == way * (-1 if street.radius is None else 1)).all()
+
+
+def test_what_is_alike_at_both_ends_points_nowhere():
+    diamond = np.array([(40.0, 0.0), (41.5, 0.75), (43.0, 0.0), (41.5, -0.75)])
+    assert ways(Street(), diamond)[0, 2] == pytest.approx(0.0, abs=0.2)
+
+
+def test_a_letter_taken_for_an_arrow_points_nowhere():
+    """An E without its last bar: a stroke, and as broad at its end as anywhere."""
+    letter = np.array([(40.0, 0.0), (43.2, 0.0), (43.2, -0.7), (42.9, -0.7), (42.9, -0.2), (41.7, -0.2), (41.7, -0.7), (41.4, -0.7), (41.4, -0.2),
+                       (40.0, -0.2)])
+    assert ways(Street(), letter)[0, 2] == 0.0
+
+
+def test_the_parts_that_wear_left_of_an_arrow_are_one_arrow():
+    street, whole = Street(), straight_arrow(50.0, 1.5, 1)
+    shaft, head = whole[[0, 1, 5, 6]] - (0.1, 0.0), whole[2:5] + (0.1, 0.0)
+    assert len(ways(street, shaft, head)) == 2
+    found = ways(street, shaft, head, cluster=7)
+    assert len(found) == 1 and found[0, 2] == 1.0
