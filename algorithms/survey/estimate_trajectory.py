@@ -28,7 +28,8 @@ class EstimateTrajectory(Algorithm):
         "place of the vehicle, the two differ by a constant arm. Heading, roll and pitch are relative to the way driven and the road. "
         "What a cloud is displaced by as a whole does not show in it, nor in the uncertainty.\n\n"
         "Heads of many beams that turn about an upright axis are known by their turns: their place is that from which every return lies in "
-        "the direction of its time. Their height above the road is then a usual one, known to 0.5 m.\n\n"
+        "the direction of its time. Their height above the road is that from which every beam has one elevation, on whatever it falls; where too "
+        "little stands beside the road to tell it, it is a usual one, known to 0.5 m, and the log says so.\n\n"
         "Without gps_time, or where no mirror is seen to turn, the track follows the density of the points: it is rough, half a metre "
         "off and with a height known to 0.3 m, and says so. Airborne, terrestrial and handheld clouds are refused."
     )

@@ -22,6 +22,7 @@ RADIUS = Field("radius_m", float, "Radius (m)")
 CURB_KIND = Field("kind", str, "Kind (main/corner/side_street/island)")
 RMSE = Field("rmse_m", float, "RMSE of the fit (m)")
 SIGMA = Field("sigma_m", float, "Uncertainty across, one sigma (m)", needed=False)
+PASS_SIGMA = Field("pass_sig_m", float, "Part of the uncertainty across that all lines of the road share, as passes differ (m)", needed=False)
 
 # curb: a step; dropped: a low one where one drives over; pavement: where asphalt ends without a curb
 EDGE = Field("edge", str, "Edge (curb/dropped/pavement)", needed=False)
@@ -32,10 +33,11 @@ END = Field("end_m", float, "End station (m)")
 CURB_POINTS = [ROAD, NEAREST_PASS, SIDE, STATUS, STATION, OFFSET, HEIGHT, PART,
                CURB_KIND, Field("chain", int, "Chain along the curb"), Field("along_m", float, "Distance along the chain (m)"),
                Field("residual_m", float, "Residual (m)"),
-               Field("support", int, "Supporting points")]
+               Field("support", int, "Supporting points"), PASS_SIGMA]
 ROAD_EDGES = [ROAD, NEAREST_PASS, SIDE, STATUS, STATION, END, HEIGHT, PART, AGREE, LENGTH, RMSE, SIGMA,
               CURB_KIND, EDGE, Field("chain", int, "Chain along the curb")]
-SCANLINES = [ROAD, PASS, Field("scanner", int, "Scanner"), STATION, LENGTH, Field("interval_m", float, "Interval of the planes (m)")]
+SCANLINES = [ROAD, PASS, Field("scanner", int, "Scanner"), STATION, LENGTH, Field("interval_m", float, "Interval of the planes (m)"),
+             PASS_SIGMA]
 ROAD_SURFACE = [ROAD, STATUS, STATION, END, Field("area_m2", float, "Area (m²)"), Field("points", int, "Road points")]
 MARKINGS = [ROAD, Field("cluster", int, "Cluster"), Field("class", str, "Class"), Field("use", str, "Use (keep/other)"),
             STATION, OFFSET, LENGTH, WIDTH, Field("elongation", float, "Elongation"),
@@ -43,7 +45,7 @@ MARKINGS = [ROAD, Field("cluster", int, "Cluster"), Field("class", str, "Class")
             Field("points", int, "Points")]
 MARKING_LINES = [ROAD, Field("line", int, "Line"), Field("kind", str, "Kind (edge/lane/centre)"),
                  Field("pattern", str, "Pattern"), STATUS, Field("curve", str, "Curve"), RADIUS, RMSE,
-                 STATION, END, OFFSET, LENGTH, WIDTH, Field("params", str, "Fitted function (JSON)")]
+                 STATION, END, OFFSET, LENGTH, WIDTH, PASS_SIGMA, Field("params", str, "Fitted function (JSON)")]
 DRIVING_LINES = [ROAD, Field("lane", int, "Lane"), Field("kind", str, "Kind"), Field("pattern", str, "Lines to its left|right"),
                  Field("direction", int, "Direction (1 along, -1 against the road)"),
                  Field("source", str, "Source (pair/offset)"), STATUS, CONFIDENCE, Field("curve", str, "Curve"), RADIUS, RMSE, SIGMA,

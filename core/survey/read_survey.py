@@ -159,7 +159,7 @@ def read_survey(files: list[CloudHeader], trajectory: Trajectory, settings: Surv
 def _tell_scanners_apart(survey, reader, progress):
     """Where the points of one scanner, as it seems, are those of two by their scan lines, let the survey tell them apart."""
     from .estimation.estimate import splitter_of
-    from .estimation.samples import samples_of
+    from .estimation.rough.samples import samples_of
 
     time, place = (np.concatenate(column) for column in zip(*reader.sampled))
     if time.min() == time.max():

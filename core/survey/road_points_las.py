@@ -8,6 +8,7 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.progress import Progress
+from .adjustment import pass_sigma
 from .adjustment.corrections import PassCorrections
 from .las.reader import POINTS_PER_BLOCK, open_cloud, read_blocks
 from .las.writer import new_laz, scale_for
@@ -70,6 +71,7 @@ def _header(road_points):
         for name, kind, text, scale in extra])
     if road_points.moves is not None:
         header.vlrs.extend(road_points.moves.to_records())
+    header.vlrs.extend(pass_sigma.to_record(road_points.pass_sigma))
     if road_points.crs:
         from ..io.crs import parse_crs
 
@@ -146,7 +148,7 @@ def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadP
         # where the file says its points lie; 32 bits of x and y reach beyond where they change to 64
         farthest = max((np.abs(np.r_[header.mins, header.maxs][[0, 1, 3, 4]] - origin[[0, 1, 0, 1]])).max(), 0.0) if total else 0.0
         dtype = point_dtype(ROAD_POINT, farthest)
-        crs, moves = header.parse_crs(), PassCorrections.of_records(header.vlrs)
+        crs, moves, sigma = header.parse_crs(), PassCorrections.of_records(header.vlrs), pass_sigma.of_records(header.vlrs)
     has_corrected, has_cluster, has_spacing = (name in names for name in ("intensity_corrected", "cluster", "spacing"))
     store = SectionStore(dtype)
     done = 0
@@ -179,4 +181,4 @@ def read_road_points(path: str | Path, progress: Progress = Progress()) -> RoadP
         progress.report(done / max(total, 1))
     if not store.count:
         raise RoadExtractionError(f"{path} holds no points. Run the stage that made it again with other settings.")
-    return RoadPoints(store, origin, "" if crs is None else crs.to_wkt(), has_corrected, has_cluster, moves, has_spacing)
+    return RoadPoints(store, origin, "" if crs is None else crs.to_wkt(), has_corrected, has_cluster, moves, has_spacing, sigma)

@@ -3935,8 +3935,8 @@
         </message>
         <message>
             <location filename="../../algorithms/survey/estimate_trajectory.py" />
-            <source>Heads of many beams that turn about an upright axis are known by their turns: their place is that from which every return lies in the direction of its time. Their height above the road is then a usual one, known to 0.5 m.</source>
-            <translation>Köpfe mit vielen Strahlen, die sich um eine aufrechte Achse drehen, erkennt man an ihren Umdrehungen: ihr Ort ist der, von dem aus jeder Messpunkt in der Richtung seiner Zeit liegt. Ihre Höhe über der Straße ist dann eine übliche, auf 0,5 m bekannt.</translation>
+            <source>Heads of many beams that turn about an upright axis are known by their turns: their place is that from which every return lies in the direction of its time. Their height above the road is that from which every beam has one elevation, on whatever it falls; where too little stands beside the road to tell it, it is a usual one, known to 0.5 m, and the log says so.</source>
+            <translation>Köpfe mit vielen Strahlen, die um eine stehende Achse rotieren, werden an ihren Umdrehungen erkannt: Ihr Ort ist der, von dem aus jeder Punkt in der Richtung seiner Zeit liegt. Ihre Höhe über der Straße ist die, von der aus jeder Strahl überall dieselbe Neigung hat, worauf er auch fällt; wo zu wenig an der Straße steht, um sie zu erkennen, ist es eine übliche, auf 0,5 m bekannt, und das Protokoll sagt es.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey/estimate_trajectory.py" />
@@ -7407,6 +7407,11 @@
             <location filename="../../core/common/schemas.py" />
             <source>Uncertainty across, one sigma (m)</source>
             <translation>Unsicherheit quer, ein Sigma (m)</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/schemas.py" />
+            <source>Part of the uncertainty across that all lines of the road share, as passes differ (m)</source>
+            <translation>Anteil der Querunsicherheit, den alle Linien der Straße teilen, weil Fahrten sich unterscheiden (m)</translation>
         </message>
         <message>
             <location filename="../../core/common/schemas.py" />

@@ -14,7 +14,7 @@ import numpy as np
 import shapely
 
 from ...common.features import Features
-from ...common.schemas import CURB_POINTS, NEAREST_PASS
+from ...common.schemas import CURB_POINTS, NEAREST_PASS, PASS_SIGMA
 from ...survey.frame.placement import COORDINATE_DECIMALS, as_written, known
 
 if TYPE_CHECKING:
@@ -138,6 +138,7 @@ def curb_points_to_features(points: CurbPoints, frame: RoadFrame) -> Features:
     """
     places = shapely.points(points.map_places(frame))
     columns = {name: getattr(points, attribute).tolist() for attribute, name in CURB_POINT_FIELDS.items()}
+    columns[PASS_SIGMA.name] = [frame.pass_sigma.get(road) for road in points.road.tolist()]
     rows = [{name: known(value) for name, value in zip(columns, row)} for row in zip(*columns.values())]
     return Features("PointZ", list(CURB_POINTS), list(places), rows, points.crs)
 

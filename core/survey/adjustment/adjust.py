@@ -17,10 +17,10 @@ from scipy.sparse.linalg import spsolve
 
 from ...common.parallel import ordered_map
 from ...common.progress import Progress
-from ...curves.robust import MAD_TO_SIGMA
 from ..store.records import COORDINATE_SCALE, to_units
 from ..store.section_store import SectionStore
 from .corrections import CORRECTION_STEP, PassCorrections
+from .pass_sigma import sigma_of_passes
 from .register import AXES, PassOffsets, pass_offsets
 from .remaining import remaining_places, said_of_places
 
@@ -49,35 +49,13 @@ def adjust_passes(survey: Any, progress: Progress = Progress(), folder: Path | N
     for k, road in enumerate(roads):
         offsets = pass_offsets(survey, road, progress.part(0.5 * k / len(roads), 0.5 * (k + 1) / len(roads)))
         apart = _disagree(offsets)
-        if (sigma := pass_sigma(offsets)) is not None:
+        if (sigma := sigma_of_passes(offsets)) is not None:
             survey.frame.pass_sigma[road] = sigma
         found = solve_corrections(offsets) if apart else {}
         moves.update(found)
         _report_offsets(road, offsets, found, progress)
     if moves:
         _replace_points(survey, _map_corrections(survey.frame, moves), progress.part(0.5, 1.0), folder)
-
-
-def pass_sigma(offsets: list[PassOffsets]) -> float | None:
-    """How far the middle of the passes over a road may be off across it, from what they differ.
-
-    Two passes with independent errors of one sigma s differ by s * sqrt(2), and the mean of n of them is off by s / sqrt(n). Single offsets
-    that are far off do not count: of the RMS and the median deviation as a sigma the smaller is taken.
-
-    Parameters
-    ----------
-    offsets : PassOffsets of one road
-
-    Returns
-    -------
-    m, one sigma; None where no offset was measured
-    """
-    left = np.concatenate([pair.left[np.isfinite(pair.left)] for pair in offsets] or [np.empty(0)])
-    count = len({number for pair in offsets for number in (pair.one, pair.other)})
-    if not len(left):
-        return None
-    apart = min(np.sqrt(np.mean(left**2)), MAD_TO_SIGMA * np.median(np.abs(left)))
-    return float(apart / np.sqrt(2 * count))
 
 
 def solve_corrections(offsets: list[PassOffsets]) -> dict[int, tuple[np.ndarray, np.ndarray]]:

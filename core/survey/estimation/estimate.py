@@ -15,13 +15,14 @@ from ..las.reader import read_headers
 from ..trajectory.trajectory import Trajectory
 from .adjustment import PER_INTERVAL, Adjusted, Returns
 from .first_poses import Spinning, first_poses, known_intervals, spinning_scanners
-from .first_track import FirstTrack, first_track
 from .growth import MAX_RAY_MISFIT, grown_poses
+from .head_height import head_heights
 from .interleaved import ScannerSplitter, lines_of_two, steps_of, two_directions
 from .kinds import refuse_airborne, refuse_handheld, refuse_terrestrial
 from .poses import YAW, Poses
-from .ridge import FIRST_HEIGHT, ridge_of
-from .samples import MAX_GAP_IN_DRIVE, UNKNOWN_SCANNER, Samples, read_samples
+from .rough.first_track import FirstTrack, first_track
+from .rough.ridge import FIRST_HEIGHT, ridge_of
+from .rough.samples import MAX_GAP_IN_DRIVE, UNKNOWN_SCANNER, Samples, read_samples
 from .turning_head import HEAD_HEIGHT, HEAD_HEIGHT_SIGMA, turning_heads
 
 ROW_SPACING = 0.02         # s between the positions written: a third of a metre on a motorway
@@ -230,14 +231,18 @@ def _of_rays(samples, scanners, found, crs):
 def _of_heads(samples, tracks, heads, crs):
     """The places of a many-beam head, one a turn."""
     time, heading, sigma = (np.concatenate([getattr(head, name) for head in heads]) for name in ("time", "heading", "sigma"))
-    ground = np.concatenate([track.at(head.time)[0][:, 2] for head, track in zip(heads, tracks)])
-    place = np.column_stack([np.concatenate([head.place for head in heads]), ground + HEAD_HEIGHT])
+    ground, height, height_sigma = head_heights(samples, tracks, heads)
+    told = (f"the elevations of its beams give its height above the road, {height:.2f} m, known to {height_sigma:.2f} m: that of where they "
+            "lead out, of which the head's own reference point may lie two decimetres off" if height is not None else
+            f"its height above the road, known to {HEAD_HEIGHT_SIGMA:g} m, is a usual one, since its beams fall on too little that stands up")
+    if height is None:
+        height, height_sigma = HEAD_HEIGHT, HEAD_HEIGHT_SIGMA
+    place = np.column_stack([np.concatenate([head.place for head in heads]), np.concatenate(ground) + height])
     known = sigma <= MAX_SIGMA
     trajectory = _rough(time[known] + samples.start, place[known], heading[known], samples.origin, crs, True)
-    return EstimatedTrajectory(trajectory, sigma[known], np.full(int(known.sum()), HEAD_HEIGHT_SIGMA), "turns", notes=[
+    return EstimatedTrajectory(trajectory, sigma[known], np.full(int(known.sum()), height_sigma), "turns", notes=[
         f"The points are those of a head of many beams that turns {abs(heads[0].rate):.1f} times a second. Its place follows from the "
-        f"directions in which it looked; its height above the road, known to {HEAD_HEIGHT_SIGMA:g} m, is a usual one, and roll and pitch are not "
-        "known."])
+        f"directions in which it looked; {told}. Roll and pitch are not known."])
 
 
 def _by_density(samples, tracks, crs):

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...curves.smoothing import robustly_smoothed
-from .first_track import WINDOW, FirstTrack, headings_of
 from .poses import KNOT_SPACING, POSE, YAW, DriveKnots, Poses
 from .resection import Fixes, fixes_of, rotation_rate_of
-from .samples import Samples
+from .rough.first_track import WINDOW, FirstTrack, headings_of
+from .rough.samples import Samples
 
 MIN_FIXES = 5             # good windows of a scanner, or it is left out
 FIX_STIFFNESS = 10.0      # (0.1 m of scatter / 0.03 m, see TRACK_STIFFNESS)^2

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .first_track import FirstTrack
 from .poses import Poses
 from .rays import MIN_RANGE, misfits
+from .rough.first_track import FirstTrack
 
 FOLLOWERS = 4            # points after a point, to which its line may lead
 NEAREST_STEP, FARTHEST_STEP = 0.02, 1.5   # m of them apart: nearer, noise turns the direction, farther it is another line

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...common.errors import RoadExtractionError
 from .first_poses import Spinning
-from .first_track import FirstTrack
+from .rough.first_track import FirstTrack
 
 FARTHEST_MEDIAN = 15.0     # m: half of what a vehicle on a road sees at a time is nearer; an aircraft's swath is wider
 MIN_PATH = 5.0           # m between the outermost places: less is no drive

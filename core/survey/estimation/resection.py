@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..lattice.rotation_rate import MIN_ROTATION_PEAK, ROTATION_WINDOW, rotation_spectrum, strongest_rotation
-from .first_track import MIN_WINDOW_SAMPLES, WINDOW, FirstTrack
+from .rough.first_track import MIN_WINDOW_SAMPLES, WINDOW, FirstTrack
 
 EXPECTED_HEIGHT = 2.3        # m of the scanner above the ground, to tell in which direction and how fast its mirror turns
 ROTATION_SAMPLES_PER_DRIVE = 8   # windows in which the rate is sought

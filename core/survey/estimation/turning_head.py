@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .first_track import FirstTrack, headings_of
-from .samples import Samples
+from .rough.first_track import FirstTrack, headings_of
+from .rough.samples import Samples
 
 TURNING_RATES = 4.0, 25.0          # turns per second that heads make
 RATE_STEP = 0.05           # 1/s
@@ -40,6 +40,7 @@ class HeadTrack:
     """Places of the head, one a turn.
 
     time : (T,) s; place : (T, 2) m; sigma : (T,) m; heading : (T,) radians counter-clockwise from east
+    speed : (T, 2) m/s by which the head moves in a turn; nothing in clouds whose turns were moved to one place each
     noise : radians, usual residual of a bearing; rate : turns per second, negative clockwise
     """
 
@@ -47,6 +48,7 @@ class HeadTrack:
     place: np.ndarray
     sigma: np.ndarray
     heading: np.ndarray
+    speed: np.ndarray
     noise: float
     rate: float
 
@@ -143,7 +145,7 @@ def head_track(time: np.ndarray, place: np.ndarray, track: FirstTrack, rate: flo
     covariance = np.linalg.inv(normal) * usual**2
     sigma = np.sqrt(covariance[:, 0, 0] + covariance[:, 1, 1] + LEAST_HEAD_SIGMA**2)
     good = misfit <= MAX_TURN_MISFIT * usual
-    return HeadTrack(middle[good], head[good], sigma[good], _headings(middle[good], head[good]), usual, rate)
+    return HeadTrack(middle[good], head[good], sigma[good], _headings(middle[good], head[good]), speed[good], usual, rate)
 
 
 def _turns(time, flat, period):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -23,6 +23,7 @@ class RoadPoints:
     crs : WKT, "" where unknown
     has_corrected, has_cluster, has_spacing : whether the columns `corrected`, `cluster` and `spacing` hold values
     moves : PassCorrections, the shifts of the passes against the coordinates that were measured; None where there are none
+    pass_sigma : {road number: m}, as in RoadFrame
     """
 
     store: SectionStore
@@ -32,13 +33,15 @@ class RoadPoints:
     has_cluster: bool = False
     moves: Any = None
     has_spacing: bool = False
+    pass_sigma: dict[int, float] = field(default_factory=dict)
 
     @classmethod
     def empty_like(cls, other: RoadPoints | None = None, origin: Any = None, crs: str = "") -> RoadPoints:
         """A new, empty set: with the sections, origin, CRS and columns of `other`, or with the given origin and CRS."""
         if other is not None:
             store = SectionStore(other.store.dtype, other.store.section_length, other.store.memory_limit)
-            return cls(store, other.origin, other.crs, other.has_corrected, other.has_cluster, other.moves, other.has_spacing)
+            return cls(store, other.origin, other.crs, other.has_corrected, other.has_cluster, other.moves, other.has_spacing,
+                       other.pass_sigma)
         return cls(SectionStore(ROAD_POINT), np.asarray(origin, float), crs)
 
     @classmethod
@@ -49,7 +52,7 @@ class RoadPoints:
         """
         dtype = point_dtype(ROAD_POINT, np.inf if survey.store.dtype["x"] == np.int64 else 0.0)
         store = PointSubset(survey.store, dtype, ("half_width", "covered"), dict(corrected=np.nan, cluster=0, spacing=0))
-        return cls(store, np.asarray(survey.frame.origin, float), survey.crs, moves=survey.moves)
+        return cls(store, np.asarray(survey.frame.origin, float), survey.crs, moves=survey.moves, pass_sigma=survey.frame.pass_sigma)
 
     def close(self) -> None:
         """Release the points and their disk space."""

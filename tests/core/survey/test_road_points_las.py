@@ -45,6 +45,15 @@ def test_every_column_comes_back_to_the_bit(tmp_path, suffix, corrected, cluster
     assert list(tmp_path.iterdir()) == [tmp_path / f"road{suffix}"], "nothing unfinished is left"
 
 
+@pytest.mark.parametrize("sigma", [{}, {0: 0.0123, 3: 0.002}])
+def test_what_passes_differ_by_goes_with_the_points(tmp_path, sigma):
+    written = road_points(count=50)
+    written.pass_sigma = sigma
+    write_road_points(written, tmp_path / "road.laz")
+    assert read_road_points(tmp_path / "road.laz").pass_sigma == sigma
+    assert RoadPoints.empty_like(written).pass_sigma == sigma
+
+
 def test_points_of_moved_passes_are_written_as_measured_and_read_as_moved(tmp_path):
     import laspy
 

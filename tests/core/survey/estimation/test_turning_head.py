@@ -17,7 +17,7 @@ def place_at(time, speed=SPEED):
     return np.column_stack([RADIUS * np.sin(angle), RADIUS * (1 - np.cos(angle))]), angle
 
 
-def spun_cloud(path, by_turn, seconds=6.0, speed=SPEED, clockwise=True):
+def spun_cloud(path, by_turn, seconds=6.0, speed=SPEED, clockwise=True, half=HALF):
     """A cloud of a street between walls; `by_turn` sees each turn from the place of its middle, as clouds of frames are."""
     rng = np.random.default_rng(4)
     step = np.arange(0.0, seconds, TURN / 700)
@@ -25,7 +25,7 @@ def spun_cloud(path, by_turn, seconds=6.0, speed=SPEED, clockwise=True):
     head, yaw = place_at((np.floor(time / TURN) + 0.5) * TURN if by_turn else time, speed)
     bearing = yaw + (-1 if clockwise else 1) * 2 * np.pi * time / TURN
     ahead, left = np.cos(bearing - yaw), np.sin(bearing - yaw)
-    wall = HALF / np.maximum(np.abs(left), 1e-3)
+    wall = half / np.maximum(np.abs(left), 1e-3)
     elevation = ELEVATIONS[beam]
     ground = np.where(elevation < 0, HEIGHT / np.tan(np.maximum(-elevation, 1e-3)), np.inf)
     away = np.minimum(np.minimum(wall, ground), 60.0 + 0 * ahead) + rng.normal(0, 0.01, len(time))
@@ -46,7 +46,7 @@ def test_the_place_of_the_head_comes_back_within_centimetres(tmp_path, by_turn, 
     left = -off[:, 0] * np.sin(yaw) + off[:, 1] * np.cos(yaw)
     ahead = off[:, 0] * np.cos(yaw) + off[:, 1] * np.sin(yaw)
     assert np.sqrt(np.mean(left**2)) < 0.05 and np.abs(left).max() < 0.3 and np.sqrt(np.mean(ahead**2)) < 0.1
-    assert np.abs(track.z - 100.0 - HEIGHT).max() < 0.5
+    assert np.abs(track.z - 100.0 - HEIGHT).max() < 0.1 and (found.sigma_height < 0.2).all()
     heading = np.radians(90.0 - track.heading)
     assert np.abs(np.angle(np.exp(1j * (heading - yaw)))[2:-2]).max() < np.radians(3.0)
 
@@ -54,3 +54,8 @@ def test_the_place_of_the_head_comes_back_within_centimetres(tmp_path, by_turn, 
 def test_one_carried_at_walking_pace_is_refused_by_name(tmp_path):
     with pytest.raises(RoadExtractionError, match="handheld or backpack"):
         estimate_trajectory([spun_cloud(tmp_path / "cloud.laz", False, seconds=12.0, speed=1.2)])
+
+
+def test_where_nothing_stands_up_the_height_is_a_usual_one_and_it_says_so(tmp_path):
+    found = estimate_trajectory([spun_cloud(tmp_path / "cloud.laz", True, half=1000.0)])
+    assert any("is a usual one" in note for note in found.notes) and (found.sigma_height == 0.5).all()

@@ -1,0 +1,12 @@
+"""The points that a trajectory is estimated from, and the first rough track along the ridge of their density.
+
+In: point cloud files. Out: `Samples`, and a `FirstTrack` of every drive.
+"""
+
+from ....lazy import public
+
+__getattr__, __all__ = public(__name__, {
+    "first_track": ("FirstTrack",),
+    "ridge": ("ridge_of",),
+    "samples": ("Samples", "read_samples", "samples_of"),
+})
