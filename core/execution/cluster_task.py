@@ -19,7 +19,7 @@ from ..common.errors import Cancelled
 from ..common.memory import trim_heap
 from ..common.parallel import cancellation_scope
 from ..common.progress import Progress
-from .interpreter import DECODERS
+from .interpreter import IMPORTED
 from .tasks import Tasks
 from .work_folder import code_digest
 
@@ -62,7 +62,7 @@ def look(folder: str, word: str, dask_worker: Any = None) -> dict[str, Any]:
 
 def sees(sizes: dict[str, int]) -> bool:
     """Whether this worker finds files of these sizes (bytes by path) and can decode point clouds."""
-    return all(find_spec(name) is not None for name in DECODERS) and all(
+    return all(find_spec(name) is not None for name in IMPORTED) and all(
         os.path.exists(path) and os.path.getsize(path) == size for path, size in sizes.items())
 
 

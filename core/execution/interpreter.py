@@ -17,7 +17,7 @@ from pathlib import Path
 
 WORKER = Path(__file__).with_name("worker.py")
 NEEDED = ("numpy", "scipy", "shapely")   # packages whose versions must be equal, or results could differ
-DECODERS = ("laspy", "lazrs")            # packages that read point clouds; what they read is the same in all versions
+IMPORTED = ("laspy", "lazrs", "cv2")     # packages whose results are the same in all versions
 TRIAL_TIME = 30.0   # s that a trial may take on a busy computer
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "RAYON_NUM_THREADS")   # the last is lazrs's
 
@@ -67,7 +67,7 @@ def candidates() -> Iterator[str]:
 def find_interpreter() -> str:
     """The first candidate that can do the work of this process; "" where there is none.
 
-    It must import the packages NEEDED from the folders that this process imports from, in the same versions, and DECODERS.
+    It must import the packages NEEDED from the folders that this process imports from, in the same versions, and IMPORTED.
     """
     return next((path for path in candidates() if _can_work(path)), "")
 

@@ -108,6 +108,9 @@ class Executor(Protocol):
             Whatever the function raises.
         """
 
+    def passing(self) -> Executor:
+        """Who runs phases whose results are not worth keeping for a later run."""
+
     def sees(self, paths: Sequence[Path]) -> bool:
         """Whether all workers can read these files, which are point clouds."""
 

@@ -121,6 +121,10 @@ class WorkerProcesses:
         with self._lock:
             self._all.discard(worker)
 
+    def passing(self) -> WorkerProcesses:
+        """Itself: it keeps nothing."""
+        return self
+
     def sees(self, paths: Sequence[Path]) -> bool:
         """What this process sees: they run on the same computer."""
         return True

@@ -27,6 +27,10 @@ class Threads:
         """Yield the results of all items in their order; see `Executor`. Nothing is kept by it."""
         return ordered_map(phase.result, items, progress, self.count)
 
+    def passing(self) -> Threads:
+        """Itself: it keeps nothing."""
+        return self
+
     def sees(self, paths: Sequence[Path]) -> bool:
         """What this process sees."""
         return True

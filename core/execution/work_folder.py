@@ -125,7 +125,15 @@ class KeptResults:
 
     def __init__(self, executor: Executor, work: WorkFolder):
         self.executor, self.work = executor, work
-        self.folder: Path | None = work.path
+
+    @property
+    def folder(self) -> Path | None:
+        """That of the executor."""
+        return self.executor.folder
+
+    def passing(self) -> Executor:
+        """The executor that does the rest."""
+        return self.executor.passing()
 
     def run(self, phase: Phase, items: Sequence[Any], progress: Progress = Progress(), keep: Sequence[Path] = ()) -> Iterator[Any]:
         """Yield the results of all items in their order; see `Executor`."""

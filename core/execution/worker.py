@@ -39,9 +39,9 @@ def main() -> None:
     os.dup2(2, 1)
     import_package(json.loads(sys.stdin.readline()))
     if sys.argv[1] == "--try":
-        from lanewright.core.execution.interpreter import DECODERS, NEEDED, versions
+        from lanewright.core.execution.interpreter import IMPORTED, NEEDED, versions
 
-        for name in (*NEEDED, *DECODERS):
+        for name in (*NEEDED, *IMPORTED):
             importlib.import_module(name)
         answers.write(json.dumps(versions()))
         answers.close()

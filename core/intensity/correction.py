@@ -168,7 +168,7 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
         some = _stripes(Points(points.records.with_columns(corrected=corrected)), step)
         return key, corrected, after.count(some.scanner, distances_of(some, kinds), some.corrected, kinds)
 
-    store = road_points.store.with_column("corrected")
+    store = road_points.store.with_column("corrected", road_points.executor.folder)
     for (road, section), corrected, counts in ordered_map(correct, sections, progress.part(0.5, 1.0)):
         store.put(road, section, corrected)
         after.add(counts, step)

@@ -11,9 +11,9 @@ import numpy as np
 
 from ..common.errors import RoadExtractionError
 from ..common.order_statistics import quantiles
-from ..common.parallel import ordered_map
 from ..common.progress import Progress
 from ..common.setting import check_limits, setting
+from ..execution.phase import Phase
 from ..io.geotiff import GEOTIFF_TILE, NODATA, new_geotiff
 from ..survey.store.records import COORDINATE_SCALE, Points
 from ..survey.store.road_points import RoadPoints
@@ -22,6 +22,7 @@ from .tiled_image import TILE_MEMORY, TiledImage
 
 RANKING_WINDOW = 20.0   # m of station over which intensities are ranked for the brightness rule
 PIECES_PER_WINDOW = 4   # pieces of a window, each interpolated at once: 5 m of road
+PIECES_PER_TASK = 8     # pieces that a worker process is given together: at everyday density a tenth of a second of its time
 MAX_TILES = 2**24       # of an image, most of them empty: GDAL keeps 16 bytes of each
 FAR_POINTS_PER_CELL = 3     # with twice as many, an evenly spread share of the points weighs on cells farther than the next
 WIDTH_SAMPLE_STEP = 16      # the width of a piece is taken from every 16th point
@@ -154,7 +155,8 @@ def _interpolate(road_points: RoadPoints, settings: ImageSettings, progress: Pro
     if not len(road_points):
         raise RoadExtractionError("There are no road points to make an intensity image of. Check the road surface first.")
     windows = [(road, k) for road in road_points.roads() for k in _window_numbers(road_points, road)]
-    found = list(ordered_map(lambda window: _survey_window(road_points, window, settings), windows, progress.part(0.0, 0.3)))
+    phase = Phase(window_of_image, road_points, (settings,), lambda window: _place(road_points, window, RANKING_WINDOW))
+    found = list(road_points.executor.run(phase, windows, progress.part(0.0, 0.3)))
     extents = {piece: extent for _, window_extents, _ in found for piece, extent in window_extents.items()}
     steps = {piece: step for *_, window_steps in found for piece, step in window_steps.items()}
     # the grid is fixed in the map: pixel column = column of the map's lattice minus the first one
@@ -170,11 +172,16 @@ def _interpolate(road_points: RoadPoints, settings: ImageSettings, progress: Pro
     # in the order of the road, so that a tile finds most of its pieces still there
     work = sorted(pieces_of_tile.items(), key=lambda item: (item[1][0], item[0]))
 
-    def sums(piece: PieceKey) -> WeightedSums:
-        return _piece_sums(road_points, piece, steps[piece], limits[piece[0], piece[1] // PIECES_PER_WINDOW], settings)
+    def sums(pieces: list[PieceKey]) -> Iterator[WeightedSums]:
+        executor = road_points.executor
+        items = [(piece, steps[piece], limits[piece[0], piece[1] // PIECES_PER_WINDOW]) for piece in pieces]
+        together = PIECES_PER_TASK if executor.folder else 1
+        phase = Phase(sums_of_pieces, road_points, (settings,), lambda some: _place(road_points, some[0][0], RANKING_WINDOW / PIECES_PER_WINDOW))
+        tasks = [items[k:k + together] for k in range(0, len(items), together)]
+        return (found for some in executor.run(phase, tasks, progress.part(0.3, 1.0)) for found in some)
 
     def tiles() -> Iterator[tuple[int, int, np.ndarray]]:
-        for (column, row), parts in _with_pieces(work, sums, progress.part(0.3, 1.0)):
+        for (column, row), parts in _with_pieces(work, sums):
             values = grid.tile(column, row, parts)
             if values is not None:
                 yield column * GEOTIFF_TILE, row * GEOTIFF_TILE, values
@@ -187,10 +194,33 @@ def _window_numbers(road_points, road):
     return range(int(np.floor(start / RANKING_WINDOW)), int(np.ceil(end / RANKING_WINDOW)))
 
 
-def _survey_window(road_points, window, settings):
-    """(P1, P99) of a window's intensities, and the Extent and the `_sampling_step` of each of its pieces."""
+def _place(road_points, key, length):
+    """What messages call a window or piece."""
+    road, number = key
+    return road_points.survey.stretch(road, number * length, (number + 1) * length)
+
+
+def window_of_image(road_points: RoadPoints, window: tuple[int, int],
+                    settings: ImageSettings) -> tuple[tuple[float, ...], dict[PieceKey, Extent], dict[PieceKey, int]]:
+    """The phase that looks what there is to interpolate in a window.
+
+    Parameters
+    ----------
+    road_points : RoadPoints
+    window : road, number of the window along it
+    settings : ImageSettings
+
+    Returns
+    -------
+    limits : 1 % and 99 % of its intensities
+    extents : {piece: Extent} of its pieces
+    steps : {piece: n}, one of n points of a piece weighs on farther cells
+    """
     road, number = window
-    reach, extents, steps, values = reach_of(settings), {}, {}, []
+    reach = reach_of(settings)
+    extents: dict[PieceKey, Extent] = {}
+    steps: dict[PieceKey, int] = {}
+    values = []
     for piece in range(number * PIECES_PER_WINDOW, (number + 1) * PIECES_PER_WINDOW):
         points = _points_of(road_points, (road, piece))
         if len(points):
@@ -199,7 +229,7 @@ def _survey_window(road_points, window, settings):
                                   for c, o in ((points.records[name], o) for name, o in zip("xy", road_points.origin)))
             extents[road, piece] = c0 - reach, c1 + reach, r0 - reach, r1 + reach
             values.append(points[::max(steps[road, piece], len(points) // MAX_RANKED_POINTS)].value)
-    return tuple(quantiles(np.concatenate(values), [0.01, 0.99])) if values else (0.0, 1.0), extents, steps
+    return tuple(quantiles(np.concatenate(values), [0.01, 0.99]).tolist()) if values else (0.0, 1.0), extents, steps
 
 
 def _points_of(road_points, piece):
@@ -219,8 +249,19 @@ def _sampling_step(points: Points, settings: ImageSettings) -> int:
     return max(int(len(points) * settings.cell_size**2 / (RANKING_WINDOW / PIECES_PER_WINDOW * width) / FAR_POINTS_PER_CELL), 1)
 
 
-def _piece_sums(road_points, piece, step, limits, settings):
-    """WeightedSums of one piece, with its `_sampling_step`."""
+def sums_of_pieces(road_points: RoadPoints, items: list[tuple[PieceKey, int, tuple[float, float]]], settings: ImageSettings) -> list[WeightedSums]:
+    """The phase that interpolates pieces.
+
+    Parameters
+    ----------
+    road_points : RoadPoints
+    items : of each the piece, one of how many of its points weighs on farther cells, and 1 % and 99 % of the intensities about it
+    settings : ImageSettings
+    """
+    return [_sums_of_piece(road_points, *item, settings) for item in items]
+
+
+def _sums_of_piece(road_points, piece, step, limits, settings):
     low, high = limits
 
     def brightness(value):
@@ -235,9 +276,9 @@ def _piece_sums(road_points, piece, step, limits, settings):
     return interpolation_sums(_points_of(road_points, piece), brightness, road_points.origin, settings, step)
 
 
-def _with_pieces(work: list[tuple[tuple[int, int], list[PieceKey]]], sums: Callable[[PieceKey], WeightedSums],
-                 progress: Progress) -> Iterator[tuple[tuple[int, int], list[WeightedSums]]]:
-    """Yield (tile, WeightedSums of its pieces) in order; pieces are computed by several threads.
+def _with_pieces(work: list[tuple[tuple[int, int], list[PieceKey]]],
+                 sums: Callable[[list[PieceKey]], Iterator[WeightedSums]]) -> Iterator[tuple[tuple[int, int], list[WeightedSums]]]:
+    """Yield (tile, WeightedSums of its pieces) in order; `sums` are those of pieces, in their order.
 
     A piece is kept for the tiles that follow soon, and computed again for those that
     follow late, such as the ones that another road crosses.
@@ -253,7 +294,7 @@ def _with_pieces(work: list[tuple[tuple[int, int], list[PieceKey]]], sums: Calla
         for first, last in zip(np.r_[0, cuts + 1], np.r_[cuts, len(tiles) - 1]):
             made[tiles[first]].append(piece)
             done[tiles[last]].append(piece)
-    results = ordered_map(sums, [piece for pieces in made for piece in pieces], progress)
+    results = sums([piece for pieces in made for piece in pieces])
     kept: dict[PieceKey, WeightedSums] = {}
     for k, (tile, pieces) in enumerate(work):
         kept.update((piece, next(results)) for piece in made[k])

@@ -182,7 +182,6 @@ def _map_of(survey, image_path, settings, stages, corrections):
         # before hours of work, not after
         check_fits(*_span(survey), settings.image)
     found = stages.run("curbs", "Detecting curbs …", find_curb_points, survey, settings.boundaries)
-    survey.executor.release()
     boundaries = stages.run("edges", "Fitting road edges …", draw_boundaries, found, survey.frame, settings.edges,
                             survey=survey)
     edges = correct_edges(boundaries.edges, survey.frame, wanted)
@@ -199,7 +198,7 @@ def _map_of(survey, image_path, settings, stages, corrections):
                      density=density, country=settings.driving.country, corrections=wanted)
     result.counts.update(curb_points=len(boundaries.curb_points), road_points=len(road_points))
     if survey.has_intensity:
-        _paint(result, image_path, settings, stages)
+        _paint(result, image_path, settings, stages, survey.executor)
     else:
         result.without_paint = ("The point cloud has no intensity (all values are the same), so paint cannot be told from "
                                 "asphalt: no markings, marking lines or driving lines were made.")
@@ -235,7 +234,7 @@ def _places(points):
     return Points(join_columns([points.store.section(*key) for key in points.all_sections()], points.store.dtype))
 
 
-def _paint(result, image_path, settings, stages):
+def _paint(result, image_path, settings, stages, executor):
     """Intensity, markings and lines, added to the result."""
     frame = result.frame
     if settings.correct:
@@ -243,6 +242,7 @@ def _paint(result, image_path, settings, stages):
             "intensity", "Correcting intensity …", correct_intensity, result.road_points, frame, settings.intensity)
     image = stages.run("image", "Making the intensity image …", make_intensity_image,
                        result.road_points, settings.image, path=image_path)
+    executor.release()
     # the file is a result; markings are extracted from the image in memory
     points = stages.run("markings", "Extracting markings …", extract_markings,
                         result.road_points, image, frame, settings.markings)

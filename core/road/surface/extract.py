@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...common.errors import RoadExtractionError
-from ...common.parallel import ordered_map
 from ...common.progress import Progress
 from ...common.setting import check_limits, setting
-from ...survey.store.records import COORDINATE_SCALE
+from ...execution.phase import Phase
 from ...survey.store.road_points import RoadPoints
+from ...survey.store.section_store import STRETCH_POINTS
 from .ground_grid import ROW_LENGTH, GroundCells
 from .limits import edge_offsets
 from .measured_ground import WINDOW_ROWS, MeasuredGround
@@ -24,7 +24,7 @@ from .openings import cells_driven, opened_limits, street_ground
 from .outline import outlines
 from .pavement_edge import GrownLimit, SurfaceProfiles, grown_limit
 from .region_growing import follow_road, smooth_road
-from .road_points import OBSTACLE_SQUARE, covered_by_obstacles, points_on_road
+from .road_points import surface_about, surface_points
 from .road_surface import SurfaceOutlines
 
 if TYPE_CHECKING:
@@ -201,25 +201,13 @@ def _has_road(ground, offsets):
 def _take_points(survey, road, carriageway, road_points, progress):
     """Put the surface points of one road into `road_points`; returns the number of points in each row of cells."""
     per_row = np.zeros(len(carriageway.height), np.int64)
-    store = survey.store
-
-    def take(number):
-        start, end = (np.array([number, number + 1]) * store.section_length).tolist()
-        # an obstacle beside a point may lie in the next section
-        first_square, last_square = np.floor(start / OBSTACLE_SQUARE - 1.01), np.ceil(end / OBSTACLE_SQUARE + 1.01)
-        points = survey.window(road, first_square * OBSTACLE_SQUARE, last_square * OBSTACLE_SQUARE)
-        found = points_on_road(points, carriageway)
-        beneath = covered_by_obstacles(points[found.surface], points[found.above])
-        # points are sorted by station
-        stations = points.records["s"]
-        first, last = np.searchsorted(stations, np.array([store.first_unit(number), store.first_unit(number + 1)], stations.dtype))
-        own = slice(*np.searchsorted(found.surface, [first, last]))
-        rows = found.surface[own]
-        row = np.floor(stations.take(rows) * COORDINATE_SCALE / ROW_LENGTH).astype(np.int64) - carriageway.cells.first_row
-        counts = np.bincount(np.clip(row, 0, len(per_row) - 1), minlength=len(per_row))
-        return number, rows - first, dict(half_width=found.half_width[own], covered=beneath[own].astype(np.uint8)), counts
-
-    for number, rows, columns, counts in ordered_map(take, store.sections(road), progress):
-        road_points.store.put(road, number, rows, **columns)
-        per_row += counts
+    executor, length = survey.executor.passing(), survey.store.section_length
+    stretches = [stretch for stretch in survey.store.stretches(STRETCH_POINTS if executor.folder else 0) if stretch[0] == road]
+    phase = Phase(surface_points, survey, (), lambda item: survey.stretch(road, item[0][1] * length, item[0][2] * length),
+                  lambda item: survey.store.points_between(road, item[0][1] * length, item[0][2] * length))
+    for sections in executor.run(phase, [(stretch, surface_about(carriageway, stretch, length)) for stretch in stretches], progress):
+        for found in sections:
+            road_points.store.put_mask(road, found.number, found.bits, half_width=found.half_width, covered=found.covered)
+            first = found.first_row - carriageway.cells.first_row
+            per_row[first:first + len(found.per_row)] += found.per_row
     return per_row

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import ndimage
 
+from ...survey.store.point_subset import packed_mask
 from ...survey.store.records import COORDINATE_SCALE, Points
+from ...survey.store.section_store import Stretch
 from .ground_grid import COLUMN_WIDTH, GROUND_POINTS_PER_BATCH, ROW_LENGTH
 
 if TYPE_CHECKING:
+    from ...survey.open_survey import Survey
     from .extract import Carriageway
 
 MIN_OBSTACLE_HEIGHT, MAX_OBSTACLE_HEIGHT = 0.25, 2.0  # m above the road: curbs and stray points are lower, signs and branches higher
 OBSTACLE_SQUARE = 0.20       # m, side of the squares in which obstacles are counted
+ROWS_BESIDE = 4              # rows of cells beyond a stretch that tell of its points, and of what stands within two squares beside it
 MIN_OBSTACLE_SHARE = 1 / 3   # of the points in a square and the eight around it
 
 
@@ -59,6 +63,77 @@ def _squares(*points):
             run -= np.int32(low[1])
         found.append(place)
     return *found, shape
+
+@dataclass(frozen=True)
+class SurfaceOfSection:
+    """The points of the road surface in one section.
+
+    Attributes
+    ----------
+    number : of the section
+    bits : (B,) uint8 of `packed_mask`, which of its points
+    half_width : (M,) uint16 mm
+    covered : (M,) uint8, 1 beneath obstacles and right beside them
+    first_row : number of the first of some rows of cells
+    per_row : (R,) int64, points in each of them
+    """
+
+    number: int
+    bits: np.ndarray
+    half_width: np.ndarray
+    covered: np.ndarray
+    first_row: int
+    per_row: np.ndarray
+
+
+def surface_about(carriageway: Carriageway, stretch: Stretch, section_length: float) -> Carriageway:
+    """The rows of a carriageway that tell of the points of a stretch of it, what stands beside them, and no more.
+
+    Parameters
+    ----------
+    carriageway : Carriageway
+    stretch : Stretch of its road
+    section_length : m
+    """
+    cells, count = carriageway.cells, len(carriageway.height)
+    low, high = stretch[1] * section_length - ROWS_BESIDE * ROW_LENGTH, stretch[2] * section_length + ROWS_BESIDE * ROW_LENGTH
+    a = int(np.clip(np.floor(low / ROW_LENGTH) - cells.first_row, 0, count - 1))
+    b = int(np.clip(np.ceil(high / ROW_LENGTH) - cells.first_row, a + 1, count))
+    none = cells.height[:0]
+    here = replace(cells, first_row=cells.first_row + a, height=cells.height[a:b], rough=none, brightness=none, scatter=none, count=none)
+    rows = {name: getattr(carriageway, name)[a:b] for name in ("height", "ground", "right", "left", "right_bounded", "left_bounded")}
+    return replace(carriageway, cells=here, grown={}, **rows)
+
+
+def surface_points(survey: Survey, item: tuple[Stretch, Carriageway]) -> list[SurfaceOfSection]:
+    """The phase that selects the points of the road surface, section by section.
+
+    Parameters
+    ----------
+    survey : Survey
+    item : Stretch of a road, and what `surface_about` says of it
+    """
+    stretch, carriageway = item
+    return [_points_of_section(survey, *key, carriageway) for key in survey.store.in_stretch(stretch)]
+
+
+def _points_of_section(survey, road, number, carriageway):
+    store = survey.store
+    start, end = (np.array([number, number + 1]) * store.section_length).tolist()
+    # an obstacle beside a point may lie in the next section
+    first_square, last_square = np.floor(start / OBSTACLE_SQUARE - 1.01), np.ceil(end / OBSTACLE_SQUARE + 1.01)
+    points = survey.window(road, first_square * OBSTACLE_SQUARE, last_square * OBSTACLE_SQUARE)
+    found = points_on_road(points, carriageway)
+    beneath = covered_by_obstacles(points[found.surface], points[found.above])
+    # points are sorted by station
+    stations = points.records["s"]
+    first, last = np.searchsorted(stations, np.array([store.first_unit(number), store.first_unit(number + 1)], stations.dtype))
+    own = slice(*np.searchsorted(found.surface, [first, last]))
+    rows, first_row, count = found.surface[own], carriageway.cells.first_row, len(carriageway.height)
+    row = np.floor(stations.take(rows) * COORDINATE_SCALE / ROW_LENGTH).astype(np.int64) - first_row
+    per_row = np.bincount(np.clip(row, 0, count - 1), minlength=count)
+    return SurfaceOfSection(number, packed_mask(rows - first), found.half_width[own], beneath[own].astype(np.uint8), first_row, per_row)
+
 
 @dataclass(frozen=True)
 class OnRoad:

@@ -6,15 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from ...common.progress import Progress
 from ...execution.phase import Executor, Phase, Recipe
-from ..store.section_store import SectionStore
+from ..store.section_store import STRETCH_POINTS, SectionStore, Stretch
 from ..store.store_index import StoreIndex
 from .finishing import Finishing
-
-ORDERED_POINTS = 1_200_000   # points of a task, about: less than a second of a worker's time, some 25 MB of its file
 
 
 class UnorderedPoints:
@@ -35,17 +31,6 @@ class UnorderedPoints:
         return Recipe("survey.reading.ordering:unordered_points", dict(contents=self.store.contents(), points_folder=str(self.store.folder),
                                                                finishing=self.finishing, folder=str(self.folder)))
 
-    def items(self) -> list[tuple[int, int, int]]:
-        """(road, first, last + 1 number of a section) of stretches with about ORDERED_POINTS points each."""
-        found: list[tuple[int, int, int]] = []
-        for road in self.store.roads():
-            numbers = np.array(self.store.sections(road))
-            ends = np.cumsum([self.store.size(road, number) for number in numbers.tolist()])
-            cuts = numbers[np.searchsorted(ends, np.arange(ORDERED_POINTS, ends[-1], ORDERED_POINTS))] + 1
-            bounds = np.unique(np.r_[numbers[0], cuts, numbers[-1] + 1]).tolist()
-            found += [(road, first, end) for first, end in zip(bounds[:-1], bounds[1:])]
-        return found
-
     def put_in_order(self, executor: Executor, place: Callable[[int, float, float], str], progress: Progress) -> None:
         """Put all points in order; the store has them from the folder, from then on.
 
@@ -61,7 +46,7 @@ class UnorderedPoints:
             return self.store.points_between(item[0], item[1] * length, item[2] * length)
 
         phase = Phase(order_sections, self, (), lambda item: place(item[0], item[1] * length, item[2] * length), points)
-        found = list(executor.run(phase, self.items(), progress))
+        found = list(executor.run(phase, self.store.stretches(STRETCH_POINTS), progress))
         self.store.take_over(StoreIndex.join(found), self.folder)
 
 
@@ -72,15 +57,13 @@ def unordered_points(contents: dict[str, Any], points_folder: str, finishing: Fi
     return UnorderedPoints(store, finishing, Path(folder))
 
 
-def order_sections(source: UnorderedPoints, item: tuple[int, int, int]) -> StoreIndex:
+def order_sections(source: UnorderedPoints, item: Stretch) -> StoreIndex:
     """The phase: the points of some sections, in order, in a file of the folder.
 
     Parameters
     ----------
     source : UnorderedPoints
-    item : (road, first, last + 1 number of a section)
+    item : Stretch of its road
     """
-    road, first, end = item
-    keys = [(road, number) for number in source.store.sections(road) if first <= number < end]
-    return source.store.write_in_order(keys, source.folder)
+    return source.store.write_in_order(source.store.in_stretch(item), source.folder)
 

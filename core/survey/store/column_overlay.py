@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from .columns import Columns
 from .section_store import SectionStore
+from .store_index import StoreIndex
 
 
 class ColumnOverlay(SectionStore):
@@ -15,14 +17,15 @@ class ColumnOverlay(SectionStore):
 
     Parameters
     ----------
-    points : SectionStore, closed with this one
+    points : SectionStore, closed with this one; it stays an attribute
     name : of the column
+    folder : where its values go that are not kept in memory, so that others can read them; None for a temporary file without a name
     """
 
-    def __init__(self, points: SectionStore, name: str):
+    def __init__(self, points: SectionStore, name: str, folder: Path | None = None):
         super().__init__(points.dtype, points.section_length, points.memory_limit)
-        self._points, self._name = points, name
-        self._column = SectionStore([(name, points.dtype[name])], points.section_length, points.memory_limit)
+        self.points, self._name = points, name
+        self._column = SectionStore([(name, points.dtype[name])], points.section_length, points.memory_limit, folder=folder)
 
     @property
     def count(self) -> int:
@@ -37,13 +40,24 @@ class ColumnOverlay(SectionStore):
         raise TypeError("The points of this store are those of another; a column can be put, points cannot be added.")
 
     def roads(self) -> list[int]:
-        return self._points.roads()
+        return self.points.roads()
 
     def sections(self, road: int) -> list[int]:
-        return self._points.sections(road)
+        return self.points.sections(road)
+
+    def shared(self) -> dict[str, Any]:
+        """As `SectionStore.contents` of the column alone, and the folder that its values lie in then."""
+        return dict(column=self._column.index(), folder=str(self._column.folder))
+
+    def adopt_shared(self, column: StoreIndex, folder: str) -> None:
+        """Add the values of `shared`."""
+        self._column.adopt(column, Path(folder))
+
+    def size(self, road: int, section: int) -> int:
+        return self.points.size(road, section)
 
     def _read(self, road, section):
-        column, points = self._column.section(road, section), self._points.section(road, section)
+        column, points = self._column.section(road, section), self.points.section(road, section)
 
         def of(name):
             return column if name == self._name else points
@@ -56,9 +70,9 @@ class ColumnOverlay(SectionStore):
 
     def clear_cache(self) -> None:
         self._column.clear_cache()
-        self._points.clear_cache()
+        self.points.clear_cache()
 
     def close(self) -> None:
         super().close()
         self._column.close()
-        self._points.close()
+        self.points.close()

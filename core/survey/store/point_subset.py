@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from .columns import Columns
 from .section_store import SectionStore
+from .store_index import StoreIndex
 
 SUBSET_MEMORY_LIMIT = 16 * 2**20  # bytes of masks, and as many of additional columns, in memory
+
+
+def packed_mask(rows: np.ndarray) -> np.ndarray:
+    """(B,) uint8, a bit for every row up to the last of (M,) ascending indices; none without rows."""
+    mask = np.zeros(rows[-1] + 1 if len(rows) else 0, bool)
+    mask[rows] = True
+    return np.packbits(mask)
 
 
 class PointSubset(SectionStore):
@@ -22,14 +31,15 @@ class PointSubset(SectionStore):
     dtype : columns of the points that are returned
     own : names of the columns whose values are stored here, with the rows
     constants : {name: value} of the columns that have one value for all points; the other columns are the store's
+    folder : where rows and own columns go that are not kept in memory, so that others can read them; None for temporary files without a name
     """
 
-    def __init__(self, points: SectionStore, dtype: Any, own: Sequence[str], constants: dict[str, Any]):
+    def __init__(self, points: SectionStore, dtype: Any, own: Sequence[str], constants: dict[str, Any], folder: Path | None = None):
         super().__init__(dtype, points.section_length, points.memory_limit)
         self._points = points
         # What is read from these two is cached with the points.
         self._masks, self._own = (
-            SectionStore(kind, points.section_length, min(SUBSET_MEMORY_LIMIT, points.memory_limit), cache_limit=0)
+            SectionStore(kind, points.section_length, min(SUBSET_MEMORY_LIMIT, points.memory_limit), cache_limit=0, folder=folder)
             for kind in ([("bits", "u1")], [(name, self.dtype[name]) for name in own]))
         self._constants = {name: np.array(value, self.dtype[name]) for name, value in constants.items()}
 
@@ -47,11 +57,25 @@ class PointSubset(SectionStore):
         rows : (M,) indices into the section, ascending
         columns : (M,) values of each own column
         """
-        if len(rows):
-            mask = np.zeros(rows[-1] + 1, bool)
-            mask[rows] = True
-            self._masks.put(road, section, Columns({"bits": np.packbits(mask)}, self._masks.dtype))
+        self.put_mask(road, section, packed_mask(rows), **columns)
+
+    def put_mask(self, road: int, section: int, bits: np.ndarray, **columns: np.ndarray) -> None:
+        """Add points of a section of the store; (B,) uint8 of `packed_mask`, and the own columns as in `put`."""
+        if len(bits):
+            self._masks.put(road, section, Columns({"bits": bits}, self._masks.dtype))
             self._own.put(road, section, Columns(columns, self._own.dtype))
+
+    def shared(self) -> dict[str, Any]:
+        """What another process, which has the store, needs to `adopt_shared` rows and own columns, which lie in the folder then; plain values."""
+        return dict(masks=self._masks.index(), own=self._own.index(), folder=str(self._own.folder))
+
+    def adopt_shared(self, masks: StoreIndex, own: StoreIndex, folder: str) -> None:
+        """Add the points of `shared`."""
+        self._masks.adopt(masks, Path(folder))
+        self._own.adopt(own, Path(folder))
+
+    def size(self, road: int, section: int) -> int:
+        return self._own.size(road, section)
 
     def append(self, road: int, records: Any) -> None:
         """Refused: the points are rows of another store."""

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ...execution.phase import Executor, Recipe
+from ...execution.threads import THREADS
+from .column_overlay import ColumnOverlay
 from .point_subset import PointSubset
 from .records import ROAD_POINT, Points, join_columns, point_dtype
 from .section_store import SectionStore
@@ -24,6 +28,7 @@ class RoadPoints:
     has_corrected, has_cluster, has_spacing : whether the columns `corrected`, `cluster` and `spacing` hold values
     moves : PassCorrections, the shifts of the passes against the coordinates that were measured; None where there are none
     pass_sigma : {road number: m}, as in RoadFrame
+    survey : Survey whose points these are, None where they are their own
     """
 
     store: SectionStore
@@ -34,6 +39,19 @@ class RoadPoints:
     moves: Any = None
     has_spacing: bool = False
     pass_sigma: dict[int, float] = field(default_factory=dict)
+    survey: Any = field(default=None, repr=False)
+
+    @property
+    def executor(self) -> Executor:
+        """Who runs the phases that read these points."""
+        return THREADS if self.survey is None else self.survey.executor.passing()
+
+    def recipe(self, folder: Path) -> Recipe:
+        """How other processes open the points, which must be those of a Survey."""
+        overlay = self.store.shared() if isinstance(self.store, ColumnOverlay) else None
+        subset: Any = self.store.points if isinstance(self.store, ColumnOverlay) else self.store
+        arguments = dict(survey=self.survey.recipe(folder), subset=subset.shared(), corrected=overlay)
+        return Recipe("survey.store.road_points:shared_road_points", arguments)
 
     @classmethod
     def empty_like(cls, other: RoadPoints | None = None, origin: Any = None, crs: str = "") -> RoadPoints:
@@ -51,8 +69,10 @@ class RoadPoints:
         The points stay in the store of the Survey, which lives as long as the road points and is closed with them.
         """
         dtype = point_dtype(ROAD_POINT, np.inf if survey.store.dtype["x"] == np.int64 else 0.0)
-        store = PointSubset(survey.store, dtype, ("half_width", "covered"), dict(corrected=np.nan, cluster=0, spacing=0))
-        return cls(store, np.asarray(survey.frame.origin, float), survey.crs, moves=survey.moves, pass_sigma=survey.frame.pass_sigma)
+        store = PointSubset(survey.store, dtype, ("half_width", "covered"), dict(corrected=np.nan, cluster=0, spacing=0),
+                            survey.executor.passing().folder)
+        return cls(store, np.asarray(survey.frame.origin, float), survey.crs, moves=survey.moves,
+                   pass_sigma=survey.frame.pass_sigma, survey=survey)
 
     def close(self) -> None:
         """Release the points and their disk space."""
@@ -85,3 +105,15 @@ class RoadPoints:
         """All points in one structured array, ordered by road and section; only for sets known to be small, such as paint."""
         parts = [self.store.section(road, number) for road, number in self.all_sections()]
         return Points(np.asarray(join_columns(parts, self.store.dtype)))
+
+
+def shared_road_points(survey: Any, subset: dict[str, Any], corrected: dict[str, Any] | None) -> RoadPoints:
+    """What `RoadPoints.recipe` describes."""
+    points = RoadPoints.subset_of(survey)
+    store: Any = points.store
+    store.adopt_shared(**subset)
+    if corrected is None:
+        return points
+    overlay: Any = points.store.with_column("corrected")
+    overlay.adopt_shared(**corrected)
+    return replace(points, store=overlay, has_corrected=True)

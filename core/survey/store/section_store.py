@@ -29,6 +29,9 @@ MEMORY_LIMIT = 64 * 2**20  # bytes of records in memory before they are spilled
 CACHE_LIMIT = 64 * 2**20   # bytes of spilled sections cached as last read: neighbouring windows ask for them again
 STRIPS_PER_SECTION = 16    # points wait strip by strip until a section is sorted, so that points sorted together lie together in memory
 SECTION_LOCKS = 16         # locks that the sections share while they are read
+STRETCH_POINTS = 1_200_000   # points of a stretch that a worker process works on, about: a second of its time
+
+Stretch = tuple[int, int, int]   # number of a road, first and last + 1 number of its sections
 
 
 @dataclass(frozen=True)
@@ -166,6 +169,22 @@ class SectionStore:
         """Points of a section, before `finish` removes any."""
         return self._sections[road, section].size
 
+    def stretches(self, points: int = 0) -> list[Stretch]:
+        """All sections, as stretches of road with about so many points each; every section by itself for 0."""
+        found: list[Stretch] = []
+        for road in self.roads():
+            numbers = np.array(self.sections(road))
+            ends = np.cumsum([self.size(road, number) for number in numbers.tolist()])
+            cuts = numbers[np.searchsorted(ends, np.arange(points, ends[-1], points))] + 1 if points else numbers
+            bounds = np.unique(np.r_[numbers[0], cuts, numbers[-1] + 1]).tolist()
+            found += [(road, first, end) for first, end in zip(bounds[:-1], bounds[1:])]
+        return found
+
+    def in_stretch(self, stretch: Stretch) -> list[Key]:
+        """(road, number) of the sections of a stretch that have points."""
+        road, first, end = stretch
+        return [(road, number) for number in self.sections(road) if first <= number < end]
+
     def section(self, road: int, section: int) -> Columns:
         """The Columns of one section in canonical order, read-only; empty where there are no points."""
         check_cancelled()
@@ -270,11 +289,11 @@ class SectionStore:
         first, last = (int(np.floor(station / self.section_length)) for station in (start, end))
         return sum(self._sections[road, number].size for number in range(first, last + 1) if (road, number) in self._sections)
 
-    def with_column(self, name: str) -> SectionStore:
+    def with_column(self, name: str, folder: Path | None = None) -> SectionStore:
         """A store of the same points in which one column is set anew, section by section; it shares all other columns with this one."""
         from .column_overlay import ColumnOverlay
 
-        return ColumnOverlay(self, name)
+        return ColumnOverlay(self, name, folder)
 
     def clear_cache(self) -> None:
         """Release the sections that are cached as last read."""

@@ -26,7 +26,7 @@ SETTINGS = SurveySettings(block=700)   # points
 def small_parts(monkeypatch):
     monkeypatch.setattr(survey_reader, "PART_POINTS", 2000)
     monkeypatch.setattr(survey_reader, "HEIGHT_SAMPLES", 20)   # the first blocks are read by the caller
-    monkeypatch.setattr(ordering, "ORDERED_POINTS", 2000)
+    monkeypatch.setattr(ordering, "STRETCH_POINTS", 2000)
 
 
 @pytest.fixture(scope="module")
