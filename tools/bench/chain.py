@@ -1,16 +1,23 @@
 """The whole chain, with what its user sees of the time: how the bar moves and how long Cancel is not heard."""
 
+import os
+import resource
+import threading
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 from lanewright.core.common.parallel import cancellation_scope
 from lanewright.core.common.progress import Progress
+from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.pipeline.road_map import RoadMapSettings, make_road_map
 from lanewright.core.survey.trajectory.reader import read_trajectory
 
 from .ours import peak_mib, timed
 from .prepare import prepared
 from .surveys import clouds_of, trajectory_of
+
+SAMPLING = 0.1   # s between two looks at the memory of worker processes
 
 
 class Watch(Progress):
@@ -37,16 +44,55 @@ class Watch(Progress):
         return dict(bar_off=off, silence=max(gaps))
 
 
-def run(survey, size, method="profiles", suffix="laz"):
-    """Figures of the chain on a survey; `seconds` of every stage."""
+def run(survey, size, method="profiles", suffix="laz", workers=0):
+    """Figures of the chain on a survey; `seconds` of every stage. With workers, memory is that of all processes together."""
     target = prepared(f"chain_{survey}.tif", size)
     target.parent.mkdir(parents=True, exist_ok=True)
     watch = Watch()
-    settings = RoadMapSettings(boundary_method=method)
+    settings = RoadMapSettings(boundary_method=method, execution=ExecutionSettings(workers=workers))
     clouds = clouds_of(survey, size, suffix)
-    with cancellation_scope(watch):
+    with cancellation_scope(watch), memory_of_children() as children:
         road_map, seconds = timed(lambda: make_road_map(clouds, read_trajectory(trajectory_of(survey, size)), target, settings, watch))
     Path(target).unlink()
     found = {name: len(getattr(road_map, name) or ()) for name in ("edges", "markings", "marking_lines", "driving_lines")}
+    ended = resource.getrusage(resource.RUSAGE_CHILDREN)
+    seconds["cpu"] += ended.ru_utime + ended.ru_stime
     return dict(seconds, seconds=road_map.seconds, points=road_map.survey_facts["read"], road_points=len(road_map.road_points),
-                length=sum(road.length for road in road_map.frame.roads), peak=peak_mib(), found=found, **watch.figures())
+                length=sum(road.length for road in road_map.frame.roads), peak=peak_mib() + max(children), found=found, **watch.figures())
+
+
+@contextmanager
+def memory_of_children():
+    """A list to which the resident memory (MiB) of all child processes is added again and again."""
+    seen, done = [0.0], threading.Event()
+
+    def look():
+        while not done.wait(SAMPLING):
+            seen.append(sum(map(_resident_mib, _children())))
+
+    thread = threading.Thread(target=look, daemon=True)
+    thread.start()
+    try:
+        yield seen
+    finally:
+        done.set()
+        thread.join()
+
+
+def _children():
+    """Numbers of the child processes."""
+    tasks = Path("/proc/self/task")
+    return [number for task in tasks.iterdir() for number in _text(task / "children").split()] if tasks.exists() else []
+
+
+def _resident_mib(process):
+    """MiB of a process that are in memory; 0 if it has ended."""
+    fields = _text(Path("/proc") / process / "statm").split()
+    return int(fields[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20 if fields else 0.0
+
+
+def _text(path):
+    try:
+        return path.read_text()
+    except OSError:
+        return ""

@@ -13,20 +13,25 @@ from .prepare import prepare
 
 MEASURES = {
     "prepare": prepare, "cancel": cancel.cancel,
-    "read": ours.read,
+    "read": ours.read, "read_long": lambda size: ours.read(size, "long"),
     "placing": ours.placing, "storing": ours.storing,
     "profiles": lambda size: chain.run("dense", size),
     "las": lambda size: chain.run("dense", size, suffix="las"),
     "both": lambda size: chain.run("dense", size, "both"),
     "scanlines": ours.scanlines,
+    "alone_both": lambda size: chain.run("dense", size, "both"),
+    "workers": lambda size: chain.run("dense", size, "both", workers=len(os.sched_getaffinity(0))),
+    "alone_workers": lambda size: chain.run("dense", size, "both", workers=1),
+    "tiles_workers": lambda size: chain.run("long", size, workers=len(os.sched_getaffinity(0))),
     "short": lambda size: chain.run("short", size),
     "tiles": lambda size: chain.run("long", size),
     "image_ours": ours.image_ours, "image_gdal": theirs.image_gdal,
     "sor_ours": ours.sor_ours, "sor_pcl": theirs.sor_pcl, "sor_open3d": theirs.sor_open3d,
     "clusters_ours": ours.clusters_ours, "clusters_pcl": theirs.clusters_pcl, "clusters_open3d": theirs.clusters_open3d,
 }
-ONE_THREAD = ("sor_", "clusters_")   # PCL has no more, so nobody gets more
-PARTS = dict(stages=("read", "placing", "storing", "profiles", "las", "both", "scanlines"), memory=("profiles", "short", "tiles"),
+ONE_CORE = ("sor_", "clusters_", "alone_")   # PCL has no more, so nobody gets more; and what one core takes for the whole
+PARTS = dict(stages=("read", "placing", "storing", "profiles", "las", "both", "scanlines"), memory=("profiles", "short", "tiles", "read_long"),
+             cores=("both", "alone_both", "workers", "alone_workers", "tiles_workers"),
              image=("image_ours", "image_gdal"), outliers=("sor_ours", "sor_pcl", "sor_open3d"),
              clusters=("clusters_ours", "clusters_pcl", "clusters_open3d"), cancel=("cancel",))
 LATER = ("cancel",)  # takes longer than all the others together, so it runs where it is asked for
@@ -34,7 +39,7 @@ LATER = ("cancel",)  # takes longer than all the others together, so it runs whe
 
 def measure(name, size, cores):
     """Figures of one measurement, taken in a process of its own on `cores` processor cores."""
-    threads = 1 if name.startswith(ONE_THREAD) else cores
+    threads = 1 if name.startswith(ONE_CORE) else cores
     environment = dict(os.environ, **{key: str(threads) for key in ("RAYON_NUM_THREADS", "GDAL_NUM_THREADS")})
     # our own arrays are worked on by threads of ours, so numpy's stay at the one that the plugin gives them
     environment["OMP_NUM_THREADS"] = str(threads if name.endswith("open3d") else 1)
@@ -46,7 +51,7 @@ def measure(name, size, cores):
     took, after = time.perf_counter() - began, _busy_seconds()
     # what the machine worked beyond what the child and its children did
     others = max(after[0] - before[0] - (after[1] - before[1]), 0.0) / took
-    return dict(json.loads(child.stdout.strip().splitlines()[-1]), load=load, took=took, others=others)
+    return dict(json.loads(child.stdout.strip().splitlines()[-1]), load=load, took=took, others=others, cores=threads)
 
 
 def _busy_seconds():

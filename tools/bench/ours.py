@@ -27,13 +27,13 @@ def peak_mib():
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**10
 
 
-def read(size):
-    """laspy's own read of the dense LAZ in blocks of 100,000 points: the floor."""
+def read(size, survey="dense"):
+    """laspy's own read of the LAZ of a survey in blocks of 100,000 points: the floor."""
     import laspy
 
     def count():
         points = 0
-        for path in clouds_of("dense", size):
+        for path in clouds_of(survey, size):
             with laspy.open(path) as reader:
                 points += sum(len(block.x) for block in reader.chunk_iterator(100_000))
         return points

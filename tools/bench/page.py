@@ -76,7 +76,7 @@ def _goals(rounds):
 
 
 def _goal(row):
-    return "" if row.goal is None else f"≤ {row.goal:g}"
+    return "" if row.goal is None else f"{'≥' if row.least else '≤'} {row.goal:g}"
 
 
 def _stages(rounds):
