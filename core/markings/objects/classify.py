@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from ...common.errors import RoadExtractionError
 from ...survey.store.records import COORDINATE_SCALE
 from .dash_rows import rows_of_blocks, rows_of_dashes
 from .near_pairs import overlapping_pairs
-from .shape import MAX_ANGLE_ALONG
+from .zebra import zebra_stripes
 
 if TYPE_CHECKING:
     from .shape import Shape
@@ -37,13 +35,6 @@ MIN_SOLID_LENGTH = 10.0          # m: longer than any dash in town; solid lines 
 SHORT_DASH_LENGTH = (0.75, 1.5)  # m: dashes of cycle lanes and bus bays, which only their row distinguishes from signs and specks
 MIN_DASH_ELONGATION = 3.0        # length by width of such dashes
 MIN_ROW_OF_POINTS = 2.0          # m: points in a row of this length are no speck, however few scan lines met it
-
-# Zebra crossings
-STRIPE_WIDTH = (0.25, 0.80)  # m
-STRIPE_LENGTH = (1.5, 10.0)  # m
-STRIPE_PITCH = (0.5, 1.6)    # m from stripe to stripe
-MIN_STRIPES = 3
-MAX_STRIPE_SKEW, MAX_STRIPE_TURN = np.radians((35.0, 8.0))  # of the stripes to the road, and to each other
 
 # Stop lines, hatching, arrows
 STOP_LINE_WIDTH = (0.18, 0.90)               # m
@@ -194,38 +185,6 @@ def _dashes_in_rows(shapes, column, clearance, settings):
     result, rows = np.zeros(len(shapes), bool), np.flatnonzero(short)
     for row in rows_of_dashes([shapes[k] for k in rows]):
         result[rows[row]] = True
-    return result
-
-
-def zebra_stripes(column: dict[str, np.ndarray], shortest: float = STRIPE_LENGTH[0]) -> np.ndarray:
-    """Stripes along the road or somewhat askew, side by side across it at an even pitch, at least three of them.
-
-    column : dict of (N,) of the Shapes; shortest : m
-    """
-    stripe = (np.abs(column["direction"]) <= MAX_STRIPE_SKEW) & (column["width"] >= STRIPE_WIDTH[0]) & (column["width"] <= STRIPE_WIDTH[1]) \
-        & (column["length"] >= shortest) & (column["length"] <= STRIPE_LENGTH[1])
-    rows = np.flatnonzero(stripe)
-    result = np.zeros(len(stripe), bool)
-    if len(rows) < MIN_STRIPES:
-        return result
-    s, d = ((column[low][rows] + column[high][rows]) / 2 for low, high in (("s0", "s1"), ("d0", "d1")))
-    turn, length = column["direction"][rows], column["length"][rows]
-    beside = [np.empty((0, 2), np.intp)]
-    for a, b in overlapping_pairs(s, s, s, s, np.hypot(STRIPE_LENGTH[1], STRIPE_PITCH[1])):
-        ds, dd = s[b] - s[a], d[b] - d[a]
-        # on a crossing askew each stripe begins somewhat farther than the one before
-        middle = (turn[b] + turn[a]) / 2
-        ahead, pitch = ds * np.cos(middle) + dd * np.sin(middle), np.abs(dd * np.cos(middle) - ds * np.sin(middle))
-        shared = (length[b] + length[a]) / 2 - np.abs(ahead) > 0.5 * np.minimum(length[b], length[a])
-        # the bars of hatching follow each other along the road
-        across = ((np.abs(dd) > np.abs(ds)) | (np.abs(middle) <= MAX_ANGLE_ALONG)) & (np.abs(turn[b] - turn[a]) <= MAX_STRIPE_TURN)
-        found = shared & across & (pitch >= STRIPE_PITCH[0]) & (pitch <= STRIPE_PITCH[1])
-        beside.append(np.column_stack([a, b])[found])
-    pairs = np.concatenate(beside)
-    graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(len(rows),) * 2)
-    count, group = connected_components(graph, directed=False)
-    size = np.bincount(group, minlength=count)
-    result[rows] = size[group] >= MIN_STRIPES
     return result
 
 

@@ -23,11 +23,12 @@ from scipy.spatial import cKDTree
 
 from ...common.order_statistics import order_by
 from ...survey.store.records import COORDINATE_SCALE
-from .classify import STRIPE_WIDTH, columns_of, zebra_stripes
+from .classify import columns_of
 from .connected_cells import occupied
 from .near_pairs import overlapping_pairs
 from .road_grid import CELL_UNITS
 from .scan_tracks import filled_between_tracks, track_reach
+from .zebra import STRIPE_WIDTH, zebra_stripes
 
 if TYPE_CHECKING:
     from ...survey.store.columns import Columns

@@ -28,6 +28,7 @@ from ...survey.store.section_store import SectionStore
 from ..objects.road_grid import CELL_UNITS, PieceOfRoad, RoadCells, RoadGrid, cell_numbers, cells_of_road
 from .asphalt_level import AsphaltLevels, asphalt_profile, flatten
 from .fading import without_fading_rims
+from .faint_lines import faint_lines
 from .gutters import edge_distance, rim_distance
 from .mask import Burn, burn_points, marking_mask, painted_pixels
 from .morphology import morphology
@@ -314,10 +315,13 @@ class WindowExtractor:
         median, spread, scale, threshold = levels.at(grid)
         z, gutter = flatten(brightness, median, spread, view.rims)
         with np.errstate(invalid="ignore"):
-            mask = morphology((z > threshold * scale) & ~gutter, self.settings)
-        mask = without_fading_rims(z, mask, view.occupied & ~gutter)
+            bright = morphology((z > threshold * scale) & ~gutter, self.settings)
+        mask = without_fading_rims(z, bright, view.occupied & ~gutter)
         # the background that was subtracted from the cell is subtracted from the point as well
         least = (brightness - z * spread) + (threshold - 0.5) * (spread * scale)
+        lines, halfway = faint_lines(brightness, view.occupied, view.rims[0], mask, bright & ~mask)
+        least = np.where(lines & ~mask, halfway, least)
+        mask |= lines
         return self._paint_in(parts, grid, view.occupied, mask, least)
 
     def _from_averages(self, window: int) -> Paint:

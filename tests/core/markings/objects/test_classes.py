@@ -27,6 +27,23 @@ def test_a_zebra_crossing_askew_to_the_road_keeps_its_stripes(askew):
     assert markings.column("area_m2") == pytest.approx([1.5] * 5, rel=0.15)
 
 
+@pytest.mark.parametrize("way", [90, 70, 55, -60], ids=lambda way: f"{way} degrees")
+def test_the_zebra_crossing_of_a_side_street_points_along_that_street(way):
+    c, n = np.cos(np.radians(way)), np.sin(np.radians(way))
+
+    def stripe(k):
+        return lambda s, d: (np.abs((s - 30) * c + d * n) < 1.6) & (np.abs(d * c - (s - 30) * n - k) < 0.25)
+
+    markings = markings_of([stripe(k) for k in (-2.4, -1.2, 0, 1.2, 2.4)], density=2500)
+    assert classes(markings) == ["zebra"] * 5
+    assert markings.column("area_m2") == pytest.approx([1.6] * 5, rel=0.15)
+
+
+def test_bars_of_hatching_along_the_road_are_no_zebra_crossing():
+    markings = markings_of([askew(s, -1.0, 2.2, 0.4, turn=np.radians(60)) for s in np.arange(20, 32, 1.3)], density=2500)
+    assert len(markings) > 5 and "zebra" not in classes(markings)
+
+
 def test_a_stop_line_is_a_stop_line_also_where_it_is_narrow():
     for depth in (0.30, 0.50):
         markings = markings_of([strip(20, 20 + depth, -3.5, -0.2)])

@@ -6,18 +6,20 @@ import numpy as np
 import pytest
 from lanewright.core.markings.objects import classify as classes
 from lanewright.core.markings.objects import near_pairs
-from lanewright.core.markings.objects.classify import (
-    MAX_DOUBLE_LINE_SPACING,
+from lanewright.core.markings.objects.classify import MAX_DOUBLE_LINE_SPACING, classify_markings
+from lanewright.core.markings.objects.shape import MAX_ANGLE_ALONG, Shape
+from lanewright.core.markings.objects.split_merge import join_fragments
+from lanewright.core.markings.objects.zebra import (
+    MAX_ROW_SKEW,
     MAX_STRIPE_SKEW,
     MAX_STRIPE_TURN,
+    MAX_STRIPE_WIDTH_RATIO,
     MIN_STRIPES,
     STRIPE_LENGTH,
     STRIPE_PITCH,
     STRIPE_WIDTH,
-    classify_markings,
+    zebra_stripes,
 )
-from lanewright.core.markings.objects.shape import MAX_ANGLE_ALONG, Shape
-from lanewright.core.markings.objects.split_merge import join_fragments
 from scipy.sparse.csgraph import connected_components
 
 
@@ -83,17 +85,22 @@ def test_lines_of_a_double_line_are_those_among_all_pairs(at_a_time, count):
 
 
 def stripes_among_all(column):
-    turn, length, width = (column[name] for name in ("direction", "length", "width"))
-    rows = np.flatnonzero((np.abs(turn) <= MAX_STRIPE_SKEW) & (width >= STRIPE_WIDTH[0]) & (width <= STRIPE_WIDTH[1])
+    heading, length, width = (column[name] for name in ("direction", "length", "width"))
+    rows = np.flatnonzero((width >= STRIPE_WIDTH[0]) & (width <= STRIPE_WIDTH[1])
                           & (length >= STRIPE_LENGTH[0]) & (length <= STRIPE_LENGTH[1]))
     s, d = ((column[low][rows] + column[high][rows]) / 2 for low, high in (("s0", "s1"), ("d0", "d1")))
-    ds, dd, turn, length = s - s[:, None], d - d[:, None], turn[rows], length[rows]
-    middle = (turn + turn[:, None]) / 2
-    ahead, pitch = ds * np.cos(middle) + dd * np.sin(middle), np.abs(dd * np.cos(middle) - ds * np.sin(middle))
-    shared = (length + length[:, None]) / 2 - np.abs(ahead) > 0.5 * np.minimum(length, length[:, None])
-    across = ((np.abs(dd) > np.abs(ds)) | (np.abs(middle) <= MAX_ANGLE_ALONG)) & (np.abs(turn - turn[:, None]) <= MAX_STRIPE_TURN)
-    group = connected_components(shared & across & (pitch >= STRIPE_PITCH[0]) & (pitch <= STRIPE_PITCH[1]), directed=False)[1]
-    result = np.zeros(len(width), bool)
+    ds, dd, heading, length, width = s - s[:, None], d - d[:, None], heading[rows], length[rows], width[rows]
+    turn = (heading - heading[:, None] + np.pi / 2) % np.pi - np.pi / 2
+    middle = (heading[:, None] + turn / 2 + np.pi / 2) % np.pi - np.pi / 2
+    ahead, pitch = np.abs(ds * np.cos(middle) + dd * np.sin(middle)), np.abs(dd * np.cos(middle) - ds * np.sin(middle))
+    shared = (length + length[:, None]) / 2 - ahead > 0.5 * np.minimum(length, length[:, None])
+    along = (np.maximum(np.abs(heading), np.abs(heading[:, None])) <= MAX_STRIPE_SKEW) \
+        & ((np.abs(dd) > np.abs(ds)) | (np.abs(middle) <= MAX_ANGLE_ALONG))
+    square = (ahead <= np.tan(MAX_ROW_SKEW) * pitch) \
+        & (np.maximum(width, width[:, None]) <= MAX_STRIPE_WIDTH_RATIO * np.minimum(width, width[:, None]))
+    linked = shared & (along | square) & (np.abs(turn) <= MAX_STRIPE_TURN) & (pitch >= STRIPE_PITCH[0]) & (pitch <= STRIPE_PITCH[1])
+    group = connected_components(linked, directed=False)[1]
+    result = np.zeros(len(column["width"]), bool)
     result[rows] = np.bincount(group, minlength=1)[group] >= MIN_STRIPES
     return result
 
@@ -101,7 +108,7 @@ def stripes_among_all(column):
 @pytest.mark.parametrize("seed", range(3))
 def test_stripes_of_crossings_are_those_among_all_pairs(at_a_time, seed):
     column = crossings(60, seed)
-    found = classes.zebra_stripes(column)
+    found = zebra_stripes(column)
     np.testing.assert_array_equal(found, stripes_among_all(column))
     assert 50 < found[200:].sum() < len(found[200:]) - 20
 
