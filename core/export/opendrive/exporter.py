@@ -177,7 +177,10 @@ class _Drafting:
                 self._describe(section.lanes[id], cell)
                 section.lanes[id].marks = [self._mark_between(one, k if id > 0 else k + 1, id)]
                 status[str(self.lanes.status[cell.piece])] += cell.length
-            section.lanes[0].marks = [self._mark_between(one, centre, 0)]
+            # where lane 0 lies apart from them, the innermost border is that of the empty lane between
+            apart = next((id for id in section.lanes if id and id not in ids), 0)
+            section.lanes[0].marks = [RoadMark(0.0, "none")]
+            section.lanes[apart].marks = [self._mark_between(one, centre, apart)]
             self._add_curbs(section.lanes, one, ids)
             section.order = sorted(section.lanes, reverse=True)
         if set(status) != {"measured"}:

@@ -157,12 +157,19 @@ class PlanView:
         """The same line, which goes on with the curvature of its ends by metres before its start and after its end."""
         elements = self.elements
         if before > LEAST_ELEMENT:
-            _, _, (bend,) = self.at(np.zeros(1))
-            x, y, heading = _bent(0.0, elements[0].x, elements[0].y, elements[0].heading + np.pi, before, -bend).end()
-            elements = (_bent(0.0, x, y, heading - np.pi, before, bend), *(replace(one, s=one.s + before) for one in elements))
+            first, (_, _, (bend,)) = elements[0], self.at(np.zeros(1))
+            x, y, heading = _bent(0.0, first.x, first.y, first.heading + np.pi, before, -bend).end()
+            if first.kind in ("line", "arc"):   # the same one, from farther back
+                start = [replace(first, x=x, y=y, heading=heading - np.pi, length=first.length + before)]
+            else:
+                start = [_bent(0.0, x, y, heading - np.pi, before, bend), replace(first, s=before)]
+            elements = (*start, *(replace(one, s=one.s + before) for one in elements[1:]))
         if after > LEAST_ELEMENT:
-            _, _, (bend,) = self.at(np.array([self.length]))
-            elements = (*elements, _bent(sum(one.length for one in elements), *elements[-1].end(), after, bend))
+            last = elements[-1]
+            _, _, (bend,) = last.at(np.array([last.length]))
+            more = (replace(last, length=last.length + after),) if last.kind in ("line", "arc") else (
+                last, _bent(last.s + last.length, *last.end(), after, bend))
+            elements = (*elements[:-1], *more)
         return PlanView(elements)
 
 

@@ -15,6 +15,7 @@ FLAT = 0.001             # m of height that a cross-section may miss without a c
 ROLLED = 0.001           # m by which a superelevation may move a border in plan: readers differ on whether it does
 SAME_PLACE_ALONG = 0.05  # m along the road within which two cross-sections are one
 SAME_T = 0.01            # m across within which two places of a cross-section are one
+SHAPE_ROUNDS = 3
 CLOSER = (0.5, 0.25, 0.1, 0.0)   # shares of the tolerance within which cross-sections are left out, until all places are met
 
 
@@ -38,7 +39,7 @@ def add_heights(road: MapRoad, shape: RoadShape, tolerance: float) -> None:
     shape : RoadShape of the same road
     tolerance : metres by which a height may be missed
     """
-    profiles = _profiles(shape)
+    profiles = _profiles(shape, np.zeros(0))
     s = np.array([profile.s for profile in profiles])
     middle = _at_reference(profiles, s)
     road.elevation = simplified(fit_cubics([s], [middle], 0.0, road.length, tolerance / 2)[0])
@@ -46,13 +47,16 @@ def add_heights(road: MapRoad, shape: RoadShape, tolerance: float) -> None:
         return
     if _superelevation(road, profiles, middle, tolerance):
         return
-    level = road.elevation.at(s)
-    profiles = [profile._replace(z=profile.z - height) for profile, height in zip(profiles, level)]
-    targets = _targets(road, shape)
-    for share in CLOSER:
-        road.shape = _rows(profiles, _telling(profiles, share * tolerance))
-        if len(targets) == 0 or np.abs(shape_height(road.shape, targets[:, 0], targets[:, 1]) - targets[:, 2]).max() <= tolerance:
-            return
+    targets, missed = _targets(road, shape), np.zeros(0)
+    for _ in range(SHAPE_ROUNDS):   # cross-sections are where the lanes have vertices; where that is not enough, also where one border has some
+        profiles = _profiles(shape, targets[missed > tolerance, 0] if len(missed) else missed)
+        levels = road.elevation.at(np.array([profile.s for profile in profiles]))
+        profiles = [profile._replace(z=profile.z - level) for profile, level in zip(profiles, levels)]
+        for share in CLOSER:
+            road.shape = _rows(profiles, _telling(profiles, share * tolerance))
+            missed = np.abs(shape_height(road.shape, targets[:, 0], targets[:, 1]) - targets[:, 2])
+            if missed.max(initial=0.0) <= tolerance:
+                return
 
 
 def _at_reference(profiles, s):
@@ -64,12 +68,13 @@ def _at_reference(profiles, s):
     return np.where(there, height, np.interp(s, s[there], height[there]))
 
 
-def _profiles(shape):
-    """A cross-section wherever the lanes have vertices, and at both ends of every slice, in order; of two at one place one is made."""
+def _profiles(shape, more):
+    """A cross-section wherever the lanes have vertices, at both ends of every slice, and at (N,) more s, in order; of two at one place one."""
     found = []
     for number, (first, last) in enumerate(zip(shape.starts[:-1], shape.starts[1:])):
-        places = shape.s[number].mean(0)
-        places = places[risen(places) & (places > first + SAME_PLACE_ALONG) & (places < last - SAME_PLACE_ALONG)]
+        places = np.sort(np.append(shape.s[number].mean(0), more))
+        places = places[risen(places)]
+        places = places[(places > first + SAME_PLACE_ALONG) & (places < last - SAME_PLACE_ALONG)]
         places = np.concatenate([[first], places, [last]])
         t, z = (np.stack([np.interp(places, course[0], course[row]) for course in shape.courses[number]]) for row in (1, 2))
         order = np.argsort(t, axis=0, kind="stable")

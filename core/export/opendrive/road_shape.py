@@ -14,7 +14,9 @@ from .strips import Slice
 
 NEAREST_POINTS = 0.005   # m between points of a guide line
 LEAST_END = 0.5          # m of width from which the end of a road has a direction
-MOST_ASKEW = 0.2         # rad between the end of a road and a square cut: more is askew on purpose
+MOST_ASKEW = 0.5         # rad between the end of a road and a square cut to which it can turn within a few metres
+SQUARE_END = 0.002           # m along the road by which the corners of an end may miss a square cut: validators allow 1 cm between two roads
+END_CHORD = 5.0          # m of a road whose direction is that of its end
 LOOSER = (1.0, 5.0, 25.0)   # times the tolerance that the reference line may lie beside a border with corners
 SMOOTHER = (1.0, 3.0)    # m, standard deviations of the means that take the corners from a border that no other line follows
 BEND_STEP = 0.25         # m between the places at which a border is held against the curvature
@@ -22,6 +24,8 @@ LEAST_STRETCH = 0.1      # of a border against the reference line: less is besid
 FOOT_ROUNDS = 8
 END_ROUNDS = 4
 LEAST_STEP = 0.001       # m along the road between places that count
+SAME_LINE = 0.02         # m by which lane 0 may jump from section to section and still go on
+MOST_LEAD = 0.5          # m aside to which lane 0 is led back along a section that lies beside it
 LEAST_CHORD = 1.0        # m of a border's end, along which it goes straight on
 
 
@@ -67,7 +71,7 @@ def shape_of(strip: list[Slice], centres: list[int], tolerance: float) -> RoadSh
     guide, index = _guide(strip, centres)
     keep = np.append(True, np.hypot(*np.diff(guide, axis=0).T) > NEAREST_POINTS)
     ends, widest = _end_headings(strip, guide)
-    plan = _reference(guide[keep], tolerance, ends, tolerance / max(widest, 1.0), _reach(strip, index, guide)[keep])
+    plan = _reference(guide[keep], tolerance, ends, SQUARE_END / max(widest, 1.0), _reach(strip, index, guide)[keep])
     along = np.append(0.0, np.cumsum(np.hypot(*np.diff(guide, axis=0).T)))
     along *= plan.length / along[-1]
     for _ in range(END_ROUNDS):   # seen from a longer line the corners lie a little elsewhere
@@ -205,9 +209,10 @@ def _smoothed(points, width):
 def _end_headings(strip, guide):
     """((start, end) headings square to the ends at which the road meets another, None where they are cut askew; metres, its width)."""
     found, widest = [], 0.0
-    for one, row, way, meets in (
-            (strip[0], 0, guide[min(2, len(guide) - 1)] - guide[0], _meets(strip[0], False)),
-            (strip[-1], -1, guide[-1] - guide[-min(3, len(guide))], _meets(strip[-1], True))):
+    along = np.append(0.0, np.cumsum(np.hypot(*np.diff(guide, axis=0).T)))
+    near, far = (int(np.clip(np.searchsorted(along, at), 1, len(guide) - 1)) for at in (END_CHORD, along[-1] - END_CHORD))
+    for one, row, way, meets in ((strip[0], 0, guide[near] - guide[0], _meets(strip[0], False)),
+                                 (strip[-1], -1, guide[-1] - guide[far - 1], _meets(strip[-1], True))):
         across = (one.cells[0].left[row] - one.cells[-1].right[row])[:2]
         widest = max(widest, float(np.hypot(*across)))
         heading, along = float(np.arctan2(-across[0], across[1])), float(np.arctan2(way[1], way[0]))
@@ -246,24 +251,64 @@ def add_lanes(road: MapRoad, shape: RoadShape, strip: list[Slice], centres: list
     -------
     the number of the lane of every cell of every slice
     """
-    offsets, numbers = [], []
-    for k, (one, centre) in enumerate(zip(strip, centres)):
-        start, end = shape.starts[k], shape.starts[k + 1]
-        s, t = zip(*(_within(start, end, *course[:2]) for course in shape.courses[k]))
+    sections = []
+    for courses, centre, start, end in zip(shape.courses, centres, shape.starts[:-1], shape.starts[1:]):
+        s, t = zip(*(_within(start, end, *course[:2]) for course in courses))
         functions = fit_cubics(s, t, start, end, tolerance)
         if _crossing(functions, end - start):
             functions = broken_lines(s, _untangled(s, t, centre), start, end)
+        sections.append(functions)
+    offsets, numbers = [], []
+    lines = _lines_of_lane_0(sections, centres, np.diff(shape.starts), int(np.argmax([one.length for one in strip])))
+    for start, one, centre, functions, line in zip(shape.starts, strip, centres, sections, lines):
         section = LaneSection(float(start))
         section.lanes[0] = MapLane(0, "none")
         ids = [centre - j if j < centre else centre - j - 1 for j in range(len(one.cells))]
+        if line is not functions[centre]:   # between lane 0 and the lanes beside it there is nothing
+            side = -1 if centre == 0 else 1
+            section.lanes[side] = MapLane(side, "none", width=simplified(difference(*((line, functions[0]) if side < 0 else (functions[-1], line)))))
+            ids = [id + side for id in ids]
         for j, id in enumerate(ids):
             section.lanes[id] = MapLane(id, width=simplified(difference(functions[j], functions[j + 1])))
         road.sections.append(section)
         numbers.append(ids)
-        offsets.append(simplified(functions[centre]).moved(start).rows)
+        offsets.append(simplified(line).moved(start).rows)
     rows = np.concatenate(offsets)
     road.lane_offset = Cubics.constant() if np.abs(rows[:, 1:]).max() < 1e-4 else Cubics(rows)
     return numbers
+
+
+def _lines_of_lane_0(sections, centres, lengths, first):
+    """Where lane 0 lies in every section: along its border, or straight on beside it where that border jumps aside and no lane is in the way.
+
+    Readers differ on which section a place on their common cut belongs to, so a jump of lane 0 is a gap to some of them.
+    """
+    lines = {first: sections[first][centres[first]]}
+    for way in (1, -1):
+        here, there = (-1, 0) if way > 0 else (0, -1)
+        for k in range(first + way, len(sections) if way > 0 else -1, way):
+            own, before = sections[k][centres[k]], lines[k - way]
+            value, met = float(before.at(lengths[k - way] * -here)), float(own.at(lengths[k] * -there))
+            aside = before is not sections[k - way][centres[k - way]]
+            if abs(met - value) <= (MOST_LEAD if aside else SAME_LINE):
+                lines[k] = own
+                if aside:   # lead there
+                    ends = (float(before.at(0.0)), met) if way > 0 else (met, float(before.at(lengths[k - way])))
+                    lines[k - way] = _straight(before, *ends, lengths[k - way])
+            else:
+                straight = _straight(own, value, value, lengths[k])
+                room = difference(straight, own) if centres[k] == 0 else difference(own, straight) if centres[k] == len(sections[k]) - 1 else None
+                lines[k] = straight if room is not None and room.least(lengths[k])[0] >= 0.0 else own
+    return [lines[k] for k in range(len(sections))]
+
+
+def _straight(like, first, last, length):
+    """A straight function with the pieces of another."""
+    rows = np.zeros_like(like.rows)
+    slope = (last - first) / length
+    rows[:, 0], rows[:, 2] = like.rows[:, 0], slope
+    rows[:, 1] = first + slope * rows[:, 0]
+    return Cubics(rows)
 
 
 def _within(start, end, s, values):

@@ -50,3 +50,47 @@ def test_a_lane_that_begins_and_ends_obliquely_is_whole(tmp_path, shift):
     scene.piece(line.at(s, -3.5), line.at(outer, -7.0), lane=2)
     _, across, rise = missed(tmp_path, scene.lanes())
     assert across <= TOLERANCE and rise <= TOLERANCE
+
+
+def test_a_road_and_its_ways_through_a_junction_meet_without_a_gap_where_the_lanes_are_cut_askew(tmp_path):
+    scene, line = LaneScene(), Axis(((80.0, 0.0, 0.0),))
+    askew(scene, line, 0.0, -3.5, 5.0, 40.0, 0.25, lane=1, **kinds())
+    askew(scene, line, 0.0, -3.5, 40.0, 55.0, 0.25, lane=1, piece=2, type="connector", left_kind="none", right_kind="none", left_pattern="",
+          right_pattern="")
+    askew(scene, line, 0.0, -3.5, 55.0, 75.0, 0.25, lane=1, piece=3, **kinds())
+    whole, across, _ = missed(tmp_path, scene.lanes())
+    assert across <= TOLERANCE and len(whole.junctions) == 1
+    assert not check_opendrive(whole).found
+
+
+def test_one_border_that_is_bumpy_between_the_vertices_of_another_keeps_its_heights(tmp_path):
+    scene, line = LaneScene(), Axis(((20.0, 0.0, 0.0), (40.0, 1 / 15, 1 / 15)))
+    s = np.arange(0.0, 60.0)
+    left, right = line.at(s, 0.0), line.at(s, -6.0)
+    left[::3, 2] += 0.12
+    scene.piece(left, right, lane=1)
+    whole, across, rise = missed(tmp_path, scene.lanes())
+    assert across <= TOLERANCE and rise <= TOLERANCE and len(whole.roads[0].shape)
+
+
+@pytest.mark.parametrize("first", [True, False], ids=["at the start", "at the end"])
+def test_lane_0_goes_straight_on_beside_lanes_that_lie_away_from_it(tmp_path, first):
+    scene, line = LaneScene(), Axis(((80.0, 0.0, 0.0),))
+    both, alone = ((10.0, 80.0), (0.0, 10.0)) if first else ((0.0, 70.0), (70.0, 80.0))
+    scene.add(line, 0.0, -3.5, *both, lane=1)
+    for piece, (a, b) in enumerate(sorted((both, alone)), start=1):
+        scene.add(line, -3.5, -7.0, a, b, lane=2, piece=piece)
+    whole, across, _ = missed(tmp_path, scene.lanes())
+    road, = whole.roads
+    assert across <= TOLERANCE and set(check_opendrive(whole).counts()) <= {"no way in", "dead end"}   # the other lane begins at full width
+    assert np.abs(road.lane_offset.at(np.linspace(0, road.length, 400))).max() < TOLERANCE
+    section = road.sections[0 if first else -1]
+    assert [(id, section.lanes[id].type) for id in section.order] == [(0, "none"), (-1, "none"), (-2, "driving")]
+
+
+def test_a_straight_road_that_is_cut_askew_is_one_line(tmp_path):
+    scene, line = LaneScene(), Axis(((60.0, 0.0, 0.0),))
+    askew(scene, line, 0.0, -3.5, 5.0, 55.0, 0.4)
+    whole, _, _ = missed(tmp_path, scene.lanes())
+    element, = whole.roads[0].plan.elements
+    assert element.kind == "line" and element.length == pytest.approx(50.0 + 3.5 * 0.4, abs=1e-3)
