@@ -14,7 +14,7 @@ CHOICE_WORDS = {
     "line": tr("line"), "circle": tr("circle"), "ellipse": tr("ellipse"), "clothoid": tr("clothoid"), "polynomial": tr("polynomial"),
     "b-spline": tr("b-spline"), "right": tr("right"), "left": tr("left"), "nonurban": tr("nonurban"), "half-width": tr("half-width"),
     "total-width": tr("total-width"), "draw": tr("draw"), "leave-out": tr("leave-out"), "bilinear": tr("bilinear"), "nearest": tr("nearest"),
-    "cubic": tr("cubic"),
+    "cubic": tr("cubic"), "curbs": tr("curbs"),
 }
 
 

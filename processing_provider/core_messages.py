@@ -9,13 +9,16 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable
+from functools import cached_property
 from pathlib import Path
 
 PLACE = "{}"
+PHRASE = 2  # blanks in what is put in: with as many it is a phrase, with fewer a number with its unit or a name
+BETWEEN_SENTENCES = re.compile(r"(?<=[.?…]) (?=[A-Z])")
 
 
 class CoreMessages:
-    """Sentences of the core and their translations; `{}` stands for a number or name.
+    """Sentences of the core and their translations; `{}` stands for a number, a name or a phrase that is a text of the core itself.
 
     translations : {English: translation}, with as many places in the same order; an empty one is none
     word : from a single word that is put in, such as a side, to that of the language
@@ -23,10 +26,7 @@ class CoreMessages:
 
     def __init__(self, translations: dict[str, str], word: Callable[[str], str] = str):
         self.word = word
-        known = {source: target for source, target in translations.items() if target}
-        # the most words first: a short sentence may begin as a long one does
-        longest_first = sorted(known, key=lambda source: -len(source.replace(PLACE, "")))
-        self._sentences = [(_pattern(source), known[source]) for source in longest_first]
+        self._known = {source.strip(): target.strip() for source, target in translations.items() if target}
 
     @classmethod
     def load(cls, path: Path, word: Callable[[str], str] = str) -> CoreMessages:
@@ -34,13 +34,46 @@ class CoreMessages:
         return cls(json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}, word)
 
     def told(self, text: str) -> str:
-        """A message in the user's language; as it is where it is not known."""
+        """A message in the user's language, sentence by sentence where it is not known as a whole; as it is where none of it is known."""
+        found = self._recognised(text.strip())
+        if found is None:
+            sentences = BETWEEN_SENTENCES.split(text.strip())
+            if len(sentences) < 2:
+                return text
+            found = " ".join(self._recognised(sentence) or sentence for sentence in sentences)
+        before, after = text[:len(text) - len(text.lstrip())], text[len(text.rstrip()):]
+        return before + found + after
+
+    def _recognised(self, text):
+        """The translation of what is known as a whole, None of what is not."""
+        if text in self._known and PLACE not in text:
+            return self._known[text]
+        first = None
         for pattern, target in self._sentences:
             found = pattern.fullmatch(text)
             if found:
-                values = iter([self.word(value) if value.isalpha() else value for value in found.groups()])
-                return re.sub(re.escape(PLACE), lambda place: next(values), target)
-        return text
+                values = [self._value(value) for value in found.groups()]
+                told = _filled(target, values)
+                # a sentence of which a phrase stays unknown may be another one, whose phrases are all known
+                if not any(value == before and before.count(" ") >= PHRASE for value, before in zip(values, found.groups())):
+                    return told
+                first = first or told
+        return first
+
+    def _value(self, value):
+        return self.word(value) if value.isalpha() else self.told(value) if " " in value.strip() else value
+
+    @cached_property
+    def _sentences(self):
+        """(pattern, translation) of what has places; made when something is said first, since starting QGIS need not wait for it."""
+        with_places = [source for source in self._known if PLACE in source]
+        # the most words first: a short sentence may begin as a long one does
+        return [(_pattern(source), self._known[source]) for source in sorted(with_places, key=lambda source: -len(source.replace(PLACE, "")))]
+
+
+def _filled(target, values):
+    parts = target.split(PLACE)
+    return "".join(text for pair in zip(parts, [*values, ""]) for text in pair)
 
 
 def _pattern(source):

@@ -8,6 +8,7 @@ side by side, with {} for numbers and names in the same order.
 
 import ast
 import json
+import re
 import sys
 import xml.etree.ElementTree as ET
 from pathlib import Path
@@ -19,8 +20,14 @@ FOLDER = ROOT / "resources" / "i18n"
 SCHEMAS = ROOT / "core" / "common" / "schemas.py"
 CONTEXT = "Lanewright"
 FOLDERS = ("algorithms", "processing_provider", "desktop", "core")
-# Texts that stand in a class or a table and are translated where they are shown
 FEWEST_LETTERS = 8  # of a sentence of the core: what is shorter would be found in anything
+FEWEST_WORDS = 3  # of a phrase of the core that is put into a sentence elsewhere
+# Errors that tell a programmer, not a user
+OF_PROGRAMMERS = {"ValueError", "TypeError", "KeyError", "IndexError", "AttributeError", "AssertionError", "RuntimeError", "OSError"}
+NO_SENTENCES = ("core/report", "core/common/schemas.py", "core/common/words.py")  # their texts are translated as those of a dialog
+NO_PROSE = re.compile(r"[\\\\]|<[?x!]|^(pixel|line|mapx|mapy|mapz|name|enable|check) \w+ \w+|^pip |^1 hit")  # patterns, names of columns, commands
+NAMED = {"FAULTS", "title", "signed"}  # tables and attributes of the core whose shortest texts are shown too
+# Texts that stand in a class or a table and are translated where they are shown
 IN_A_CLASS = {"TITLE", "SUMMARY", "HELP", "GROUP", "TAGS", "GROUPS"}
 
 
@@ -82,15 +89,43 @@ def aliases():
 
 
 def core_messages():
-    """The sentences of the core that reach a user: errors, warnings, log, titles of stages; {} stands for a number or name."""
-    found = {}
+    """The sentences of the core that reach a user: errors, warnings, log, titles of stages; {} stands for a number or name.
+
+    What is said at once comes first, then the sentences and phrases that are put together elsewhere.
+    """
+    said, phrases = {}, {}
     for path in sorted((ROOT / "core").rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            said = said_in(node)
-            text = template_of(said) if said is not None else None
+        file, tree = path.relative_to(ROOT).as_posix(), ast.parse(path.read_text(encoding="utf-8"))
+        for node in ast.walk(tree):
+            argument = said_in(node)
+            text = template_of(argument) if argument is not None else None
             if text and len(text.replace("{}", "").strip(" .")) >= FEWEST_LETTERS:
-                found[text] = path.relative_to(ROOT).as_posix()
-    return found
+                said[text] = file
+        if not file.startswith(NO_SENTENCES):
+            phrases |= dict.fromkeys(phrases_of(tree), file)
+    return {**said, **{text: file for text, file in phrases.items() if text not in said}}
+
+
+def phrases_of(tree):
+    """Texts of some words: no docstring, no message to a programmer, no pattern, no list of names."""
+    left_out = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Assign) and any(isinstance(target, ast.Name) and target.id in NAMED for target in node.targets):
+            yield from (inner.value for inner in ast.walk(node.value) if isinstance(inner, ast.Constant) and isinstance(inner.value, str))
+        name = node.exc.func.id if isinstance(node, ast.Raise) and isinstance(node.exc, ast.Call) and isinstance(node.exc.func, ast.Name) else ""
+        if isinstance(node, ast.Assert) or name in OF_PROGRAMMERS:
+            left_out |= set(ast.walk(node))
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
+            left_out.add(node.value)
+        if isinstance(node, ast.JoinedStr):
+            left_out |= {part for part in node.values if isinstance(part, ast.Constant)}
+        if isinstance(node, ast.BinOp) and template_of(node) is not None:
+            left_out |= {node.left, node.right}
+    for node in ast.walk(tree):
+        text = template_of(node) if node not in left_out else None
+        words = re.findall("[A-Za-z]{2,}", text or "")
+        if len(words) >= FEWEST_WORDS and text.strip().count(" ") >= FEWEST_WORDS - 1 and not NO_PROSE.search(text):
+            yield text
 
 
 def said_in(node):

@@ -1069,6 +1069,11 @@
             <translation>kubisch</translation>
         </message>
         <message>
+            <location filename="../../algorithms/choice_words.py" />
+            <source>curbs</source>
+            <translation>Bordsteine</translation>
+        </message>
+        <message>
             <location filename="../../algorithms/cloud_files.py" />
             <source>{label}: the folder {name} holds no LAS or LAZ file.</source>
             <translation>{label}: Im Ordner {name} liegt keine LAS- oder LAZ-Datei.</translation>

@@ -81,6 +81,13 @@ def test_links_and_pictures_lead_somewhere_and_stay_in_the_language(language):
                 assert page.name == "index.md" and found.name == "index.md", f"{page.name} leads to the English page {found.name}"
 
 
+def test_the_troubleshooting_quotes_what_is_said_in_german():
+    said = (TRANSLATIONS / "core_de.json").read_text(encoding="utf-8") + (TRANSLATIONS / "lanewright_de.ts").read_text(encoding="utf-8")
+    for message in re.findall(r"^### (.+)$", (PAGES / "de" / "troubleshooting.md").read_text(encoding="utf-8"), re.M):
+        for part in (part.strip(" .") for part in message.split("…")):
+            assert part in said, f"{message}: {part}"
+
+
 def test_a_page_opens_in_the_language_of_qgis_in_english_without_one_and_at_the_contents_where_there_is_none():
     assert page_path("detectcurbs", "de_AT") == PAGES / "de" / "detectcurbs.md"
     assert page_path("detectcurbs", "fr") == page_path("detectcurbs", "en") == PAGES / "detectcurbs.md"

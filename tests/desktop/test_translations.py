@@ -126,6 +126,13 @@ def german(qgis_app):
     ("Road edges: 1,204 m measured, 18 m bridged.", "Straßenränder: 1,204 m gemessen, 18 m überbrückt."),
     ("Driving lines: 2 lanes, right-hand traffic: 99 m measured", "Fahrlinien: 2 Fahrstreifen, Verkehr auf Seite rechts: 99 m measured"),
     ("There is no file /data/B12/a.laz. Check the path of the point cloud.", "Es gibt keine Datei /data/B12/a.laz. Den Pfad der Punktwolke prüfen."),
+    ("The cell size is 0 m; it must be between 0.001 and 10 m.", "Die Zellgröße ist 0 m; erlaubt ist zwischen 0.001 und 10 m."),
+    ("CJJ 37-2012: radius allows 60 km/h, length 11 m is below 25 m, the least for 30 km/h",
+     "CJJ 37-2012: der Radius erlaubt 60 km/h, die Länge 11 m liegt unter 25 m, der kleinsten für 30 km/h"),
+    ("Measure more points. No paint was found on this road, so there are no marking lines and no driving lines.",
+     "Mehr Punkte messen. Auf dieser Straße wurde keine Farbe gefunden; es gibt daher keine Markierungslinien und keine Fahrlinien."),
+    ("kink at a link", "Knick an einer Verknüpfung"),
+    ("/data/B12/my roads/a 1.laz", "/data/B12/my roads/a 1.laz"),
     ("Something that nobody has translated.", "Something that nobody has translated."),
 ])
 def test_what_the_core_says_is_told_in_german_with_its_numbers_and_names(german, said, told_in_german):
@@ -148,5 +155,5 @@ def test_nearly_all_that_the_core_says_has_a_translation_with_its_places():
 
     known = json.loads((TRANSLATIONS / "core_de.json").read_text(encoding="utf-8"))
     said = core_messages()
-    assert sum(bool(known.get(text)) for text in said) > 0.8 * len(said)
+    assert sum(bool(known.get(text)) for text in said) > 0.9 * len(said)
     assert not [text for text, german in known.items() if german and text.count("{}") != german.count("{}")]

@@ -88,10 +88,11 @@ class ScannerScatter:
         every = sum(bool(count.sum()) for count in self.points.values())
         if not windows:
             return text + " Paint is searched for in the image."
-        where = "" if windows == every else f"Along {windows * length:.0f} of {every * length:.0f} m most points are of noisy scanners, and "
-        there = " there" if where else ""
-        return (f"{text} {where}{'p' if where else 'P'}aint is searched for{there} in averages over a decimetre, as elongated pieces and rows of "
-                f"dashes; other markings are not found{there}.")
+        if windows == every:
+            return text + (" Paint is searched for in averages over a decimetre, as elongated pieces and rows of dashes; other markings are not "
+                           "found.")
+        return text + (f" Along {windows * length:.0f} of {every * length:.0f} m most points are of noisy scanners, and paint is searched for there "
+                       "in averages over a decimetre, as elongated pieces and rows of dashes; other markings are not found there.")
 
 
 def scatter_in_squares(points: Points) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -90,15 +90,17 @@ def align_time(time: np.ndarray, cloud_span: tuple[float, float], system: str = 
     name, offset = max(options, key=lambda option: (overlap(option[1]) > -TIME_TOLERANCE and option[0] == "as it is", overlap(option[1])))
     hint = _leap_hint(first + offset, last + offset, cloud_first, cloud_last)
     if overlap(offset) <= -TIME_TOLERANCE:
-        tried = "One of them may use another time system: set the trajectory's time system (gps, adjusted, week or day)" \
-            if system == "automatic" else f"The trajectory was taken to count {TIME_SYSTEM_NAMES[system]}: set its time system to automatic"
+        tried = "One of them may use another time system: set the trajectory's time system (gps, adjusted, week or day) and run again." \
+            if system == "automatic" else \
+            f"The trajectory was taken to count {TIME_SYSTEM_NAMES[system]}: set its time system to automatic and run again."
         raise RoadExtractionError(
             f"The trajectory does not cover the scan in time. The scan was recorded from {cloud_first:.1f} s to {cloud_last:.1f} s"
             f"{'' if not adjusted or cloud_last > SECONDS_PER_WEEK else ' (adjusted GPS time according to its header)'}, "
-            f"the trajectory runs from {first:.1f} s to {last:.1f} s. {hint or tried + ' and run again.'}")
+            f"the trajectory runs from {first:.1f} s to {last:.1f} s. {hint or tried}")
     if not offset:
         return 0.0, hint
-    return offset, (f"The trajectory counts {TIME_SYSTEM_NAMES[name]}; {offset:+.0f} s convert it to the time of the cloud. {hint}").strip()
+    said = f"The trajectory counts {TIME_SYSTEM_NAMES[name]}; {offset:+.0f} s convert it to the time of the cloud."
+    return offset, f"{said} {hint}".strip()
 
 
 def _offsets(first, last, cloud, system):
@@ -137,8 +139,7 @@ def _leap_hint(first, last, cloud_first, cloud_last):
     for leap in LEAP_SECONDS:
         for shift in (leap, -leap):
             if first + shift - cloud_first <= 0.1 and cloud_last - last - shift <= 0.1:
-                side = "begins" if early > late else "ends"
-                return (f"The scan {side} {max(early, late):.1f} s {'before' if early > late else 'after'} the trajectory, and {leap:.0f} s would "
-                        f"make them agree, which is what leap seconds come to (UTC against GPS is 18 s since 2017): if the "
-                        "trajectory is in UTC, export it in GPS time.")
+                said = f"The scan begins {early:.1f} s before the trajectory" if early > late else f"The scan ends {late:.1f} s after the trajectory"
+                return (f"{said}, and {leap:.0f} s would make them agree, which is what leap seconds come to (UTC against GPS is 18 s since 2017): "
+                        "if the trajectory is in UTC, export it in GPS time.")
     return ""
