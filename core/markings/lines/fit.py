@@ -19,12 +19,13 @@ from ...survey.store.records import join_columns
 from ..objects.marking_objects import MarkingObjects
 from .common_trend import CommonTrend
 from .dash_pattern import same_dash_pattern
+from .few_tracks import painted_strands
 from .geometry import LineShape, fit_line_shapes
 from .linking import LinkedLine, link_lines, link_over_long_gaps, without_strays
 from .naming import named_by_estimate
 from .painted_lines import PaintedLines, painted_lines_of
 from .selection import SelectedLine, crossings, hatching_bars, hatching_borders, select_lines
-from .strands import line_paint, trace_strands
+from .strands import line_paint
 
 if TYPE_CHECKING:
     from ...road.edges.road_edges import RoadEdges
@@ -96,7 +97,7 @@ def fit_marking_lines(clustered_points: RoadPoints, markings: MarkingObjects, fr
         part = progress.part(k / len(roads), (k + 1) / len(roads))
         records, rank = line_paint(_records_of(clustered_points, road), markings, road)
         part.report(0.1)
-        strands = trace_strands(records, rank)
+        strands = painted_strands(records, rank)
         part.report(0.4)
         hatched = hatching_bars(markings, road)
         lines, trend = _linked(strands, settings)
