@@ -63,6 +63,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
     arcs: list[dict[str, Any]] = []
     areas: list[dict[str, Any]] = []
     lanes: dict[int, RoadLanes] = {}
+    paint = marking_lines.scatter()
     curbs, pavement = (sections_of_edges(edges), sections_of_pavement(edges)) if edges is not None else (None, {})
     estimates = estimate_roads(sections_of_lines(marking_lines), frame, settings.lane_width or country(settings.country).usual_lane,
                                settings.traffic_side, curbs, markings, road_points, width_asked=bool(settings.lane_width))
@@ -79,7 +80,7 @@ def make_driving_lines(marking_lines: PaintedLines, frame: RoadFrame, settings: 
             heights = [frame.track_height(number, s[t.first:t.last + 1]) for t in tracks]
         courses = lane_courses(tracks, s, frame.roads[number], alignment)
         for lane, (track, course, elements, z) in enumerate(zip(tracks, courses, alignment, heights), start=1):
-            sigma = lane_sigma(track, course, s[track.first:track.last + 1], frame.roads[number], frame.pass_sigma.get(number, 0.0))
+            sigma = lane_sigma(track, course, frame.roads[number], one.lines, paint, frame.pass_sigma.get(number, 0.0))
             rows += [dict(row, road=number, lane=lane) for row in _lane_pieces(track, track.direction, course, elements, one.lines, z, sigma)]
             arcs += [dict(row, road=number, lane=lane) for row in _lane_curves(track.direction, elements)]
         areas += lane_areas(one, curbs.get(number) if curbs else None, tracks, heights, frame, number, pavement.get(number))
@@ -124,7 +125,7 @@ def _lane_pieces(track: LaneTrack, way: int, course: Course, elements: list[Elem
             pattern=_patterns(track, rows, way, road_lines), direction=way, source="offset" if track.offset[rows].mean() > 0.5 else "pair",
             status=LANE_STATUS[code], confidence=float(track.confidence[rows].mean()),
             curve=element.arc if element is not None else course.curve, rmse=course.rmse,
-            sigma=np.sqrt(np.mean(sigma[rows] ** 2)), station=start, end=end,
+            sigma=sigma[rows].mean(), station=start, end=end,
             offset=np.median(track.d[rows]), width=np.median(track.width[rows]), places=places[::-1] if way < 0 else places)
 
 

@@ -66,6 +66,7 @@ class PaintedLines:
     course : FrameLines, one per piece
     fitted : FittedPieces, None for lines that were read from a layer
     crs : WKT, "" where unknown
+    rmse : (P,) metres, of the paint from the curve; NaN where unknown; None where nothing is known
     """
 
     line: np.ndarray
@@ -75,9 +76,20 @@ class PaintedLines:
     course: FrameLines
     fitted: FittedPieces | None = None
     crs: str = ""
+    rmse: np.ndarray | None = None
 
     def __len__(self) -> int:
         return len(self.line)
+
+    def scatter(self) -> dict[int, float]:
+        """RMS distance of the paint from the curve of every line where it is known, metres, by the line's number."""
+        if self.rmse is None or not len(self):
+            return {}
+        length = np.diff(self.course.start).astype(float)   # in vertices, which are as far apart on every line
+        known = np.isfinite(self.rmse)
+        number, row = np.unique(self.line[known], return_inverse=True)
+        square = np.bincount(row, length[known] * self.rmse[known] ** 2, len(number)) / np.maximum(np.bincount(row, length[known], len(number)), 1.0)
+        return dict(zip(number.tolist(), np.sqrt(square).tolist()))
 
 
 def lines_to_features(lines: PaintedLines, frame: RoadFrame) -> Features:
@@ -151,7 +163,8 @@ def lines_from_features(features: Features, frame: RoadFrame) -> PaintedLines:
     road = [-1 if row.get("road") is None else int(row["road"]) for row in rows]
     kind, pattern, status = (np.array([str(row.get(name) or missing) for row in rows], object)
                              for name, missing in (("kind", ""), ("pattern", ""), ("status", "measured")))
-    return PaintedLines(line, kind, pattern, status, lines_in_frame(parts, road, frame), crs=features.crs)
+    rmse = np.array([np.nan if row.get("rmse_m") is None else float(row["rmse_m"]) for row in rows])
+    return PaintedLines(line, kind, pattern, status, lines_in_frame(parts, road, frame), crs=features.crs, rmse=rmse)
 
 
 def painted_lines_of(rows: list[dict[str, Any]], frame: RoadFrame, crs: str) -> PaintedLines:
@@ -171,7 +184,8 @@ def painted_lines_of(rows: list[dict[str, Any]], frame: RoadFrame, crs: str) -> 
                           np.append(0, np.cumsum([len(some) for some in places], dtype=int)),
                           *(column(name, float) for name in ("station", "end", "offset", "width", "rmse")))
     course = lines_in_frame(fitted.linestrings(frame), column("road", int), frame)
-    return PaintedLines(column("line", int), column("kind", object), column("pattern", object), column("status", object), course, fitted, crs)
+    return PaintedLines(column("line", int), column("kind", object), column("pattern", object), column("status", object), course, fitted, crs,
+                        fitted.rmse)
 
 
 def pieces_of_lines(lines: PaintedLines) -> list[dict[str, Any]]:

@@ -34,13 +34,13 @@ class EdgeUncertainty:
     gap: float
 
 
-MAIN_EDGE = EdgeUncertainty(foot=0.0015, spacing=0.06, scatter=0.7, end=0.002, gap=0.0005)
+MAIN_EDGE = EdgeUncertainty(foot=0.0015, spacing=0.085, scatter=0.5, end=0.002, gap=0.0005)
 CURB_RETURN = EdgeUncertainty(foot=0.0045, spacing=0.0, scatter=1.5, end=0.006, gap=0.0005)   # found in plan, from fewer points
 
 
 def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support: np.ndarray | None = None,
                shares: EdgeUncertainty = MAIN_EDGE, passes: float = 0.0) -> float:
-    """One sigma across a piece of an edge, the RMS over places along it.
+    """One sigma across a piece of an edge, the mean over places along it: its worst places do not speak for all.
 
     Parameters
     ----------
@@ -64,4 +64,4 @@ def edge_sigma(at: np.ndarray, places: np.ndarray, residual: np.ndarray, support
     end = np.clip(np.minimum(at - places[0], places[-1] - at), 0.0, None)
     variance = (shares.foot**2 + shares.spacing**2 * spacing + shares.scatter**2 * scatter + shares.end**2 * np.exp(-end / END_LENGTH)
                 + (shares.gap * gap) ** 2 + passes**2)
-    return float(np.sqrt(variance.mean()))
+    return float(np.sqrt(variance).mean())

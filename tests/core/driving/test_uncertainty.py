@@ -42,3 +42,14 @@ def test_what_passes_differ_by_is_in_it():
     after = sigmas(street.lanes()[0], status="measured")
     np.testing.assert_allclose(after, np.hypot(before, 0.04), atol=1e-4)
     assert before[0] == pytest.approx(before[1], rel=0.5)
+
+
+@pytest.mark.parametrize("scatter", [0.005, 0.015, 0.04])
+def test_it_grows_with_the_scatter_of_the_paint_about_the_lines_of_the_lane(scatter):
+    street = two_lanes()
+    usual = sigmas(street.lanes()[0], status="measured")
+    for row in street.lines.rows:
+        row["rmse_m"] = scatter
+    told = sigmas(street.lanes()[0], status="measured")
+    assert told[0] == pytest.approx(0.3 * scatter, abs=1e-3)
+    assert (told[0] > usual[0]) == (scatter > 0.010), "where nothing is known of the paint it is taken to scatter by a centimetre"

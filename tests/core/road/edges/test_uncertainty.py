@@ -22,7 +22,7 @@ def test_a_tenth_of_the_points_makes_it_three_times_as_uncertain():
 
 def test_curb_points_that_scatter_make_it_uncertain_there_and_not_fifty_metres_on():
     rough = np.where(PLACES < 30.0, 0.020, 0.0)
-    assert edge_sigma(np.arange(5.0, 20.0), PLACES, rough) > 0.012
+    assert edge_sigma(np.arange(5.0, 20.0), PLACES, rough) > 0.009
     assert edge_sigma(np.arange(80.0, 90.0), PLACES, rough) < 0.003
 
 
@@ -39,3 +39,10 @@ def test_the_end_of_an_edge_is_worse_than_its_middle():
 def test_passes_that_differ_add_as_squares():
     alone = edge_sigma(MIDDLE, PLACES, EXACT)
     assert edge_sigma(MIDDLE, PLACES, EXACT, passes=0.04) == pytest.approx(np.hypot(alone, 0.04))
+
+
+def test_a_few_bad_places_do_not_speak_for_the_whole_line():
+    one_bad = np.where(np.abs(PLACES - 50.0) < 2.0, 0.05, 0.001)
+    whole = edge_sigma(PLACES, PLACES, one_bad)
+    each = [edge_sigma(np.array([station]), PLACES, one_bad) for station in PLACES]
+    assert whole == pytest.approx(np.mean(each)) and whole < np.sqrt(np.mean(np.square(each)))
