@@ -29,6 +29,7 @@ from lanewright.core.execution.tasks import ShippedPhase  # noqa: E402
 from lanewright.core.pipeline import road_map as pipeline  # noqa: E402
 from lanewright.core.pipeline.stages import Stages  # noqa: E402
 from lanewright.core.sample import SampleSettings, make_sample_survey  # noqa: E402
+from lanewright.core.survey import open_survey  # noqa: E402
 
 WORKERS = (1, 2, 4, 8, 16, 32, 64, 128, 256)
 
@@ -64,6 +65,9 @@ class Recorder:
     def passing(self):
         return self
 
+    def sees(self, paths):
+        return True
+
     def size(self, value):
         """Bytes of a value in a file."""
         path = self.folder / "value.npz"
@@ -86,11 +90,10 @@ def measure(arguments):
         began, before = time.process_time(), recorder.inside
         result = self.own_run(name, title, function, *others, **named)
         seconds[name] = time.process_time() - began - (recorder.inside - before)
-        if name == "survey":
-            result.executor = recorder
         return result
 
     Stages.own_run, Stages.run = Stages.run, run
+    open_survey.executor_for = lambda *_: recorder
     sample = make_sample_survey(SampleSettings(length=arguments.length, pulse_rate=arguments.pulse_rate))
     cloud = Path(folder.name) / "survey.laz"
     sample.write_cloud(cloud)
@@ -130,7 +133,7 @@ def model(arguments):
     for workers in WORKERS:
         spans = [span_of(phase["seconds"] * copies, workers, arguments.overhead, phase["opening"], arguments.serial) for phase in found["phases"]]
         rows.append((workers, *spans, sum(spans), sum(spans) + alone))
-    names = [phase["name"].removesuffix("_of_section") for phase in found["phases"]]
+    names = [phase["name"] for phase in found["phases"]]
     print(f"{found['points'] * copies / 1e6:.0f} million points on {found['length'] * copies / 1e3:.1f} km; {found['machine']}; "
           f"tasks {[len(phase['seconds']) * copies for phase in found['phases']]}; caller alone {alone:.0f} s")
     print("| workers | " + " | ".join(f"{name} (s)" for name in names) + " | phases (s) | gain | per worker | whole run (s) | gain |")

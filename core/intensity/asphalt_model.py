@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -76,7 +75,8 @@ def to_intensity(level: np.ndarray) -> np.ndarray:
     return 2.0 ** (np.asarray(level, float) / LEVELS_PER_DOUBLING) - 1.0
 
 
-class BinCounts(NamedTuple):
+@dataclass(frozen=True)
+class BinCounts:
     """Counts of some points for one kind of distance: (scanners, bins, INTENSITY_LEVELS) from bin `first` on."""
 
     kind: int
@@ -135,8 +135,24 @@ class IntensityHistograms:
         found : result of `count`
         times : how many points each counted point stands for
         """
-        for kind, first, counts in found:
-            self.counts[kind, :, first:first + counts.shape[1]] += counts if times == 1 else times * counts
+        for some in found:
+            bins = slice(some.first, some.first + some.counts.shape[1])
+            self.counts[some.kind, :, bins] += some.counts if times == 1 else times * some.counts
+
+    @classmethod
+    def together(cls, found: Sequence[Sequence[BinCounts]]) -> list[BinCounts]:
+        """Results of `count` as one, which takes no more room than the largest."""
+        parts = [part for some in found for part in some]
+        if len(found) < 2 or not parts:
+            return parts
+        whole = cls(parts[0].counts.shape[0])
+        whole.add(parts)
+        joined = []
+        for kind in sorted({part.kind for part in parts}):
+            first = min(part.first for part in parts if part.kind == kind)
+            end = max(part.first + part.counts.shape[1] for part in parts if part.kind == kind)
+            joined.append(BinCounts(kind, first, whole.counts[kind, :, first:end]))
+        return joined
 
 
 def asphalt_of_histograms(histograms: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -10,10 +11,13 @@ import numpy as np
 from ..common.errors import RoadExtractionError
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
+from ..execution.phase import Phase
+from ..survey.frame.passes import Pass
 from ..survey.frame.road_frame import RoadFrame
 from ..survey.store.records import Points
 from ..survey.store.road_points import RoadPoints
-from .asphalt_model import DISTANCE_BIN, MAX_DISTANCE, POINTS_AT_ONCE, AsphaltTable, IntensityHistograms, asphalt_of_histograms
+from ..survey.store.section_store import STRETCH_POINTS, Stretch
+from .asphalt_model import DISTANCE_BIN, MAX_DISTANCE, POINTS_AT_ONCE, AsphaltTable, BinCounts, IntensityHistograms, asphalt_of_histograms
 from .beams import Beams
 from .saturation import SCANNER_NUMBERS, Saturation
 from .vehicle_relative import ACROSS_TRACK, UNKNOWN_DISTANCE, VehicleDistances
@@ -122,21 +126,19 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
     points_by_scanner = sum(ordered_map(lambda key: _points_by_scanner(road_points.section(*key)), sections))
     scanners = int(np.flatnonzero(points_by_scanner)[-1]) + 1
     beams = Beams.of(road_points, frame, scanners, progress.part(0.0, 0.2))
-    equalised = beams.equalised if beams else (lambda points: points.intensity)
     step = _sampling_step(road_points)
     before, after = IntensityHistograms(scanners), IntensityHistograms(scanners)
     modelled = IntensityHistograms(scanners) if beams else before
+    executor, length = road_points.executor, road_points.store.section_length
+    stretches = road_points.store.stretches(STRETCH_POINTS if executor.folder else 0)
 
-    def count(key):
-        points = _stripes(road_points.section(*key), step)
-        distances = VehicleDistances(frame.passes, points.time).of(points)
-        raw = before.count(points.scanner, distances, points.intensity)
-        equal = modelled.count(points.scanner, distances, equalised(points)) if beams else ()
-        return raw, equal, points.intensity.max(initial=0), np.count_nonzero(distances[0] == UNKNOWN_DISTANCE), len(points)
+    def run(function, arguments, part):
+        phase = Phase(function, road_points, arguments, lambda item: road_points.survey.stretch(item[0], item[1] * length, item[2] * length))
+        return executor.run(phase, stretches, part)
 
     # points without a position of the vehicle, and all points
     without_vehicle, highest = np.zeros(2, np.int64), 0
-    for raw, equal, brightest, *lost in ordered_map(count, sections, progress.part(0.2, 0.5)):
+    for raw, equal, brightest, lost in run(levels_of_stretch, (list(frame.passes), beams, scanners, step), progress.part(0.2, 0.5)):
         before.add(raw, step)
         modelled.add(equal, step)
         without_vehicle += lost
@@ -154,23 +156,10 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
         table.logarithmic = settings.scale == "logarithmic"
 
     kinds, lookup = np.unique(table.distance_kind[points_by_scanner[:scanners] > 0]).tolist(), table.lookup()
-
-    def correct(key):
-        points = road_points.section(*key)
-        corrected, distances_of = np.empty(len(points), np.float32), VehicleDistances(frame.passes, points.time).of
-        for first in range(0, len(points), POINTS_AT_ONCE):
-            here = points[first:first + POINTS_AT_ONCE]
-            distances = distances_of(here, kinds)
-            distance = distances[0] if len(distances) == 1 else np.where(table.distance_kind[here.scanner] == ACROSS_TRACK, *distances)
-            found = table.corrections(lookup, here.scanner, distance)
-            np.add(equalised(here), found, out=found) if table.logarithmic else np.multiply(equalised(here), found, out=found)
-            corrected[first:first + POINTS_AT_ONCE] = found
-        some = _stripes(Points(points.records.with_columns(corrected=corrected)), step)
-        return key, corrected, after.count(some.scanner, distances_of(some, kinds), some.corrected, kinds)
-
-    store = road_points.store.with_column("corrected", road_points.executor.folder)
-    for (road, section), corrected, counts in ordered_map(correct, sections, progress.part(0.5, 1.0)):
-        store.put(road, section, corrected)
+    store = road_points.store.with_column("corrected", executor.folder)
+    for road, found, counts in run(corrected_of_stretch, (list(frame.passes), beams, table, lookup, kinds, step), progress.part(0.5, 1.0)):
+        for section, corrected in found:
+            store.put(road, section, corrected)
         after.add(counts, step)
     report = _report(before.counts, after.counts, table, points_by_scanner)
     report.beams = beams.count if beams else 0
@@ -180,6 +169,72 @@ def correct_intensity(road_points: RoadPoints, frame: RoadFrame, settings: Inten
     for line in report.lines()[:1]:
         progress.info(line)
     return replace(road_points, store=store, has_corrected=True), report
+
+
+def levels_of_stretch(road_points: RoadPoints, stretch: Stretch, passes: Sequence[Pass], beams: Beams | None, scanners: int,
+                      step: int) -> tuple[list[BinCounts], list[BinCounts], int, np.ndarray]:
+    """The phase that counts intensities.
+
+    Parameters
+    ----------
+    road_points : RoadPoints
+    stretch : Stretch of a road
+    passes : of the road frame
+    beams : Beams whose brightness is made equal, None for none
+    scanners : their numbers are below this
+    step : points in every step-th centimetre of the road are counted
+
+    Returns
+    -------
+    raw, equal : counts of intensities, as they are and with equal beams (none without)
+    highest : intensity
+    lost : (2,) points without a position of the vehicle, and all points
+    """
+    histograms = IntensityHistograms(scanners)
+    raw, equal, highest, lost = [], [], 0, np.zeros(2, np.int64)
+    for key in road_points.store.in_stretch(stretch):
+        points = _stripes(road_points.section(*key), step)
+        distances = VehicleDistances(passes, points.time).of(points)
+        raw.append(histograms.count(points.scanner, distances, points.intensity))
+        if beams:
+            equal.append(histograms.count(points.scanner, distances, beams.equalised(points)))
+        highest = max(highest, int(points.intensity.max(initial=0)))
+        lost += np.count_nonzero(distances[0] == UNKNOWN_DISTANCE), len(points)
+    return IntensityHistograms.together(raw), IntensityHistograms.together(equal), highest, lost
+
+
+def corrected_of_stretch(road_points: RoadPoints, stretch: Stretch, passes: Sequence[Pass], beams: Beams | None, table: AsphaltTable,
+                         lookup: np.ndarray, kinds: list[int], step: int) -> tuple[int, list[tuple[int, np.ndarray]], list[BinCounts]]:
+    """The phase that corrects intensities.
+
+    Parameters
+    ----------
+    road_points, stretch, passes, beams, step : as of `levels_of_stretch`
+    table, lookup : AsphaltTable and its `lookup`
+    kinds : kinds of distance that it needs
+
+    Returns
+    -------
+    road : number
+    found : (number of a section, (N,) float32 corrected intensity) of each section
+    counts : of the corrected intensities
+    """
+    histograms, found, counts = IntensityHistograms(len(table.distance_kind)), [], []
+    for key in road_points.store.in_stretch(stretch):
+        points = road_points.section(*key)
+        records: Any = points.records
+        corrected, distances_of = np.empty(len(points), np.float32), VehicleDistances(passes, points.time).of
+        for first in range(0, len(points), POINTS_AT_ONCE):
+            here = points[first:first + POINTS_AT_ONCE]
+            distances = distances_of(here, kinds)
+            distance: Any = distances[0] if len(distances) == 1 else np.where(table.distance_kind[here.scanner] == ACROSS_TRACK, *distances)
+            by, intensity = table.corrections(lookup, here.scanner, distance), beams.equalised(here) if beams else here.intensity
+            np.add(intensity, by, out=by) if table.logarithmic else np.multiply(intensity, by, out=by)
+            corrected[first:first + POINTS_AT_ONCE] = by
+        some = _stripes(Points(records.with_columns(corrected=corrected)), step)
+        counts.append(histograms.count(some.scanner, distances_of(some, kinds), some.corrected, kinds))
+        found.append((key[1], corrected))
+    return stretch[0], found, IntensityHistograms.together(counts)
 
 
 def _sampling_step(road_points):

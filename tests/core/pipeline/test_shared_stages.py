@@ -9,6 +9,7 @@ from lanewright.core.execution.choice import ExecutionSettings
 from lanewright.core.execution.interpreter import find_interpreter
 from lanewright.core.execution.processes import WorkerProcesses
 from lanewright.core.execution.work_folder import KeptResults, WorkFolder
+from lanewright.core.intensity import correction
 from lanewright.core.intensity import image as imaging
 from lanewright.core.intensity.correction import correct_intensity
 from lanewright.core.intensity.image import make_intensity_image
@@ -18,12 +19,13 @@ from lanewright.core.road.surface.extract import extract_road_surface
 from lanewright.core.survey import open_survey as opening
 
 pytestmark = pytest.mark.slow
-PHASES = ["surface_points", "window_of_image", "sums_of_pieces"]
+PHASES = ["surface_points", "levels_of_stretch", "corrected_of_stretch", "window_of_image", "sums_of_pieces"]
 
 
 @pytest.fixture(autouse=True)
 def small_tasks(monkeypatch):
-    monkeypatch.setattr(extract, "STRETCH_POINTS", 40_000)
+    for module in (extract, correction):
+        monkeypatch.setattr(module, "STRETCH_POINTS", 40_000)
     monkeypatch.setattr(imaging, "PIECES_PER_TASK", 3)
 
 
@@ -67,12 +69,12 @@ def found_by(sample, executor=None, work=None):
         edges = draw_boundaries(find_curb_points(survey, BoundarySettings("profiles")), survey.frame).edges
         road_points, surface = extract_road_surface(survey, edges)
         selected = [np.array(road_points.section(*key).records).tobytes() for key in road_points.all_sections()]
-        road_points, _ = correct_intensity(road_points, survey.frame)
+        road_points, report = correct_intensity(road_points, survey.frame)
         image = make_intensity_image(road_points)
         pixels = image.read_pixels(0, 0, image.width, image.height).tobytes()
         image.close()
         corrected = [road_points.section(*key).corrected.tobytes() for key in road_points.all_sections()]
-        return selected, corrected, surface.area.tobytes(), surface.status.tolist(), pixels
+        return selected, corrected, surface.area.tobytes(), surface.status.tolist(), report, pixels
     finally:
         survey.store.close()
 
@@ -89,7 +91,7 @@ def test_worker_processes_select_and_interpolate_what_threads_do_and_leave_nothi
     assert all(executor.tasks[name] > 1 for name in PHASES) and not executor.folder.exists()
 
 
-@pytest.mark.parametrize("phase", ["surface_points", "sums_of_pieces"])
+@pytest.mark.parametrize("phase", ["surface_points", "corrected_of_stretch", "sums_of_pieces"])
 def test_a_worker_that_is_killed_is_replaced_and_nothing_is_lost(sample, by_threads, phase):
     executor = Noting(1, phase)
     assert found_by(sample, executor) == by_threads
