@@ -41,6 +41,17 @@ class VectorSource:
         return KIND_LABELS[kind]
 
 
+def _value(column, value, label):
+    """A value of a field in the type that is needed."""
+    try:
+        return column.type(value)
+    except (TypeError, ValueError, OverflowError):
+        raise RoadExtractionError(
+            tr("{label} has {value!r} in its field {field}, where a number is needed. Use the layer that Lanewright wrote.").format(
+                label=label, value=value, field=column.name)
+        ) from None
+
+
 def read_features(source, schema, geometry_type):
     """A layer as Features; fields are matched by name, the layer's further fields are left out.
 
@@ -55,7 +66,8 @@ def read_features(source, schema, geometry_type):
     result = Features(geometry_type, list(schema), crs=source.crs)
     # scanlines run straight up a wall, which seen from above is no valid line
     for wkb, values in source.rows(measures=measured, check_validity=not measured):
-        row = {column.name: None if place is None or values[place] is None else column.type(values[place]) for column, place in zip(schema, index)}
+        row = {column.name: None if place is None or values[place] is None else _value(column, values[place], source.label)
+               for column, place in zip(schema, index)}
         if geometry_type == "None":
             result.add(None, **row)
             continue

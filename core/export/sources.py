@@ -16,6 +16,7 @@ from ..io.crs import check_metric, parse_crs
 
 MOST_OVERLAP = 0.5       # share of a lane that may lie on lanes of another road: more is two roads at one place
 SAME_LEVEL = 2.0         # m of height within which two roads are no bridge
+FARTHEST_PLACE = 1e8     # m from the origin of a CRS: twice around the world
 FARTHEST_LAYER = 50.0    # m from the lanes: a layer that lies farther away is of another survey
 
 
@@ -64,6 +65,10 @@ def checked(source: RoadMapSource) -> RoadMapSource:
         check_metric(crs, "The layer of lanes")
     if not np.isfinite(lanes.left).all() or not np.isfinite(lanes.right).all():
         raise RoadExtractionError("Some lanes have no heights or broken coordinates. Use the layer of lanes that Lanewright wrote.")
+    places = np.concatenate([lanes.left, lanes.right])
+    if np.abs(places).max() > FARTHEST_PLACE:
+        raise RoadExtractionError(f"The lanes reach to {np.abs(places).max():.3g} m from the origin of their CRS, which is not on this world. Choose "
+                                  "the layer of lanes that Lanewright wrote, or set its CRS right.")
     _check_shapes(lanes)
     _check_places(lanes)
     _check_layers(source)
@@ -72,7 +77,10 @@ def checked(source: RoadMapSource) -> RoadMapSource:
     notes = list(source.notes)
     if lost:
         notes.append(f"{lost} successors name lanes that are not in the layer; these links were left out.")
-    kept = [tuple(name for name in names if name in known) for names in lanes.successors]
+    own = sum(name in names for name, names in zip(lanes.lane_id, lanes.successors))
+    if own:
+        notes.append(f"{own} lanes name themselves as their successors; these links were left out.")
+    kept = [tuple(name for name in names if name in known and name != own_name) for own_name, names in zip(lanes.lane_id, lanes.successors)]
     return replace(source, notes=notes, lanes=replace(lanes, successors=kept))
 
 

@@ -4535,6 +4535,11 @@
         </message>
         <message>
             <location filename="../../algorithms/vector_source.py" />
+            <source>{label} has {value!r} in its field {field}, where a number is needed. Use the layer that Lanewright wrote.</source>
+            <translation>{label} hat {value!r} im Feld {field}, wo eine Zahl gebraucht wird. Den Layer verwenden, den Lanewright geschrieben hat.</translation>
+        </message>
+        <message>
+            <location filename="../../algorithms/vector_source.py" />
             <source>{label} has geometries without heights (Z). Use the layer that Lanewright wrote.</source>
             <translation>{label} hat Geometrien ohne Höhen (Z). Den Layer verwenden, den Lanewright geschrieben hat.</translation>
         </message>

@@ -122,6 +122,17 @@ def test_what_is_no_layer_is_refused(tmp_path, value, says):
         LayerFile(str(tmp_path / value), "Road edges")
 
 
+def test_words_where_a_number_is_needed_are_refused_by_their_field(tmp_path):
+    import json
+
+    feature = {"type": "Feature", "properties": {**EDGE, "rmse_m": 0.1, "chain": "north"},
+               "geometry": {"type": "LineString", "coordinates": [[610400.0, 2710200.0, 24.0], [610410.0, 2710210.0, 25.0]]}}
+    (tmp_path / "edges.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": [feature]}, default=int), encoding="utf-8")
+    schema = [field for field in ROAD_EDGES if field.name in feature["properties"]]
+    with pytest.raises(RoadExtractionError, match="Road edges has 'north' in its field chain, where a number is needed"):
+        read_features(LayerFile(str(tmp_path / "edges.geojson"), "Road edges"), schema, "LineStringZ")
+
+
 def test_a_layer_of_another_stage_is_refused_by_its_fields_and_its_geometry(tmp_path):
     path = written(tmp_path / "edges.gpkg", edges())
     with pytest.raises(RoadExtractionError, match="Markings lacks the field"):

@@ -139,11 +139,18 @@ def two_roads_at_one_place():
     (lambda: spoilt(lambda lanes: lanes.left.__setitem__((5, slice(0, 2)), lanes.left[20, :2])), {}, "crosses itself"),
     (lambda: spoilt(lambda lanes: lanes.left.__setitem__(slice(0, 61), lanes.right[:61])), {}, "has no two borders"),
     (lambda: spoilt(lambda lanes: lanes.left.__setitem__((slice(30, 61), 1), lanes.right[30:61, 1] - 2)), {}, "cross each other"),
+    (lambda: spoilt(lambda lanes: lanes.left.__setitem__((3, 0), 1e18)), {}, "reach to 1e.18 m .* not on this world"),
     (two_roads_at_one_place, {}, "Roads 1 and 2 lie at one place"),
     (street, {"road_edges": far_edges()}, "do not lie where the lanes are")])
 def test_what_cannot_be_a_map_is_refused_in_one_sentence(lanes, layers, said):
     with pytest.raises(RoadExtractionError, match=said):
         checked(RoadMapSource(lanes(), **layers))
+
+
+def test_a_lane_that_names_itself_as_its_successor_is_taken_without_the_link():
+    lanes = street(cut=30.0)
+    source = checked(RoadMapSource(spoilt(lambda lanes: [lanes.successors.__setitem__(k, (name,)) for k, name in enumerate(lanes.lane_id)])))
+    assert not any(source.lanes.successors) and "name themselves" in source.notes[0] and any(lanes.successors)
 
 
 @pytest.mark.parametrize("crs, said", [("EPSG:4326", "geographic"), ("", "has no CRS")])
