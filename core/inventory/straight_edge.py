@@ -9,8 +9,10 @@ from .surface_grid import CROSS_CELL
 EDGE_LENGTH = 2.0           # m of the straight edge (EN 13036-7)
 EDGE_STEP = 0.10            # m between the places where it is laid
 SMOOTHING_CELLS = 3         # cells of the profile that are averaged: less than the width of a tyre
-STEEPEST = 0.06             # m/m that a straight edge may lie askew to the profile's own slope
-SLOPE_STEP = 0.001          # m/m between the lines that make the upper hull: 0.5 mm of depth at most
+# slopes against the profile's own of the lines that make its upper hull, m/m: fine where most lie, 0.5 mm of depth at most; coarse up to those of
+# the steepest ridges, where a road falls to both sides by as much as it may anywhere (8 %), since there an edge laid askew would show a rut
+FINE_SLOPE, FINE_STEP = 0.03, 0.001
+STEEPEST, COARSE_STEP = 0.18, 0.005
 MAX_STEP_PER_CELL = 0.02    # m from one cell to the next: more is a curb or an island, on which no edge is laid
 MAX_GAP_CELLS = 3           # unseen cells that the edge may bridge
 MIN_SEEN = 0.8              # share of the cells under the edge that must be measured
@@ -114,7 +116,8 @@ def hull_height(x: np.ndarray, heights: np.ndarray) -> np.ndarray:
     off = np.where(known, at - mean_x[:, None], 0.0)
     own = (off * level).sum(axis=1) / np.maximum((off**2).sum(axis=1), 1e-9)
     flat = np.where(known, heights - mean_z[:, None] - own[:, None] * (at - mean_x[:, None]), -np.inf)
-    slopes = np.arange(-STEEPEST, STEEPEST + SLOPE_STEP / 2, SLOPE_STEP)
+    steep = np.arange(FINE_SLOPE + COARSE_STEP, STEEPEST + COARSE_STEP / 2, COARSE_STEP)
+    slopes = np.r_[-steep, np.arange(-FINE_SLOPE, FINE_SLOPE + FINE_STEP / 2, FINE_STEP), steep]
     top = (flat[:, None, :] - slopes[:, None] * at).max(axis=2)
     hull = (top[:, :, None] + slopes[:, None] * at).min(axis=1)
     return hull + mean_z[:, None] + own[:, None] * (at - mean_x[:, None])

@@ -67,6 +67,12 @@ def test_a_step_between_two_scanners_is_no_rut():
     assert np.nanmax(column(rows, "rut_l_mm", "rut_r_mm")) < 3.0
 
 
+@pytest.mark.parametrize("crossfall", [0.025, 0.05, 0.08])
+def test_a_crown_is_no_rut_however_steeply_the_road_falls_from_it(crossfall):
+    found = column(rows_of(measured_road(drives=BOTH_WAYS, crossfall=crossfall)), "rut_l_mm", "rut_r_mm")
+    assert np.sqrt(np.mean(found**2)) < 1.5 and found.max() < 3.0
+
+
 def test_too_much_noise_gives_no_rut_depths_and_says_so():
     sections = measure_cross_sections(measured_road(noise=0.03, density=60.0), BorderLayers(edges_of(), markings_of()))
     assert any("too few or too noisy" in note for note in sections.notes)
