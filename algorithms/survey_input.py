@@ -46,14 +46,15 @@ SURVEY_SETTINGS = (
 EXECUTION_SETTINGS = (
     SettingSpec(
         "WORKERS", "execution.choice:ExecutionSettings", "workers", tr("Worker processes, 0 = automatic (whole number)"),
-        tr("So many further processes of Python find curbs and make scanlines, with the same results. More are faster as long as there "
-           "are processor cores for them, and each takes some hundred MB of memory. Automatic takes one per core for surveys of more than "
-           "100 million points, and none for smaller ones. Where no Python can be started, this program does their work, and the log says so."),
+        tr("So many further processes of Python read the points, find curbs and do most of what is done point by point, with the same "
+           "results. More are faster as long as there are processor cores for them, and each takes some hundred MB of memory. Automatic takes "
+           "one per core for surveys of more than 100 million points, and none for smaller ones. Where no Python can be started, this program "
+           "does their work, and the log says so."),
         advanced=True,
     ),
     SettingSpec(
         "SCHEDULER", "execution.choice:ExecutionSettings", "scheduler", tr("Address of a Dask scheduler"),
-        tr("The workers of a Dask cluster that is running already find curbs and make scanlines, with the same results: tls://host:8786, or "
+        tr("The workers of a Dask cluster that is running already do what worker processes would, with the same results: tls://host:8786, or "
            "tcp://127.0.0.1:8786 on this computer. They need the same Python, packages and Lanewright, no QGIS, and a work folder that all "
            "machines see. The manual's page on large surveys tells how to start one. Worker processes are not used then."),
         advanced=True,

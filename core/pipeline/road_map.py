@@ -45,7 +45,7 @@ from ..road.scanlines.section_planes import ScanlineSettings
 from ..road.surface.extract import SurfaceSettings, extract_road_surface
 from ..road.surface.road_surface import SurfaceOutlines, surface_to_features
 from ..survey.open_survey import SurveySettings, open_survey
-from ..survey.point_density import CubeDensity, cube_density
+from ..survey.point_density import CubeDensity, cube_density_of
 from ..survey.store.records import Points, join_columns
 from .stages import INTENSITY_STAGES, Extent, Stages
 
@@ -190,8 +190,8 @@ def _map_of(survey, image_path, settings, stages, corrections):
     boundaries.ground = None
     facts = dict(files=len(survey.files), scanners=len(survey.scanners), passes=len(survey.frame.passes),
                  roads=len(survey.frame.roads), sensor_height=survey.sensor_height, **survey.counts)
-    density = tuple(_density(points, store, stages.progress, stages.done)
-                    for points, store in ((survey, survey.store), (road_points, road_points)))
+    waiting = stages.progress.part(stages.done, stages.done)   # the bar stands meanwhile
+    density = tuple(cube_density_of(points, road_points.executor, waiting) for points in (survey, road_points))
     survey.store.clear_cache()
     result = RoadMap(survey.frame, survey.crs, boundaries.curb_points, edges, surface, road_points,
                      boundaries.differences, boundaries.length_by_method, seconds=stages.seconds, survey_facts=facts,
@@ -221,12 +221,6 @@ def _span(survey):
     places = [survey.frame.road(road).to_map(np.array(survey.store.sections(road)) * survey.store.section_length, 0.0)
               for road in survey.store.roads()]
     return tuple(float(np.ptp(np.concatenate(axis))) for axis in zip(*places))
-
-
-def _density(points, store, progress, done):
-    """CubeDensity of points; `done` is where the bar stands meanwhile."""
-    sections = [(road, number) for road in store.roads() for number in store.sections(road)]
-    return cube_density(sections, lambda key: points.section(*key), progress.part(done, done))
 
 
 def _places(points):

@@ -11,11 +11,15 @@ import numpy as np
 
 from ..common.parallel import ordered_map
 from ..common.progress import Progress
+from ..execution.phase import Executor, Phase
 from ..io.gdal_errors import gdal_exceptions
+from .store.section_store import STRETCH_POINTS, Stretch
 
 if TYPE_CHECKING:
     from .inspection import Inspection
     from .store.records import Points
+    from .store.road_points import RoadPoints
+    from .survey import Survey
 
 CUBE_SIDE = 10_000       # units of 0.1 mm: 1 m
 POINTS_PER_CHUNK = 1 << 15   # points counted at a time: fits the processor cache
@@ -49,13 +53,37 @@ def cube_density(sections: Iterable[Any], points_of: Callable[[Any], Points] = l
     -------
     CubeDensity
     """
-    keys, counts = [], []
-    for found in ordered_map(lambda section: _counted(points_of(section)), sections, progress):
-        if found is not None:
-            keys.append(found[0])
-            counts.append(found[1])
-    if not keys:
+    return _density(ordered_map(lambda section: _counted(points_of(section)), sections, progress))
+
+
+def cube_density_of(points: Survey | RoadPoints, executor: Executor, progress: Progress = Progress()) -> CubeDensity:
+    """`cube_density` of all points of a survey or of its road, counted by an executor.
+
+    Parameters
+    ----------
+    points : Survey or RoadPoints
+    executor : Executor
+    progress : Progress
+    """
+    store: Any = points.store
+    length: float = store.section_length
+    survey: Any = getattr(points, "survey", points)
+    phase = Phase(cubes_of_stretch, points, (), lambda item: survey.stretch(item[0], item[1] * length, item[2] * length))
+    parts = executor.run(phase, store.stretches(STRETCH_POINTS if executor.folder else 0), progress)
+    return _density(found for part in parts for found in part)
+
+
+def cubes_of_stretch(points: Survey | RoadPoints, stretch: Stretch) -> list[tuple[np.ndarray, np.ndarray] | None]:
+    """The phase that counts points in cubes: keys of the occupied cubes and their counts, section by section; None without points."""
+    return [_counted(points.section(*key)) for key in points.store.in_stretch(stretch)]
+
+
+def _density(parts):
+    """CubeDensity of the counts of sections."""
+    known = [found for found in parts if found is not None]
+    if not known:
         return CubeDensity(0, float("nan"), float("nan"))
+    keys, counts = zip(*known)
     _, place = np.unique(np.concatenate(keys), return_inverse=True)
     number = np.bincount(place.ravel(), np.concatenate(counts))
     total = int(number.sum())

@@ -17,14 +17,16 @@ from lanewright.core.road.detect_boundaries import BoundarySettings, draw_bounda
 from lanewright.core.road.surface import extract
 from lanewright.core.road.surface.extract import extract_road_surface
 from lanewright.core.survey import open_survey as opening
+from lanewright.core.survey import point_density
+from lanewright.core.survey.point_density import cube_density_of
 
 pytestmark = pytest.mark.slow
-PHASES = ["surface_points", "levels_of_stretch", "corrected_of_stretch", "window_of_image", "sums_of_pieces"]
+PHASES = ["cubes_of_stretch", "surface_points", "levels_of_stretch", "corrected_of_stretch", "window_of_image", "sums_of_pieces"]
 
 
 @pytest.fixture(autouse=True)
 def small_tasks(monkeypatch):
-    for module in (extract, correction):
+    for module in (extract, correction, point_density):
         monkeypatch.setattr(module, "STRETCH_POINTS", 40_000)
     monkeypatch.setattr(imaging, "PIECES_PER_TASK", 3)
 
@@ -68,13 +70,14 @@ def found_by(sample, executor=None, work=None):
     try:
         edges = draw_boundaries(find_curb_points(survey, BoundarySettings("profiles")), survey.frame).edges
         road_points, surface = extract_road_surface(survey, edges)
+        density = [cube_density_of(points, road_points.executor) for points in (survey, road_points)]
         selected = [np.array(road_points.section(*key).records).tobytes() for key in road_points.all_sections()]
         road_points, report = correct_intensity(road_points, survey.frame)
         image = make_intensity_image(road_points)
         pixels = image.read_pixels(0, 0, image.width, image.height).tobytes()
         image.close()
         corrected = [road_points.section(*key).corrected.tobytes() for key in road_points.all_sections()]
-        return selected, corrected, surface.area.tobytes(), surface.status.tolist(), report, pixels
+        return selected, corrected, surface.area.tobytes(), surface.status.tolist(), density, report, pixels
     finally:
         survey.store.close()
 
