@@ -4450,8 +4450,8 @@
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />
-            <source>So many further processes of Python find curbs and make scanlines, with the same results. More are faster as long as there are processor cores for them, and each takes some hundred MB of memory. Automatic takes one per core for surveys of more than 100 million points, and none for smaller ones. Where no Python can be started, this program does their work, and the log says so.</source>
-            <translation>So viele weitere Python-Prozesse suchen Bordsteine und bilden Scanlinien, mit denselben Ergebnissen. Mehr sind schneller, solange es Prozessorkerne für sie gibt; jeder braucht einige hundert MB Speicher. Automatisch ist einer je Kern bei Vermessungen mit mehr als 100 Millionen Punkten, keiner bei kleineren. Wo sich kein Python starten lässt, übernimmt dieses Programm ihre Arbeit, und das Protokoll sagt es.</translation>
+            <source>So many further processes of Python read the points, find curbs and do most of what is done point by point, with the same results. More are faster as long as there are processor cores for them, and each takes some hundred MB of memory. Automatic takes one per core for surveys of more than 100 million points, and none for smaller ones. Where no Python can be started, this program does their work, and the log says so.</source>
+            <translation>So viele weitere Python-Prozesse lesen die Punkte, suchen Bordsteine und erledigen das meiste, was Punkt für Punkt getan wird, mit denselben Ergebnissen. Mehr sind schneller, solange es Prozessorkerne für sie gibt; jeder braucht einige hundert MB Speicher. Automatisch ist einer je Kern bei Vermessungen mit mehr als 100 Millionen Punkten, keiner bei kleineren. Wo sich kein Python starten lässt, übernimmt dieses Programm ihre Arbeit, und das Protokoll sagt es.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />
@@ -4460,8 +4460,8 @@
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />
-            <source>The workers of a Dask cluster that is running already find curbs and make scanlines, with the same results: tls://host:8786, or tcp://127.0.0.1:8786 on this computer. They need the same Python, packages and Lanewright, no QGIS, and a work folder that all machines see. The manual's page on large surveys tells how to start one. Worker processes are not used then.</source>
-            <translation>Die Worker eines bereits laufenden Dask-Clusters suchen Bordsteine und bilden Scanlinien, mit denselben Ergebnissen: tls://rechner:8786, oder tcp://127.0.0.1:8786 auf diesem Rechner. Sie brauchen dasselbe Python, dieselben Pakete und dasselbe Lanewright, kein QGIS, und einen Arbeitsordner, den alle Rechner sehen. Wie man einen startet, steht im Handbuch unter „Große Vermessungen“. Weitere Prozesse werden dann nicht verwendet.</translation>
+            <source>The workers of a Dask cluster that is running already do what worker processes would, with the same results: tls://host:8786, or tcp://127.0.0.1:8786 on this computer. They need the same Python, packages and Lanewright, no QGIS, and a work folder that all machines see. The manual's page on large surveys tells how to start one. Worker processes are not used then.</source>
+            <translation>Die Worker eines bereits laufenden Dask-Clusters tun, was weitere Prozesse täten, mit denselben Ergebnissen: tls://rechner:8786, oder tcp://127.0.0.1:8786 auf diesem Rechner. Sie brauchen dasselbe Python, dieselben Pakete und dasselbe Lanewright, kein QGIS, und einen Arbeitsordner, den alle Rechner sehen. Wie man einen startet, steht im Handbuch unter „Große Vermessungen“. Weitere Prozesse werden dann nicht verwendet.</translation>
         </message>
         <message>
             <location filename="../../algorithms/survey_input.py" />
