@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..markings.cross_section.sections import STATION_STEP, CrossSections
-from ..markings.cross_section.weights import CENTRE_LINE, CURB, EDGE_LINE, HATCHING, LANE_LINE, OTHER_LINE, SURFACE
+from ..markings.cross_section.weights import CENTRE_LINE, CURB, EDGE_LINE, HATCHING, ISLAND, LANE_LINE, OTHER_LINE, SURFACE
 from .centreline import status_pieces, without_short_status
 from .connectors import NEXT_LANE_GAP, NO_BORDER, connectors_on_road
 from .lane_track import LANE_STATUS, LaneTrack
@@ -95,7 +95,7 @@ def _border(road, curbs, rows, separates, columns):
         pattern = road.lines.names[int(np.bincount(drawn[drawn >= 0]).argmax())] if (drawn >= 0).any() else road.lines.patterns[row]
         what = separates[rows == row]
         return f"line {number}", KIND_OF_BORDER.get(int(np.bincount(what[what >= 0]).argmax()) if (what >= 0).any() else EDGE_LINE), pattern
-    if made_of == CURB and curbs is not None:
+    if made_of in (CURB, ISLAND) and curbs is not None:
         numbers = curbs.number[row - len(road.lines.d)]
         return f"edge {int(numbers.max())}", "curb", ""
     if made_of == HATCHING:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .sections import STATION_STEP, CrossSections
-from .weights import CENTRE_LINE, CURB, DASHED, DOUBLE, EDGE_LINE, HATCHING, OPEN, OUTSIDE, SOLID, SURFACE, EstimateWeights
+from .weights import CENTRE_LINE, CURB, DASHED, DOUBLE, EDGE_LINE, HATCHING, ISLAND, OPEN, OUTSIDE, SOLID, SURFACE, EstimateWeights
 
 NAMES = {"edge": EDGE_LINE, "centre": CENTRE_LINE}   # a line called lane line may have been called nothing better
 STATIONS_OF_CELL = 5           # stations of the grid that are always in one interval: 2.5 m
@@ -24,7 +24,7 @@ SURFACE_MERGE = 0.8            # m: the surface, or a hatched area, ends at the 
 class Boundaries:
     """All rows that may bound lanes on one grid of stations: lines, then curbs, then ends of the surface.
 
-    s : (K,) stations; d : (R, K) offsets, NaN where a row is not; seen : (R, K); made_of : (R,) of SOLID ... HATCHING
+    s : (K,) stations; d : (R, K) offsets, NaN where a row is not; seen : (R, K); made_of : (R,) of SOLID ... ISLAND
     patterns : (R, K) what paint is made of at each place; paint : (R,) m of paint of each row
     named : (R,) what a row separates by its layer, -1 where that is not said
     bend : (K,) whether the road bends so much that lanes are widened
@@ -65,7 +65,7 @@ def gather_boundaries(lines: CrossSections, curbs: CrossSections | None = None, 
         at = np.clip(at, 0, len(curbs.s) - 1)
         d.append(np.where(inside, curbs.d[:, at], np.nan))
         seen.append(curbs.seen[:, at] & inside & np.isfinite(curbs.d[:, at]))
-        made_of.append(np.full(len(curbs.d), CURB))
+        made_of.append(np.where(np.array(curbs.kinds, object) == "island", ISLAND, CURB))
     for ends, made in ((surface, SURFACE), (open_ends, OPEN), (hatching, HATCHING)):
         if ends is not None:
             d.append(ends)
@@ -90,7 +90,7 @@ class Candidates:
 
     first, last : (I,) stations of the grid that an interval begins and ends with
     left, right : (I, M) m, offsets of the leftmost and the rightmost line of a boundary (a double line is one boundary)
-    made_of : (I, M) of SOLID ... HATCHING; trust, seen : (I, M) 0 to 1
+    made_of : (I, M) of SOLID ... ISLAND; trust, seen : (I, M) 0 to 1
     rows : (I, M, 2) the rows of Boundaries that lie leftmost and rightmost; -1 outside
     valid : (I, M) False where there are fewer boundaries than M
     named : (I, M) what the layer says that a boundary separates, -1 where it does not

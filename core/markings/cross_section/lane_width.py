@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .weights import CURB, OPEN, SURFACE
+from .weights import CURB, ISLAND, OPEN, SURFACE
 
 LIKELY_SHARE = 0.8, 1.5    # of the usual width of a lane: lanes in bends
 
@@ -13,13 +13,14 @@ def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made
                 bend: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Where lanes lie in strips.
 
-    Between two lines they share the strip. Beside a curb they are no wider than usual. The surface may end at what hides it, and reach into
-    side streets: beside its end they are as wide as usual, and in bends, where lanes are widened, as there is room.
+    Between two lines they share the strip. Beside a curb they are no wider than usual; beside an island they are as wide also where it
+    reaches somewhat into them. The surface may end at what hides it, and reach into side streets: beside its end they are as wide as usual, and in
+    bends, where lanes are widened, as there is room.
 
     Parameters
     ----------
     left, right : metres, offsets of the two boundaries of each strip; all arrays broadcast together
-    made_left, made_right : SOLID ... HATCHING, what the boundaries are made of
+    made_left, made_right : SOLID ... ISLAND, what the boundaries are made of
     number : lanes in the strip
     usual : metres, the usual width of a lane
     bend : bool, whether the road bends so much that lanes are widened
@@ -29,12 +30,13 @@ def lane_places(left: np.ndarray, right: np.ndarray, made_left: np.ndarray, made
     begin : metres, offset of the left border of the leftmost lane
     each : metres, width of each lane
     """
-    open_left, open_right = (np.isin(made, (CURB, SURFACE, OPEN)) for made in (made_left, made_right))
+    open_left, open_right = (np.isin(made, (CURB, ISLAND, SURFACE, OPEN)) for made in (made_left, made_right))
     loose = open_left ^ open_right
     each = (left - right) / number
     widened = bend & (each > LIKELY_SHARE[0] * usual) & (each < LIKELY_SHARE[1] * usual)
     hidden = loose & beside_surface_end(made_left, made_right)
-    each = np.where(hidden, np.where(widened, each, usual), np.where(loose, np.minimum(each, usual), each))
+    nearly = ((made_left == ISLAND) | (made_right == ISLAND)) & (each > LIKELY_SHARE[0] * usual)
+    each = np.where(hidden, np.where(widened, each, usual), np.where(loose, np.where(nearly, usual, np.minimum(each, usual)), each))
     return np.where(loose & open_left, right + number * each, left), each
 
 

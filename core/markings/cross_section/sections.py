@@ -18,6 +18,7 @@ STATION_STEP = 0.5                             # m of station between places whe
 MAX_LINE_OBLIQUITY = np.tan(np.radians(25.0))  # a line that runs more across the road than this bounds no lane
 MIN_BOUNDARY_SPACING = 0.8                     # m: lines nearer than this are one boundary, a lane ends at the nearer one
 MAX_LINE_JUMP = 0.3                         # m across by which a line may jump where it goes on as another
+CLOSED_ISLAND = 1.0                            # m between the ends of a line round an island that closes
 MAX_DASH_GAP = 9.5                             # m that a dashed line may be silent at its ends before it is known to end
 
 
@@ -71,26 +72,51 @@ def sections_of_lines(lines: PaintedLines) -> dict[int, CrossSections]:
 
 
 def sections_of_edges(edges: RoadEdges) -> dict[int, CrossSections]:
-    """CrossSections of the curbs along the road, by road number; where the pavement ends without one, the road surface ends."""
-    return _main_edges(edges, edges.of_curb)
+    """CrossSections of the curbs along the road and about islands in it, by road number; where the pavement ends without one, the surface ends.
+
+    Both sides of an island are rows of their own with one `number`.
+    """
+    return _named_by_chain(edges, np.flatnonzero(np.isin(edges.kind, ("main", "island")) & edges.of_curb))
 
 
 def sections_of_pavement(edges: RoadEdges) -> dict[int, CrossSections]:
     """CrossSections of the edges of the pavement without a curb, by road number."""
-    return _main_edges(edges, ~edges.of_curb)
+    return _named_by_chain(edges, np.flatnonzero((edges.kind == "main") & ~edges.of_curb))
 
 
-def _main_edges(edges, wanted):
-    main = np.flatnonzero((edges.kind == "main") & wanted)
-    found = cross_sections(edges.course.take(main), edges.edge[main], edges.kind[main], np.full(len(main), "", object),
-                           edges.status[main] != "bridged")
-    # the layer names a line by its chain; -1 stays -1
-    chain = np.full(edges.edge.max(initial=-1) + 2, -1)
+def _named_by_chain(edges, rows):
+    """CrossSections of some edges; the layer names a line by its chain, -1 stays -1."""
+    course, of = _sides_of_islands(edges.course.take(rows), edges.kind[rows] == "island")
+    rows = rows[of]
+    # a number of its own for every side
+    count = int(edges.edge.max(initial=-1)) + 1
+    key = np.where(edges.edge[rows] < 0, -1, edges.edge[rows] + count * (np.arange(len(of)) - np.searchsorted(of, of)))
+    found = cross_sections(course, key, edges.kind[rows], np.full(len(rows), "", object), edges.status[rows] != "bridged")
+    chain = np.full(count + 1, -1)
     known = edges.edge >= 0
     chain[edges.edge[known]] = edges.chain[known]
     for sections in found.values():
-        sections.number = chain[sections.number]
+        sections.number = chain[np.where(sections.number < 0, -1, sections.number % max(count, 1))]
     return found
+
+
+def _sides_of_islands(course, island):
+    """Lines as FrameLines whose stations rise or fall throughout, islands side by side, and the line that each comes from."""
+    rows, of = [], []
+    for k in range(len(course)):
+        places = np.arange(course.start[k], course.start[k + 1])
+        sides = [places]
+        if island[k] and (known := np.isfinite(course.s[places])).sum() > 1:
+            places = places[known]
+            first, last = places[[0, -1]]
+            if np.hypot(course.x[first] - course.x[last], course.y[first] - course.y[last]) < CLOSED_ISLAND:
+                places = np.roll(places, -int(np.argmin(course.s[places])))
+            turns = sorted({0, int(np.argmin(course.s[places])), int(np.argmax(course.s[places])), len(places) - 1})
+            sides = [places[a:b + 1] for a, b in zip(turns[:-1], turns[1:])]
+        rows += sides
+        of += [k] * len(sides)
+    start, at = np.append(0, np.cumsum([len(side) for side in rows], dtype=int)), np.concatenate([np.empty(0, int), *rows])
+    return FrameLines(course.road[of], start, *(values[at] for values in (course.x, course.y, course.z, course.s, course.d))), np.array(of, int)
 
 
 @dataclass

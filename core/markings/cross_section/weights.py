@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 # What a boundary is made of
-SOLID, DASHED, DOUBLE, CURB, SURFACE, OPEN, OUTSIDE, HATCHING = range(8)
+SOLID, DASHED, DOUBLE, CURB, SURFACE, OPEN, OUTSIDE, HATCHING, ISLAND = range(9)
 # What a boundary separates
 LANE_LINE, CENTRE_LINE, EDGE_LINE, OTHER_LINE = range(4)
 
@@ -25,7 +25,7 @@ class EstimateWeights:
 
     correlation : metres of road that count as one observation: what neighbouring metres show is not independent
     solid, dashed, double : share of lane lines, centre lines, edge lines and other lines that are drawn like that
-    curb, surface : the same of boundaries that are a curb, or where the road surface ends without one
+    curb, surface : the same of boundaries that are a curb, also of an island, or where the road surface ends without one
     open_end : the same where nothing is known beyond the outermost line
     hatching : the same of boundaries that are the border of a hatched area
     named : of a line that separates something else than its layer says
@@ -113,6 +113,6 @@ class EstimateWeights:
 
     @property
     def boundary(self) -> np.ndarray:
-        """(8, 4) costs by what a boundary is made of and what it separates."""
+        """(9, 4) costs by what a boundary is made of and what it separates."""
         impossible = (np.inf,) * 4
-        return np.array([self.solid, self.dashed, self.double, self.curb, self.surface, self.open_end, impossible, self.hatching])
+        return np.array([self.solid, self.dashed, self.double, self.curb, self.surface, self.open_end, impossible, self.hatching, self.curb])

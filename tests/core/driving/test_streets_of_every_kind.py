@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from lanewright.core.common.features import Features
-from lanewright.core.common.schemas import MARKINGS
+from lanewright.core.common.schemas import MARKINGS, ROAD_EDGES
 from lanewright.core.sample.parts.paint import straight_arrow
-from lined_streets import HEIGHT, Street
-from shapely.geometry import Polygon
+from lined_streets import EAST, HEIGHT, Street
+from shapely.geometry import LineString, Polygon
 
 
 def lanes_of(street, **inputs):
@@ -136,6 +136,21 @@ def test_a_stop_line_across_two_lanes_says_that_they_lead_one_way():
     assert lanes_of(street, markings=painted(street, (34.0, 34.5, -3.4, 3.4, "stop"))) == {-1.75: 1, 1.75: 1}
     # before its own lane alone it says nothing of the other
     assert lanes_of(street, markings=painted(street, (34.0, 34.5, -3.4, -0.1, "stop"))) == {-1.75: 1, 1.75: -1}
+
+
+def test_the_curbs_of_an_island_bound_the_lanes_beside_it():
+    """Two lanes of 4.8 m without a line between, and along them an island of 2.6 m whose line goes round it and closes."""
+    street = Street(vehicle=-3.0).paint(4.8, kind="edge").paint(-4.8, kind="edge")
+    along = np.arange(4.0, 116.25, 0.25)
+    ring = street.places(np.r_[along, along[::-1], along[0]], np.r_[np.full(len(along), 1.3), np.full(len(along), -1.3), 1.3])
+    edges = Features("LineStringZ", list(ROAD_EDGES))
+    edges.add(LineString(np.c_[ring, np.full(len(ring), HEIGHT)]), road=0, kind="island", edge="curb", status="measured", part="bottom", chain=1)
+    beside = {}
+    for line, row in street.lanes(edges=edges)[0]:
+        east = np.asarray(line.coords)[:, 0] - EAST
+        beside.setdefault(row["direction"], []).extend(street.offsets(line)[(east > 10.0) & (east < 110.0)])
+    for way in (1, -1):
+        np.testing.assert_allclose(beside[way], -3.05 * way, atol=0.03)
 
 
 def test_painted_lanes_are_sure():
