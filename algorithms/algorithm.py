@@ -90,7 +90,8 @@ class Algorithm:
     # -- how subclasses declare -----------------------------------------------------------------
 
     def add(self, spec):
-        self.parameters.append(spec)
+        """Add a parameter; a table of a module may have been made before the language was known."""
+        self.parameters.append(replace(spec, label=tr(spec.label), help=tr(spec.help) if spec.help else spec.help))
 
     def add_survey(self, trajectory_optional=False, without=""):
         """Point clouds, trajectory and the CRS for clouds that carry none; `without` says what happens without a trajectory."""
@@ -108,7 +109,7 @@ class Algorithm:
             "Where the vehicle drove: a point or line layer with heights, a table with columns time, x, y, z, or "
             "the path of a CSV, TXT or SBET file. Made with Import trajectory it needs no further care."
         )
-        self.add(TrajectorySpec("TRAJECTORY", tr("Trajectory"), f"{text} {without}".strip(), optional))
+        self.add(TrajectorySpec("TRAJECTORY", tr("Trajectory"), f"{text} {tr(without) if without else ''}".strip(), optional))
 
     def add_crs(self):
         self.add(CrsSpec(
@@ -150,7 +151,7 @@ class Algorithm:
 
     def add_number(self, name, label):
         """A number among the results."""
-        self.numbers.append(NumberOutput(name, label))
+        self.numbers.append(NumberOutput(name, tr(label)))
 
     def add_report(self, name="REPORT", label=None, optional=True, by_default=True):
         self.add(ReportOutput(name, label or tr("Report"), tr("A page with the numbers of every step and a picture."), optional,

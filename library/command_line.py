@@ -13,8 +13,10 @@ from ..algorithms import parameters as specs
 from ..algorithms.algorithm import GROUPS
 from ..algorithms.call import run
 from ..algorithms.provenance import own_version
+from ..algorithms.texts import told, tr
 from ..core.common.errors import Cancelled, RoadExtractionError
 from .call import FileCall
+from .language import speak
 from .progress import TextProgress, cancelled_by_signals
 from .run import algorithms
 
@@ -25,9 +27,14 @@ METAVARS = (
     (specs.RasterSpec, "FILE"), (specs.PaintedSpec, "FILE"), (specs.OutputSpec, "FILE"),
     (specs.CrsSpec, "EPSG:NUMBER"), (specs.FlagSpec, "true|false"), (specs.ExpressionSpec, "CONDITION"), (specs.TextSpec, "TEXT"),
 )
-JSON = "--json"
-LAYERS = ("A layer is a file (.gpkg, .fgb, .shp, .geojson), or one layer of a GeoPackage: map.gpkg|layername=lanes. "
-          "A result that is not named is not made. With --json the results, or the reason of a failure, are printed as JSON.")
+JSON, LANG = "--json", "--lang"
+
+
+def about_layers():
+    """What stands below every help."""
+    return tr("A layer is a file (.gpkg, .fgb, .shp, .geojson), or one layer of a GeoPackage: map.gpkg|layername=lanes. "
+              "A result that is not named is not made. With --json the results, or the reason of a failure, are printed as JSON; "
+              "--lang de speaks German.")
 
 
 class Parser(argparse.ArgumentParser):
@@ -40,19 +47,39 @@ def main(arguments=None):
     arguments = sys.argv[1:] if arguments is None else list(arguments)
     as_json = JSON in arguments
     arguments = [argument for argument in arguments if argument != JSON]
+    language, arguments = asked_language(arguments)
     try:
+        if language:
+            speak(language)
         missing = [name for name in ("numpy", "scipy", "laspy", "lazrs", "shapely", "pyproj", "fiona", "cv2", "jinja2") if find_spec(name) is None]
         if missing:
             raise RoadExtractionError(f"These Python packages are missing: {', '.join(missing)}. pip install lanewright brings them.")
         return _main(arguments, as_json)
     except RoadExtractionError as error:
-        _tell_failure(str(error), as_json)
+        _tell_failure(told(str(error)), as_json)
     except (Cancelled, KeyboardInterrupt):
-        _tell_failure("Cancelled", as_json)
+        _tell_failure(tr("Cancelled"), as_json)
         return 128 + signal.SIGINT
     except BrokenPipeError:  # whoever read the output has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    finally:
+        if language:
+            speak("en")
     return 1
+
+
+def asked_language(arguments):
+    """(language of --lang de or --lang=de, "" without; the other arguments)."""
+    rest, language = [], ""
+    words = iter(arguments)
+    for word in words:
+        if word == LANG:
+            language = next(words, "")
+        elif word.startswith(f"{LANG}="):
+            language = word.partition("=")[2]
+        else:
+            rest.append(word)
+    return language, rest
 
 
 def _tell_failure(sentence, as_json):
@@ -92,21 +119,21 @@ def _main(arguments, as_json):
 def overview(known):
     """What `lanewright --help` prints."""
     lines = ["usage: lanewright ALGORITHM --PARAMETER=VALUE ...", "       lanewright ALGORITHM --help", "       lanewright list | --version", "",
-             "Road maps from mobile laser scanning: the algorithms of Lanewright in QGIS, on files.", LAYERS]
+             tr("Road maps from mobile laser scanning: the algorithms of Lanewright in QGIS, on files."), about_layers()]
     for group in GROUPS:
-        lines += ["", group] + [f"  {algorithm.ID:24}{algorithm.TITLE}" for algorithm in known.values() if algorithm.GROUP == group]
+        lines += ["", tr(group)] + [f"  {algorithm.ID:24}{algorithm.title()}" for algorithm in known.values() if algorithm.GROUP == group]
     return "\n".join(lines)
 
 
 def parser_of(algorithm):
     """The options of an algorithm."""
     parser = Parser(prog=f"lanewright {algorithm.ID}", usage=f"lanewright {algorithm.ID} --PARAMETER=VALUE ...", allow_abbrev=False,
-                    description=" ".join([algorithm.summary(), *algorithm.help_paragraphs()]).replace("%", "%%"), epilog=LAYERS)
-    groups = {title: parser.add_argument_group(title) for title in ("inputs", "advanced parameters", "results")}
+                    description=" ".join([algorithm.summary(), *algorithm.help_paragraphs()]).replace("%", "%%"), epilog=about_layers())
+    inputs, advanced, results = (parser.add_argument_group(title) for title in (tr("inputs"), tr("advanced parameters"), tr("results")))
     for spec in algorithm.parameters:
-        title = "results" if spec.is_output else "advanced parameters" if spec.advanced else "inputs"
+        group = results if spec.is_output else advanced if spec.advanced else inputs
         several = dict(action="extend", nargs="+") if isinstance(spec, specs.PointCloudsSpec) else {}
-        groups[title].add_argument(f"--{spec.name}", dest=spec.name, metavar=metavar(spec), help=explained(spec).replace("%", "%%"), **several)
+        group.add_argument(f"--{spec.name}", dest=spec.name, metavar=metavar(spec), help=explained(spec).replace("%", "%%"), **several)
     return parser
 
 
@@ -124,13 +151,14 @@ def explained(spec):
     notes = []
     if not spec.is_output:
         if spec.default not in (None, ""):
-            notes.append(f"default {str(spec.default).lower() if isinstance(spec.default, bool) else spec.default}")
+            value = str(spec.default).lower() if isinstance(spec.default, bool) else spec.default
+            notes.append(tr("default {value}").format(value=value))
         elif not spec.optional:
-            notes.append("necessary")
+            notes.append(tr("necessary"))
         if isinstance(spec, specs.SettingSpec) and spec.kind() in ("whole", "number"):
-            notes.append("{:g} to {:g}".format(*spec.limits()))
+            notes.append(tr("{low:g} to {high:g}").format(low=spec.limits()[0], high=spec.limits()[1]))
     elif not spec.optional:
-        notes.append("necessary")
+        notes.append(tr("necessary"))
     return f"{spec.label}. {spec.help}" + (f" [{', '.join(notes)}]" if notes else "")
 
 

@@ -7,6 +7,7 @@ import sys
 from contextlib import contextmanager
 
 from ..algorithms.progress import time_left
+from ..algorithms.texts import told, tr
 from ..core.common.errors import Cancelled
 from ..core.common.progress import Progress, RemainingTime
 
@@ -32,16 +33,21 @@ class TextProgress(Progress):
         percent = PERCENT_STEP * int(100 * fraction / PERCENT_STEP)
         if percent > self._written or left is not None:
             self._written = max(percent, self._written)
-            self._write(f"{100 * fraction:.0f} %" + ("" if left is None else f", {time_left(left).lower()}"))
+            self._write(f"{100 * fraction:.0f} %" + ("" if left is None else f", {_within_a_line(time_left(left))}"))
 
     def info(self, text):
-        self._write(text)
+        self._write(told(text))
 
     def warn(self, text):
-        self._write(f"Warning: {text}")
+        self._write(tr("Warning: {text}").format(text=told(text)))
 
     def _write(self, text):
         print(text, file=self.stream, flush=True)
+
+
+def _within_a_line(text):
+    """Without the capital letter that a line begins with."""
+    return text[:1].lower() + text[1:]
 
 
 @contextmanager

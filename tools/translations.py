@@ -19,13 +19,14 @@ ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "resources" / "i18n"
 SCHEMAS = ROOT / "core" / "common" / "schemas.py"
 CONTEXT = "Lanewright"
-FOLDERS = ("algorithms", "processing_provider", "desktop", "core")
+FOLDERS = ("algorithms", "processing_provider", "desktop", "core", "library")
 FEWEST_LETTERS = 8  # of a sentence of the core: what is shorter would be found in anything
 FEWEST_WORDS = 3  # of a phrase of the core that is put into a sentence elsewhere
 # Errors that tell a programmer, not a user
 OF_PROGRAMMERS = {"ValueError", "TypeError", "KeyError", "IndexError", "AttributeError", "AssertionError", "RuntimeError", "OSError"}
 NO_SENTENCES = ("core/report", "core/common/schemas.py", "core/common/words.py")  # their texts are translated as those of a dialog
-NO_PROSE = re.compile(r"[\\\\]|<[?x!]|^(pixel|line|mapx|mapy|mapz|name|enable|check) \w+ \w+|^pip |^1 hit")  # patterns, names of columns, commands
+# Patterns, names of columns, commands
+NO_PROSE = re.compile(r"[\\]|<[?x!]|^(pixel|line|mapx|mapy|mapz|name|enable|check) \w+ \w+|^pip |^1 hit|^SELECT |lanewright [A-Z{l]")
 NAMED = {"FAULTS", "title", "signed"}  # tables and attributes of the core whose shortest texts are shown too
 # Texts that stand in a class or a table and are translated where they are shown
 IN_A_CLASS = {"TITLE", "SUMMARY", "HELP", "GROUP", "TAGS", "GROUPS"}
@@ -89,12 +90,12 @@ def aliases():
 
 
 def core_messages():
-    """The sentences of the core that reach a user: errors, warnings, log, titles of stages; {} stands for a number or name.
+    """The sentences of core and library that reach a user: errors, warnings, log, titles of stages; {} stands for a number or name.
 
     What is said at once comes first, then the sentences and phrases that are put together elsewhere.
     """
     said, phrases = {}, {}
-    for path in sorted((ROOT / "core").rglob("*.py")):
+    for path in sorted(path for folder in ("core", "library") for path in (ROOT / folder).rglob("*.py")):
         file, tree = path.relative_to(ROOT).as_posix(), ast.parse(path.read_text(encoding="utf-8"))
         for node in ast.walk(tree):
             argument = said_in(node)
@@ -113,7 +114,8 @@ def phrases_of(tree):
         if isinstance(node, ast.Assign) and any(isinstance(target, ast.Name) and target.id in NAMED for target in node.targets):
             yield from (inner.value for inner in ast.walk(node.value) if isinstance(inner, ast.Constant) and isinstance(inner.value, str))
         name = node.exc.func.id if isinstance(node, ast.Raise) and isinstance(node.exc, ast.Call) and isinstance(node.exc.func, ast.Name) else ""
-        if isinstance(node, ast.Assert) or name in OF_PROGRAMMERS:
+        is_tr = isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "tr"
+        if is_tr or isinstance(node, ast.Assert) or name in OF_PROGRAMMERS:
             left_out |= set(ast.walk(node))
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
             left_out.add(node.value)

@@ -56,6 +56,7 @@ def _words():
         "correct": tr("correct"), "missed": tr("missed"), "false": tr("false"), "excluded": tr("excluded"),
         # control points
         "control": tr("Control point"), "check": tr("Check point"), "disabled": tr("Disabled point"),
-        # elements of reference lines
+        # ends of a road, elements of its reference line
+        "start": tr("start"), "end": tr("end"),
         "element.line": tr("line"), "arc": tr("arc"), "spiral": tr("clothoid"), "paramPoly3": tr("parametric cubic"),
     }

@@ -65,6 +65,11 @@
         </message>
         <message>
             <location filename="../../tools/make_manual.py" />
+            <source>The pictures show windows in English.</source>
+            <translation>Die Bilder zeigen englische Fenster.</translation>
+        </message>
+        <message>
+            <location filename="../../tools/make_manual.py" />
             <source>Numbers, for models and scripts:</source>
             <translation>Zahlen für Modelle und Skripte:</translation>
         </message>
@@ -4815,6 +4820,16 @@
         </message>
         <message>
             <location filename="../../core/common/words.py" />
+            <source>start</source>
+            <translation>Anfang</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
+            <source>end</source>
+            <translation>Ende</translation>
+        </message>
+        <message>
+            <location filename="../../core/common/words.py" />
             <source>arc</source>
             <translation>Kreisbogen</translation>
         </message>
@@ -5386,7 +5401,7 @@
         <message>
             <location filename="../../core/report/cross_sections.py" />
             <source>lane {number}</source>
-            <translation>Fahrstreifen {number}</translation>
+            <translation>Fahrstreifen {number}</translation>
         </message>
         <message>
             <location filename="../../core/report/estimated_trajectory.py" />
@@ -7219,9 +7234,54 @@
             <translation>links ← Abstand von der angeklickten Stelle (m) → rechts; Höhen in m</translation>
         </message>
         <message>
-            <location filename="../../processing_provider/algorithm.py" />
+            <location filename="../../library/command_line.py" />
+            <source>A layer is a file (.gpkg, .fgb, .shp, .geojson), or one layer of a GeoPackage: map.gpkg|layername=lanes. A result that is not named is not made. With --json the results, or the reason of a failure, are printed as JSON; --lang de speaks German.</source>
+            <translation>Ein Layer ist eine Datei (.gpkg, .fgb, .shp, .geojson) oder ein Layer eines GeoPackage: map.gpkg|layername=lanes. Ein Ergebnis, das nicht genannt ist, wird nicht erstellt. Mit --json werden die Ergebnisse, oder der Grund des Scheiterns, als JSON ausgegeben; --lang de spricht Deutsch.</translation>
+        </message>
+        <message>
+            <location filename="../../library/command_line.py" />
+            <source>Road maps from mobile laser scanning: the algorithms of Lanewright in QGIS, on files.</source>
+            <translation>Straßenkarten aus mobilem Laserscanning: die Algorithmen von Lanewright in QGIS, auf Dateien.</translation>
+        </message>
+        <message>
+            <location filename="../../library/command_line.py" />
             <source>Cancelled</source>
             <translation>Abgebrochen</translation>
+        </message>
+        <message>
+            <location filename="../../library/command_line.py" />
+            <source>inputs</source>
+            <translation>Eingaben</translation>
+        </message>
+        <message>
+            <location filename="../../library/command_line.py" />
+            <source>advanced parameters</source>
+            <translation>erweiterte Parameter</translation>
+        </message>
+        <message>
+            <location filename="../../library/command_line.py" />
+            <source>results</source>
+            <translation>Ergebnisse</translation>
+        </message>
+        <message>
+            <location filename="../../library/command_line.py" />
+            <source>necessary</source>
+            <translation>nötig</translation>
+        </message>
+        <message>
+            <location filename="../../library/command_line.py" />
+            <source>default {value}</source>
+            <translation>Vorgabe {value}</translation>
+        </message>
+        <message>
+            <location filename="../../library/command_line.py" />
+            <source>{low:g} to {high:g}</source>
+            <translation>{low:g} bis {high:g}</translation>
+        </message>
+        <message>
+            <location filename="../../library/progress.py" />
+            <source>Warning: {text}</source>
+            <translation>Warnung: {text}</translation>
         </message>
         <message>
             <location filename="../../processing_provider/call.py" />

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
 
-PLACE = "{}"
+BRACES = "{}"
 PHRASE = 2  # blanks in what is put in: with as many it is a phrase, with fewer a number with its unit or a name
 BETWEEN_SENTENCES = re.compile(r"(?<=[.?…]) (?=[A-Z])")
 
@@ -46,7 +46,7 @@ class CoreMessages:
 
     def _recognised(self, text):
         """The translation of what is known as a whole, None of what is not."""
-        if text in self._known and PLACE not in text:
+        if text in self._known and BRACES not in text:
             return self._known[text]
         first = None
         for pattern, target in self._sentences:
@@ -66,15 +66,15 @@ class CoreMessages:
     @cached_property
     def _sentences(self):
         """(pattern, translation) of what has places; made when something is said first, since starting QGIS need not wait for it."""
-        with_places = [source for source in self._known if PLACE in source]
+        with_places = [source for source in self._known if BRACES in source]
         # the most words first: a short sentence may begin as a long one does
-        return [(_pattern(source), self._known[source]) for source in sorted(with_places, key=lambda source: -len(source.replace(PLACE, "")))]
+        return [(_pattern(source), self._known[source]) for source in sorted(with_places, key=lambda source: -len(source.replace(BRACES, "")))]
 
 
 def _filled(target, values):
-    parts = target.split(PLACE)
+    parts = target.split(BRACES)
     return "".join(text for pair in zip(parts, [*values, ""]) for text in pair)
 
 
 def _pattern(source):
-    return re.compile("(.*?)".join(re.escape(part) for part in source.split(PLACE)), re.DOTALL)
+    return re.compile("(.*?)".join(re.escape(part) for part in source.split(BRACES)), re.DOTALL)
