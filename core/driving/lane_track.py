@@ -20,7 +20,7 @@ GAP_NEIGHBOURHOOD = 10.0         # m around a gap within which other lanes tell 
 MIN_LANE_SEPARATION_SHARE = 0.6  # share of a lane's width that lanes keep from each other
 MIN_SHOWN_SHARE = 0.5            # of a gap in which lines are seen
 BRIDGED_TRUST = 0.7              # share of the confidence at both ends of a gap that is left between them
-LEAST_CONFIDENCE_OF_END = 0.25   # of a lane at its end: of what is said with less, three in four metres would be wrong
+LEAST_CONFIDENCE_OF_END = 0.25, 0.5   # of a lane at its end, between two borders and beside one: what is said with less is wrong mostly
 END_WIDTH_LENGTH = 10.0          # m over which a lane's width at its end is taken
 
 
@@ -83,7 +83,8 @@ class LaneTrack:
     def without_doubtful_ends(self) -> LaneTrack | None:
         """The track less stretches at its ends that only led over a gap, or are improbable; None if nothing is left."""
         led_over = (self.status == BRIDGED) | self.offset & (self.left < 0) & (self.right < 0)
-        known = np.flatnonzero(~led_over & (self.confidence >= LEAST_CONFIDENCE_OF_END))
+        least = np.array(LEAST_CONFIDENCE_OF_END)[self.offset.astype(int)]
+        known = np.flatnonzero(~led_over & (self.confidence >= least))
         return self.part(known[0], known[-1] + 1) if len(known) else None
 
 
