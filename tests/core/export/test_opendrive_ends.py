@@ -9,7 +9,7 @@ from lanewright.core.export.opendrive.layers import layers_of_opendrive
 from lanewright.core.export.opendrive.reader import read_opendrive
 from lanewright.core.export.opendrive.writer import opendrive_text
 from lanewright.core.export.sources import RoadMapSource, checked
-from made_lanes import CRS, Axis, LaneScene, kinds
+from made_lanes import CRS, Axis, LaneScene, kinds, parting
 from map_files import written
 
 TOLERANCE = 0.02   # m
@@ -94,3 +94,16 @@ def test_a_straight_road_that_is_cut_askew_is_one_line(tmp_path):
     whole, _, _ = missed(tmp_path, scene.lanes())
     element, = whole.roads[0].plan.elements
     assert element.kind == "line" and element.length == pytest.approx(50.0 + 3.5 * 0.4, abs=1e-3)
+
+
+def test_a_shoulder_goes_on_beside_the_ways_through_a_junction(tmp_path):
+    lanes, scene = parting(), LaneScene()
+    outer = np.concatenate([lanes.borders(list(lanes.lane_id).index(f"1.1.{piece}"))[1][0 if piece == 1 else 1:] for piece in (1, 2, 3)])
+    for k in range(len(lanes)):
+        scene.piece(*lanes.borders(k), lane=int(lanes.lane[k]), piece=int(lanes.lane_id[k][-1]))
+    scene.piece(outer, outer - [0.0, 2.0, 0.0], lane=3, type="shoulder", direction=0)
+    lanes = scene.lanes()
+    whole, across, _ = missed(tmp_path, lanes)
+    assert across <= TOLERANCE and whole.junctions
+    inside = [section for road in whole.roads if road.junction != "-1" for section in road.sections]
+    assert any("shoulder" in [lane.type for lane in section.lanes.values()] for section in inside)

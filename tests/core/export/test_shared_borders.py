@@ -1,6 +1,7 @@
 """Lanes that face each other across a double line, or a few centimetres, get one border."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from lanewright.core.export.opendrive.reader import read_opendrive
 from lanewright.core.export.opendrive.writer import opendrive_text
 from lanewright.core.export.shared_borders import SHARED_FADE, meet_lanes, share_borders, with_shared_borders
 from lanewright.core.export.sources import RoadMapSource, checked
+from lanewright.core.export.surface_heights import with_surface_heights
 from made_lanes import CRS, Axis, LaneScene, crossing, double_line, kinds, parting, street
 from map_files import written
 
@@ -129,3 +131,26 @@ def test_a_corner_in_the_middle_line_folds_no_lane(tmp_path):
     assert not check_opendrive(whole).found
     across, _ = border_misses(source.lanes, layers_of_opendrive(whole, CRS).lanes)
     assert across.largest < 0.05
+
+
+def test_a_border_has_one_height_for_all_lanes_beside_it():
+    lanes = street()
+    left = lanes.left.copy()
+    left[lanes.start[1]:, 2] += 0.2     # the border between both lanes as the second one has it
+    found = share_borders(replace(lanes, left=left)).lanes
+    first, second = (found.borders(k)[0] for k in (0, 1))
+    np.testing.assert_array_equal(first, second[::-1])
+    np.testing.assert_allclose(first[:, 2], lanes.left[0, 2] + 0.1)
+    np.testing.assert_array_equal(found.right, lanes.right)
+
+
+def test_borders_follow_the_surface_across_a_gap_of_its_points():
+    lanes = street()
+    x, y, z = lanes.left[:lanes.start[1]].T
+    there = (x - x[0] < 20) | (x - x[0] > 30)
+    points = [np.repeat(values[there], 9) for values in (x, y, z + 0.2)]
+    section = SimpleNamespace(**dict(zip("xyz", points)))
+    found, share = with_surface_heights(lanes, SimpleNamespace(origin=np.zeros(3), all_sections=lambda: [(1, 0)], section=lambda *key: section))
+    np.testing.assert_allclose(found.left[:, 2], lanes.left[:, 2] + 0.2, atol=1e-9)
+    np.testing.assert_array_equal(found.right, lanes.right)
+    assert 0.3 < share < 0.5
