@@ -3820,8 +3820,8 @@
         </message>
         <message>
             <location filename="../../algorithms/road/fit_road_edges.py" />
-            <source>Longer carries the edge past rows of parked cars, flagged as bridged; shorter breaks it there.</source>
-            <translation>Länger führt den Rand an Reihen parkender Autos vorbei, als überbrückt gekennzeichnet; kürzer unterbricht ihn dort.</translation>
+            <source>Longer carries the edge past rows of parked cars, flagged as bridged; shorter breaks it there. Where both parts of the curb lie in one line, gaps up to twice as long are bridged.</source>
+            <translation>Länger führt den Rand an Reihen parkender Autos vorbei, als überbrückt gekennzeichnet; kürzer unterbricht ihn dort. Wo beide Teile des Bordsteins in einer Linie liegen, werden bis zu doppelt so lange Lücken überbrückt.</translation>
         </message>
         <message>
             <location filename="../../algorithms/road/fit_road_edges.py" />

@@ -34,6 +34,7 @@ REMEASURE_SKEW = 0.1        # m outward per m along above which a face is measur
 MAX_FACE_SKEW = 1.0         # m outward per m along
 SKEW_PRIOR = 3e-3           # m²: keeps a face seen in one scan line parallel to the road
 FACE_PRIOR = 2e-4           # m²: keeps a face seen in few points upright
+GRADE_PRIOR = 3.6e-3        # m²: (noise / grade)² of 3 mm, the noise of a scanner, and 5 %, a usual grade or crossfall
 
 AnySteps = TypeVar("AnySteps", bound="CurbSteps")
 
@@ -151,13 +152,14 @@ class StepPatches:
     scanner_noise : (M,) m
     min_height, max_height : m, of a step
     skew : (M,) m outward per m along that was taken out of the offsets, or 0
+    graded : may the road rise along the curb? Points of few scan lines do not tell such a grade from a slope
     """
 
     def __init__(self, owner: np.ndarray, u: np.ndarray, s: np.ndarray, h: np.ndarray, scanner_noise: np.ndarray,
-                 min_height: float, max_height: float, skew: np.ndarray | float = 0.0):
+                 min_height: float, max_height: float, skew: np.ndarray | float = 0.0, graded: bool = False):
         self.owner, self.u, self.s, self.h = owner, u, s, h
         self.scanner_noise, self.min_height, self.max_height = scanner_noise, min_height, max_height
-        self.count, self.skew = len(scanner_noise), skew
+        self.count, self.skew, self.graded = len(scanner_noise), skew, graded
 
     def straightened(self, which: np.ndarray, skew: np.ndarray) -> StepPatches:
         """The candidates `which`, (K,) indices, with the direction of each face, (K,) m outward per m along, taken out of the offsets."""
@@ -166,7 +168,7 @@ class StepPatches:
         own = np.flatnonzero(number[self.owner] >= 0)
         owner = number[self.owner[own]]
         return StepPatches(owner, self.u[own] - skew[owner] * self.s[own], self.s[own], self.h[own], self.scanner_noise[which],
-                           self.min_height, self.max_height, skew)
+                           self.min_height, self.max_height, skew, self.graded)
 
     def _total(self, mask, values=None):
         return np.bincount(self.owner[mask], None if values is None else values[mask], minlength=self.count)
@@ -181,6 +183,9 @@ class StepPatches:
         """
         owner, u, s, h, count = self.owner, self.u, self.s, self.h, self.count
         road = np.flatnonzero((u < -FACE_MARGIN) & (u > -ROAD_SIDE_LENGTH - FACE_MARGIN))
+        grade = self._grade(road)
+        if self.graded:
+            h = h - grade.take(owner) * s
         side = owner.take(road), u.take(road), h.take(road)
         level, slope, noise, n_road = _line_per_owner(*side, count)
         off = np.abs(side[2] - level.take(side[0]) - slope.take(side[0]) * side[1])
@@ -188,7 +193,7 @@ class StepPatches:
         level, slope, noise, n_road = _line_per_owner(side[0].take(keep), side[1].take(keep), side[2].take(keep), count)
         rise = h - level.take(owner) - slope.take(owner) * u
         height, n_behind, stays = self._raised_ground(rise)
-        found = dict(level=level, slope=slope, noise=noise, n_road=n_road, height=height, n_behind=n_behind, stays=stays)
+        found = dict(level=level, slope=slope, grade=grade, noise=noise, n_road=n_road, height=height, n_behind=n_behind, stays=stays)
         # most candidates are no step in any direction: their faces need no measurement
         likely = (n_road >= 4) & (height >= np.maximum(CANDIDATE_HEIGHT_SHARE * self.min_height, CANDIDATE_SIGMA_SHARE * MIN_STEP_SIGMAS * noise)) \
             & (np.abs(slope) <= MAX_ROAD_SLOPE / CANDIDATE_HEIGHT_SHARE)
@@ -198,14 +203,33 @@ class StepPatches:
         own = np.flatnonzero((np.abs(u) < FACE_SEARCH_HALF_WIDTH) & (number.take(owner) >= 0))
         skew = self.skew if isinstance(self.skew, float) else self.skew[which]
         near = StepPatches(number.take(owner.take(own)), u.take(own), s.take(own), h.take(own), self.scanner_noise[which],
-                           self.min_height, self.max_height, skew)
+                           self.min_height, self.max_height, skew, self.graded)
         seen = dict(likely=likely)
         for name, values in near._faces(rise.take(own), **{name: values[which] for name, values in found.items()}).items():
             seen[name] = np.zeros(count, values.dtype)
             seen[name][which] = values
         return seen
 
-    def _faces(self, rise, level, slope, noise, n_road, height, n_behind, stays):
+    def _grade(self, road):
+        """(M,) m per m along the curb, of the plane through the points `road` of each candidate; 0 where that is not wanted.
+
+        At a corner the crossfall of one street is a grade along the curb of the other. The estimate is by ridge regression, close to 0
+        where the points, as those of a single scan line, do not tell it from the slope across.
+        """
+        if not self.graded:
+            return np.zeros(self.count)
+        owner, (u, s, h) = self.owner.take(road), (v.take(road) for v in (self.u, self.s, self.h))
+        n = np.maximum(np.bincount(owner, minlength=self.count), 1)
+
+        def moment(a, b):
+            return np.bincount(owner, a * b, self.count) - np.bincount(owner, a, self.count) * np.bincount(owner, b, self.count) / n
+
+        uu, us, ss, uh, sh = (moment(a, b) for a, b in ((u, u), (u, s), (s, s), (u, h), (s, h)))
+        # points that all lie at one offset do not give a slope
+        share = np.where(uu > n * 0.03**2, us / np.maximum(uu, 1e-12), 0.0)
+        return (sh - share * uh) / (np.maximum(ss - share * us, 0.0) + GRADE_PRIOR)
+
+    def _faces(self, rise, level, slope, grade, noise, n_road, height, n_behind, stays):
         """What `corners` returns, for candidates whose road side and height are known; `rise` : (N,) m of the points above the road."""
         owner, u, s, count, total = self.owner, self.u, self.s, self.count, self._total
         scatter = np.maximum(noise, self.scanner_noise)
@@ -229,7 +253,7 @@ class StepPatches:
         good = (np.isfinite(level) & (n_road >= 4) & (height >= self.min_height) & (height <= self.max_height)
                 & (height >= MIN_STEP_SIGMAS * noise) & (np.abs(slope) <= MAX_ROAD_SLOPE) & stays
                 & (n_face >= 1) & (run <= MAX_FACE_WIDTH))
-        return dict(s=at, u=corner + self.skew * at, h=level + slope * corner, skew=skew, height=height, run=run,
+        return dict(s=at, u=corner + self.skew * at, h=level + slope * corner + grade * at, skew=skew, height=height, run=run,
                     noise=noise, support=n_road + n_face, behind=n_behind, good=good)
 
     def _raised_ground(self, rise):

@@ -86,9 +86,14 @@ class GapLine:
     ----------
     before, after : (2, N) and (2, M) m, x and y of the curb on both sides of the gap, in order; those within LINE_FIT_LENGTH
         of it are used
+    max_degree : greatest degree; 2 is an even bend
+
+    Attributes
+    ----------
+    miss : m, greatest distance of the places that were used from the line
     """
 
-    def __init__(self, before: np.ndarray, after: np.ndarray):
+    def __init__(self, before: np.ndarray, after: np.ndarray, max_degree: int = 3):
         ends, weights = [], []
         for part, tip in ((before, before[:, -1:]), (after, after[:, :1])):
             away = np.hypot(*(part - tip))
@@ -101,7 +106,8 @@ class GapLine:
         self.origin, self.along = first, (last - first) / max(np.hypot(*(last - first)), 1e-9)
         degree = 1 + sum(np.hypot(*(end[:, -1] - end[:, 0])) >= MIN_BEND_LENGTH for end in ends)
         t, v = self.place(*known)
-        self.line = Polynomial.fit(t, v, degree, w=np.sqrt(np.concatenate(weights)))
+        self.line = Polynomial.fit(t, v, min(degree, max_degree), w=np.sqrt(np.concatenate(weights)))
+        self.miss = float(np.abs(v - self.line(t)).max())
 
     def place(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(N,) m along the chord and left of it."""

@@ -32,6 +32,8 @@ MIN_STRAIGHT_LENGTH = 2.0     # m of straight curb that make a side street
 MIN_ISLAND_SHARE = 0.6        # share of an island's steps behind which the ground comes down again
 MIN_ISLAND_LENGTH = 2.0       # m of lines about one island
 MAX_ISLAND_GAP = 3.0          # m between them
+OUTLINE_MARGIN = 0.3            # m from either side of an island within which a line is that side
+INNER_DISTANCE = 0.2          # m from the rays that lead across an island within which a line is on top of it
 MIN_ISOLATED_LENGTH = 5.0     # m of a line that belongs to a side street although nothing joins it to the main curb
 MAX_BEHIND_SHARE = 0.25       # share of such a line that may lie behind the main curb, which ends beside its corner
 MAX_SIDE_STREET_TURN = np.radians(35.0)   # of its steps from the direction of such a line
@@ -133,7 +135,7 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
         behind = np.any([sign * d > limits[side](s, 0.0, 0.0) for side, sign in SIDE_SIGNS.items()], axis=0)
         side = "left" if np.nanmedian(d - np.mean([p.at_station(s)[0] for p in passes], axis=0)) > 0 else "right"
         if np.mean(np.isfinite(falls[chain.steps]) & ~behind) >= MIN_ISLAND_SHARE:
-            islands.append(CurbReturn(own, s, d, side, "island", chain.closed))
+            islands.append((CurbReturn(own, s, d, side, "island", chain.closed), falls[chain.steps]))
         elif _may_be_side_street(own, s, line, behind, [steps[c.steps] for c in chains]):
             # a side street whose corner is hidden
             straight = _straight_part(own)
@@ -141,7 +143,7 @@ def classify_curbs(chains: Sequence[PlanStepChain], steps: PlanSteps, falls: np.
         elif np.mean(behind) <= MAX_BEHIND_SHARE:
             free.append(CurbReturn(own, s, d, side, "corner"))
     curbs = [(x, y) for _, (x, y, _) in runs] + list(elsewhere) + [(curb.steps.x, curb.steps.y) for curb in found]
-    return found + [curb for curb in free if is_free_corner(curb.steps, curbs)] + _long_islands(islands)
+    return found + [curb for curb in free if is_free_corner(curb.steps, curbs)] + _long_islands(_outlines(islands))
 
 
 def _may_be_side_street(own, s, line, behind, lines):
@@ -152,7 +154,7 @@ def _may_be_side_street(own, s, line, behind, lines):
 
 def _straight_part(own):
     """The longest run of steps, as a slice, in the line's own direction: at its ends it may have caught a wall, or the back of a sidewalk."""
-    along = np.arctan2(-own.nx, own.ny)
+    along = np.arctan2(*_chords(own)[::-1])
     turn = np.abs((along - np.arctan2(np.median(np.sin(along)), np.median(np.cos(along))) + np.pi) % (2 * np.pi) - np.pi)
     runs = mask_runs(turn <= MAX_SIDE_STREET_TURN)
     return slice(*max(runs, key=lambda run: run[1] - run[0])) if runs else slice(0, len(own))
@@ -186,10 +188,15 @@ def _has_opposite_curb(own, lines):
 
 def _road_cosine(own, s, line):
     """(N,) cosine of the angle between a line and the road at its steps."""
+    dx, dy = _chords(own)
+    return np.abs(dx * np.cos(line.heading(s)) + dy * np.sin(line.heading(s))) / np.maximum(np.hypot(dx, dy), 1e-9)
+
+
+def _chords(own):
+    """(N,) m, x and y from the second step before each one to the second behind it: the course of a line is surer than its single faces."""
     k = np.arange(len(own))
     a, b = np.maximum(k - 2, 0), np.minimum(k + 2, len(own) - 1)
-    dx, dy = own.x[b] - own.x[a], own.y[b] - own.y[a]
-    return np.abs(dx * np.cos(line.heading(s)) + dy * np.sin(line.heading(s))) / np.maximum(np.hypot(dx, dy), 1e-9)
+    return own.x[b] - own.x[a], own.y[b] - own.y[a]
 
 
 def _where_straight(own, order, along):
@@ -203,6 +210,23 @@ def _where_straight(own, order, along):
         if off.max() <= MAX_STRAIGHT_DEVIATION and np.median(along[order[k:]]) < MIN_ROAD_COSINE:
             return k
     return len(x)
+
+
+def _outlines(islands):
+    """The lines about islands without those on top of one: a ramp that is lowered for a crossing meets the rest of the island in an edge."""
+    inner = []
+    for line, falls in islands:
+        out = np.arange(OUTLINE_MARGIN, np.nanmax(falls, initial=0.0) - OUTLINE_MARGIN, INNER_DISTANCE)
+        k, j = np.nonzero(out < (falls - OUTLINE_MARGIN)[:, None])
+        own = line.steps
+        inner.append(np.c_[own.x[k] + out[j] * own.nx[k], own.y[k] + out[j] * own.ny[k]])
+    found = []
+    for k, (line, _) in enumerate(islands):
+        others = np.concatenate([np.empty((0, 2))] + inner[:k] + inner[k + 1:])
+        away = cKDTree(others).query(np.c_[line.steps.x, line.steps.y])[0] if len(others) else np.full(len(line.steps), np.inf)
+        if np.mean(away <= INNER_DISTANCE) < MIN_ISLAND_SHARE:
+            found.append(line)
+    return found
 
 
 def _long_islands(lines):

@@ -22,7 +22,9 @@ from ..common.decimation import POINTS_PER_LEVEL_CELL_IN_PLAN, PointDecimation
 from ..common.sides import MAX_LOOK_ALONG, SIDE_SIGNS, ahead_of_vehicle, expected_height, work_sections
 from ..common.tracking import MAX_JOINED_GAP
 from .classify import CurbReturn, classify_curbs, is_curb_like
-from .raster import PLAN_CELL, averaged, driven_ground, falls_again, ground_raster, ground_slopes, step_places
+from .far_sides import MIN_ISLAND_WIDTH, far_sides
+from .following import FollowedEnds, followed_steps
+from .raster import PLAN_CELL, averaged, driven_ground, ground_behind, ground_raster, ground_slopes, step_places
 from .steps import PlanSteps, measure_plan_steps
 from .tracking import join_chains, link_plan_steps
 
@@ -118,7 +120,9 @@ def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str,
     limits = {side: SearchLimit(points, SIDE_SIGNS[side]) for side, points in main.items()}
     line = survey.frame.road(road)
     known, barrier = KnownPlaces(_places_along(line, main, MAX_JOINED_GAP)), _places_along(line, main, MIN_OPENING_LENGTH).T
-    phase = Phase(plan_steps_of_section, decimation, (road, limits, known, barrier, settings),
+    runs = _runs(main, line)
+    tips = FollowedEnds.of([place for _, place in runs], np.full(len(runs), np.nan))
+    phase = Phase(plan_steps_of_section, decimation, (road, limits, known, barrier, tips, settings),
                   lambda section: survey.stretch(road, *(k * settings.profile_width for k in section)),
                   lambda section: survey.store.points_between(road, *(k * settings.profile_width for k in section)), _join_parts)
     sections = work_sections(survey, road, settings.profile_width)
@@ -127,7 +131,7 @@ def find_curb_returns(decimation: PointDecimation, road: int, main: Mapping[str,
         return []
     steps, falls, scanner_noise = found
     chains = [c for c in join_chains(link_plan_steps(steps), steps) if is_curb_like(c, steps, scanner_noise, settings)]
-    return classify_curbs(chains, steps, falls, _runs(main, line), line, limits, survey.frame.passes_of(road), elsewhere)
+    return classify_curbs(chains, steps, falls, runs, line, limits, survey.frame.passes_of(road), elsewhere)
 
 
 def _join_parts(parts):
@@ -222,7 +226,7 @@ class KnownPlaces:
 
 
 def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int], road: int, limits: Mapping[str, SearchLimit],
-                          known: KnownPlaces, barrier: np.ndarray, settings: CurbSettings,
+                          known: KnownPlaces, barrier: np.ndarray, tips: FollowedEnds, settings: CurbSettings,
                           points_per_cell: int | None = POINTS_PER_LEVEL_CELL_IN_PLAN) -> tuple[PlanSteps, np.ndarray, np.ndarray] | None:
     """The phase of curb returns: steps in plan in one section of a road.
 
@@ -234,6 +238,7 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
     limits : side -> SearchLimit
     known : places of the main curbs
     barrier : (2, M) local x and y of places that the driven ground does not go beyond
+    tips : ends of the main curbs
     settings : CurbSettings
     points_per_cell : as in `decimated_points`, where the ground is not uneven nearly everywhere
 
@@ -258,7 +263,7 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
     noisy = dense and raster.noise > NOISY_RASTER_SHARE * settings.limits.clear_height
     if noisy and limit is not None:
         # averages need every point
-        return plan_steps_of_section(decimation, section, road, limits, known, barrier, settings, points_per_cell=None)
+        return plan_steps_of_section(decimation, section, road, limits, known, barrier, tips, settings, points_per_cell=None)
     line = survey.frame.road(road)
     slopes = ground_slopes(raster.low)
     track = _track(survey, road, first, last)
@@ -272,15 +277,34 @@ def plan_steps_of_section(decimation: PointDecimation, section: tuple[int, int],
 
     x, y, nx, ny = step_places(raster, slopes, driven, stepped, clear, settings.max_height, wanted)
     fresh = wanted(x, y)
-    if not fresh.any():
+    at, _ = line.locate(tips.x, tips.y)
+    tips = tips[(at >= start) & (at < end)]
+    if not fresh.any() and not len(tips):
         return None
     views = _averaged_views(raster, place, along, settings.layer_jump) if noisy else [raster]
     steps = measure_plan_steps(views, x[fresh], y[fresh], nx[fresh], ny[fresh], 0.5 * clear, settings.max_height)
+    ends = FollowedEnds.join([tips, FollowedEnds.of_chains(link_plan_steps(steps), steps)])
+
+    def before_curbs(x, y):
+        own, d = line.locate(x, y)
+        return wanted(x, y) & ~np.any([sign * d > limits[side](own, 0.0, 0.0) for side, sign in SIDE_SIGNS.items()], axis=0)
+
+    further = followed_steps(views[0], ends, 0.5 * clear, settings.max_height, settings.limits.clear_slope, before_curbs)
+    steps = PlanSteps.join([steps, further])
+    if not len(steps):
+        return None
     # inside a tight bend a step may be measured outside the range of stations
     steps = steps[np.isfinite(line.locate(steps.x, steps.y)[0])]
-    lean = [float(np.median(slope[driven])) for slope in slopes]
-    falls = falls_again(raster, lean, steps.x, steps.y, steps.nx, steps.ny, steps.h, steps.height, MAX_ISLAND_WIDTH)
-    return steps, falls, np.full(len(steps), views[0].noise)
+    behind = _behind(raster, slopes, steps)
+    hidden = far_sides(raster, steps, behind)
+    hidden = hidden[wanted(hidden.x, hidden.y)]
+    # its near side is the far side of a far side
+    falls = np.r_[behind.falls, np.full(len(hidden), MIN_ISLAND_WIDTH)]
+    return PlanSteps.join([steps, hidden]), falls, np.full(len(falls), views[0].noise)
+
+
+def _behind(raster, slopes, steps):
+    return ground_behind(raster, slopes, steps.x, steps.y, steps.nx, steps.ny, steps.h, steps.height, MAX_ISLAND_WIDTH)
 
 
 def _beside_vehicle(survey, road, points, reach):

@@ -35,7 +35,9 @@ STEP_HALF_WIDTH = 0.11        # m from the middle of a step, beyond which ground
 PATCH_HALF_LENGTH = 0.31      # m along a step of the ground that is compared
 MAX_PLAN_ROUGHNESS_SHARE = 0.25   # share of a step's height that the road before it may scatter
 MIN_PLAN_RISE_SHARE = 0.6     # share of the least step that the cells of one must show
+ROAD_BEFORE = 1.25            # m before a step, where the slope of the road is taken: the step itself is not in it
 ISLAND_DROP_SHARE = 0.4       # share of a step's height that the ground behind an island may lie above its bottom
+MIN_EDGE_SHARE = 0.7          # share of that height at which its far side begins
 MIN_NOISE_POINTS = 4          # points of a cell, and
 MIN_NOISE_CELLS = 50          # such cells that an estimate of the scanner's noise needs
 NOISE_QUANTILE = 0.3          # quantile of the cells' spreads that is the estimate
@@ -65,10 +67,20 @@ class GroundRaster:
 
     def inside(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(row, column) of those local places, (N,) m, that lie on the grid."""
-        row, column = (np.floor(np.asarray(v) / PLAN_CELL - np.rint(v0 / PLAN_CELL)).astype(np.int64)
-                       for v, v0 in ((y, self.y0), (x, self.x0)))
+        row, column = self.cells_at(x, y)
         on = (row >= 0) & (column >= 0) & (row < self.low.shape[0]) & (column < self.low.shape[1])
         return row[on], column[on]
+
+    def cells_at(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(row, column) of local places, also of those beyond the grid."""
+        row, column = (np.floor(np.asarray(v) / PLAN_CELL - np.rint(v0 / PLAN_CELL)).astype(np.int64)
+                       for v, v0 in ((y, self.y0), (x, self.x0)))
+        return row, column
+
+    def nearest_cells(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(row, column) of the cells of the grid that are nearest to local places."""
+        row, column = self.cells_at(x, y)
+        return np.clip(row, 0, self.low.shape[0] - 1), np.clip(column, 0, self.low.shape[1] - 1)
 
     def middle(self, row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Local x, y of the middle of cells."""
@@ -349,30 +361,50 @@ def _squares(x, y):
     return np.floor(y / (2 * PLAN_CELL)).astype(np.int64) * 10_000_000 + np.floor(x / (2 * PLAN_CELL)).astype(np.int64)
 
 
-def falls_again(raster: GroundRaster, road_slope: Sequence[float], x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray,
-                bottom: np.ndarray, height: np.ndarray, farthest: float) -> np.ndarray:
+@dataclass
+class GroundBehind:
+    """What the ground behind M steps does, along a ray uphill from each.
+
+    Attributes
+    ----------
+    falls : (M,) m uphill at which the ground is back at the step's bottom, NaN where it stays up
+    edge : (M,) m uphill of the last raised ground, if the step down behind it was not seen, because the raised ground itself hid it; else NaN
+    slope : (M,) m per m uphill, of the road before the step
+    """
+
+    falls: np.ndarray
+    edge: np.ndarray
+    slope: np.ndarray
+
+
+def ground_behind(raster: GroundRaster, slopes: Sequence[np.ndarray], x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray,
+                  bottom: np.ndarray, height: np.ndarray, farthest: float) -> GroundBehind:
     """Where the ground behind steps is down again.
 
     Parameters
     ----------
     raster : GroundRaster
-    road_slope : m per m along columns and along rows
+    slopes : result of `ground_slopes`
     x, y : (M,) local m, places of the steps
     nx, ny : (M,) unit vectors uphill
     bottom, height : (M,) m, of the steps
     farthest : m uphill that are searched
-
-    Returns
-    -------
-    (M,) m uphill of each step at which the ground is back at the step's bottom, NaN where it stays up
     """
-    slope = nx * road_slope[0] + ny * road_slope[1]
+    # the ground behind is down where the plane of the road before the step goes on
+    before = raster.nearest_cells(x - ROAD_BEFORE * nx, y - ROAD_BEFORE * ny)
+    slope = nx * slopes[0][before] + ny * slopes[1][before]
     out = (np.arange(int(round(farthest / PLAN_CELL))) + 2) * PLAN_CELL
-    column = np.floor((x[:, None] + out * nx[:, None]) / PLAN_CELL - np.rint(raster.x0 / PLAN_CELL)).astype(np.int64)
-    row = np.floor((y[:, None] + out * ny[:, None]) / PLAN_CELL - np.rint(raster.y0 / PLAN_CELL)).astype(np.int64)
+    row, column = raster.cells_at(x[:, None] + out * nx[:, None], y[:, None] + out * ny[:, None])
     on = (row >= 0) & (column >= 0) & (row < raster.low.shape[0]) & (column < raster.low.shape[1])
     there = np.where(on, raster.low[np.where(on, row, 0), np.where(on, column, 0)], np.nan)
     with np.errstate(invalid="ignore"):
-        down = there < (bottom + ISLAND_DROP_SHARE * height)[:, None] + slope[:, None] * out
-    first = np.argmax(down, axis=1)
-    return np.where(down.any(1), out[first], np.nan)
+        share = (there - bottom[:, None] - slope[:, None] * out) / height[:, None]
+        down, up = share < ISLAND_DROP_SHARE, share >= ISLAND_DROP_SHARE
+    first = np.where(down.any(1), np.argmax(down, axis=1), len(out))
+    last = np.where(up, np.arange(len(out)), -1)
+    last[np.arange(len(out)) >= first[:, None]] = -1
+    last = last.max(axis=1)
+    own = np.arange(len(x))
+    # a ramp is seen all the way down
+    hidden = (first < len(out)) & (last >= 0) & (first - last > 1) & (share[own, last] >= MIN_EDGE_SHARE)
+    return GroundBehind(np.where(first < len(out), out[np.minimum(first, len(out) - 1)], np.nan), np.where(hidden, out[last], np.nan), slope)

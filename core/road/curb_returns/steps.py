@@ -59,6 +59,11 @@ class PlanSteps:
         return PlanSteps(*(getattr(self, name)[which] for name in self.__dataclass_fields__))
 
     @staticmethod
+    def none() -> PlanSteps:
+        """No steps."""
+        return PlanSteps(*(np.empty(0, np.int64 if name in ("support", "behind") else float) for name in PlanSteps.__dataclass_fields__))
+
+    @staticmethod
     def join(parts: Sequence[PlanSteps]) -> PlanSteps:
         """The entries of all parts, one after the other."""
         return PlanSteps(*(np.concatenate([getattr(p, name) for p in parts]) for name in PlanSteps.__dataclass_fields__))
@@ -79,7 +84,9 @@ def measure_plan_steps(rasters: Sequence[GroundRaster], x: np.ndarray, y: np.nda
     -------
     PlanSteps, at most M
     """
-    line_x, line_y, in_line = _line_directions(x, y, nx, ny)
+    if not len(x):
+        return PlanSteps.none()
+    line_x, line_y, in_line = line_directions(x, y, nx, ny)
     # the slope of the ground gives the direction where points are dense, else the line that the steps make
     found, left = [], np.arange(len(x))
     for raster in rasters:
@@ -98,14 +105,10 @@ def _measured(raster, points, x, y, nx, ny, half, min_height, max_height):
     """The steps, and (M,) bool: which places proved to be steps; `points` are the raster's by cell."""
     proved, place, found = np.zeros(len(x), bool), np.arange(len(x)), []
     for turn in range(MEASURING_ROUNDS):
-        owner, u, v, h = _points_about(raster, points, x, y, nx, ny, half)
-        seen = StepPatches(owner, u, v, h, np.full(len(x), raster.noise), min_height, max_height).corners()
+        seen, steps = seen_at(raster, points, x, y, nx, ny, half, min_height, max_height)
         # a step of another direction or place is measured again, across its own direction and from its own place
         settled = seen["good"] & ((np.abs(seen["skew"]) <= REMEASURE_SKEW) & (np.abs(seen["u"]) <= REMEASURE_OFFSET) | (turn == MEASURING_ROUNDS - 1))
         proved[place[settled]] = True
-        # the tangent is the uphill direction turned to the left
-        steps = PlanSteps(x + seen["u"] * nx - seen["s"] * ny, y + seen["u"] * ny + seen["s"] * nx, *_rotated(nx, ny, seen["skew"]),
-                          *(seen[name] for name in ("h", "height", "run", "noise", "support", "behind")))
         found.append(steps[settled])
         again = seen["good"] & ~settled
         if not again.any():
@@ -114,8 +117,39 @@ def _measured(raster, points, x, y, nx, ny, half, min_height, max_height):
     return PlanSteps.join(found), proved
 
 
-def _line_directions(x, y, nx, ny):
-    """Uphill directions across the line that the places about each place make, and (M,) bool: do they make a line?"""
+def seen_at(raster: GroundRaster, points: tuple[np.ndarray, ...], x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray, half: float,
+            min_height: float, max_height: float, graded: bool = False) -> tuple[dict[str, np.ndarray], PlanSteps]:
+    """What the points about each place show across a direction.
+
+    Parameters
+    ----------
+    raster : GroundRaster
+    points : of it, result of `by_cell`
+    x, y : (M,) local m
+    nx, ny : (M,) unit vectors uphill
+    half : m either way along the curb of the points that are used
+    min_height, max_height : m, of a step
+    graded : as of StepPatches
+
+    Returns
+    -------
+    result of `StepPatches.corners`, with `around`, the least number of points on either side of the curb before and behind the place, and
+    `density`, points for each cell; and M PlanSteps, of which those are steps that are `good`
+    """
+    owner, u, v, h = points_about(raster, points, x, y, nx, ny, half)
+    seen = StepPatches(owner, u, v, h, np.full(len(x), raster.noise), min_height, max_height, graded=graded).corners()
+    quarter = np.bincount(4 * owner + 2 * (u > 0) + (v > 0), minlength=4 * len(x)).reshape(-1, 4)
+    seen["around"], seen["density"] = quarter.min(axis=1), quarter.sum(axis=1) * PLAN_CELL**2 / (4 * PATCH_HALF_WIDTH * half)
+    # the tangent is the uphill direction turned to the left
+    return seen, PlanSteps(x + seen["u"] * nx - seen["s"] * ny, y + seen["u"] * ny + seen["s"] * nx, *_rotated(nx, ny, seen["skew"]),
+                           *(seen[name] for name in ("h", "height", "run", "noise", "support", "behind")))
+
+
+def line_directions(x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Uphill unit vectors across the line that the places about each place make, and (M,) bool: do they make a line?
+
+    x, y : (M,) local m; nx, ny : (M,) unit vectors uphill, good to some 30 degrees
+    """
     pairs = cKDTree(np.c_[x, y]).query_pairs(LINE_RADIUS, output_type="ndarray")
     # places on the other side of an island face the other way
     pairs = pairs[nx[pairs[:, 0]] * nx[pairs[:, 1]] + ny[pairs[:, 0]] * ny[pairs[:, 1]] > 0.3]
@@ -137,8 +171,9 @@ def _rotated(nx, ny, skew):
     return (nx + skew * ny) / size, (ny - skew * nx) / size
 
 
-def _points_about(raster, points, x, y, nx, ny, half):
-    """Ground points near each place: owner, m uphill, m along, height."""
+def points_about(raster: GroundRaster, points: tuple[np.ndarray, ...], x: np.ndarray, y: np.ndarray, nx: np.ndarray, ny: np.ndarray,
+                 half: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Ground points near each place: owner, m uphill, m along, height; the parameters are those of `seen_at`."""
     px, py, ph, starts = points
     rows, columns = raster.low.shape
     reach = int(np.ceil(np.hypot(PATCH_HALF_WIDTH, half) / PLAN_CELL))

@@ -24,12 +24,12 @@ TURN_TOLERANCE = np.radians(25.0)
 MAX_HEIGHT_GRADE = 0.08       # m per m along that bottoms of neighbours may differ besides HEIGHT_TOLERANCE
 MAX_JOIN_TURN = np.radians(45.0)   # between two chains of one line
 MAX_NOSE_GAP = 1.5            # m between ends that may enclose the nose of an island
-NOSE_RADIUS = 0.6             # m, of that nose
+NOSE_RADIUS = 0.5             # m, of that nose
 JOIN_DRIFT = 0.25             # m across per m that two such chains may miss each other, and
 JOIN_TOLERANCE = 0.05         # m in any case
 END_DIRECTION_LENGTH = 0.6    # m at the end of a chain that give its direction
 MAX_STRAIGHT_GAP = 15.0       # m that a straight curb may be dropped or hidden: a crossing, a drive, parked cars
-STRAIGHT_END_LENGTH = 2.0     # m at the end of such a curb that give its direction
+LINE_DIRECTION_LENGTH = 2.0   # m at the end of such a curb, or of one that is followed, that give its direction
 MAX_STRAIGHT_TURN = np.radians(8.0)   # between its two parts
 STRAIGHT_DRIFT = 0.03         # m across per m that they may miss each other, and
 STRAIGHT_TOLERANCE = 0.10     # m in any case
@@ -163,8 +163,8 @@ def group_lines(places: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]) -> 
     (K,) number of the line to which each belongs
     """
     ends = LineEnds.of(places)
-    long = np.array([np.hypot(np.diff(x), np.diff(y)).sum() >= STRAIGHT_END_LENGTH for x, y, _ in places])
-    far = LineEnds.of(places, STRAIGHT_END_LENGTH).straight_successors(long)
+    long = np.array([np.hypot(np.diff(x), np.diff(y)).sum() >= LINE_DIRECTION_LENGTH for x, y, _ in places])
+    far = LineEnds.of(places, LINE_DIRECTION_LENGTH).straight_successors(long)
     following = np.r_[ends.successors(), far]
     linked = np.flatnonzero(following >= 0)
     graph = coo_matrix((np.ones(len(linked)), (linked % len(places), following[linked])), shape=2 * (len(places),))

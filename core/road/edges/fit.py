@@ -14,6 +14,7 @@ from ...common.setting import check_limits, setting
 from ...curves.robust import MAD_TO_SIGMA
 from ...survey.frame.road_frame import RoadFrame
 from ..common.curb_points import CurbPoints
+from ..common.in_line import IN_LINE_ACROSS, LINE_FIT_LENGTH, MIN_BEND_LENGTH, GapLine
 from ..common.occlusion import HIDDEN_POINT_SPACING
 from ..common.tracking import MAX_JOINED_GAP
 from .curb_returns import curb_return_lines, draw_curb_returns
@@ -26,6 +27,7 @@ OUTLIER_MADS = 3.0            # median absolute deviations, as sigmas, and
 OUTLIER_FLOOR = 0.05          # m, the least distance from it at which a point is an outlier
 MIN_HIDDEN_SHARE = 0.5        # share of a gap that must be hidden for a bridge
 GAP_END_ALLOWANCE = 1.0       # m of a gap, half at each end, that need not be hidden
+IN_LINE_GAP_FACTOR = 2.0      # times the longest bridged gap that a curb may be hidden whose two parts lie in one line
 MAX_EDGE_SKEW = 1.0           # m across per m along of a joined edge
 MAX_EDGE_JUMP = 0.25          # m across that two joined points may differ in any case
 EDGE_VERTEX_SPACING = 0.5     # m between vertices
@@ -40,11 +42,11 @@ class EdgeSettings:
 
     Attributes
     ----------
-    max_gap : m that are bridged where something hides the curb; longer gaps interrupt the edge
+    max_gap : m that are bridged where something hides the curb; up to twice as long where both parts lie in one line. Longer gaps interrupt the edge
     fallback_width : m between the edges that are drawn where no curb was found; 0 draws none
     """
 
-    max_gap: float = setting(25.0, 0.0, 100.0, "The longest bridged gap", "m")
+    max_gap: float = setting(15.0, 0.0, 100.0, "The longest bridged gap", "m")
     fallback_width: float = setting(0.0, 2.0, 50.0, "The fallback width", "m", "for none")
 
     def __post_init__(self) -> None:
@@ -116,14 +118,25 @@ def _pieces(rows, max_gap):
     joined = (gap <= MAX_JOINED_GAP) & (across <= MAX_EDGE_JUMP + MAX_EDGE_SKEW * gap)
     start, end = points["s"][:-1], points["s"][1:]
     covered = HIDDEN_POINT_SPACING * (np.searchsorted(hidden, end) - np.searchsorted(hidden, start, side="right"))
-    bridged = (gap > MAX_JOINED_GAP) & (gap <= max_gap) & (covered >= MIN_HIDDEN_SHARE * (gap - GAP_END_ALLOWANCE)) \
+    bridged = (gap > MAX_JOINED_GAP) & (gap <= IN_LINE_GAP_FACTOR * max_gap) & (covered >= MIN_HIDDEN_SHARE * (gap - GAP_END_ALLOWANCE)) \
         & (across <= MAX_EDGE_JUMP + 0.1 * gap)
+    bridged[[k for k in np.flatnonzero(bridged & (gap > max_gap)) if not _goes_on_in_line(points, k)]] = False
     breaks = np.flatnonzero(~(joined | bridged)) + 1
     pieces = []
     for part, flags in zip(np.split(points, breaks), np.split(np.r_[bridged, False], breaks)):
         if len(part) >= 2 and part["s"][-1] - part["s"][0] >= MIN_EDGE_LENGTH:
             pieces.append((part, flags[:-1]))
     return pieces
+
+
+def _goes_on_in_line(points, k):
+    """Do the points after a gap, which begins at point k, lie on one even bend with those before it?"""
+    s = points["s"]
+    before = points[(s >= s[k] - LINE_FIT_LENGTH) & (s <= s[k])]
+    after = points[(s >= s[k + 1]) & (s <= s[k + 1] + LINE_FIT_LENGTH)]
+    if max(np.ptp(before["s"]), np.ptp(after["s"])) < MIN_BEND_LENGTH:
+        return False
+    return GapLine(*(np.array([part["x"], part["y"]]) for part in (before, after)), max_degree=2).miss <= IN_LINE_ACROSS
 
 
 def without_outliers(points: np.ndarray) -> np.ndarray:

@@ -48,7 +48,7 @@ MAX_BLOCK_TURN = np.radians(1.0)   # turn of the road within a block
 MAX_BLOCK_BEND = 0.015        # m off its own straight line above which a block is divided
 CHAIN_END_STEPS = 3           # profiles that give the end point of a chain
 MAIN_CURB_PROGRESS = 0.6      # share of the work
-MAX_HIDDEN_GAP = 25.0         # m between curbs within which hidden curb is reported
+MAX_HIDDEN_GAP = 30.0         # m between curbs within which hidden curb is reported
 
 
 @dataclass(frozen=True)

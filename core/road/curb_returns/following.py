@@ -1,0 +1,146 @@
+"""Curbs followed beyond the places where they were found.
+
+Far from the vehicle, or behind a gap, points are too sparse for a curb to stand out by itself. Where a line of curb is known it says
+where its next piece must lie, which way it runs and how high it is; a step measured there, from points farther along the curb, needs
+no other sign. A line ends where no such step was found for the length that a link may span.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..common.tracking import HEIGHT_TOLERANCE, MAX_ROAD_ROUGHNESS
+from .raster import GroundRaster
+from .steps import LONG_HALF_LENGTH, SHORT_HALF_LENGTH, PlanSteps, seen_at
+from .tracking import LINE_DIRECTION_LENGTH, MAX_HEIGHT_GRADE, MAX_PLAN_LINK, LineEnds, PlanStepChain
+
+FOLLOWING_STEP = 0.4          # m along a curb from one measurement to the next
+FOLLOWED_LENGTH = 16.0        # m that a line is followed at most within a section
+FOLLOWED_HALF_LENGTHS = SHORT_HALF_LENGTH, LONG_HALF_LENGTH, 2.0   # m either way along a curb of the points that measure it
+MIN_QUARTER_POINTS = 2        # points on either side of a step, before it and behind it: none is measured beyond what was seen
+MAX_FOLLOWED_POINTS = 1.0     # points for each cell of the raster: where there are more, a curb that goes on was found already
+FOLLOWED_STEPS = 4            # steps of FOLLOWING_STEP over which the direction is taken from then on
+FOLLOWED_ACROSS = 0.06        # m from the line within which the curb goes on, and
+FOLLOWED_SKEW = 0.15          # m across per m along, that its face may turn from it
+FOLLOWED_HEIGHT_RATIO = 1.6   # of its height over that of the line, or the other way
+
+
+@dataclass
+class FollowedEnds:
+    """Ends of K lines of curb from which they are followed.
+
+    Attributes
+    ----------
+    x, y, h : (K,) m, local place and height of the bottom
+    tx, ty : (K,) unit vector out of the line
+    uphill : (K,) 1 where uphill is on the right of that vector, else -1
+    height : (K,) m, of the step; NaN where it is not known
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    h: np.ndarray
+    tx: np.ndarray
+    ty: np.ndarray
+    uphill: np.ndarray
+    height: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.x)
+
+    def __getitem__(self, which: np.ndarray) -> FollowedEnds:
+        return FollowedEnds(*(getattr(self, name)[which] for name in self.__dataclass_fields__))
+
+    @classmethod
+    def of(cls, lines: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]], heights: np.ndarray) -> FollowedEnds:
+        """Both ends of lines (x, y, h), uphill on the right, that are long enough for a direction.
+
+        Parameters
+        ----------
+        lines : list of K (x, y, h), each (N,) m
+        heights : (K,) m, of the steps
+        """
+        long = np.array([np.hypot(x[-1] - x[0], y[-1] - y[0]) >= LINE_DIRECTION_LENGTH for x, y, _ in lines], bool)
+        ends = LineEnds.of([line for line, good in zip(lines, long) if good], LINE_DIRECTION_LENGTH)
+        both = np.concatenate([ends.tails, ends.heads])
+        uphill = np.repeat([1.0, -1.0], len(ends.tails))
+        return cls(both[:, 0], both[:, 1], both[:, 2], both[:, 3], both[:, 4], uphill, np.tile(np.asarray(heights, float)[long], 2))
+
+    @classmethod
+    def of_chains(cls, chains: Sequence[PlanStepChain], steps: PlanSteps) -> FollowedEnds:
+        """The ends of open chains of steps."""
+        own = [steps[chain.steps] for chain in chains if not chain.closed and len(chain.steps) > 2]
+        return cls.of([(line.x, line.y, line.h) for line in own], np.array([np.median(line.height) for line in own]))
+
+    @staticmethod
+    def join(parts: Sequence[FollowedEnds]) -> FollowedEnds:
+        """The ends of all parts."""
+        return FollowedEnds(*(np.concatenate([getattr(part, name) for part in parts]) for name in FollowedEnds.__dataclass_fields__))
+
+
+def followed_steps(raster: GroundRaster, ends: FollowedEnds, min_height: float, max_height: float, least_slope: float,
+                   wanted: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> PlanSteps:
+    """Steps in the continuation of lines.
+
+    Parameters
+    ----------
+    raster : GroundRaster
+    ends : FollowedEnds of the lines
+    min_height, max_height : m, of a step
+    least_slope : radians, of its face
+    wanted : function, local x, y -> (N,) bool: where curbs are looked for; a line is not followed beyond
+
+    Returns
+    -------
+    PlanSteps
+    """
+    points = raster.by_cell(ends.x, ends.y, FOLLOWED_LENGTH + FOLLOWED_HALF_LENGTHS[-1])
+    # the places behind an end, from which its direction follows
+    back = FOLLOWING_STEP * np.arange(FOLLOWED_STEPS, 0, -1)
+    trail_x, trail_y = ends.x[:, None] - back * ends.tx[:, None], ends.y[:, None] - back * ends.ty[:, None]
+    away, left, found = np.full(len(ends), FOLLOWING_STEP), np.full(len(ends), FOLLOWED_LENGTH), []
+    while len(ends):
+        x, y = ends.x + away * ends.tx, ends.y + away * ends.ty
+        on = wanted(x, y) & (left > 0)
+        ends = ends[on]
+        x, y, away, left, trail_x, trail_y = (v[on] for v in (x, y, away, left, trail_x, trail_y))
+        if not len(x):
+            break
+        nx, ny = ends.uphill * ends.ty, -ends.uphill * ends.tx
+        steps, good = _measured_across(raster, points, x, y, nx, ny, min_height, max_height)
+        with np.errstate(invalid="ignore"):
+            ratio = steps.height / ends.height
+            good &= ~((ratio > FOLLOWED_HEIGHT_RATIO) | (ratio < 1 / FOLLOWED_HEIGHT_RATIO))
+        good &= (np.abs(steps.h - ends.h) <= HEIGHT_TOLERANCE + MAX_HEIGHT_GRADE * away) & (steps.behind >= 2) \
+            & (steps.noise <= max(MAX_ROAD_ROUGHNESS, 2 * raster.noise)) \
+            & (np.arctan2(steps.height, np.maximum(steps.run - 2 * raster.noise, 0.0)) >= least_slope)
+        found.append(steps[good])
+        trail_x[good] = np.c_[trail_x[good, 1:], ends.x[good]]
+        trail_y[good] = np.c_[trail_y[good, 1:], ends.y[good]]
+        dx, dy = steps.x - trail_x[:, 0], steps.y - trail_y[:, 0]
+        size = np.maximum(np.hypot(dx, dy), 1e-9)
+        x, y, h, tx, ty = (np.where(good, new, old) for new, old in (
+            (steps.x, ends.x), (steps.y, ends.y), (steps.h, ends.h), (dx / size, ends.tx), (dy / size, ends.ty)))
+        ends = FollowedEnds(x, y, h, tx, ty, ends.uphill, np.where(good & np.isnan(ends.height), steps.height, ends.height))
+        away, left = np.where(good, FOLLOWING_STEP, away + FOLLOWING_STEP), left - FOLLOWING_STEP
+        left[away > MAX_PLAN_LINK] = 0.0
+    return PlanSteps.join(found) if found else PlanSteps.none()
+
+
+def _measured_across(raster, points, x, y, nx, ny, min_height, max_height):
+    """A step across each place, from near points where they show it, else from points farther along; and (M,) bool: is it one, there?"""
+    steps, good = None, np.zeros(len(x), bool)
+    for half in FOLLOWED_HALF_LENGTHS:
+        seen, those = seen_at(raster, points, x, y, nx, ny, half, min_height, max_height, graded=True)
+        # the line says where along the curb the step is measured, and the face how far across
+        across = seen["u"] - seen["skew"] * seen["s"]
+        those.x, those.y = x + across * nx, y + across * ny
+        there = seen["good"] & (np.abs(across) <= FOLLOWED_ACROSS) & (np.abs(seen["skew"]) <= FOLLOWED_SKEW) \
+            & (seen["around"] >= MIN_QUARTER_POINTS) & (seen["density"] <= MAX_FOLLOWED_POINTS)
+        steps = those if steps is None else PlanSteps(*(np.where(good, getattr(steps, name), getattr(those, name))
+                                                        for name in PlanSteps.__dataclass_fields__))
+        good = good | there
+    return steps, good
