@@ -20,6 +20,7 @@ from .gutters import find_gutters
 from .kinds import kind_of
 from .poles import Pole, find_poles
 from .settings import RoadsideSettings
+from .shared import told_once
 from .uprights import UPRIGHT_SLICE, Uprights, find_uprights
 
 if TYPE_CHECKING:
@@ -128,6 +129,7 @@ def find_roadside(survey: Survey, layers: BorderLayers = BorderLayers(), setting
                 kind = "gutter" if what == "gutter" else kind_of(chain)
                 if kind is not None:
                     found.lines.append(SideLine(kind, chain, float(np.median(chain.members.foot)), edges.beyond(side, chain.s, chain.d)))
+    found.lines, found.poles = told_once(found)
     found.lines.sort(key=lambda line: (line.chain.road, -line.chain.side, float(line.chain.s[0])))
     _report(found, progress)
     return found
